@@ -17,7 +17,8 @@ module rbs_app_commands
    use rbs_io_output_file, only: partial
    use rbs_io_state_file, only: read_state, write_state
    use rbs_io_posix, only: is_standard_output, same_file, standard_input
-   use rbs_output_notes, only: column_notes, drift_note, rotation_note
+   use rbs_output_notes, only: drift_note, rotation_note
+   use rbs_structure_column_column_notes, only: column_notes
    use rbs_output_channels, only: new_channels
    use rbs_output_summary, only: figure_type
    use rbs_solve_make_column, only: make_column

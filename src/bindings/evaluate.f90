@@ -20,7 +20,7 @@ module rbs_bindings_evaluate
    use rbs_loading_named_protocols, only: named_protocol
    use rbs_loading_protocol, only: protocol_values
    use rbs_loading_spectrum, only: response_spectrum
-   use rbs_output_notes, only: column_notes
+   use rbs_structure_column_column_notes, only: column_notes
    use rbs_output_channels, only: channel_units
    use rbs_section_flexural_spring, only: spring_figures
    use rbs_section_section_figures, only: layer_values, point_values, profile_values, section_figures, &

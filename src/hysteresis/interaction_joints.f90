@@ -12,7 +12,7 @@ module rbs_hysteresis_interaction_joints
    implicit none
    private
 
-   public :: vary_axial_loads, fall_of, fill_openings, opening_of, rest_of, choose_lines, nearest_layer, &
+   public :: vary_axial_loads, fall_of, opening_of, rest_of, choose_lines, nearest_layer, &
         moment_on_plane
    public :: least_forward_rate, put_on_plane, go_under
 
@@ -44,28 +44,6 @@ contains
          call find_fall(section, fall)
       end select
    end subroutine fall_of
-
-   !> Openings of n joints at the middle of their sections [m], then the rotations from which they count
-   !> theirs [rad]; zero for a joint that is not layered. Without room nothing is filled.
-   pure subroutine fill_openings(springs, n, values)
-      type(spring_array), intent(in) :: springs
-      !> Number of joints; their flexural springs are n + 1 to 2 n
-      integer, intent(in) :: n
-      !> (2 n), or empty
-      real(wp), intent(inout) :: values(:)
-      integer :: i, j
-
-      if (size(values) == 0) return
-      values = 0.0_wp
-      do j = 1, size(springs%layered)
-         i = springs%layered(j)
-         values(i - n) = opening_of(springs, i, springs%d(i), 0.0_wp)
-         select type (section => springs%slot(i)%memory)
-         type is (fibre_section)
-            values(i) = section%rest
-         end select
-      end do
-   end subroutine fill_openings
 
    !> Opening of a layered joint on its present line or plane [m]; 0 of other springs.
    pure real(wp) function opening_of(springs, i, d, share) result(opening)
@@ -187,7 +165,7 @@ contains
    !> are to be on lines.
    subroutine go_under(springs, axial_load, from_planes)
       type(spring_array), intent(inout) :: springs
-      !> Of the joints, compression positive (n) [N]
+      !> Compression positive (count) [N]
       real(wp), intent(in) :: axial_load(:)
       !> Whether the axial loads varied before
       logical, intent(in) :: from_planes
@@ -197,7 +175,7 @@ contains
 
       do j = 1, size(springs%layered)
          i = springs%layered(j)
-         load = axial_load(i - size(axial_load))
+         load = axial_load(i)
          select type (section => springs%slot(i)%memory)
          type is (fibre_section)
             if (springs%pressed) then

@@ -1,20 +1,13 @@
-!> Notes on a column and on a run: what is allowed but perhaps not intended.
+!> Notes on a run: what is allowed but perhaps not intended.
 module rbs_output_notes
-   use rbs_base_constants, only: standard_gravity
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: to_text
-   use rbs_structure_column_column, only: column_type, small, finite
-   use rbs_structure_column_column_record, only: column_record
-   use rbs_hysteresis_springs, only: follow_path
+   use rbs_structure_structure, only: structure_type, small, finite
    use rbs_output_summary, only: summary_type
    implicit none
    private
 
-   public :: column_notes, drift_note, rotation_note
-
-   !> Least and largest height of a column [m]: one in millimetres is outside.
-   real(wp), parameter :: shortest = 0.05_wp, longest = 100.0_wp
+   public :: drift_note, rotation_note
 
    !> Rotations larger than this are not small [rad].
    real(wp), parameter :: largest_small = 0.1_wp
@@ -22,59 +15,12 @@ module rbs_output_notes
    !> Displacements beyond this share of the height are hardly meant.
    real(wp), parameter :: far = 0.5_wp
 
-   !> No hinge of concrete or steel yields later [rad].
-   real(wp), parameter :: late_yield = 0.2_wp
-
-   !> Axial loads below this share of the lateral strength are hardly meant.
-   real(wp), parameter :: hardly_any = 0.005_wp
-
-   !> Lateral strength beside the axial load, M/(h P): a column ten times as long as deep has 0.01 or more.
-   real(wp), parameter :: too_weak = 0.003_wp
-
 contains
-
-   !> Sizes in a wrong unit, springs that seem exchanged, loads of a column that do nothing, masses without
-   !> weight: each with what to do.
-   subroutine column_notes(spec, notes)
-      !> Validated
-      type(column_record), intent(in) :: spec
-      type(message_list), intent(inout) :: notes
-      logical :: carried
-
-      if (spec%height < shortest .or. spec%height > longest) then
-         call notes%add('column: height = '//to_text(spec%height)//' m is that of no column; lengths are '// &
-                        'in m, and 1750 mm is 1.75')
-      end if
-      if (all(spec%shear%rule == 'takeda') .and. all(spec%flexure%rule == 'bilinear')) then
-         call notes%add("column: shear has the rule 'takeda' and flexure 'bilinear', usually it is the "// &
-                        'other way round; exchange them if that is meant')
-      end if
-      ! Axial springs and layers carry the load whatever the kinematics.
-      carried = allocated(spec%axial_spring)
-      carried = carried .or. any(spec%flexure%rule == 'layered')
-      if (spec%kinematics == 'small' .and. .not. carried) then
-         if (abs(spec%axial_load) > 0.0_wp) then
-            call notes%add('column: axial_load = '//to_text(spec%axial_load)//' N does nothing with '// &
-                           "kinematics = 'small'; set kinematics = 'pdelta', which has its second-order "// &
-                           'moments, or remove it')
-         end if
-         if (spec%self_weight .and. spec%gravity > 0.0_wp) then
-            call notes%add("column: self_weight does nothing with kinematics = 'small'; set "// &
-                           "kinematics = 'pdelta', or remove it")
-         end if
-      end if
-      if (spec%top_mass > 0.0_wp .and. spec%gravity > 0.0_wp .and. .not. abs(spec%axial_load) > 0.0_wp) then
-         call notes%add('column: top_mass = '//to_text(spec%top_mass)//' kg has no weight, as axial_load '// &
-                        'is zero; give axial_load = '//to_text(anint(spec%top_mass*standard_gravity))// &
-                        " N with kinematics = 'pdelta', or gravity = 0 if something else carries it")
-      end if
-      call balance_notes(spec, notes)
-   end subroutine column_notes
 
    !> Rotations that are taken as small but have grown large. The first term that is left out of sin(th) is
    !> th^3/6, an error of th^2/6; in cos(th), which lever arms contain, the error is th^2/2.
-   subroutine rotation_note(column, summary, notes)
-      type(column_type), intent(in) :: column
+   subroutine rotation_note(structure, summary, notes)
+      class(structure_type), intent(in) :: structure
       type(summary_type), intent(in) :: summary
       type(message_list), intent(inout) :: notes
       character(len=6) :: kinematics
@@ -82,16 +28,16 @@ contains
 
       ! A run to its collapse was asked for, and its rotations are known to be large.
       if (summary%collapsed) return
-      if (column%kinematics == finite) return
+      if (structure%kinematics == finite) return
       ! A path is given; a response in time goes where it goes.
       if (.not. summary%time_step > 0.0_wp) then
          before = notes%count
-         call drift_note(summary%peak_displacement, sum(column%length), notes)
+         call drift_note(summary%peak_displacement, structure%total_height, notes)
          if (notes%count > before) return
       end if
       if (.not. summary%peak_rotation > largest_small) return
       kinematics = 'pdelta'
-      if (column%kinematics == small) kinematics = 'small'
+      if (structure%kinematics == small) kinematics = 'small'
       ! Without a number of its own, so that a session that makes many runs is told once.
       if (summary%peak_rotation < 1.0_wp) then
          call notes%add("the rotation of a body goes beyond 0.1 rad; with kinematics = '"// &
@@ -115,39 +61,5 @@ contains
                      'drifts are parts of the height (2 per cent is 0.02), forces are in N; if it is '// &
                      "meant, use kinematics = 'finite'")
    end subroutine drift_note
-
-   !> Springs and loads that do not go together, as numbers in another unit do: the strength of the lowest
-   !> flexural spring is that of a rotation of 0.05 rad.
-   subroutine balance_notes(spec, notes)
-      !> Validated
-      type(column_record), intent(in) :: spec
-      type(message_list), intent(inout) :: notes
-      real(wp) :: moment(2), stiffness, least
-
-      associate (hinge => spec%flexure(1))
-         ! What was drawn is judged where it is drawn; what never yields has no strength.
-         if (hinge%rule == 'layered' .or. hinge%rule == 'elastic') return
-         call follow_path(hinge, [0.05_wp, late_yield], moment)
-         stiffness = hinge%initial_stiffness()
-      end associate
-      if (spec%kinematics /= 'small' .and. spec%axial_load < 0.0_wp) then
-         call notes%add('column: axial_load = '//to_text(spec%axial_load)//' N is tension; compression '// &
-                        'is positive')
-      end if
-      if (moment(2) >= (1.0_wp - 1.0e-9_wp)*stiffness*late_yield) then
-         call notes%add('column: flexure does not yield before a rotation of '//to_text(late_yield)// &
-                        ' rad; deformations are in rad, and 2.7 mrad is 0.0027')
-      end if
-      least = moment(1)/spec%height
-      if (spec%kinematics /= 'small' .and. least > 0.0_wp .and. least < too_weak*spec%axial_load) then
-         call notes%add('column: the lateral strength of flexure, '//to_text(least)//' N, is hardly any '// &
-                        'beside axial_load = '//to_text(spec%axial_load)//' N; stiffness is in N m/rad, '// &
-                        'forces are in N')
-      else if (spec%axial_load > 0.0_wp .and. spec%axial_load < hardly_any*least .and. &
-               .not. spec%top_mass > 0.0_wp) then
-         call notes%add('column: axial_load = '//to_text(spec%axial_load)//' N is hardly any beside the '// &
-                        'lateral strength of '//to_text(least)//' N; loads are in N, and 744 kN is 744e3')
-      end if
-   end subroutine balance_notes
 
 end module rbs_output_notes

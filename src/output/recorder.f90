@@ -4,7 +4,9 @@ module rbs_output_recorder
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_output_channels, only: channel_list, response_type
+   use rbs_output_channels, only: channel_list
+   use rbs_structure_channel, only: response_type
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
@@ -45,8 +47,9 @@ module rbs_output_recorder
 contains
 
    !> Make a row of a response and keep it.
-   subroutine keep(self, response, springs, deformation, error)
+   subroutine keep(self, structure, response, springs, deformation, error)
       class(recorder_type), intent(inout) :: self
+      class(structure_type), intent(in) :: structure
       type(response_type), intent(in) :: response
       type(spring_array), intent(in) :: springs
       !> Deformations of the springs [m, rad]
@@ -56,7 +59,7 @@ contains
       if (self%channels%width == 0) return
       if (.not. allocated(self%row)) allocate (self%row(0))
       if (size(self%row) /= self%channels%width) self%row = spread(0.0_wp, 1, self%channels%width)
-      call self%channels%fill(response, springs, deformation, self%row)
+      call self%channels%fill(structure, response, springs, deformation, self%row)
       call self%record(self%row, error)
    end subroutine keep
 

@@ -3,7 +3,7 @@ module rbs_output_summary
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_layered_fibre_fall, only: layer_fall
-   use rbs_output_channels, only: energy_type
+   use rbs_structure_channel, only: energy_type
    implicit none
    private
 

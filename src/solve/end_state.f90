@@ -1,7 +1,7 @@
-!> The state that an analysis ended in, from which another one begins: where the column stands, what its
+!> The state that an analysis ended in, from which another one begins: where the structure stands, what its
 !> springs remember, and what the solver needs to go on with the same bits.
 !>
-!> It is one list of numbers. Its head says to which column it belongs and how the rest adds up, so that it
+!> It is one list of numbers. Its head says to which structure it belongs and how the rest adds up, so that it
 !> can go through Python or a file.
 module rbs_solve_end_state
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
@@ -12,25 +12,25 @@ module rbs_solve_end_state
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_registry, only: keys_of, rule_names
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: spring_array
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
    public :: end_state, standing_type, static_state, moving_state
 
    !> Changes when what is written here changes.
-   integer, parameter :: format = 1
+   integer, parameter :: format = 2
 
-   !> Numbers of the head: format, two of the model, two of the rest, bodies, kinematics, joints that open.
+   !> Numbers of the head: format, two of the model, two of the rest, bodies, kinematics, springs.
    integer, parameter :: head = 8
 
    !> Kinds of analyses.
    integer, parameter :: static_state = 1, moving_state = 2
 
-   !> Where a column stands, as either kind of analysis takes it up.
+   !> Where a structure stands, as either kind of analysis takes it up.
    type :: standing_type
       integer :: kind = 0
       !> Whether the axial loads of layered joints varied
@@ -38,9 +38,9 @@ module rbs_solve_end_state
       !> Displacement of the top [m], lateral force [N], axial load at the top without what follows the
       !> force [N]
       real(wp) :: displacement = 0.0_wp, force = 0.0_wp, axial_load = 0.0_wp
-      !> Axial forces of the joints, compression positive (n) [N]
+      !> Axial forces at the springs, compression positive (springs) [N]
       real(wp), allocatable :: press(:)
-      !> Velocities of the joints (unknowns); zero after a static path
+      !> Velocities of the springs (springs); zero after a static path
       real(wp), allocatable :: v(:)
       !> Works of loads and damping, energy at the start, what was missing from the balance [J]
       real(wp) :: input = 0.0_wp, damping = 0.0_wp, at_begin = 0.0_wp, residual = 0.0_wp
@@ -105,19 +105,19 @@ contains
    end subroutine serialize_standing
 
    !> Begin a state with what every analysis has. What the solver remembers follows.
-   subroutine start_saving(self, column, standing, springs)
+   subroutine start_saving(self, structure, standing, springs)
       class(end_state), intent(inout) :: self
-      class(column_type), intent(in) :: column
+      class(structure_type), intent(in) :: structure
       type(standing_type), intent(inout) :: standing
       type(spring_array), intent(inout) :: springs
       real(wp) :: first(head)
 
       first = 0.0_wp
       first(1) = format
-      call find_stamp(column, first(2:3))
-      first(6) = column%n
-      first(7) = column%kinematics
-      first(8) = merge(1.0_wp, 0.0_wp, column%opens)
+      call find_stamp(structure, first(2:3))
+      first(6) = structure%n
+      first(7) = structure%kinematics
+      first(8) = size(structure%place)
       call self%stream%save()
       call self%stream%item(first)
       call standing%serialize(self%stream)
@@ -135,10 +135,10 @@ contains
       call find_sum(self%stream%value(head + 1:self%stream%count), self%stream%value(4:5))
    end subroutine finish_saving
 
-   !> Whether an analysis of a column can begin from the state.
-   subroutine check(self, column, error)
+   !> Whether an analysis of a structure can begin from the state.
+   subroutine check(self, structure, error)
       class(end_state), intent(in) :: self
-      class(column_type), intent(in) :: column
+      class(structure_type), intent(in) :: structure
       type(error_type), allocatable, intent(out) :: error
       character(len=*), parameter :: kinematics(3) = [character(len=6) :: 'small', 'pdelta', 'finite']
       real(wp) :: expected(2)
@@ -161,17 +161,17 @@ contains
             call fatal_error(error, bad_input, 'initial: the state is damaged, its numbers do not '// &
                              'add up to '// &
                              'what its head says; run the first analysis again')
-         else if (nint(value(6)) /= column%n) then
+         else if (nint(value(6)) /= structure%n) then
             call fatal_error(error, bad_input, 'initial: the state belongs to a column of n = '// &
-                             to_text(nint(value(6)))//' bodies, this one has n = '//to_text(column%n)// &
+                             to_text(nint(value(6)))//' bodies, this one has n = '//to_text(structure%n)// &
                              '; begin from a result of the same column')
-         else if (nint(value(7)) /= column%kinematics) then
+         else if (nint(value(7)) /= structure%kinematics) then
             call fatal_error(error, bad_input, "initial: the state is one of kinematics = '"// &
                              trim(kinematics(min(max(nint(value(7)), 1), 3)))//"', this column has '"// &
-                             trim(kinematics(column%kinematics))//"', under which it would not be in "// &
+                             trim(kinematics(structure%kinematics))//"', under which it would not be in "// &
                              'equilibrium; run both analyses with the same kinematics')
          else
-            call find_stamp(column, expected)
+            call find_stamp(structure, expected)
             if (all(abs(expected - value(2:3)) <= 0.0_wp)) return
             call fatal_error(error, bad_input, 'initial: the state belongs to a column with other '// &
                              'springs or '// &
@@ -182,19 +182,19 @@ contains
       end associate
    end subroutine check
 
-   !> Take up what every analysis has; springs are those of the column, virgin. What the solver remembers
+   !> Take up what every analysis has; springs are those of the structure, virgin. What the solver remembers
    !> comes next in the stream.
-   subroutine take_up(self, column, standing, springs, error)
+   subroutine take_up(self, structure, standing, springs, error)
       class(end_state), intent(inout) :: self
-      class(column_type), intent(in) :: column
+      class(structure_type), intent(in) :: structure
       type(standing_type), intent(out) :: standing
       type(spring_array), intent(inout) :: springs
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: first(head)
 
-      call self%check(column, error)
+      call self%check(structure, error)
       if (allocated(error)) return
-      allocate (standing%press(column%n), standing%v(column%unknowns), source=0.0_wp)
+      allocate (standing%press(size(structure%place)), standing%v(size(structure%place)), source=0.0_wp)
       call self%stream%restore()
       call self%stream%item(first)
       call standing%serialize(self%stream)
@@ -205,25 +205,25 @@ contains
       end if
    end subroutine take_up
 
-   !> Two numbers that tell columns with other springs or lengths apart.
-   subroutine find_stamp(column, stamp)
-      class(column_type), intent(in) :: column
+   !> Two numbers that tell structures with other springs or sizes apart.
+   subroutine find_stamp(structure, stamp)
+      class(structure_type), intent(in) :: structure
       real(wp), intent(out) :: stamp(2)
       integer(int64) :: hash
       integer :: i
 
       hash = 88172645463325252_int64
-      do i = 1, column%n
-         call mix(hash, column%length(i))
+      do i = 1, size(structure%length)
+         call mix(hash, structure%length(i))
       end do
-      do i = 1, size(column%spring)
+      do i = 1, size(structure%spring)
          if (i > 1) then
-            if (column%spring(i)%same_as(column%spring(i - 1))) then
+            if (structure%spring(i)%same_as(structure%spring(i - 1))) then
                call mix(hash, 1.0_wp)
                cycle
             end if
          end if
-         call mix_spring(hash, column%spring(i))
+         call mix_spring(hash, structure%spring(i))
       end do
       call split(hash, stamp)
    end subroutine find_stamp

@@ -85,8 +85,9 @@ module rbs_structure_structure
       real(wp), allocatable :: modal_damping(:)
       !> Whether there is damping at all
       logical :: damped = .false.
-      !> Numbers of the work array of `accelerations`
-      integer :: work_size = 0
+      !> Number of axial forces that may do second-order work, and of numbers in the work array of
+      !> `accelerations`
+      integer :: axial_count = 0, work_size = 0
       !> Loads in the order of their signals (signals)
       type(load_pattern) :: pattern(signals)
    contains

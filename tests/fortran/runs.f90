@@ -30,7 +30,7 @@ module runs
 
    public :: scene_type, scenes, new_scene, new_mass, play, play_located, find_reference
    public :: run_data, run, times, signal_of, loads_of, last_deformation
-   public :: new_state, new_located, residual_of, distance, order_of, check_order
+   public :: new_state, column_of, new_located, residual_of, distance, order_of, check_order
 
    !> One run: its input without the column, and its results.
    type :: run_data
@@ -141,12 +141,25 @@ contains
       call state%begin_sight(unset, .false.)
    end subroutine new_state
 
+   !> The structure of a state, which is a column.
+   function column_of(state) result(column)
+      type(state_type), intent(in) :: state
+      class(column_type), pointer :: column
+
+      select type (structure => state%motion%structure)
+      class is (column_type)
+         column => structure
+      class default
+         error stop 'runs: no column'
+      end select
+   end function column_of
+
    !> Energy of a state: motion, springs, potential [J].
    real(wp) function energy_of(state) result(energy)
       type(state_type), intent(in) :: state
 
-      energy = state%motion%column%kinetic_energy(state%q, state%v) + sum(state%springs%work) &
-               + state%motion%column%potential_energy(state%q) + state%along_joints
+      energy = state%motion%structure%kinetic_energy(state%q, state%v) + sum(state%springs%work) &
+               + state%motion%structure%potential_energy(state%q) + state%along_joints
    end function energy_of
 
    !> Residual of the balance of energy [J].

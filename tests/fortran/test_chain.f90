@@ -17,7 +17,7 @@ module test_chain
    use rbs_solve_time_rk4, only: rk4_scheme
    use rbs_solve_time_state, only: state_type
    use rbs_structure_column_column_record, only: column_record
-   use runs, only: new_state, signal_of
+   use runs, only: column_of, new_state, signal_of
    use samples, only: bilinear, made, random_type, rich_column
    implicit none
    private
@@ -130,7 +130,7 @@ contains
       integer :: i, k, m, n
 
       n = spec%n
-      associate (column => state%motion%column, springs => state%springs, load => state%load)
+      associate (column => column_of(state), springs => state%springs, load => state%load)
          m = column%unknowns
          allocate (mass(m, m), right(m))
          call symmetric_mass(column, mass)
@@ -177,12 +177,12 @@ contains
             spec = variant(n, kind, random)
             call random_state(spec, random, state)
             call equation_of_motion(spec, state, mass, expected)
-            call assemble_matrices(state%motion%column, .false., matrices, outcome)
+            call assemble_matrices(column_of(state), .false., matrices, outcome)
             call check_passed(error, outcome, 'matrices')
             force = expected
             call matrices%accelerations(force, expected, outcome)
             call check_passed(error, outcome, 'accelerations')
-            call now%create(state%motion%column)
+            call now%create(state%motion%structure)
             call state%motion%acceleration(state%springs, state%q, state%v, state%load, now)
             ! Round-off of the dense solution grows with the condition of M.
             call check_close(error, now%a, expected, 0.0_wp, 1.0e-11_wp*maxval(abs(expected)), &
@@ -247,10 +247,10 @@ contains
       do n = 1, 6
          do kind = 0, 127
             call random_state(variant(n, kind, random), random, state)
-            call now%create(state%motion%column)
-            associate (motion => state%motion, column => state%motion%column, q => state%q, v => state%v)
+            call now%create(state%motion%structure)
+            associate (motion => state%motion, column => state%motion%structure, q => state%q, v => state%v)
                call motion%acceleration(state%springs, q, v, state%load, now)
-               of_loads = motion%load_power(q, v, state%load)
+               of_loads = column%power_of_loads(q, v, state%load)
                of_damping = motion%damping_power(state%springs, q, v)
                ! Steps of the size of q and v lose no digits.
                a = 1.0e-5_wp*now%a
@@ -321,18 +321,20 @@ contains
             spec = variant(n, kind, random)
             spec%self_weight = .false.
             call random_state(spec, random, state)
-            top(1) = state%motion%column%top_displacement(state%q)
-            top(2) = state%motion%column%top_height(state%q)
+            top(1) = state%motion%structure%top_displacement(state%q)
+            associate (column => column_of(state))
+               top(2) = column%top_height(state%q)
+            end associate
             call check_close(error, spec%axial_load*(top(2) - spec%height), &
-                             state%motion%column%potential_energy(state%q), 1.0e-9_wp, 0.0_wp, &
+                             state%motion%structure%potential_energy(state%q), 1.0e-9_wp, 0.0_wp, &
                              'n = '//to_text(n)//', variant '//to_text(kind)//', height')
-            call check_close(error, top(1), dot_product(state%motion%column%arm, state%q), 0.0_wp, &
+            call check_close(error, top(1), dot_product(state%motion%structure%arm, state%q), 0.0_wp, &
                              1.0e-15_wp, 'displacement')
          end do
       end do
    end subroutine height
 
-   !> `single` only chooses the method of computation.
+   !> `one_body` only chooses the method of computation.
    subroutine fast_step(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
@@ -360,9 +362,9 @@ contains
          q = random%uniform_array(-1.0e-2_wp, 1.0e-2_wp, 2)
          v = random%uniform_array(-1.0_wp, 1.0_wp, 2)
          call new_state(state, column, loads, q, v)
-         call check_true(error, state%motion%single .and. state%motion%plain, 'the fast step is taken')
+         call check_true(error, associated(state%motion%one_body), 'the fast step is taken')
          call fast%attempt(state, 2.0e-4_wp)
-         state%motion%single = .false.
+         state%motion%one_body => null()
          call slow%attempt(state, 2.0e-4_wp)
          call check_close(error, fast%q, slow%q, 0.0_wp, 1.0e-14_wp*maxval(abs(slow%q)), 'deformation')
          call check_close(error, fast%v, slow%v, 0.0_wp, 1.0e-13_wp*maxval(abs(slow%v)), 'velocity')

@@ -435,18 +435,18 @@ contains
       turned = made(spec)
       call finite%create(turned, spread(.true., 1, 4), outcome)
       call check_passed(error, outcome, 'finite')
-      call springs%create(small%column%spring)
-      call a%create(small%column)
-      call b%create(finite%column)
+      call springs%create(small%structure%spring)
+      call a%create(small%structure)
+      call b%create(finite%structure)
       do i = 1, 50
          q = 1.0e-7_wp*[random%uniform(-1.0_wp, 1.0_wp), random%uniform(-1.0_wp, 1.0_wp)]
          v = 1.0e-6_wp*[random%uniform(-1.0_wp, 1.0_wp), random%uniform(-1.0_wp, 1.0_wp)]
          call small%acceleration(springs, q, v, load, a)
          call finite%acceleration(springs, q, v, load, b)
          call check_close(error, a%a, b%a, 1.0e-10_wp, 1.0e-10_wp, 'acceleration')
-         call check_close(error, small%column%kinetic_energy(q, v), finite%column%kinetic_energy(q, v), &
-                          1.0e-10_wp, 0.0_wp, 'kinetic energy')
-         call check_close(error, small%column%potential_energy(q), finite%column%potential_energy(q), &
+         call check_close(error, small%structure%kinetic_energy(q, v), &
+                          finite%structure%kinetic_energy(q, v), 1.0e-10_wp, 0.0_wp, 'kinetic energy')
+         call check_close(error, small%structure%potential_energy(q), finite%structure%potential_energy(q), &
                           1.0e-10_wp, 0.0_wp, 'potential')
       end do
    end subroutine finite_small

@@ -351,8 +351,8 @@ contains
             stepper = method(number)
             call play(scene, stepper, 400*2**i, state, outcome)
             call check_passed(error, outcome, 'method '//to_text(number))
-            wrong(i) = abs(sum(state%motion%column%arm*(state%q - reference%q))) &
-                       /abs(sum(state%motion%column%arm*reference%q))
+            wrong(i) = abs(sum(state%motion%structure%arm*(state%q - reference%q))) &
+                       /abs(sum(state%motion%structure%arm*reference%q))
             call check_equal(error, stepper%cut_steps, 0, 'no step is cut')
          end do
          call check_true(error, wrong(3) < 2.0e-3_wp .and. wrong(3) < 0.3_wp*wrong(1), 'method '// &

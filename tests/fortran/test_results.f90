@@ -6,7 +6,8 @@ module test_results
    use rbs_base_kinds, only: wp
    use rbs_base_units, only: unit_system
    use rbs_structure_column_column_record, only: column_record
-   use rbs_output_channels, only: channel_list, energy_type, new_channels
+   use rbs_output_channels, only: channel_list, new_channels
+   use rbs_structure_channel, only: energy_type
    use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: figure_type, summary_type
    use samples, only: chain, made, random_type, rich_column

@@ -62,17 +62,18 @@ contains
    end subroutine fit_block
 
    !> What of a column stays as it is.
-   subroutine column_to_lane(b, i, motion)
+   subroutine column_to_lane(b, i, column, motion)
       type(lane_block), intent(inout) :: b
       !> Lane of the block
       integer, intent(in) :: i
+      class(column_type), intent(in) :: column
       type(motion_type), intent(in) :: motion
 
-      associate (column => motion%column, n => b%n)
+      associate (n => b%n)
          b%lower(i, :) = column%lower
          b%upper(i, :) = column%upper
-         b%inverse_mass(i, :) = motion%inverse_mass
-         b%inverse_inertia(i, :) = motion%inverse_inertia
+         b%inverse_mass(i, :) = column%inverse_mass
+         b%inverse_inertia(i, :) = column%inverse_inertia
          b%mass(i, :) = column%inertias
          b%along(i, :) = 0.0_wp
          b%across(i, :) = 0.0_wp
@@ -97,7 +98,7 @@ contains
       type(state_type), intent(in) :: state
       integer :: j
 
-      associate (springs => state%springs, column => state%motion%column)
+      associate (springs => state%springs, structure => state%motion%structure)
          do j = 1, 2*b%n
             b%work(i, j) = springs%work(j)
             b%d0(i, j) = springs%d0(j)
@@ -108,9 +109,9 @@ contains
             b%way(i, j) = real(springs%unload_on_reversal(j), wp)
             if (.not. b%damped) cycle
             b%summed(i, j) = state%motion%joint_damping(j)
-            if (column%tangent_damping) b%summed(i, j) = max(springs%k(j), 0.0_wp)
+            if (structure%tangent_damping) b%summed(i, j) = max(springs%k(j), 0.0_wp)
             b%damping(i, j) = b%summed(i, j)
-            if (column%tangent_damping) b%damping(i, j) = column%stiffness_damping*b%summed(i, j)
+            if (structure%tangent_damping) b%damping(i, j) = structure%stiffness_damping*b%summed(i, j)
          end do
       end associate
    end subroutine springs_to_lane

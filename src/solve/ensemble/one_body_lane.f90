@@ -23,12 +23,12 @@ contains
       type(state_type), intent(in) :: state
       type(rk4_body) :: body
 
-      call body%create(state%motion%column)
+      call body%create(state%motion%one_body)
       x%flexible(l) = body%flexible
       x%coupling(l) = body%coupling
       x%turning(l) = body%turning
       x%softening(l) = body%softening
-      associate (column => state%motion%column)
+      associate (column => state%motion%one_body)
          x%mass(l, :) = column%inertias
          x%lower(l) = column%lower(1)
          x%upper(l) = column%upper(1)

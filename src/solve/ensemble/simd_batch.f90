@@ -262,7 +262,7 @@ contains
             lane%body = one_body_step()
             call body_to_lane(x, l, lane%state)
          else
-            call column_to_lane(b, l - b%base, lane%state%motion)
+            call column_to_lane(b, l - b%base, column%column, lane%state%motion)
          end if
       end associate
    end subroutine create_run

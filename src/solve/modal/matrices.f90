@@ -13,6 +13,7 @@ module rbs_solve_modal_matrices
    use rbs_structure_column_mass, only: symmetric_mass, paper_mass
    use rbs_solve_modal_modes, only: modes_type, find_modes, most_numbers
    use rbs_structure_spring_place, only: flexure
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
@@ -124,8 +125,24 @@ contains
       end if
    end subroutine accelerations
 
+   !> Damping of the modes of a structure, as a matrix of its springs.
+   subroutine modal_damping(structure, damping, error)
+      class(structure_type), intent(in) :: structure
+      !> (springs, springs)
+      real(wp), allocatable, intent(out) :: damping(:, :)
+      type(error_type), allocatable, intent(out) :: error
+
+      select type (structure)
+      class is (column_type)
+         call column_damping(structure, damping, error)
+      class default
+         call fatal_error(error, bad_input, 'damping: ratios of modes are for columns; give damping in '// &
+                          'proportion to mass and stiffness')
+      end select
+   end subroutine modal_damping
+
    !> C = sum_j 2 zeta_j omega_j (M s_j) (M s_j)', the modes s_j of the uncracked column.
-   subroutine modal_damping(column, damping, error)
+   subroutine column_damping(column, damping, error)
       class(column_type), intent(in) :: column
       !> Matrix (unknowns, unknowns) in slip, relative rotation and opening
       real(wp), allocatable, intent(out) :: damping(:, :)
@@ -149,6 +166,6 @@ contains
          carried(:, j) = sqrt(2.0_wp*column%modal_damping(min(j, given))*modes%omega(j))*carried(:, j)
       end do
       damping = matmul(carried, transpose(carried))
-   end subroutine modal_damping
+   end subroutine column_damping
 
 end module rbs_solve_modal_matrices

@@ -1,5 +1,6 @@
 !> Natural frequencies, mode shapes and the stable step of RK4.
 module rbs_solve_modal_modes
+   use rbs_base_band_matrix, only: band_matrix
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -10,6 +11,7 @@ module rbs_solve_modal_modes
    use rbs_structure_column_sturm, only: lateral_chain, opening_chain
    use rbs_solve_modal_mode_search, only: mode_search
    use rbs_structure_spring_place, only: shear, flexure, axial
+   use rbs_structure_structure, only: structure_type, signals
    implicit none
    private
 
@@ -135,53 +137,122 @@ contains
                       ' in the square of the lowest frequency'
    end subroutine set_condition
 
-   !> Lowest and highest circular frequency of the uncracked column [rad/s], for any number of bodies in
-   !> O(n); the axial forces count where the kinematics let them.
-   subroutine frequency_bounds(column, lowest, highest, error)
-      class(column_type), intent(in) :: column
+   !> Lowest and highest circular frequency of the structure before any spring yields [rad/s]; the axial
+   !> forces count where the kinematics let them.
+   subroutine frequency_bounds(structure, lowest, highest, error)
+      class(structure_type), intent(in) :: structure
       real(wp), intent(out) :: lowest, highest
       type(error_type), allocatable, intent(out) :: error
 
       lowest = 0.0_wp
       highest = huge(1.0_wp)
-      call check_inertia_of_ends(column, error)
-      if (.not. allocated(error)) call check_stable(column, error)
-      if (.not. allocated(error)) call frequency_range(column, column%axially_loaded, lowest, highest)
+      select type (structure)
+      class is (column_type)
+         call check_inertia_of_ends(structure, error)
+         if (.not. allocated(error)) call check_stable(structure, error)
+      class default
+         if (modes_below(structure, structure%axially_loaded, 0.0_wp) > 0) then
+            call fatal_error(error, bad_input, 'structure: it is not stable under its constant axial '// &
+                             'forces alone; reduce them, or stiffen the springs')
+         end if
+      end select
+      if (.not. allocated(error)) call frequency_range(structure, structure%axially_loaded, lowest, highest)
    end subroutine frequency_bounds
 
-   subroutine frequency_range(column, axial, lowest, highest)
-      class(column_type), intent(in) :: column
+   subroutine frequency_range(structure, axial, lowest, highest)
+      class(structure_type), intent(in) :: structure
       !> Whether the axial forces count
       logical, intent(in) :: axial
       real(wp), intent(out) :: lowest, highest
       type(mode_search) :: search
 
-      call search%start(lateral_chain(column, axial))
-      lowest = search%frequency(1)
-      highest = search%frequency(search%chain%modes)
-      if (.not. column%opens) return
-      call search%start(opening_chain(column))
-      lowest = min(lowest, search%frequency(1))
-      highest = max(highest, search%frequency(search%chain%modes))
+      select type (structure)
+      class is (column_type)
+         call search%start(lateral_chain(structure, axial))
+         lowest = search%frequency(1)
+         highest = search%frequency(search%chain%modes)
+         if (.not. structure%opens) return
+         call search%start(opening_chain(structure))
+         lowest = min(lowest, search%frequency(1))
+         highest = max(highest, search%frequency(search%chain%modes))
+      class default
+         lowest = frequency_of(structure, axial, 1)
+         highest = frequency_of(structure, axial, count(.not. structure%is_held))
+      end select
    end subroutine frequency_range
+
+   !> One circular frequency of any structure, by bisection with the number of those below [rad/s].
+   real(wp) function frequency_of(structure, axial, number) result(omega)
+      class(structure_type), intent(in) :: structure
+      !> Whether the axial forces count
+      logical, intent(in) :: axial
+      !> From the lowest up
+      integer, intent(in) :: number
+      real(wp) :: below, above
+      integer :: i
+
+      below = 1.0_wp
+      do while (modes_below(structure, axial, below) >= number .and. below > slowest)
+         below = 0.5_wp*below
+      end do
+      above = 2.0_wp*below
+      do while (modes_below(structure, axial, above) < number .and. above < 1.0_wp/slowest)
+         above = 2.0_wp*above
+      end do
+      below = 0.5_wp*above
+      do i = 1, digits(omega)
+         omega = 0.5_wp*(below + above)
+         if (modes_below(structure, axial, omega) < number) then
+            below = omega
+         else
+            above = omega
+         end if
+      end do
+   end function frequency_of
+
+   !> Number of modes below a circular frequency: that of negative eigenvalues of K + K_G - omega^2 M.
+   integer function modes_below(structure, axial, omega) result(below)
+      class(structure_type), intent(in) :: structure
+      logical, intent(in) :: axial
+      !> [rad/s]
+      real(wp), intent(in) :: omega
+      type(band_matrix) :: matrix
+      real(wp) :: force(structure%axial_count), at_rest(signals)
+      integer :: i
+
+      call matrix%create(structure%unknowns, structure%half_width)
+      matrix%band = 0.0_wp
+      call structure%add_stiffness(structure%initial_stiffness, matrix%band)
+      if (axial) then
+         at_rest = 0.0_wp
+         call structure%axial_forces(at_rest, force)
+         call structure%add_geometric(force, matrix%band)
+      end if
+      matrix%band(1, :) = matrix%band(1, :) - omega**2*structure%inertias
+      do i = 1, structure%unknowns
+         if (structure%is_held(i)) call matrix%hold(i, 1.0_wp)
+      end do
+      call matrix%factor()
+      below = matrix%negative
+   end function modes_below
 
    !> Longest step for which RK4 is stable [s], for any number of bodies in O(n).
    !>
    !> Only the lowest and the highest frequency are asked: with c = alpha + beta omega^2 the limit of one mode
    !> first grows with omega and then falls (see the tests), and with c = 2 zeta omega, or on the half disc,
    !> it only falls; so no mode between two has a shorter limit than both.
-   subroutine stability_limit(column, limit, error)
-      class(column_type), intent(in) :: column
+   subroutine stability_limit(structure, limit, error)
+      class(structure_type), intent(in) :: structure
       real(wp), intent(out) :: limit
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: plain(2), loaded(2)
 
       limit = 0.0_wp
-      call frequency_bounds(column, loaded(1), loaded(2), error)
+      call frequency_bounds(structure, loaded(1), loaded(2), error)
       if (allocated(error)) return
       plain = loaded
-      if (column%axially_loaded) call frequency_range(column, .false., plain(1), plain(2))
-      limit = min(step_of_mode(column, plain(1), loaded(1)), step_of_mode(column, plain(2), loaded(2)))
+      if (structure%axially_loaded) call frequency_range(structure, .false., plain(1), plain(2))
+      limit = min(step_of_mode(structure, plain(1), loaded(1)), step_of_mode(structure, plain(2), loaded(2)))
    end subroutine stability_limit
 
    !> Longest stable step for one mode, on the safe side of what is not known.
@@ -190,22 +261,22 @@ contains
    !> equation of the quotients c = x'Cx/x'Mx and k = x'Kx/x'Mx of its shape. So |lambda| is at most the
    !> larger of the largest c and omega, which always gives a safe step; where c follows from the initial
    !> stiffness in the shape, the scalar equations themselves give the longest one.
-   pure real(wp) function step_of_mode(column, plain, loaded) result(h)
-      class(column_type), intent(in) :: column
+   pure real(wp) function step_of_mode(structure, plain, loaded) result(h)
+      class(structure_type), intent(in) :: structure
       !> Circular frequency without and with axial forces [rad/s]
       real(wp), intent(in) :: plain, loaded
       real(wp) :: omega, c, remaining
       logical :: elastic, apart
 
-      elastic = all(column%spring%rule == 'elastic')
+      elastic = all(structure%spring%rule == 'elastic')
       omega = max(plain, loaded)
-      c = column%mass_damping + column%stiffness_damping*plain**2
+      c = structure%mass_damping + structure%stiffness_damping*plain**2
       ! Stiffness damping has no axial forces in it.
-      apart = .not. (column%axially_loaded .and. column%stiffness_damping > 0.0_wp)
-      if (allocated(column%modal_damping)) then
-         c = c + 2.0_wp*maxval(column%modal_damping)*loaded
-         apart = elastic .and. size(column%modal_damping) == 1 .and. &
-                 .not. (column%mass_damping > 0.0_wp .or. column%stiffness_damping > 0.0_wp)
+      apart = .not. (structure%axially_loaded .and. structure%stiffness_damping > 0.0_wp)
+      if (allocated(structure%modal_damping)) then
+         c = c + 2.0_wp*maxval(structure%modal_damping)*loaded
+         apart = elastic .and. size(structure%modal_damping) == 1 .and. &
+                 .not. (structure%mass_damping > 0.0_wp .or. structure%stiffness_damping > 0.0_wp)
       end if
       if (.not. apart) then
          h = least_radius/max(omega, c, slowest)
@@ -215,7 +286,7 @@ contains
       if (elastic) return
       ! Where springs yield, their stiffness goes and their damping stays, unless it is that of the present
       ! lines: the eigenvalue -c is left.
-      remaining = merge(column%mass_damping, c, column%tangent_damping)
+      remaining = merge(structure%mass_damping, c, structure%tangent_damping)
       if (remaining > 0.0_wp) h = min(h, real_limit/remaining)
    end function step_of_mode
 

@@ -149,7 +149,7 @@ contains
          if (springs%pressed) then
             self%f(:) = self%f - springs%centre*(point%axial_load + self%above - springs%press_at)
             do j = 1, size(springs%layered)
-               i = self%column%index_of(springs%layered(j))*per_joint(self%column)
+               i = self%column%place(springs%layered(j))%index*per_joint(self%column)
                self%pushed(i) = self%pushed(i) + springs%centre(springs%layered(j))
                i = i - per_joint(self%column)
                if (i > 0) self%pushed(i) = self%pushed(i) - springs%centre(springs%layered(j))

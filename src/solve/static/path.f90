@@ -9,9 +9,9 @@ module rbs_solve_static_path
    use rbs_structure_column_column, only: column_type, finite
    use rbs_hysteresis_interaction_joints, only: fall_of, vary_axial_loads
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_output_channels, only: energy_type, response_type
    use rbs_solve_static_row_check, only: row_check
    use rbs_solve_task, only: task_type
+   use rbs_structure_channel, only: energy_type, response_type
    use rbs_structure_spring_place, only: spring_name, axial
    implicit none
    private
@@ -273,7 +273,7 @@ contains
          end if
          lost = self%springs%lost_joint()
          if (lost > 0) then
-            task%summary%lost_joint = self%column%index_of(lost)
+            task%summary%lost_joint = self%column%place(lost)%index
             call fall_of(self%springs, lost, task%summary%fall)
          end if
          ! Where a joint has lost its axial load, that is what ends the path.
@@ -290,7 +290,7 @@ contains
             task%summary%rows = task%summary%rows + 1
             call find_response(self, real(i - 1, wp), response)
             task%summary%last_time = response%time
-            call task%recorder%keep(response, self%springs, self%springs%d, error)
+            call task%recorder%keep(self%column, response, self%springs, self%springs%d, error)
             if (allocated(error)) return
          end if
          task%summary%steps = i
@@ -318,7 +318,7 @@ contains
       if (.not. self%task%recorder%corners) return
       call find_energies(self, response%energy)
       call find_response(self, self%number - 1 + share, response)
-      call self%task%recorder%keep(response, self%springs, self%springs%d, error)
+      call self%task%recorder%keep(self%column, response, self%springs, self%springs%d, error)
    end subroutine see_corner
 
    !> Tell the summary of the present force, displacement and rotations.
@@ -424,7 +424,6 @@ contains
       response%time = number
       response%displacement = self%displacement
       response%force = self%force
-      response%height = self%column%top_height(self%springs%d)
    end subroutine find_response
 
    !> Where the path is, for a message.

@@ -53,14 +53,14 @@ contains
       logical, intent(in) :: varies
       type(error_type), allocatable, intent(out) :: error
       type(standing_type) :: standing
-      real(wp) :: press(path%column%n), missing
+      real(wp) :: press(size(path%column%place)), missing
       integer :: lost
       logical :: goes_on
 
       call before%take_up(path%column, standing, path%springs, error)
       if (allocated(error)) return
       if (varies) call vary_axial_loads(path%springs)
-      press = path%column%compression
+      press = path%column%spring%axial_load
       if (varies) press = standing%press
       goes_on = standing%kind == static_state .and. all(abs(press - standing%press) <= 0.0_wp)
       call go_under(path%springs, press, standing%pressed)
@@ -68,7 +68,7 @@ contains
       if (lost > 0) then
          call fatal_error(error, analysis_failed, 'initial: the layers of '// &
                           trim(spring_name(path%column%place(lost)))// &
-                          ' cannot carry the axial load of '//to_text(press(path%column%index_of(lost)))// &
+                          ' cannot carry the axial load of '//to_text(press(lost))// &
                           ' N in the state that the first analysis ended in; give a smaller axial_load')
          return
       end if
@@ -204,14 +204,14 @@ contains
       standing%displacement = path%displacement
       standing%force = path%force
       standing%axial_load = path%load_now
-      standing%press = path%column%compression
+      standing%press = path%column%spring%axial_load
       if (varies) then
          standing%press = path%load_now + path%column%axial_force_ratio*path%force &
-                          + (path%column%compression - path%column%axial_load)
+                          + (path%column%spring%axial_load - path%column%axial_load)
          if (path%springs%pressed) then
             do i = 1, size(path%springs%layered)
                associate (place => path%springs%layered(i))
-                  standing%press(path%column%index_of(place)) = path%springs%press_at(place)
+                  standing%press(place) = path%springs%press_at(place)
                end associate
             end do
          end if

@@ -6,9 +6,9 @@ module rbs_solve_time_effort
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_case_methods, only: method_type, method_named
-   use rbs_structure_column_column, only: column_type, finite
    use rbs_solve_modal_modes, only: frequency_bounds
    use rbs_solve_time_plan, only: time_plan
+   use rbs_structure_structure, only: structure_type, finite
    implicit none
    private
 
@@ -32,14 +32,14 @@ module rbs_solve_time_effort
 contains
 
    !> Time that a run will take, within a factor of about three; it depends on the machine [s].
-   pure real(wp) function expected_seconds(column, plan) result(seconds)
-      class(column_type), intent(in) :: column
+   pure real(wp) function expected_seconds(structure, plan) result(seconds)
+      class(structure_type), intent(in) :: structure
       type(time_plan), intent(in) :: plan
       type(method_type) :: method
 
       method = method_named(plan%method)
-      seconds = steps_of(plan, method)*(column%n + 1)*method%body_step
-      if (column%kinematics == finite) seconds = cost_of_finite*seconds
+      seconds = steps_of(plan, method)*(structure%n + 1)*method%body_step
+      if (structure%kinematics == finite) seconds = cost_of_finite*seconds
    end function expected_seconds
 
    !> Number of steps, of an adaptive method at least.
@@ -52,8 +52,8 @@ contains
    end function steps_of
 
    !> What to say before a long run; empty for a short one.
-   subroutine long_run_note(column, plan, text)
-      class(column_type), intent(in) :: column
+   subroutine long_run_note(structure, plan, text)
+      class(structure_type), intent(in) :: structure
       type(time_plan), intent(in) :: plan
       character(len=:), allocatable, intent(out) :: text
       type(method_type) :: method, other
@@ -62,30 +62,30 @@ contains
       real(wp) :: seconds, lowest, highest
 
       text = ''
-      seconds = expected_seconds(column, plan)
+      seconds = expected_seconds(structure, plan)
       if (seconds < patience) return
       method = method_named(plan%method)
       text = 'analysis: about '//to_text(anint(steps_of(plan, method)))//" steps with method = '"// &
              trim(plan%method)//"' will take some "//to_text(one_digit(seconds))//' s'
       if (.not. method%explicit) return
-      text = text//'; the highest frequency of the column limits the stable step to '// &
+      text = text//'; the highest frequency limits the stable step to '// &
              to_text(plan%limit)//' s'
       other = method_named(faster)
-      call frequency_bounds(column, lowest, highest, error)
+      call frequency_bounds(structure, lowest, highest, error)
       if (allocated(error)) return
       short = plan
       short%method = faster
       short%steps = int(min(real(plan%intervals, wp) + (plan%finish - plan%begin)/ &
                             other%period_share*lowest/(2.0_wp*pi), 2.0e9_wp))
-      if (much_faster*expected_seconds(column, short) > seconds) return
+      if (much_faster*expected_seconds(structure, short) > seconds) return
       text = text//". Faster: method = '"//faster//"', some "// &
-             to_text(one_digit(expected_seconds(column, short)))//' s, with errors of about '// &
+             to_text(one_digit(expected_seconds(structure, short)))//' s, with errors of about '// &
              to_text(other%usual_error)//' in place of '//to_text(method%usual_error)
    end subroutine long_run_note
 
    !> Refuse a run that is expected to take longer than the user allows.
-   subroutine check_effort(column, max_seconds, plan, error)
-      class(column_type), intent(in) :: column
+   subroutine check_effort(structure, max_seconds, plan, error)
+      class(structure_type), intent(in) :: structure
       !> `unset`: the usual time [s]
       real(wp), intent(in) :: max_seconds
       type(time_plan), intent(in) :: plan
@@ -95,9 +95,9 @@ contains
 
       most = usual_max_seconds
       if (is_given(max_seconds)) most = max_seconds
-      seconds = expected_seconds(column, plan)
+      seconds = expected_seconds(structure, plan)
       if (.not. seconds > most) return
-      call long_run_note(column, plan, text)
+      call long_run_note(structure, plan, text)
       if (text == '') text = 'analysis: the run will take some '//to_text(one_digit(seconds))//' s'
       call fatal_error(error, bad_input, text//'. It is not begun, as it is expected to take more than '// &
                        to_text(most)//' s; if it is wanted, give max_seconds = '// &

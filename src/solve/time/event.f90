@@ -4,11 +4,9 @@ module rbs_solve_time_event
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_layer_events, only: first_layer_exit, layer_end, layer_motion
    use rbs_hysteresis_line_exit, only: line_exit, find_exit
-   use rbs_loading_loads, only: lateral, horizontal, vertical, axial
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type
-   use rbs_structure_spring_place, only: flexure
    implicit none
    private
 
@@ -34,6 +32,7 @@ contains
       real(wp), intent(in) :: slope(4)
       type(event_type), intent(out) :: event
       type(line_exit) :: one
+      real(wp) :: press
       integer :: i, j, layer
 
       event%estimate = huge(1.0_wp)
@@ -54,10 +53,11 @@ contains
          if (.not. springs%pressed) return
          do j = 1, size(springs%layered)
             i = springs%layered(j)
-            call first_layer_exit(springs, i, scheme%q(i), motion%column%axial_force(i, scheme%load), &
-                                  [state%v(i), scheme%v(i)], motion%press_rate(i, slope), h, layer, one)
+            press = motion%structure%axial_rate(i, slope)
+            call first_layer_exit(springs, i, scheme%q(i), motion%structure%axial_force(i, scheme%load), &
+                                  [state%v(i), scheme%v(i)], press, h, layer, one)
             if (layer == 0) cycle
-            if (one%turns .and. .not. abs(motion%press_rate(i, slope)) > 0.0_wp) then
+            if (one%turns .and. .not. abs(press) > 0.0_wp) then
                if (keeps_still(state, scheme, i, h)) cycle
             end if
             if (one%estimate < event%estimate) then
@@ -83,29 +83,8 @@ contains
    pure real(wp) function round_off_of(state, i) result(least)
       type(state_type), intent(in) :: state
       integer, intent(in) :: i
-      real(wp) :: along, about, reach
-      logical :: upright
-      integer :: j
 
-      associate (column => state%motion%column, springs => state%springs)
-         along = abs(state%load(lateral))
-         ! Vertical loads leave round-off only where joints balance them, not where they lean.
-         upright = column%opens .or. size(springs%layered) > 0
-         if (upright) along = max(along, abs(column%axial_load + state%load(axial)))
-         about = 0.0_wp
-         do j = 1, springs%count
-            if (column%place(j)%kind == flexure) then
-               about = max(about, abs(springs%force(j)))
-            else
-               along = max(along, abs(springs%force(j)))
-            end if
-         end do
-         reach = maxval(column%length)
-         about = (about + along*reach)/minval(column%inertia)
-         along = along/minval(column%mass) + abs(state%load(horizontal)) + about*reach
-         if (upright) along = along + abs(state%load(vertical)) + column%gravity
-         least = least_share*merge(about, along, column%place(i)%kind == flexure)
-      end associate
+      least = least_share*state%motion%structure%acceleration_scale(i, state%springs, state%load)
    end function round_off_of
 
    !> A number, zero where it is not above its round-off.
@@ -154,8 +133,8 @@ contains
          end if
          return
       end if
-      press = state%motion%press_rate(i, slope)
-      force = state%motion%column%axial_force(i, scheme%load)
+      press = state%motion%structure%axial_rate(i, slope)
+      force = state%motion%structure%axial_force(i, scheme%load)
       associate (springs => state%springs)
          call layer_motion(springs, i, event%layer, scheme%q(i), force, scheme%v(i), press, d, v)
          if (event%turns) then
@@ -184,7 +163,7 @@ contains
 
       associate (i => event%spring)
          call layer_motion(state%springs, i, event%layer, 0.0_wp, 0.0_wp, 0.0_wp, &
-                           state%motion%press_rate(i, slope), unused, pressed)
+                           state%motion%structure%axial_rate(i, slope), unused, pressed)
          call layer_motion(state%springs, i, event%layer, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, unused, turned)
          turn = state%v(i)
          if (abs(pressed) < 1.0e100_wp*abs(turned)) turn = -pressed/turned

@@ -4,6 +4,7 @@
 module rbs_solve_time_finite_chain
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column, only: column_type
+   use rbs_structure_column_finite, only: finite_chain_type
    use rbs_solve_time_finite_joint, only: turned_body, turn_body, body_at, joint_type, joint_change, &
                                           joint_at, joint_rates
    use rbs_solve_time_state, only: state_type
@@ -14,6 +15,7 @@ module rbs_solve_time_finite_chain
    public :: finite_chain
 
    type :: finite_chain
+      class(finite_chain_type), pointer :: column => null()
       !> What the bodies have moved in the step (3, n)
       real(wp), allocatable :: moved(:, :)
       !> How far joints that must not open have opened (n)
@@ -40,9 +42,10 @@ contains
    !> Allocate for a column.
    subroutine make_chain(self, column)
       class(finite_chain), intent(inout) :: self
-      class(column_type), intent(in) :: column
+      class(finite_chain_type), intent(in), target :: column
       integer :: i, m, n
 
+      self%column => column
       n = column%n
       m = column%unknowns
       allocate (self%moved(3, n), self%v0(3, n), self%v1(3, n), source=0.0_wp)
@@ -65,8 +68,8 @@ contains
       real(wp) :: rotation
       integer :: i, n
 
-      n = state%motion%column%n
-      associate (at => state%motion%column%at)
+      n = self%column%n
+      associate (at => self%column%at)
          rotation = 0.0_wp
          do i = 1, n
             rotation = rotation + state%q(at(flexure, i))
@@ -86,8 +89,8 @@ contains
       real(wp) :: top(2), spin, spin_below, opening, opens
       integer :: i, n
 
-      n = state%motion%column%n
-      associate (at => state%motion%column%at)
+      n = self%column%n
+      associate (at => self%column%at)
          top = 0.0_wp
          spin = 0.0_wp
          opening = 0.0_wp
@@ -95,19 +98,19 @@ contains
          do i = 1, n
             spin_below = spin
             spin = spin + state%v(at(flexure, i))
-            if (state%motion%column%opens) then
+            if (self%column%opens) then
                opening = state%q(at(axial, i))
                opens = state%v(at(axial, i))
             end if
             call body_at(self%from(i), body)
-            if (i == n .and. state%motion%column%held) then
+            if (i == n .and. self%column%held) then
                below = body
                spin_below = 0.0_wp
             end if
             top = top + (state%v(i) + opening*spin_below)*below%t1 + (opens - state%q(i)*spin_below)*below%e1
-            top = top + (state%motion%column%lower(i)*spin)*body%t1
+            top = top + (self%column%lower(i)*spin)*body%t1
             self%v0(:, i) = [top(1), top(2), spin]
-            top = top + (state%motion%column%upper(i)*spin)*body%t1
+            top = top + (self%column%upper(i)*spin)*body%t1
             below = body
          end do
       end associate
@@ -121,8 +124,8 @@ contains
       real(wp) :: moved_below(3), change(2), opening
       integer :: i, n
 
-      n = state%motion%column%n
-      associate (at => state%motion%column%at)
+      n = self%column%n
+      associate (at => self%column%at)
          moved_below = 0.0_wp
          opening = 0.0_wp
          do i = 1, n
@@ -132,8 +135,8 @@ contains
             else
                body = self%turned(0)
             end if
-            if (state%motion%column%opens) opening = state%q(at(axial, i))
-            if (i == n .and. state%motion%column%held) then
+            if (self%column%opens) opening = state%q(at(axial, i))
+            if (i == n .and. self%column%held) then
                call body_at(self%from(n), body)
                call joint_at(body, -state%q(n), -opening, self%joint(n))
                call joint_change(self%turned(n), self%turned(n - 1), self%moved(:, n), moved_below, &
@@ -146,7 +149,7 @@ contains
             end if
             self%change(i) = change(1)
             self%change(at(flexure, i)) = self%moved(3, i) - moved_below(3)
-            if (state%motion%column%opens) then
+            if (self%column%opens) then
                self%change(at(axial, i)) = change(2)
             else
                self%gap(i) = change(2)

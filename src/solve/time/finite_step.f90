@@ -66,33 +66,33 @@ contains
       type(state_type), intent(in) :: state
       integer :: m, n, size_of_band, beside
 
-      n = state%motion%column%n
-      m = state%motion%column%unknowns
-      call self%make_chain(state%motion%column)
+      select type (column => state%motion%structure)
+      class is (finite_chain_type)
+         call self%make_chain(column)
+      end select
+      n = self%column%n
+      m = self%column%unknowns
       allocate (self%r(3, n), self%mass(3, n), self%a0(3, n), self%g0(3, n), self%a1(3, n), self%g1(3, n), &
                 source=0.0_wp)
       allocate (self%tension(n), self%f(m), self%k(m), self%viscous(m), source=0.0_wp)
-      size_of_band = merge(3, 4, state%motion%column%opens)*n
-      beside = beside_diagonal(state%motion%column)
+      size_of_band = merge(3, 4, self%column%opens)*n
+      beside = beside_diagonal(self%column)
       allocate (self%band(3*beside + 1, size_of_band), self%right(size_of_band, 1), source=0.0_wp)
       allocate (self%pivot(size_of_band), source=0)
-      associate (column => state%motion%column)
+      associate (column => self%column)
          self%mass(1, :) = column%mass
          self%mass(2, :) = column%mass
          self%mass(3, :) = column%inertia
          call self%now%create(column)
          call state%motion%acceleration(state%springs, state%q, state%v, state%load, self%now)
-         select type (column)
-         class is (finite_chain_type)
-            call column%accelerate(state%q, state%v, self%now%f, state%load, self%now%work, self%now%a)
-            if (.not. column%opens) self%tension = self%now%work(:n)
-         end select
+         call column%accelerate(state%q, state%v, self%now%f, state%load, self%now%work, self%now%a)
+         if (.not. column%opens) self%tension = self%now%work(:n)
       end associate
       call self%place(state)
       call self%body_velocities(state)
-      if (state%motion%column%held) self%v0(3, n) = 0.0_wp
+      if (self%column%held) self%v0(3, n) = 0.0_wp
       self%v1 = self%v0
-      call self%see_end(state%motion%column, state%q)
+      call self%see_end(self%column, state%q)
       call find_forces_at(self, state, state%q, state%v, state%load, 1.0_wp, self%g0)
       self%a0 = self%g0/self%mass
       self%largest = self%scale
@@ -128,18 +128,18 @@ contains
       real(wp), intent(out) :: relative
       integer :: n
 
-      n = state%motion%column%n
+      n = self%column%n
       if (self%average) then
          self%v1 = (2.0_wp/h)*self%moved - self%v0
          self%a1 = (2.0_wp/h**2)*(self%moved - h*self%v0)
          self%seen = self%turned
          call mean_forces(self, state, h, there)
-         call balance(self, state%motion%column, 0.5_wp*(state%load + load), self%r)
-         self%r = self%r - self%mass*(self%a1 + (state%motion%column%mass_damping/h)*self%moved)
+         call balance(self, self%column, 0.5_wp*(state%load + load), self%r)
+         self%r = self%r - self%mass*(self%a1 + (self%column%mass_damping/h)*self%moved)
       else
          self%a1 = (self%moved - h*self%v0 - (h**2*(0.5_wp - self%beta))*self%a0)/(self%beta*h**2)
          self%v1 = self%v0 + h*((1.0_wp - self%gamma)*self%a0 + self%gamma*self%a1)
-         call self%see_end(state%motion%column, self%q1)
+         call self%see_end(self%column, self%q1)
          call find_forces_at(self, state, self%q1, self%w1, load, h, self%g1)
          self%r = (1.0_wp - self%alpha_f)*self%g1 + self%alpha_f*self%g0 &
                   - self%mass*((1.0_wp - self%alpha_m)*self%a1 + self%alpha_m*self%a0)
@@ -148,8 +148,8 @@ contains
       self%scale(2) = max(self%scale(2), maxval(abs(self%mass(3, :)*self%a1(3, :))))
       relative = max(maxval(abs(self%r(:2, :)))/max(self%scale(1), self%largest(1), tiny(1.0_wp)), &
                      maxval(abs(self%r(3, :)))/max(self%scale(2), self%largest(2), tiny(1.0_wp)))
-      if (.not. state%motion%column%opens) then
-         relative = max(relative, maxval(abs(self%gap))/maxval(state%motion%column%length))
+      if (.not. self%column%opens) then
+         relative = max(relative, maxval(abs(self%gap))/maxval(self%column%length))
       end if
    end subroutine find_residual
 
@@ -189,8 +189,8 @@ contains
       class(finite_step), intent(inout) :: self
       type(state_type), intent(in) :: state
 
-      if (state%motion%column%tangent_damping) then
-         self%viscous = state%motion%column%stiffness_damping*max(state%springs%k, 0.0_wp)
+      if (self%column%tangent_damping) then
+         self%viscous = self%column%stiffness_damping*max(state%springs%k, 0.0_wp)
       else if (state%motion%damped) then
          self%viscous = state%motion%joint_damping
       end if
@@ -211,9 +211,9 @@ contains
          self%k = springs%k + self%viscous*(self%gamma/(self%beta*h))
       end associate
       if (allocated(state%motion%modal)) self%f = self%f + matmul(state%motion%modal, v)
-      call balance(self, state%motion%column, load, g)
-      if (.not. state%motion%column%mass_damping > 0.0_wp) return
-      g = g - state%motion%column%mass_damping*self%mass*self%v1
+      call balance(self, self%column, load, g)
+      if (.not. self%column%mass_damping > 0.0_wp) return
+      g = g - self%column%mass_damping*self%mass*self%v1
    end subroutine find_forces_at
 
    !> Loads less forces of the joints on the bodies, as the bodies are seen.
@@ -294,9 +294,8 @@ contains
    end subroutine load_top
 
    !> The correction that takes the residual away as far as the step is linear.
-   subroutine find_correction(self, state, h, dx, dn, regular)
+   subroutine find_correction(self, h, dx, dn, regular)
       class(finite_step), intent(inout) :: self
-      type(state_type), intent(in) :: state
       real(wp), intent(in) :: h
       !> Of the bodies (3, n) and of the axial forces of joints that do not open (n)
       real(wp), intent(out) :: dx(:, :), dn(:)
@@ -304,7 +303,7 @@ contains
       real(wp) :: tangent(local, local), of_mass, share, half, per_force, f(3), k(3)
       integer :: i, j, l, n, per, first, beside, at(local)
 
-      associate (column => state%motion%column)
+      associate (column => self%column)
          n = column%n
          per = merge(3, 4, column%opens)
          beside = beside_diagonal(column)
@@ -413,7 +412,7 @@ contains
       real(wp) :: mean(4), way(2)
       integer :: n
 
-      associate (column => state%motion%column)
+      associate (column => self%column)
          n = column%n
          mean = 0.5_wp*(state%load + load)
          state%of_loads = state%of_loads - sum(column%mass*(mean(horizontal)*self%moved(1, :) &
@@ -440,11 +439,11 @@ contains
             end if
          end if
       end associate
-      call self%see_end(state%motion%column, self%q1)
+      call self%see_end(self%column, self%q1)
       state%q(:) = self%q1
       state%v(:) = self%w1
       state%along_joints = 0.5_wp*sum(self%mass*self%v1**2) &
-                           - state%motion%column%kinetic_energy(state%q, state%v)
+                           - self%column%kinetic_energy(state%q, state%v)
       state%time = state%time + h
       state%load = load
       self%largest = max(self%largest, self%scale)

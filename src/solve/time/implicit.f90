@@ -13,7 +13,7 @@ module rbs_solve_time_implicit
    use rbs_solve_time_implicit_finite, only: finite_stepper
    use rbs_solve_time_implicit_balance, only: step_balance
    use rbs_solve_time_implicit_tangent, only: step_tangent
-   use rbs_loading_loads, only: lateral, horizontal, vertical, axial
+   use rbs_loading_loads, only: lateral, horizontal
    use rbs_solve_time_newton, only: newton_stepper, move_springs
    use rbs_solve_time_state, only: state_type
    implicit none
@@ -105,7 +105,7 @@ contains
       logical, intent(out) :: converged
       integer, intent(out) :: busiest
 
-      if (state%motion%plain .and. state%motion%single) then
+      if (associated(state%motion%one_body)) then
          busiest = 0
          call take_step_of_one_body(self, state, h, load, converged)
          if (converged) return
@@ -166,7 +166,7 @@ contains
 
       body%wanted = wanted
       if (abs(h - body%h) > 0.0_wp) then
-         associate (column => state%motion%column)
+         associate (column => state%motion%one_body)
             body%alpha_m = step%alpha_m
             body%alpha_f = step%alpha_f
             body%beta = step%beta
@@ -346,9 +346,9 @@ contains
             end if
          end do
          call motion%structure%spring_rates(self%step%v1, self%step%w1)
-         if (motion%acts(vertical) .or. motion%acts(axial)) then
-            before = motion%lifting_power(state%q, state%v, state%load)
-            after = motion%lifting_power(self%step%q1, self%step%w1, load)
+         if (motion%varies) then
+            before = motion%structure%power_of_loads(state%q, state%v, lifts(state%load))
+            after = motion%structure%power_of_loads(self%step%q1, self%step%w1, lifts(load))
             state%of_loads = state%of_loads + 0.5_wp*h*(before + after)
          end if
          if (motion%damped) then
@@ -364,6 +364,15 @@ contains
       state%load = load
       call self%step%go_on()
    end subroutine commit
+
+   !> Vertical loads alone: their work is not that of a force which keeps its direction.
+   pure function lifts(load)
+      real(wp), intent(in) :: load(4)
+      real(wp) :: lifts(4)
+
+      lifts = load
+      lifts(:horizontal) = 0.0_wp
+   end function lifts
 
    !> Save or restore what the bodies do at the start of a step.
    subroutine serialize(self, stream)

@@ -59,7 +59,7 @@ contains
             allocate (self%v0(m), self%a0(m), self%g0(m), self%v1(m), self%a1(m), self%g1(m), self%r(m), &
                       self%moved(m), self%q1(springs), self%w1(springs), source=0.0_wp)
             allocate (self%scale(size(structure%group)), self%largest(size(structure%group)), source=0.0_wp)
-            call self%now%create(state%motion%column)
+            call self%now%create(structure)
          end if
          call structure%unknown_rates(state%v, self%v0)
          call find_forces(state, state%q, state%v, self%v0, state%load, self%now, self%g0)
@@ -122,7 +122,7 @@ contains
          call motion%forces_on_bodies(state%springs, q, w, load, now)
          g = now%force
          call structure%add_ground(load, g)
-         if (motion%column%mass_damping > 0.0_wp) g = g - motion%column%mass_damping*structure%inertias*v
+         if (structure%mass_damping > 0.0_wp) g = g - structure%mass_damping*structure%inertias*v
          ! Supports take what acts on them.
          if (structure%has_held) where (structure%is_held) g = 0.0_wp
       end associate

@@ -39,7 +39,7 @@ contains
       self%most_iterations = 30
       self%searches_uphill = .false.
       call self%step%start(state)
-      associate (n => state%motion%column%n)
+      associate (n => self%step%column%n)
          allocate (self%dx(3, n), self%dn(n), self%tension(n), self%work(size(state%q)), source=0.0_wp)
       end associate
    end subroutine prepare
@@ -64,7 +64,7 @@ contains
       call self%step%place(state)
       call self%try(state, h, load, 0.0_wp, marked, size_now)
       call self%iterate(state, h, load, size_now, converged, marked)
-      busiest = maxloc(abs(self%step%change)*state%motion%column%initial_stiffness, dim=1)
+      busiest = maxloc(abs(self%step%change)*self%step%column%initial_stiffness, dim=1)
       if (converged) then
          call state%springs%carry_to(self%step%q1)
          state%springs%work = state%springs%work + self%work
@@ -84,7 +84,8 @@ contains
       real(wp), intent(in) :: h
       logical, intent(out) :: found
 
-      call self%step%find_correction(state, h, self%dx, self%dn, found)
+      found = .not. state%springs%stuck
+      if (found) call self%step%find_correction(h, self%dx, self%dn, found)
       if (found) found = maxval(abs(self%dx(3, :))) < most_turn
    end subroutine correct
 

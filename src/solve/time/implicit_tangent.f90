@@ -4,7 +4,6 @@ module rbs_solve_time_implicit_tangent
    use rbs_base_band_matrix, only: band_matrix
    use rbs_base_kinds, only: wp
    use rbs_solve_time_implicit_balance, only: step_balance
-   use rbs_loading_loads, only: vertical, axial
    use rbs_solve_time_state, only: state_type
    use rbs_structure_structure, only: structure_type
    implicit none
@@ -71,7 +70,7 @@ contains
       is_stale = state%springs%version /= self%factor_version .or. &
                  abs(h - self%factor_step) > 1.0e-14_wp*h
       if (state%motion%second_order) then
-         is_stale = is_stale .or. state%motion%acts(vertical) .or. state%motion%acts(axial)
+         is_stale = is_stale .or. state%motion%varies
       end if
    end function is_stale
 
@@ -85,11 +84,11 @@ contains
       integer :: i
 
       of_damping = (1.0_wp - step%alpha_f)*step%gamma/(step%beta*h)
-      of_mass = (1.0_wp - step%alpha_m)/(step%beta*h**2) + of_damping*state%motion%column%mass_damping
+      of_mass = (1.0_wp - step%alpha_m)/(step%beta*h**2) + of_damping*state%motion%structure%mass_damping
       associate (motion => state%motion, springs => state%springs, structure => state%motion%structure)
          self%k = (1.0_wp - step%alpha_f)*springs%k
-         if (motion%column%tangent_damping) then
-            self%k = self%k + (of_damping*motion%column%stiffness_damping)*max(springs%k, 0.0_wp)
+         if (structure%tangent_damping) then
+            self%k = self%k + (of_damping*structure%stiffness_damping)*max(springs%k, 0.0_wp)
          else if (motion%damped) then
             self%k = self%k + of_damping*motion%joint_damping
          end if

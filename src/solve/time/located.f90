@@ -37,6 +37,8 @@ module rbs_solve_time_located
       !> (unknowns)
       real(wp), private :: slope(4) = 0.0_wp
       real(wp), allocatable, private :: q_start(:), v_start(:)
+      !> Deformations that are zero (springs)
+      real(wp), allocatable, private :: at_rest(:)
    contains
       procedure :: advance
       procedure :: resume
@@ -56,8 +58,9 @@ contains
 
       if (allocated(error)) return
       if (.not. allocated(self%now%a)) then
-         call self%now%create(state%motion%column)
+         call self%now%create(state%motion%structure)
          allocate (self%q_start(size(state%q)), self%v_start(size(state%v)))
+         allocate (self%at_rest(size(state%q)), source=0.0_wp)
       end if
       finish = state%time + h
       left = h
@@ -154,7 +157,7 @@ contains
       do j = 1, size(state%springs%layered)
          i = state%springs%layered(j)
          turn = state%v(i)
-         press = state%motion%press_rate(i, self%slope)
+         press = state%motion%structure%axial_rate(i, self%slope)
          if (.not. abs(turn) + abs(press) > 0.0_wp) then
             if (.not. known) then
                call state%motion%acceleration(state%springs, state%q, state%v, state%load, self%now)
@@ -201,7 +204,7 @@ contains
       end associate
       if (self%tolerance > 0.0_wp) then
          self%longest_step = max(self%longest_step, h)
-         self%largest = max(self%largest, energy_of(state, state%q, state%v))
+         self%largest = max(self%largest, energy_of(self, state, state%q, state%v))
          ! A step that ends at an event does not tell what accuracy would allow.
          if (i == 0) then
             self%next_step = h*min(5.0_wp, 0.9_wp*max(wrong, 1.0e-10_wp)**(-1.0_wp/self%scheme%order))
@@ -225,7 +228,7 @@ contains
          do j = 1, size(springs%layered)
             i = springs%layered(j)
             layer = merge(event%layer, 0, i == event%spring .and. .not. event%turns)
-            press = state%motion%press_rate(i, self%slope)
+            press = state%motion%structure%axial_rate(i, self%slope)
             turned = state%q(i) - springs%d(i)
             before = springs%force(i)
             centre = springs%centre(i)
@@ -250,18 +253,20 @@ contains
       if (.not. all(ieee_is_finite(self%scheme%q))) return
       wrong = 0.0_wp
       if (.not. in_bounds(size(self%scheme%q), self%scheme%q)) return
-      measure = max(self%largest, energy_of(state, self%scheme%q, self%scheme%v))
+      measure = max(self%largest, energy_of(self, state, self%scheme%q, self%scheme%v))
       if (measure > 0.0_wp) then
-         wrong = sqrt(energy_of(state, self%scheme%error_q, self%scheme%error_v)/measure)/self%tolerance
+         wrong = sqrt(energy_of(self, state, self%scheme%error_q, self%scheme%error_v)/measure)/self%tolerance
       end if
    end function error_of
 
-   !> Energy of deformations and velocities of the uncracked column with small rotations [J].
-   pure real(wp) function energy_of(state, q, v) result(energy)
+   !> Energy of small deformations and their velocities, no spring having yielded [J].
+   pure real(wp) function energy_of(self, state, q, v) result(energy)
+      type(located_stepper), intent(in) :: self
       type(state_type), intent(in) :: state
-      real(wp), intent(in) :: q(:), v(:)
+      real(wp), intent(in), contiguous :: q(:), v(:)
 
-      energy = 0.5_wp*sum(state%motion%column%initial_stiffness*q**2) + state%motion%column%kinetic_of(v)
+      energy = 0.5_wp*sum(state%motion%structure%initial_stiffness*q**2) &
+               + state%motion%structure%kinetic_energy(self%at_rest, v)
    end function energy_of
 
    !> Springs that stand at an end of their line and go on, or have turned back already, change their line
@@ -323,7 +328,7 @@ contains
       integer, intent(in) :: i
       type(error_type), allocatable, intent(inout) :: error
 
-      call fatal_error(error, analysis_failed, trim(spring_name(state%motion%column%place(i)))// &
+      call fatal_error(error, analysis_failed, trim(spring_name(state%motion%structure%place(i)))// &
                        ' changes its line again and again at time '//to_text(state%begin + state%time)// &
                        " s without moving. Rows up to there are kept; try method = 'newmark'")
    end subroutine report_standstill
@@ -394,11 +399,11 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer :: i
 
-      i = maxloc(abs(self%scheme%error_q)*sqrt(state%motion%column%initial_stiffness), dim=1)
+      i = maxloc(abs(self%scheme%error_q)*sqrt(state%motion%structure%initial_stiffness), dim=1)
       call fatal_error(error, analysis_failed, 'the step of '//to_text(h)//' s at time '// &
                        to_text(state%begin + state%time)//' s does not reach the tolerance of '// &
                        to_text(self%tolerance)//'; the largest error is in '// &
-                       trim(spring_name(state%motion%column%place(i)))//'. Rows up to there are kept. '// &
+                       trim(spring_name(state%motion%structure%place(i)))//'. Rows up to there are kept. '// &
                        "Give a larger tolerance, or method = 'generalised_alpha' for a stiff column")
    end subroutine report_no_step
 

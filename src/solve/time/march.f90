@@ -5,8 +5,6 @@ module rbs_solve_time_march
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: fall_of
-   use rbs_structure_column_column, only: column_type
-   use rbs_output_channels, only: energy_type, response_type
    use rbs_output_summary, only: summary_type
    use rbs_solve_end_state, only: standing_type
    use rbs_solve_task, only: task_type
@@ -16,6 +14,8 @@ module rbs_solve_time_march
    use rbs_solve_time_sight, only: sight_type
    use rbs_solve_time_start, only: initial_state, start_state, resume_state, resume_steps, keep_state
    use rbs_solve_time_state, only: state_type, stepper_type, out_of_bounds
+   use rbs_structure_channel, only: energy_type, response_type
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
@@ -24,8 +24,8 @@ module rbs_solve_time_march
 contains
 
    !> March through the plan.
-   subroutine march(column, planned, stepper, time, loads, initial, task, error, sight)
-      class(column_type), intent(in) :: column
+   subroutine march(structure, planned, stepper, time, loads, initial, task, error, sight)
+      class(structure_type), intent(in) :: structure
       type(time_plan), intent(in) :: planned
       !> The method
       class(stepper_type), intent(inout) :: stepper
@@ -47,14 +47,14 @@ contains
 
       plan = planned
       if (task%resumes()) then
-         call resume_state(state, column, loads, task%before, plan, standing, error)
+         call resume_state(state, structure, loads, task%before, plan, standing, error)
          if (allocated(error)) return
          call resume_steps(state, stepper, task%before, standing)
       end if
-      if (standing%kind == 0) call start_state(state, column, loads, initial, plan%begin, error)
+      if (standing%kind == 0) call start_state(state, structure, loads, initial, plan%begin, error)
       if (allocated(error)) return
       if (present(sight)) state%sight = sight
-      call state%begin_sight(task%collapse_drift, task%recorder%channels%motion)
+      call state%begin_sight(task%collapse_drift, task%recorder%channels%contents%motion)
       task%summary%time_step = plan%dt
       call take_steps(state, plan, stepper, time, response, step, task, error)
       if (present(sight)) sight = state%sight
@@ -90,7 +90,7 @@ contains
       integer :: interval, part, parts, next_row, lost
       logical :: ends
 
-      if (task%recorder%channels%motion) call now%create(state%motion%column)
+      call now%create(state%motion%structure)
       next_row = huge(1)
       if (task%every /= unset_integer) next_row = min(task%every, plan%steps)
       step = 0
@@ -116,7 +116,7 @@ contains
             state%clock = begin + part*h
             if (part == parts) state%clock = finish
             lost = state%springs%lost_joint()
-            if (lost > 0) task%summary%lost_joint = state%motion%column%index_of(lost)
+            if (lost > 0) task%summary%lost_joint = state%motion%structure%place(lost)%index
             ends = task%summary%lost_joint > 0 .or. state%sight%collapsed
             ! A joint may have lost its axial load, or the column may have collapsed, within the step.
             associate (at => state%begin + state%time)
@@ -211,10 +211,10 @@ contains
       type(summary_type), intent(inout), optional :: summary
 
       energy%input = state%of_loads
-      energy%kinetic = state%motion%column%kinetic_energy(state%q, state%v) + state%along_joints
+      energy%kinetic = state%motion%structure%kinetic_energy(state%q, state%v) + state%along_joints
       energy%spring = sum(state%springs%work)
       energy%damping = state%of_damping
-      energy%axial = state%motion%column%potential_energy(state%q)
+      energy%axial = state%motion%structure%potential_energy(state%q)
       energy%residual = state%of_loads + state%at_begin - energy%kinetic - energy%spring - energy%damping &
                         - energy%axial
       if (present(summary)) call summary%see_energies(energy)
@@ -226,20 +226,23 @@ contains
       type(response_type), intent(inout) :: response
       type(task_type), intent(inout) :: task
       type(error_type), allocatable, intent(inout) :: error
-      !> Created if the rows hold how the top moves
       type(motion_result), intent(inout) :: now
+
       response%time = state%clock
-      response%displacement = state%motion%column%top_displacement(state%q)
-      response%height = state%motion%column%top_height(state%q)
+      response%displacement = state%motion%structure%top_displacement(state%q)
       response%force = state%load(lateral)
-      if (state%motion%damped) response%base = state%motion%base_reaction(state%springs, state%q, state%v)
-      if (task%recorder%channels%motion) then
+      response%ground = state%load(horizontal)
+      if (.not. allocated(response%v)) allocate (response%v, response%f, response%a, source=state%v)
+      response%v(:) = state%v
+      if (task%recorder%channels%contents%motion) then
          call state%motion%acceleration(state%springs, state%q, state%v, state%load, now)
-         call state%motion%column%top_motion(state%q, state%v, now%a, response%motion(1), response%motion(2))
-         response%motion(3) = state%load(horizontal)
+         response%a(:) = now%a
+      end if
+      if (state%motion%damped) then
+         call state%motion%joint_forces(state%springs, state%q, state%v, state%load, response%f)
       end if
       task%summary%rows = task%summary%rows + 1
-      call task%recorder%keep(response, state%springs, state%q, error)
+      call task%recorder%keep(state%motion%structure, response, state%springs, state%q, error)
    end subroutine keep
 
 end module rbs_solve_time_march

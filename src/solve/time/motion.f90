@@ -1,23 +1,18 @@
-!> Equation of motion of the column: forces on the bodies and accelerations of the joints at a state, on
+!> Equation of motion of a structure: forces on its unknowns and accelerations of its springs at a state, on
 !> the present lines of the springs.
 !>
-!>     M q'' + C q' + f(q) + K_G q = a F - b a_g        (small, pdelta: O(n) in centroid coordinates)
-!>
-!> With finite rotations M depends on q (paper, eq 4, without its last term in row 2, which is a misprint
-!> and makes energy drift).
+!>     M x'' + C x' + B' f(d) + K_G x = sum signal * pattern,   d = B x
 !>
 !> A motion does not change once it has been created: all that `acceleration` finds is in its result.
 module rbs_solve_time_motion
    use rbs_base_error, only: error_type
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
-   use rbs_structure_column_chain, only: chain_accelerations, second_order_forces
-   use rbs_structure_column_column, only: column_type, small, finite
+   use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_modal_matrices, only: modal_damping
    use rbs_loading_loads, only: lateral, horizontal, vertical, axial
-   use rbs_structure_spring_place, only: shear, flexure
-   use rbs_structure_structure, only: structure_type
+   use rbs_structure_structure, only: structure_type, signals, pdelta, finite
    implicit none
    private
 
@@ -25,139 +20,108 @@ module rbs_solve_time_motion
 
    !> What the equation of motion gives at one state. `create` allocates it once, before the first step.
    type :: motion_result
-      !> Accelerations of the joints (unknowns) [m/s2, rad/s2]
+      !> Accelerations of the springs (springs) [m/s2, rad/s2]
       real(wp), allocatable :: a(:)
-      !> Forces of the joints: springs, damping and, with small rotations, the second-order share of the axial
-      !> forces (unknowns) [N, N m, N]
+      !> Rates of velocity of the top and momentum, see `speeds` of a structure
+      real(wp) :: of_speeds(2) = 0.0_wp
+      !> Forces of the springs with damping and, with small rotations, the second-order share of the axial
+      !> forces (springs) [N, N m, N]
       real(wp), allocatable :: f(:)
-      !> Small rotations: forces on the unknowns of the structure, without the inertia of the moving ground
-      !> and without mass damping, and their accelerations relative to the ground (unknowns)
-      real(wp), allocatable :: force(:), x(:)
-      !> The latter where joints do not open, along x and in rotation (n)
-      real(wp), allocatable :: along(:), turning(:)
-      !> Second-order moments on the bodies (n)
-      real(wp), allocatable, private :: moment(:)
+      !> Forces on the unknowns of the structure, without the inertia of the moving ground and without mass
+      !> damping (unknowns)
+      real(wp), allocatable :: force(:)
       !> Axial forces that do second-order work at the time, in the order of the structure [N]
       real(wp), allocatable :: axial(:)
+      !> Work array of the structure
       real(wp), allocatable :: work(:)
    contains
       procedure :: create => create_result
    end type motion_result
 
    type :: motion_type
-      class(column_type), pointer :: column => null()
-      !> The same, as solvers see it
       class(structure_type), pointer :: structure => null()
-      !> Which of the four loads act (see `rbs_loading_loads`)
-      logical :: acts(4) = .false.
-      !> Damping of the joints, beta k0 (unknowns) [N s/m, N m s]
+      !> The structure where it is a column of one body without damping under lateral force and horizontal
+      !> ground motion, its rotations small: such runs have forms of their own
+      type(column_type), pointer :: one_body => null()
+      !> Which of the loads act (see `rbs_loading_loads`), and whether axial forces vary
+      logical :: acts(4) = .false., varies = .false.
+      !> Damping of the springs, beta k0 (springs) [N s/m, N m s]
       real(wp), allocatable :: joint_damping(:)
-      !> Modal damping (unknowns, unknowns); allocated only if there is any
+      !> Modal damping (springs, springs); allocated only if there is any
       real(wp), allocatable :: modal(:, :)
       !> Whether there is damping at all, and whether any axial force does second-order work
       logical :: damped = .false., second_order = .false.
-      !> Whether the power of the loads follows from velocity of the top and momentum alone
+      !> Whether the power of the loads follows from velocity of the top and momentum alone, and that of
+      !> damping is none
       logical :: plain = .false.
-      !> Whether slip and rotation of one joint are the only unknowns
-      logical :: single = .false.
-      !> One over the mass or rotary inertia of each unknown, 0 for what is held (unknowns); the same of the
-      !> bodies, by kind (n)
-      real(wp), allocatable :: inverse(:), inverse_mass(:), inverse_inertia(:)
    contains
       procedure :: create
       procedure :: acceleration
       procedure :: forces_on_bodies
+      procedure :: joint_forces
       procedure :: press
-      procedure :: press_rate
-      procedure :: load_power
-      procedure :: lifting_power
       procedure :: damping_power
-      procedure :: top_velocity
-      procedure :: momentum
       procedure :: base_shear
-      procedure :: base_reaction
    end type motion_type
 
 contains
 
-   subroutine create_result(self, column)
+   subroutine create_result(self, structure)
       class(motion_result), intent(out) :: self
-      class(column_type), intent(in) :: column
+      class(structure_type), intent(in) :: structure
+      real(wp) :: at_rest(signals)
+      integer :: m
 
-      allocate (self%a(column%unknowns), self%f(column%unknowns), self%force(column%unknowns), &
-                self%x(column%unknowns), self%along(column%n), self%turning(column%n), &
-                self%moment(column%n), source=0.0_wp)
-      self%axial = [column%axial_body, column%axial_slip]
-      allocate (self%work(column%work_size), source=0.0_wp)
+      m = size(structure%place)
+      allocate (self%a(m), self%f(m), self%force(structure%unknowns), self%work(structure%work_size), &
+                self%axial(structure%axial_count), source=0.0_wp)
+      at_rest = 0.0_wp
+      call structure%axial_forces(at_rest, self%axial)
    end subroutine create_result
 
-   subroutine create(self, column, acts, error)
+   subroutine create(self, structure, acts, error)
       class(motion_type), intent(out) :: self
-      class(column_type), intent(in), target :: column
+      class(structure_type), intent(in), target :: structure
       !> Which of the loads act
       logical, intent(in) :: acts(4)
       type(error_type), allocatable, intent(out) :: error
 
-      self%column => column
-      self%structure => column
+      self%structure => structure
       self%acts = acts
-      self%joint_damping = column%stiffness_damping*column%initial_stiffness
-      self%damped = column%damped
-      if (allocated(column%modal_damping)) then
-         call modal_damping(column, self%modal, error)
+      self%varies = acts(vertical) .or. acts(axial)
+      self%joint_damping = structure%stiffness_damping*structure%initial_stiffness
+      self%damped = structure%damped
+      if (allocated(structure%modal_damping)) then
+         call modal_damping(structure, self%modal, error)
          if (allocated(error)) return
       end if
-      self%second_order = column%kinematics /= small .and. &
-                          (column%axially_loaded .or. acts(vertical) .or. acts(axial))
-      self%plain = column%kinematics /= finite .and. .not. (self%damped .or. acts(vertical) .or. acts(axial))
-      self%single = column%unknowns == 2
-      self%inverse = merge(0.0_wp, 1.0_wp/column%inertias, column%is_held)
-      self%inverse_mass = self%inverse(1:2*column%n:2)
-      self%inverse_inertia = self%inverse(2:2*column%n:2)
+      self%second_order = structure%kinematics == pdelta .and. (structure%axially_loaded .or. self%varies)
+      self%plain = structure%kinematics /= finite .and. .not. (self%damped .or. self%varies)
+      if (.not. self%plain .or. structure%unknowns /= 2) return
+      select type (structure)
+      type is (column_type)
+         self%one_body => structure
+      end select
    end subroutine create
 
-   !> Accelerations of the joints at a state, and what they follow from.
+   !> Accelerations of the springs at a state, and what they follow from.
    subroutine acceleration(self, springs, q, v, load, result)
       class(motion_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
-      !> Deformations and their velocities (unknowns)
+      !> Deformations and their velocities (springs)
       real(wp), intent(in), contiguous :: q(:), v(:)
       !> Loads at the time
       real(wp), intent(in) :: load(4)
       type(motion_result), intent(inout) :: result
-      real(wp) :: of_speeds(2)
+      integer :: m
 
-      if (self%column%kinematics == finite) then
-         call joint_forces(self, springs, q, v, load, result%f)
-         call self%column%accelerations(q, v, load, result%axial, result%f, result%work, result%a, of_speeds)
-         return
-      end if
-      if (self%column%opens) then
-         call self%forces_on_bodies(springs, q, v, load, result)
-         call divide(size(q), 2*self%column%n, self%inverse, load(horizontal), load(vertical), result%force, &
-                     result%x)
-         call self%structure%spring_rates(result%x, result%a)
-         result%along(self%column%n) = result%x(2*self%column%n - 1)
-         result%turning(self%column%n) = result%x(2*self%column%n)
-      else
-         if (self%plain) then
-            call on_lines(self%column%unknowns, springs%d0, springs%f0, springs%k, q, result%f)
-         else
-            call joint_forces(self, springs, q, v, load, result%f)
-         end if
-         if (self%second_order) then
-            if (self%acts(vertical) .or. self%acts(axial)) call self%column%axial_forces(load, result%axial)
-            call second_order_forces(self%column%n, self%column%length, result%axial, q, result%f, 1, &
-                                     result%moment)
-         end if
-         call chain_accelerations(self%column%n, self%column%lower, self%column%upper, self%inverse_mass, &
-                                  self%inverse_inertia, result%f, result%moment, load(lateral), &
-                                  load(horizontal), result%along, result%turning, result%a)
-      end if
-      if (self%column%mass_damping > 0.0_wp) result%a = result%a - self%column%mass_damping*v
+      call self%joint_forces(springs, q, v, load, result%f)
+      call find_axial_forces(self, load, result, m)
+      call self%structure%accelerations(q, v, load, result%axial(:m), &
+                                        result%f, result%work, result%a, result%of_speeds)
    end subroutine acceleration
 
-   !> Forces of the joints and on the unknowns with small rotations: all of the result but the accelerations.
+   !> Forces of the springs and on the unknowns with small rotations: all of the result but the accelerations.
    subroutine forces_on_bodies(self, springs, q, v, load, result)
       class(motion_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
@@ -167,41 +131,58 @@ contains
       type(motion_result), intent(inout) :: result
       integer :: m
 
-      call joint_forces(self, springs, q, v, load, result%f)
-      m = 0
-      if (self%second_order) then
-         m = size(result%axial)
-         if (self%acts(vertical) .or. self%acts(axial)) call self%structure%axial_forces(load, result%axial)
-      end if
+      call self%joint_forces(springs, q, v, load, result%f)
+      call find_axial_forces(self, load, result, m)
       call self%structure%forces(q, load, result%axial(:m), result%f, result%force)
    end subroutine forces_on_bodies
 
-   !> Forces of the joints: springs on their present lines, and damping.
+   !> Axial forces that do second-order work, as far as they vary, and their number.
+   subroutine find_axial_forces(self, load, result, m)
+      type(motion_type), intent(in) :: self
+      real(wp), intent(in) :: load(4)
+      type(motion_result), intent(inout) :: result
+      integer, intent(out) :: m
+
+      m = 0
+      if (.not. self%second_order) return
+      m = size(result%axial)
+      if (self%varies) call self%structure%axial_forces(load, result%axial)
+   end subroutine find_axial_forces
+
+   !> Forces of the springs on their present lines, and of the damping beside them.
    subroutine joint_forces(self, springs, q, v, load, f)
       class(motion_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in), contiguous :: q(:), v(:)
       !> Loads at the time
       real(wp), intent(in) :: load(4)
-      !> Forces (unknowns) [N, N m]
+      !> Forces (springs) [N, N m]
       real(wp), intent(out), contiguous :: f(:)
       integer :: i, j
 
-      call on_lines(self%column%unknowns, springs%d0, springs%f0, springs%k, q, f)
+      call on_lines(size(f), springs%d0, springs%f0, springs%k, q, f)
       if (springs%pressed) then
          do j = 1, size(springs%layered)
             i = springs%layered(j)
-            f(i) = f(i) - springs%centre(i)*(self%column%axial_force(i, load) - springs%press_at(i))
+            f(i) = f(i) - springs%centre(i)*(self%structure%axial_force(i, load) - springs%press_at(i))
          end do
       end if
       if (.not. self%damped) return
-      if (self%column%tangent_damping) then
-         f = f + self%column%stiffness_damping*max(springs%k, 0.0_wp)*v
+      if (self%structure%tangent_damping) then
+         f = f + self%structure%stiffness_damping*max(springs%k, 0.0_wp)*v
       else
          f = f + self%joint_damping*v
       end if
       if (allocated(self%modal)) f = f + modal_forces(size(v), self%modal, v)
    end subroutine joint_forces
+
+   pure subroutine on_lines(m, d0, f0, k, q, f)
+      integer, intent(in) :: m
+      real(wp), intent(in) :: d0(m), f0(m), k(m), q(m)
+      real(wp), intent(out) :: f(m)
+
+      f = f0 + k*(q - d0)
+   end subroutine on_lines
 
    !> Forces of the modal damping, summed in the order that lanes of ensembles have too.
    pure function modal_forces(m, modal, v) result(f)
@@ -216,16 +197,6 @@ contains
       end do
    end function modal_forces
 
-   !> Rate of the axial force at a spring [N/s].
-   pure real(wp) function press_rate(self, spring, slope)
-      class(motion_type), intent(in) :: self
-      integer, intent(in) :: spring
-      !> Slopes of the loads [per s]
-      real(wp), intent(in) :: slope(4)
-
-      press_rate = slope(axial) + slope(vertical)*self%column%lifted_joint(self%column%index_of(spring))
-   end function press_rate
-
    !> Tell layered joints the axial forces that their next move leads to.
    subroutine press(self, springs, load)
       class(motion_type), intent(in) :: self
@@ -237,49 +208,9 @@ contains
       if (.not. springs%pressed) return
       do j = 1, size(springs%layered)
          i = springs%layered(j)
-         springs%press_to(i) = self%column%axial_force(i, load)
+         springs%press_to(i) = self%structure%axial_force(i, load)
       end do
    end subroutine press
-
-   pure subroutine on_lines(m, d0, f0, k, q, f)
-      integer, intent(in) :: m
-      real(wp), intent(in) :: d0(m), f0(m), k(m), q(m)
-      real(wp), intent(out) :: f(m)
-
-      f = f0 + k*(q - d0)
-   end subroutine on_lines
-
-   !> Accelerations of the bodies from their forces.
-   pure subroutine divide(m, last, inverse, ground, upward, force, x)
-      !> Number of unknowns, and the last that is a displacement along x or a rotation
-      integer, intent(in) :: m, last
-      !> Accelerations of the ground
-      real(wp), intent(in) :: inverse(m), ground, upward, force(m)
-      real(wp), intent(out) :: x(m)
-      integer :: i
-
-      do i = 1, last, 2
-         x(i) = force(i)*inverse(i) - ground
-         x(i + 1) = force(i + 1)*inverse(i + 1)
-      end do
-      do i = last + 1, m
-         x(i) = force(i)*inverse(i) - upward
-      end do
-   end subroutine divide
-
-   !> Power of the loads at a state [W].
-   real(wp) function load_power(self, q, v, load) result(watt)
-      class(motion_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: q(:), v(:)
-      real(wp), intent(in) :: load(4)
-
-      if (self%column%kinematics == finite) then
-         watt = self%column%power_of_loads(q, v, load)
-      else
-         watt = self%top_velocity(v)*load(lateral) - self%momentum(v)*load(horizontal) &
-                + self%lifting_power(q, v, load)
-      end if
-   end function load_power
 
    !> Power of the damping [W].
    real(wp) function damping_power(self, springs, q, v) result(watt)
@@ -289,90 +220,58 @@ contains
 
       watt = 0.0_wp
       if (.not. self%damped) return
-      if (self%column%tangent_damping) then
-         watt = self%column%stiffness_damping*sum(max(springs%k, 0.0_wp)*v**2)
-      else
-         watt = sum(self%joint_damping*v**2)
-      end if
-      if (allocated(self%modal)) watt = watt + inner_product(size(v), v, modal_forces(size(v), self%modal, v))
-      if (self%column%mass_damping > 0.0_wp) then
-         watt = watt + 2.0_wp*self%column%mass_damping*self%column%kinetic_energy(q, v)
-      end if
+      associate (structure => self%structure)
+         if (structure%tangent_damping) then
+            watt = structure%stiffness_damping*sum(max(springs%k, 0.0_wp)*v**2)
+         else
+            watt = sum(self%joint_damping*v**2)
+         end if
+         if (allocated(self%modal)) then
+            watt = watt + inner_product(size(v), v, modal_forces(size(v), self%modal, v))
+         end if
+         if (structure%mass_damping > 0.0_wp) then
+            watt = watt + 2.0_wp*structure%mass_damping*structure%kinetic_energy(q, v)
+         end if
+      end associate
    end function damping_power
 
-   !> Power of vertical ground motion and of the changing part of the axial load, small rotations [W].
-   pure real(wp) function lifting_power(self, q, v, load) result(watt)
-      class(motion_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: q(:), v(:)
-      real(wp), intent(in) :: load(4)
-
-      watt = 0.0_wp
-      if (self%acts(vertical) .or. self%acts(axial)) watt = self%column%power_of_lifts(q, v, load)
-   end function lifting_power
-
-   !> Velocity of the top along x, small rotations [m/s].
-   pure real(wp) function top_velocity(self, v)
-      class(motion_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: v(:)
-
-      top_velocity = inner_product(size(v), self%column%arm, v)
-   end function top_velocity
-
-   !> Momentum along x, relative to the ground, small rotations [kg m/s].
-   pure real(wp) function momentum(self, v)
-      class(motion_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: v(:)
-
-      momentum = inner_product(size(v), self%column%ground_arm, v)
-   end function momentum
-
-   !> What the ground holds the column with: shear and moment of the lowest joint and of the damping, that
-   !> between the bodies and the ground included [N, N m].
-   function base_reaction(self, springs, q, v) result(base)
-      class(motion_type), intent(in) :: self
-      type(spring_array), intent(in) :: springs
-      real(wp), intent(in), contiguous :: q(:), v(:)
-      real(wp) :: base(2)
-
-      base = [force_at(self, springs, q, v, self%column%at(shear, 1)), &
-              force_at(self, springs, q, v, self%column%at(flexure, 1))]
-      if (self%column%mass_damping > 0.0_wp) then
-         base = base + self%column%mass_damping*self%column%momentum_at_foot(q, v)
-      end if
-   end function base_reaction
-
-   !> The shear force alone; asked for in every step.
+   !> What the ground holds the structure with along x: forces of the lowest springs and of the damping, that
+   !> between the bodies and the ground included [N]; asked for in every step.
    function base_shear(self, springs, q, v) result(force)
       class(motion_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in), contiguous :: q(:), v(:)
-      real(wp) :: force, momentum(2)
+      real(wp) :: force, speed(2)
+      integer :: j
 
-      force = force_at(self, springs, q, v, self%column%at(shear, 1))
+      force = 0.0_wp
+      do j = 1, size(self%structure%base_spring)
+         force = force + self%structure%base_factor(j)*force_at(self, springs, q, v, &
+                                                                self%structure%base_spring(j))
+      end do
       if (.not. self%damped) return
-      if (self%column%mass_damping > 0.0_wp) then
-         momentum = self%column%momentum_at_foot(q, v)
-         force = force + self%column%mass_damping*momentum(1)
+      if (self%structure%mass_damping > 0.0_wp) then
+         call self%structure%speeds(q, v, speed)
+         force = force - self%structure%mass_damping*speed(horizontal)
       end if
    end function base_shear
 
    !> Force of a spring on its line, and of the damping beside it.
-   function force_at(self, springs, q, v, place) result(force)
-      class(motion_type), intent(in) :: self
+   pure real(wp) function force_at(self, springs, q, v, i) result(force)
+      type(motion_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in), contiguous :: q(:), v(:)
-      integer, intent(in) :: place
-      real(wp) :: force
+      integer, intent(in) :: i
 
-      force = springs%f0(place) + springs%k(place)*(q(place) - springs%d0(place))
+      force = springs%f0(i) + springs%k(i)*(q(i) - springs%d0(i))
       if (.not. self%damped) return
-      if (self%column%tangent_damping) then
-         force = force + self%column%stiffness_damping*max(springs%k(place), 0.0_wp)*v(place)
+      if (self%structure%tangent_damping) then
+         force = force + self%structure%stiffness_damping*max(springs%k(i), 0.0_wp)*v(i)
       else
-         force = force + self%joint_damping(place)*v(place)
+         force = force + self%joint_damping(i)*v(i)
       end if
       ! The matrix is symmetric: its columns lie together.
-      if (allocated(self%modal)) force = force + inner_product(size(v), self%modal(:, place), v)
+      if (allocated(self%modal)) force = force + inner_product(size(v), self%modal(:, i), v)
    end function force_at
 
 end module rbs_solve_time_motion

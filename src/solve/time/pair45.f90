@@ -1,9 +1,9 @@
 !> The embedded pair of order 5(4) of Dormand and Prince (1980), with the estimate of its error.
 module rbs_solve_time_pair45
    use rbs_base_kinds, only: wp
-   use rbs_structure_column_column, only: column_type
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
@@ -32,7 +32,7 @@ module rbs_solve_time_pair45
       22.0_wp/525.0_wp, -1.0_wp/40.0_wp]
 
    type, extends(scheme_type) :: pair45_scheme
-      !> Velocities and accelerations of the stages (unknowns, stages)
+      !> Velocities and accelerations of the stages (springs, stages)
       real(wp), allocatable, private :: rate_q(:, :), rate_v(:, :)
       !> Power of loads and damping at the start of the step [W]
       real(wp), private :: load_power = 0.0_wp, damping_power = 0.0_wp
@@ -43,16 +43,16 @@ module rbs_solve_time_pair45
 
 contains
 
-   subroutine create(self, column)
+   subroutine create(self, structure)
       class(pair45_scheme), intent(out) :: self
-      class(column_type), intent(in) :: column
+      class(structure_type), intent(in) :: structure
       integer :: m
 
-      m = column%unknowns
+      m = size(structure%place)
       self%order = 5
       allocate (self%q(m), self%v(m), self%error_q(m), self%error_v(m))
       allocate (self%rate_q(m, stages), self%rate_v(m, stages))
-      call self%now%create(column)
+      call self%now%create(structure)
    end subroutine create
 
    !> A step of h from the state. The last stage stands at the end of the step; works of loads and damping
@@ -66,7 +66,7 @@ contains
 
       if (.not. self%begun) then
          call reach_stage(self, state, 1, h, state%load)
-         self%load_power = state%motion%load_power(self%q, self%v, state%load)
+         self%load_power = state%motion%structure%power_of_loads(self%q, self%v, state%load)
          self%damping_power = state%motion%damping_power(state%springs, self%q, self%v)
       end if
       self%of_loads = h*row(1, stages)*self%load_power
@@ -75,7 +75,7 @@ contains
          call state%loads%at_time(state%time + place(stage)*h, load)
          call reach_stage(self, state, stage, h, load)
          self%of_loads = self%of_loads &
-                         + h*row(stage, stages)*state%motion%load_power(self%q, self%v, load)
+                         + h*row(stage, stages)*state%motion%structure%power_of_loads(self%q, self%v, load)
          self%of_damping = self%of_damping &
                            + h*row(stage, stages)*state%motion%damping_power(state%springs, self%q, self%v)
       end do

@@ -2,11 +2,12 @@
 module rbs_solve_time_rk4
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_structure_column_column, only: column_type
    use rbs_loading_loads, only: lateral, horizontal
    use rbs_solve_one_body_rk4_one_body, only: rk4_body
+   use rbs_structure_column_column, only: column_type
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type, stepper_type, in_bounds, out_of_bounds
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
@@ -18,7 +19,7 @@ module rbs_solve_time_rk4
    integer, parameter :: at(4) = [1, 2, 2, 3]
 
    type, extends(scheme_type) :: rk4_scheme
-      !> Stage (unknowns)
+      !> Stage (springs)
       real(wp), allocatable, private :: stage_q(:), stage_v(:)
       !> The column, if it has one body
       type(rk4_body) :: body
@@ -36,15 +37,20 @@ module rbs_solve_time_rk4
 
 contains
 
-   subroutine create(self, column)
+   subroutine create(self, structure)
       class(rk4_scheme), intent(out) :: self
-      class(column_type), intent(in) :: column
+      class(structure_type), intent(in) :: structure
+      integer :: m
 
       self%order = 4
-      allocate (self%q(column%unknowns), self%v(column%unknowns), self%stage_q(column%unknowns), &
-                self%stage_v(column%unknowns))
-      call self%now%create(column)
-      if (column%unknowns == 2) call self%body%create(column)
+      m = size(structure%place)
+      allocate (self%q(m), self%v(m), self%stage_q(m), self%stage_v(m))
+      call self%now%create(structure)
+      if (structure%unknowns /= 2) return
+      select type (structure)
+      type is (column_type)
+         call self%body%create(structure)
+      end select
    end subroutine create
 
    !> A step of h from the state, which stays as it is. Works of loads and damping are integrated with the
@@ -60,7 +66,7 @@ contains
       call state%loads%at_time(state%time + 0.5_wp*h, load(:, 2))
       call state%loads%at_time(state%time + h, load(:, 3))
       self%load = load(:, 3)
-      if (state%motion%plain .and. state%motion%single) then
+      if (associated(state%motion%one_body)) then
          self%of_damping = 0.0_wp
          push = load(lateral, :)
          ground = load(horizontal, :)
@@ -79,34 +85,27 @@ contains
       real(wp), intent(in) :: h
       !> Loads at start, middle and end
       real(wp), intent(in) :: load(4, 3)
-      real(wp) :: top, momentum, speed(2)
-      integer :: stage, m, n
+      real(wp) :: start(2), speed(2)
+      integer :: stage, m
 
       m = size(state%q)
       self%of_loads = 0.0_wp
       self%of_damping = 0.0_wp
       associate (motion => state%motion, result => self%now)
-         n = motion%column%n
-         top = 0.0_wp
-         momentum = 0.0_wp
-         if (motion%plain .and. motion%acts(lateral)) top = motion%top_velocity(state%v)
-         if (motion%plain .and. motion%acts(horizontal)) momentum = motion%momentum(state%v)
-         speed = [top, momentum]
+         if (motion%plain) call motion%structure%speeds(state%q, state%v, start)
+         speed = start
          call begin_step(m, state%q, state%v, self%stage_q, self%stage_v, self%q, self%v)
          do stage = 1, 4
             associate (now => load(:, at(stage)))
                call motion%acceleration(state%springs, self%stage_q, self%stage_v, now, result)
                if (motion%plain) then
-                  self%of_loads = self%of_loads + h*weight(stage)*(speed(1)*now(lateral) &
-                                                                   - speed(2)*now(horizontal))
+                  self%of_loads = self%of_loads + h*weight(stage)*(speed(lateral)*now(lateral) &
+                                                                   + speed(horizontal)*now(horizontal))
                   ! Velocity of the top and momentum are linear in v: they step as it does.
-                  speed(1) = top + h*reach(stage)*(result%along(n) &
-                                                     + motion%column%upper(n)*result%turning(n))
-                  speed(2) = momentum + h*reach(stage)*(now(lateral) - result%f(1) &
-                                                        - motion%column%mass_above(1)*now(horizontal))
+                  speed = start + h*reach(stage)*result%of_speeds
                else
-                  self%of_loads = self%of_loads &
-                                  + h*weight(stage)*motion%load_power(self%stage_q, self%stage_v, now)
+                  self%of_loads = self%of_loads + h*weight(stage)* &
+                                  motion%structure%power_of_loads(self%stage_q, self%stage_v, now)
                   self%of_damping = self%of_damping &
                                     + h*weight(stage)*motion%damping_power(state%springs, self%stage_q, &
                                                                            self%stage_v)
@@ -196,7 +195,7 @@ contains
 
       if (allocated(error)) return
       self%steps = self%steps + 1
-      if (state%motion%plain .and. state%motion%single) then
+      if (associated(state%motion%one_body)) then
          call advance_one_body(self%scheme%body, state, h)
          return
       end if

@@ -6,9 +6,6 @@ module rbs_solve_time_run_dynamic
    use rbs_base_text, only: to_text
    use rbs_case_methods, only: method_type, methods, method_named, responses_tried, usual_tolerance, &
                                usual_rho_infinity
-   use rbs_structure_column_axial, only: check_stable
-   use rbs_structure_column_column, only: column_type, small, finite
-   use rbs_structure_column_ends, only: check_inertia_of_ends, check_held_rotation
    use rbs_loading_signal, only: signal_type
    use rbs_solve_check_values, only: check_values
    use rbs_solve_task, only: task_type
@@ -24,6 +21,7 @@ module rbs_solve_time_run_dynamic
    use rbs_solve_time_rk4, only: rk4_stepper, rk4_scheme
    use rbs_solve_time_sight, only: sight_type
    use rbs_solve_time_state, only: stepper_type
+   use rbs_structure_structure, only: structure_type, finite
    use rbs_case_analysis_record, only: analysis_record
    use rbs_base_check, only: is_given
    implicit none
@@ -41,8 +39,8 @@ module rbs_solve_time_run_dynamic
 contains
 
    !> Choice of the method, stability limit and plan of the steps of a dynamic analysis.
-   subroutine plan_dynamic(column, analysis, time, loads, plan, error)
-      class(column_type), intent(in) :: column
+   subroutine plan_dynamic(structure, analysis, time, loads, plan, error)
+      class(structure_type), intent(in) :: structure
       !> Validated settings
       type(analysis_record), intent(in) :: analysis
       !> Times of the loading (m) [s]
@@ -52,23 +50,20 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       call check_times(time, error)
-      if (.not. allocated(error)) call check_inertia_of_ends(column, error)
-      if (allocated(error)) return
-      call check_stable(column, error)
       if (allocated(error)) return
       plan%method = analysis%method
       if (analysis%method == 'auto') then
-         call choose_method(column, analysis, time, plan, error)
+         call choose_method(structure, analysis, time, plan, error)
          if (allocated(error)) return
       end if
-      call plan_steps(column, analysis, time, loads, plan, error)
+      call plan_steps(structure, analysis, time, loads, plan, error)
       if (allocated(error)) return
-      call check_effort(column, analysis%max_seconds, plan, error)
+      call check_effort(structure, analysis%max_seconds, plan, error)
    end subroutine plan_dynamic
 
    !> Steps of the method chosen.
-   subroutine plan_steps(column, analysis, time, loads, plan, error)
-      class(column_type), intent(in) :: column
+   subroutine plan_steps(structure, analysis, time, loads, plan, error)
+      class(structure_type), intent(in) :: structure
       type(analysis_record), intent(in) :: analysis
       real(wp), intent(in) :: time(:)
       type(loads_type), intent(in) :: loads
@@ -81,11 +76,11 @@ contains
       longest = time(size(time)) - time(1)
       bound = huge(1.0_wp)
       if (method%implicit) then
-         call frequency_bounds(column, lowest, highest, error)
+         call frequency_bounds(structure, lowest, highest, error)
          if (allocated(error)) return
          longest = min(longest, method%period_share*longest_period(lowest))
       else
-         call stability_limit(column, plan%limit, error)
+         call stability_limit(structure, plan%limit, error)
          if (allocated(error)) return
          if (method%adaptive) then
             ! It is explicit too: its steps cannot be much longer than the limit of rk4.
@@ -98,23 +93,8 @@ contains
       end if
       call new_plan(plan, time, analysis%dt, longest, bound, error)
       if (allocated(error)) return
-      if (abs(column%axial_force_ratio) > 0.0_wp) then
-         call fatal_error(error, bad_input, &
-                          'column: axial_force_ratio = '//to_text(column%axial_force_ratio)// &
-                          ' belongs to a static path, which has one lateral force; in a dynamic analysis '// &
-                          'give the axial load as a history, axial_load')
-         return
-      end if
-      if (column%kinematics /= small .or. column%opens .or. any(column%spring%rule == 'layered')) return
-      if (loads%vertical%acts()) then
-         call fatal_error(error, bad_input, "vertical_acceleration: with kinematics = 'small' and joints "// &
-                          "that do not open it does nothing; use 'pdelta' or 'finite', or give axial "// &
-                          'springs or layered joints')
-      else if (loads%axial%acts()) then
-         call fatal_error(error, bad_input, "axial_load: with kinematics = 'small' and joints that do "// &
-                          "not open a history of it does nothing; use 'pdelta' or 'finite', or give "// &
-                          'axial springs or layered joints')
-      end if
+      call structure%check_loads([loads%force%acts(), loads%ground%acts(), loads%vertical%acts(), &
+                                  loads%axial%acts()], error)
    end subroutine plan_steps
 
    !> The longest natural period [s]; a long time where there is no restoring force.
@@ -127,44 +107,44 @@ contains
 
    !> The method for a case whose user leaves it to the program: the most accurate one if it takes hardly any
    !> time, else the cheapest. It is chosen by counts of steps, never by a clock.
-   subroutine choose_method(column, analysis, time, plan, error)
-      class(column_type), intent(in) :: column
+   subroutine choose_method(structure, analysis, time, plan, error)
+      class(structure_type), intent(in) :: structure
       type(analysis_record), intent(in) :: analysis
       real(wp), intent(in) :: time(:)
       type(time_plan), intent(inout) :: plan
       type(error_type), allocatable, intent(out) :: error
       type(method_type) :: explicit_choice, implicit_choice, chosen
-      real(wp) :: lowest, highest, explicit_steps, implicit_steps, longest, step_cost
+      real(wp) :: lowest, highest, explicit_steps, implicit_steps, longest, step_cost, work
       logical :: affordable
 
       explicit_choice = method_named('rk4')
       implicit_choice = method_named('generalised_alpha')
-      call stability_limit(column, plan%limit, error)
+      call stability_limit(structure, plan%limit, error)
       if (allocated(error)) return
-      call frequency_bounds(column, lowest, highest, error)
+      call frequency_bounds(structure, lowest, highest, error)
       if (allocated(error)) return
       longest = implicit_choice%period_share*longest_period(lowest)
-      step_cost = merge(finite_step_cost, implicit_step_cost, column%kinematics == finite)
+      step_cost = merge(finite_step_cost, implicit_step_cost, structure%kinematics == finite)
       associate (duration => time(size(time)) - time(1))
          explicit_steps = real(size(time) - 1, wp) + duration/(explicit_choice%limit_share*plan%limit)
          implicit_steps = real(size(time) - 1, wp) + duration/longest
       end associate
-      affordable = explicit_steps*column%n <= negligible_work .or. &
-                   explicit_steps <= step_cost*implicit_steps
-      if (is_given(analysis%tolerance) .and. (affordable .or. explicit_steps*column%n <= bearable_work)) then
+      work = explicit_steps*structure%n
+      affordable = work <= negligible_work .or. explicit_steps <= step_cost*implicit_steps
+      if (is_given(analysis%tolerance) .and. (affordable .or. work <= bearable_work)) then
          plan%method = 'rk45'
          plan%reason = 'a tolerance of '//to_text(analysis%tolerance)//' asks for controlled errors'
       else if (.not. affordable) then
          plan%method = implicit_choice%name
          plan%reason = 'stiff: rk4 would take '//to_text(anint(explicit_steps))//' steps for its '// &
                        'stability, this method takes about '//to_text(anint(implicit_steps))
-      else if (column%kinematics == finite) then
+      else if (structure%kinematics == finite) then
          ! How fast the column turns, and with it the step that resolves it, is not known in advance.
          plan%method = 'rk45'
          plan%reason = 'finite rotations: the steps follow from a tolerance'
       else
          plan%method = explicit_choice%name
-         plan%located = any(column%spring%rule /= 'elastic')
+         plan%located = any(structure%spring%rule /= 'elastic')
          plan%reason = to_text(anint(explicit_steps))//' steps take little time'
          if (plan%located) plan%reason = trim(plan%reason)//'; events located'
       end if
@@ -175,8 +155,8 @@ contains
    end subroutine choose_method
 
    !> Response in time under lateral force, ground motion, axial load, or all of them.
-   subroutine run_dynamic(column, analysis, plan, time, loads, initial, task, error, sight)
-      class(column_type), intent(in) :: column
+   subroutine run_dynamic(structure, analysis, plan, time, loads, initial, task, error, sight)
+      class(structure_type), intent(in) :: structure
       !> Validated settings
       type(analysis_record), intent(in) :: analysis
       !> From `plan_dynamic`
@@ -198,25 +178,25 @@ contains
       call check_signal(loads%axial, 'axial_load', error)
       if (.not. allocated(error) .and. allocated(initial%deformation)) then
          call check_values(initial%deformation, 'initial deformation', error)
-         call check_held_rotation(column, 'initial deformation', initial%deformation, error)
+         call structure%check_initial('initial deformation', initial%deformation, error)
       end if
       if (.not. allocated(error) .and. allocated(initial%velocity)) then
          call check_values(initial%velocity, 'initial velocity', error)
-         call check_held_rotation(column, 'initial velocity', initial%velocity, error)
+         call structure%check_initial('initial velocity', initial%velocity, error)
       end if
       if (allocated(error)) return
       task%summary%has_force = loads%force%acts()
       task%summary%stable_step = plan%limit
       task%summary%method = plan%method
       task%summary%reason = plan%reason
-      call new_stepper(stepper, column, analysis, plan)
-      call march(column, plan, stepper, time, loads, initial, task, error, sight)
+      call new_stepper(stepper, structure, analysis, plan)
+      call march(structure, plan, stepper, time, loads, initial, task, error, sight)
    end subroutine run_dynamic
 
    !> The method of a plan, ready for its first step.
-   subroutine new_stepper(stepper, column, analysis, plan)
+   subroutine new_stepper(stepper, structure, analysis, plan)
       class(stepper_type), allocatable, intent(out) :: stepper
-      class(column_type), intent(in) :: column
+      class(structure_type), intent(in) :: structure
       type(analysis_record), intent(in) :: analysis
       type(time_plan), intent(in) :: plan
       type(rk4_stepper), allocatable :: fixed
@@ -229,15 +209,15 @@ contains
       if (is_given(analysis%rho_infinity)) rho = analysis%rho_infinity
       select case (plan%method)
       case ('newmark')
-         call set_implicit(stepper, new_newmark(), column)
+         call set_implicit(stepper, new_newmark(), structure)
       case ('hht')
-         call set_implicit(stepper, new_hht(rho), column)
+         call set_implicit(stepper, new_hht(rho), structure)
       case ('generalised_alpha')
-         call set_implicit(stepper, new_generalised_alpha(rho), column)
+         call set_implicit(stepper, new_generalised_alpha(rho), structure)
       case ('rk45')
          allocate (located)
          allocate (pair45_scheme :: located%scheme)
-         call located%scheme%create(column)
+         call located%scheme%create(structure)
          located%tolerance = usual_tolerance
          if (is_given(analysis%tolerance)) located%tolerance = analysis%tolerance
          ! The first step is that of rk4.
@@ -250,11 +230,11 @@ contains
          if (analysis%events == 'located' .or. plan%located) then
             allocate (located)
             allocate (rk4_scheme :: located%scheme)
-            call located%scheme%create(column)
+            call located%scheme%create(structure)
             call move_alloc(located, stepper)
          else
             allocate (fixed)
-            call fixed%scheme%create(column)
+            call fixed%scheme%create(structure)
             call move_alloc(fixed, stepper)
          end if
       end select
@@ -264,12 +244,12 @@ contains
    end subroutine new_stepper
 
    !> An implicit method for the kinematics of a column.
-   subroutine set_implicit(stepper, method, column)
+   subroutine set_implicit(stepper, method, structure)
       class(stepper_type), allocatable, intent(out) :: stepper
       type(implicit_stepper), intent(in) :: method
-      class(column_type), intent(in) :: column
+      class(structure_type), intent(in) :: structure
 
-      if (column%kinematics == finite) then
+      if (structure%kinematics == finite) then
          allocate (stepper, source=with_finite_rotations(method))
       else
          allocate (stepper, source=method)

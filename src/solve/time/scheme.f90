@@ -1,9 +1,9 @@
 !> What an explicit scheme is: one step from a state, tried without moving it.
 module rbs_solve_time_scheme
    use rbs_base_kinds, only: wp
-   use rbs_structure_column_column, only: column_type
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_state, only: state_type
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
@@ -12,9 +12,9 @@ module rbs_solve_time_scheme
    type, abstract :: scheme_type
       !> Order of the scheme
       integer :: order = 0
-      !> Result of the last attempt: deformations and velocities (unknowns)
+      !> Result of the last attempt: deformations and velocities (springs)
       real(wp), allocatable :: q(:), v(:)
-      !> Estimate of its error, if the scheme has one (unknowns)
+      !> Estimate of its error, if the scheme has one (springs)
       real(wp), allocatable :: error_q(:), error_v(:)
       !> Works of loads and damping in it [J]
       real(wp) :: of_loads = 0.0_wp, of_damping = 0.0_wp
@@ -31,12 +31,12 @@ module rbs_solve_time_scheme
    end type scheme_type
 
    abstract interface
-      !> Allocate what the steps of a column need.
-      subroutine create_interface(self, column)
-         import :: scheme_type, column_type
+      !> Allocate what the steps of a structure need.
+      subroutine create_interface(self, structure)
+         import :: scheme_type, structure_type
          implicit none
          class(scheme_type), intent(out) :: self
-         class(column_type), intent(in) :: column
+         class(structure_type), intent(in) :: structure
       end subroutine create_interface
 
       !> A step of h on the present lines of the springs; deformations and velocities of the state stay.

@@ -3,14 +3,14 @@
 module rbs_solve_time_sight
    use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
-   use rbs_structure_column_column, only: column_type, finite
-   use rbs_hysteresis_interaction_joints, only: fill_openings, opening_of
+   use rbs_hysteresis_interaction_joints, only: opening_of, rest_of
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_summary, only: peaks_type
    use rbs_solve_time_cubic, only: cubic_type, cubic_through
    use rbs_loading_loads, only: lateral, horizontal
    use rbs_solve_time_motion, only: motion_type, motion_result
    use rbs_structure_spring_place, only: shear, flexure
+   use rbs_structure_structure, only: finite
    implicit none
    private
 
@@ -23,6 +23,8 @@ module rbs_solve_time_sight
       !> Factors of slip, of rotation and of opening; where there is one of the opening, rotations count with
       !> those at rest
       real(wp) :: slip = 0.0_wp, rotation = 0.0_wp, opening = 0.0_wp, threshold = huge(1.0_wp)
+      !> The springs of the joint that slip and rotate, which `begin` finds
+      integer :: slips = 0, turns = 0
    end type watch_type
 
    type, extends(peaks_type) :: sight_type
@@ -36,19 +38,19 @@ module rbs_solve_time_sight
       real(wp), allocatable :: top(:)
       !> Whether anything is still watched for
       logical :: watching = .false.
-      !> Deformations between which no limit state is reached for the first time (unknowns)
+      !> Deformations between which no limit state is reached for the first time (springs)
       real(wp), allocatable :: lowest(:), highest(:)
-      !> What was seen last: clock [s], displacement of the top [m], deformations (unknowns), openings and
-      !> rotations at rest (2 n, or none)
+      !> What was seen last: clock [s], displacement of the top [m], deformations (springs), shares of the
+      !> openings in what is watched (watches)
       real(wp) :: clock = 0.0_wp, displacement = 0.0_wp
       real(wp), allocatable :: q(:), openings(:)
-      !> Openings and rotations at rest now
+      !> Shares of the openings now (watches)
       real(wp), allocatable, private :: openings_now(:)
-      !> The column, and whether openings are still watched
-      class(column_type), pointer, private :: column => null()
+      !> Whether openings are still watched
       logical, private :: opens = .false.
-      !> States within a step (unknowns, 4), and openings there
-      real(wp), allocatable, private :: inner_q(:, :), inner_v(:, :), inner_openings(:, :)
+      !> States within a step (springs, 4), shares of the openings there (watches, 4), and absolute rotations
+      !> of the bodies (n, 4)
+      real(wp), allocatable, private :: inner_q(:, :), inner_v(:, :), inner_openings(:, :), rotation(:, :)
       !> Whether the acceleration of the top is looked at, and the equation of motion for it
       logical :: feels = .false.
       type(motion_result), private :: now
@@ -86,28 +88,30 @@ contains
       real(wp), intent(in) :: collapse_drift
       !> Whether the acceleration of the top is looked at
       logical, intent(in) :: floor
-      integer :: m, opening
+      integer :: i, m
 
-      if (is_given(collapse_drift)) self%furthest = collapse_drift*motion%column%height
+      if (is_given(collapse_drift)) self%furthest = collapse_drift*motion%structure%height
       if (.not. allocated(self%watch)) call self%watch_for([watch_type ::], 0)
-      m = motion%column%unknowns
-      self%column => motion%column
-      opening = 0
-      if (any(abs(self%watch%opening) > 0.0_wp)) opening = 2*motion%column%n
+      m = size(q)
       if (.not. allocated(self%lowest)) then
          allocate (self%lowest(m), self%highest(m), self%inner_q(m, 4), self%inner_v(m, 4), &
-                   self%openings(opening), self%inner_openings(opening, 4), source=0.0_wp)
+                   self%openings(size(self%watch)), self%openings_now(size(self%watch)), &
+                   self%inner_openings(size(self%watch), 4), self%rotation(motion%structure%n, 4), &
+                   source=0.0_wp)
+         do i = 1, size(self%watch)
+            self%watch(i)%slips = motion%structure%spring_of(shear, self%watch(i)%joint)
+            self%watch(i)%turns = motion%structure%spring_of(flexure, self%watch(i)%joint)
+         end do
       end if
       self%peaks_type = peaks_type()
       self%collapsed = .false.
       call set_bounds(self)
       self%feels = floor
-      if (floor) call self%now%create(motion%column)
+      if (floor) call self%now%create(motion%structure)
       self%q = q
       self%clock = clock
-      self%displacement = motion%column%top_displacement(q)
-      call fill_openings(springs, self%column%n, self%openings)
-      self%openings_now = self%openings
+      self%displacement = motion%structure%top_displacement(q)
+      call fill_openings(self, springs, springs%d, 0.0_wp, self%openings)
       call self%see(motion, springs, q, v, load, clock)
    end subroutine begin
 
@@ -116,21 +120,22 @@ contains
       class(sight_type), intent(inout) :: self
       type(motion_type), intent(in) :: motion
       type(spring_array), intent(in) :: springs
-      !> Deformations and velocities (unknowns), loads
+      !> Deformations and velocities (springs), loads
       real(wp), intent(in), contiguous :: q(:), v(:)
       real(wp), intent(in) :: load(4)
       !> [s]
       real(wp), intent(in) :: clock
-      real(wp) :: displacement, turn, shear, speed, acceleration
+      real(wp) :: displacement, turn, shear
 
-      if (motion%plain .and. motion%single) then
-         ! One body, whose steps are short: nothing is called that need not be.
-         displacement = q(1) + motion%column%length(1)*q(2)
+      if (associated(motion%one_body)) then
+         ! Its steps are short: nothing is called that need not be.
+         displacement = q(1) + motion%one_body%length(1)*q(2)
          turn = abs(q(2))
          shear = springs%f0(1) + springs%k(1)*(q(1) - springs%d0(1))
       else
-         displacement = motion%column%top_displacement(q)
-         turn = motion%column%largest_turn(q)
+         displacement = motion%structure%top_displacement(q)
+         call motion%structure%rotations(q, self%rotation(:, 1))
+         turn = maxval(abs(self%rotation(:, 1)))
          shear = motion%base_shear(springs, q, v)
       end if
       if (abs(displacement) > abs(self%peak_displacement) .or. abs(load(lateral)) > abs(self%peak_force)) then
@@ -141,8 +146,7 @@ contains
       if (abs(shear) > abs(self%peak_base_shear)) call self%see_base(shear)
       if (self%feels) then
          call motion%acceleration(springs, q, v, load, self%now)
-         call motion%column%top_motion(q, v, self%now%a, speed, acceleration)
-         call self%see_floor(acceleration + load(horizontal))
+         call self%see_floor(motion%structure%top_acceleration(q, v, self%now%a) + load(horizontal))
       end if
       if (.not. self%watching) return
       if (size(q) == 2 .and. .not. self%opens) then
@@ -166,7 +170,7 @@ contains
       !> Of the top [m]
       real(wp), intent(in) :: displacement, clock
 
-      if (self%opens) call fill_openings(springs, self%column%n, self%openings_now)
+      if (self%opens) call fill_openings(self, springs, springs%d, 0.0_wp, self%openings_now)
       if (self%opens .or. are_beyond(size(q), self%lowest, self%highest, q, q)) then
          call look_closely(self, q, displacement, clock)
       end if
@@ -188,9 +192,9 @@ contains
       do i = 1, size(self%watch)
          associate (watch => self%watch(i))
             if (.not. open(watch%state)) cycle
-            after = value_of(self, watch, q, self%openings_now)
+            after = value_of(watch, q, self%openings_now(i))
             if (.not. after >= watch%threshold) cycle
-            before = value_of(self, watch, self%q, self%openings)
+            before = value_of(watch, self%q, self%openings(i))
             share = 1.0_wp
             if (after > before) share = (watch%threshold - before)/(after - before)
             at = self%clock + share*(clock - self%clock)
@@ -207,19 +211,19 @@ contains
       type(motion_type), intent(in) :: motion
       !> On the lines of the step
       type(spring_array), intent(in) :: springs
-      !> Deformations and velocities at its start and its end (unknowns)
+      !> Deformations and velocities at its start and its end (springs)
       real(wp), intent(in), contiguous :: q0(:), v0(:), q1(:), v1(:)
       !> Its length, and the clock at its end [s]
       real(wp), intent(in) :: h, clock
       real(wp) :: displacement(2), reach
-      integer :: m
+      integer :: i, m
 
       ! Steps up to an event may have no length.
       if (.not. h > tiny(1.0_wp)) return
       m = size(q0)
       ! No cubic goes further beyond its ends than that.
       reach = 4.0_wp/27.0_wp*h
-      displacement = [motion%column%top_displacement(q0), motion%column%top_displacement(q1)]
+      displacement = [motion%structure%top_displacement(q0), motion%structure%top_displacement(q1)]
       if (peaks_may_grow(self, motion, springs, displacement, q0, v0, q1, v1, reach)) then
          call fill_inner(m, q0, v0, q1, v1, h, self%inner_q, self%inner_v)
          call find_peaks(self, motion, springs)
@@ -234,7 +238,9 @@ contains
       end if
       call fill_inner(m, q0, v0, q1, v1, h, self%inner_q, self%inner_v)
       if (self%opens) then
-         call fill_inner_openings(self, springs)
+         do i = 1, 4
+            call fill_openings(self, springs, self%inner_q(:, i), (i - 1)/3.0_wp, self%inner_openings(:, i))
+         end do
          self%openings(:) = self%inner_openings(:, 4)
       end if
       call look_within(self, motion, h, clock)
@@ -243,7 +249,7 @@ contains
    !> Whether the largest responses may grow within a step: each is a cubic in time, as the deformations are,
    !> but with finite rotations and damping, which are looked at in every step.
    logical function peaks_may_grow(self, motion, springs, displacement, q0, v0, q1, v1, reach) result(grow)
-      type(sight_type), intent(in) :: self
+      type(sight_type), intent(inout) :: self
       type(motion_type), intent(in) :: motion
       type(spring_array), intent(in) :: springs
       !> Of the top at both ends [m]
@@ -252,27 +258,37 @@ contains
       real(wp), intent(in), contiguous :: q0(:), v0(:), q1(:), v1(:)
       !> How far a cubic goes beyond its ends, for the sum of both velocities there [s]
       real(wp), intent(in) :: reach
-      real(wp) :: turn(2), turning(2)
-      integer :: i, at
+      real(wp) :: speed(2), at_end(2), shear(2), more
+      integer :: i, j
 
       grow = .true.
-      if (motion%column%kinematics == finite .or. motion%damped) return
-      if (goes_beyond(displacement(1), displacement(2), &
-                      reach*(abs(motion%top_velocity(v0)) + abs(motion%top_velocity(v1))), &
-                      self%peak_displacement)) return
-      associate (d0 => springs%d0(1), f0 => springs%f0(1), k => springs%k(1))
-         if (goes_beyond(f0 + k*(q0(1) - d0), f0 + k*(q1(1) - d0), &
-                         reach*abs(k)*(abs(v0(1)) + abs(v1(1))), self%peak_base_shear)) return
+      associate (structure => motion%structure)
+         if (structure%kinematics == finite .or. motion%damped) return
+         call structure%speeds(q0, v0, speed)
+         call structure%speeds(q1, v1, at_end)
+         if (goes_beyond(displacement(1), displacement(2), reach*(abs(speed(1)) + abs(at_end(1))), &
+                         self%peak_displacement)) return
+         shear = 0.0_wp
+         more = 0.0_wp
+         do j = 1, size(structure%base_spring)
+            i = structure%base_spring(j)
+            associate (f0 => structure%base_factor(j)*springs%f0(i), &
+                       k => structure%base_factor(j)*springs%k(i))
+               shear = shear + [f0 + k*(q0(i) - springs%d0(i)), f0 + k*(q1(i) - springs%d0(i))]
+               more = more + reach*abs(k)*(abs(v0(i)) + abs(v1(i)))
+            end associate
+         end do
+         if (goes_beyond(shear(1), shear(2), more, self%peak_base_shear)) return
+         call structure%rotations(q0, self%rotation(:, 1))
+         call structure%rotations(q1, self%rotation(:, 2))
+         call structure%rotations(v0, self%rotation(:, 3))
+         call structure%rotations(v1, self%rotation(:, 4))
+         do i = 1, structure%n
+            associate (r => self%rotation(i, :))
+               if (goes_beyond(r(1), r(2), reach*(abs(r(3)) + abs(r(4))), self%peak_rotation)) return
+            end associate
+         end do
       end associate
-      turn = 0.0_wp
-      turning = 0.0_wp
-      do i = 1, motion%column%n
-         at = motion%column%at(flexure, i)
-         turn = turn + [q0(at), q1(at)]
-         turning = turning + [v0(at), v1(at)]
-         if (goes_beyond(turn(1), turn(2), reach*(abs(turning(1)) + abs(turning(2))), &
-                         self%peak_rotation)) return
-      end do
       grow = .false.
    end function peaks_may_grow
 
@@ -289,12 +305,13 @@ contains
       type(motion_type), intent(in) :: motion
       type(spring_array), intent(in) :: springs
       type(cubic_type) :: part
-      real(wp) :: displacement(4), base(4), rotation(4)
+      real(wp) :: displacement(4), base(4), turn(4)
       integer :: i, j
 
       do j = 1, 4
-         displacement(j) = motion%column%top_displacement(self%inner_q(:, j))
+         displacement(j) = motion%structure%top_displacement(self%inner_q(:, j))
          base(j) = motion%base_shear(springs, self%inner_q(:, j), self%inner_v(:, j))
+         call motion%structure%rotations(self%inner_q(:, j), self%rotation(:, j))
       end do
       if (may_exceed(displacement, self%peak_displacement)) then
          part = cubic_through(displacement)
@@ -305,13 +322,10 @@ contains
          part = cubic_through(base)
          call self%see_base(part%largest())
       end if
-      rotation = 0.0_wp
-      do i = 1, motion%column%n
-         do j = 1, 4
-            rotation(j) = rotation(j) + self%inner_q(self%column%at(flexure, i), j)
-         end do
-         if (.not. may_exceed(rotation, self%peak_rotation)) cycle
-         part = cubic_through(rotation)
+      do i = 1, size(self%rotation, 1)
+         turn = self%rotation(i, :)
+         if (.not. may_exceed(turn, self%peak_rotation)) cycle
+         part = cubic_through(turn)
          call self%see_turn(abs(part%largest()))
       end do
    end subroutine find_peaks
@@ -335,7 +349,7 @@ contains
       integer :: i, j
 
       do j = 1, 4
-         value(j) = motion%column%top_displacement(self%inner_q(:, j))
+         value(j) = motion%structure%top_displacement(self%inner_q(:, j))
       end do
       top = cubic_through(value)
       open = .not. self%reached < huge(1.0_wp)
@@ -343,7 +357,7 @@ contains
          associate (watch => self%watch(i))
             if (.not. open(watch%state)) cycle
             do j = 1, 4
-               value(j) = value_of(self, watch, self%inner_q(:, j), self%inner_openings(:, j))
+               value(j) = value_of(watch, self%inner_q(:, j), self%inner_openings(i, j))
             end do
             along = cubic_through(value)
             share = along%first_at(watch%threshold)
@@ -353,21 +367,24 @@ contains
       call set_bounds(self)
    end subroutine look_within
 
-   !> Openings and rotations at rest of the inner states.
-   subroutine fill_inner_openings(self, springs)
-      type(sight_type), intent(inout) :: self
+   !> Shares of the openings, and of the rotations at rest, in what is watched.
+   pure subroutine fill_openings(self, springs, q, share, openings)
+      type(sight_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
-      integer :: i, j, at
+      !> Deformations (springs), and the share of the step, see `opening_of`
+      real(wp), intent(in) :: q(:), share
+      !> (watches)
+      real(wp), intent(inout) :: openings(:)
+      integer :: i
 
-      call fill_openings(springs, self%column%n, self%openings_now)
-      do j = 1, 4
-         self%inner_openings(:, j) = self%openings_now
-         do i = 1, self%column%n
-            at = self%column%at(flexure, i)
-            self%inner_openings(i, j) = opening_of(springs, at, self%inner_q(at, j), (j - 1)/3.0_wp)
-         end do
+      do i = 1, size(self%watch)
+         associate (watch => self%watch(i))
+            if (.not. abs(watch%opening) > 0.0_wp) cycle
+            openings(i) = watch%opening*opening_of(springs, watch%turns, q(watch%turns), share) &
+                          + watch%rotation*rest_of(springs, watch%turns)
+         end associate
       end do
-   end subroutine fill_inner_openings
+   end subroutine fill_openings
 
    !> The states at the start of a step, at its thirds and at its end.
    pure subroutine fill_inner(m, q0, v0, q1, v1, h, q, v)
@@ -408,20 +425,12 @@ contains
    end function are_beyond
 
    !> What a watch compares with its threshold.
-   pure real(wp) function value_of(self, watch, q, openings) result(value)
-      type(sight_type), intent(in) :: self
+   pure real(wp) function value_of(watch, q, opening) result(value)
       type(watch_type), intent(in) :: watch
-      !> See `sight_type`
-      real(wp), intent(in) :: q(:), openings(:)
+      !> Deformations (springs), and the share of the opening
+      real(wp), intent(in) :: q(:), opening
 
-      associate (at => self%column%at(:, watch%joint))
-         value = watch%slip*q(at(shear)) + watch%rotation*q(at(flexure))
-      end associate
-      if (abs(watch%opening) > 0.0_wp) then
-         ! Openings, then rotations at rest
-         value = value + watch%opening*openings(watch%joint) &
-                 + watch%rotation*openings(size(openings)/2 + watch%joint)
-      end if
+      value = watch%slip*q(watch%slips) + watch%rotation*q(watch%turns) + opening
    end function value_of
 
    !> A limit state may be reached.
@@ -455,10 +464,9 @@ contains
             if (abs(watch%opening) > 0.0_wp) then
                self%opens = .true.
             else
-               associate (at => self%column%at(:, watch%joint))
-                  call narrow(self%lowest(at(shear)), self%highest(at(shear)), watch%slip, watch%threshold)
-                  call narrow(self%lowest(at(flexure)), self%highest(at(flexure)), watch%rotation, &
-                              watch%threshold)
+               associate (slips => watch%slips, turns => watch%turns)
+                  call narrow(self%lowest(slips), self%highest(slips), watch%slip, watch%threshold)
+                  call narrow(self%lowest(turns), self%highest(turns), watch%rotation, watch%threshold)
                end associate
             end if
          end associate

@@ -5,12 +5,12 @@ module rbs_solve_time_start
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: go_under, vary_axial_loads
-   use rbs_structure_column_column, only: column_type
    use rbs_solve_end_state, only: end_state, standing_type, moving_state
    use rbs_loading_loads, only: loads_type, lateral, vertical, top_axial => axial
    use rbs_solve_time_plan, only: time_plan, same_step
    use rbs_solve_time_state, only: state_type, stepper_type
-   use rbs_structure_spring_place, only: spring_name, flexure, axial
+   use rbs_structure_spring_place, only: spring_name, axial
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
@@ -28,20 +28,20 @@ module rbs_solve_time_start
 contains
 
    !> The state that another analysis ended in. At a time that is that of its end the clock goes on.
-   subroutine resume_state(state, column, loads, before, plan, standing, error)
+   subroutine resume_state(state, structure, loads, before, plan, standing, error)
       type(state_type), intent(out) :: state
-      class(column_type), intent(in) :: column
+      class(structure_type), intent(in) :: structure
       type(loads_type), intent(in) :: loads
       type(end_state), intent(inout) :: before
       type(time_plan), intent(inout) :: plan
       type(standing_type), intent(out) :: standing
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: press(column%n), missing, largest(4)
+      real(wp) :: press(size(structure%place)), missing, largest(4)
       integer :: i, lost
 
-      call create_state(state, column, loads, plan%begin, error)
+      call create_state(state, structure, loads, plan%begin, error)
       if (allocated(error)) return
-      call before%take_up(column, standing, state%springs, error)
+      call before%take_up(structure, standing, state%springs, error)
       if (allocated(error)) return
       if (standing%kind == moving_state) then
          call plan%go_on_from(standing%dt, standing%origin, standing%offset)
@@ -49,23 +49,23 @@ contains
             state%begin = standing%begin
             state%time = standing%time
             state%loads = loads
-            call prepare_loads(state, column)
+            call prepare_loads(state, structure)
          end if
       end if
       ! A load that goes on differs by the round-off of a clock that counts steps from where it was.
       call state%loads%find_largest(largest)
       largest = same_step*max(largest, abs(standing%load))
       if (all(abs(state%load - standing%load) <= largest)) state%load = standing%load
-      do i = 1, column%n
-         press(i) = column%axial_force(i, state%load)
+      do i = 1, size(press)
+         press(i) = structure%axial_force(i, state%load)
       end do
       call go_under(state%springs, press, standing%pressed)
       lost = state%springs%lost_joint()
       if (lost > 0) then
          call fatal_error(error, analysis_failed, 'initial: the layers of '// &
-                          trim(spring_name(column%place(lost)))// &
+                          trim(spring_name(structure%place(lost)))// &
                           ' cannot carry the axial load of '// &
-                          to_text(column%axial_force(lost, state%load))// &
+                          to_text(structure%axial_force(lost, state%load))// &
                           ' N in the state that the first analysis ended in; give a smaller axial_load')
          return
       end if
@@ -84,9 +84,9 @@ contains
       type(state_type), intent(in) :: state
 
       residual_of = state%of_loads + state%at_begin &
-                    - (state%motion%column%kinetic_energy(state%q, state%v) + state%along_joints) &
+                    - (state%motion%structure%kinetic_energy(state%q, state%v) + state%along_joints) &
                     - sum(state%springs%work) - state%of_damping &
-                    - state%motion%column%potential_energy(state%q)
+                    - state%motion%structure%potential_energy(state%q)
    end function residual_of
 
    !> The same method goes on with what it remembers, unless a load jumps at the start.
@@ -114,15 +114,15 @@ contains
       type(standing_type) :: standing
       integer :: i
 
-      associate (column => state%motion%column)
+      associate (structure => state%motion%structure)
          standing%kind = moving_state
          standing%pressed = state%springs%pressed
-         standing%displacement = column%top_displacement(state%q)
+         standing%displacement = structure%top_displacement(state%q)
          standing%force = state%load(lateral)
-         standing%axial_load = column%axial_load + state%load(top_axial)
-         allocate (standing%press(column%n))
-         do i = 1, column%n
-            standing%press(i) = column%axial_force(i, state%load)
+         standing%axial_load = structure%axial_load + state%load(top_axial)
+         allocate (standing%press(size(structure%place)))
+         do i = 1, size(structure%place)
+            standing%press(i) = structure%axial_force(i, state%load)
          end do
          standing%v = state%v
          standing%input = state%of_loads
@@ -142,34 +142,32 @@ contains
          standing%method = stepper%method
          standing%setting = stepper%setting
          ! The motion stands where its springs do.
-         call after%start_saving(column, standing, state%springs)
+         call after%start_saving(structure, standing, state%springs)
       end associate
       call stepper%resume(state, after%stream)
       call after%finish_saving()
    end subroutine keep_state
 
-   subroutine start_state(state, column, loads, initial, begin, error)
+   subroutine start_state(state, structure, loads, initial, begin, error)
       type(state_type), intent(out) :: state
-      class(column_type), intent(in) :: column
+      class(structure_type), intent(in) :: structure
       type(loads_type), intent(in) :: loads
       type(initial_state), intent(in) :: initial
       real(wp), intent(in) :: begin
       type(error_type), allocatable, intent(out) :: error
 
-      call create_state(state, column, loads, begin, error)
+      call create_state(state, structure, loads, begin, error)
       if (allocated(error)) return
       if (allocated(initial%deformation)) state%q = initial%deformation
       if (allocated(initial%velocity)) state%v = initial%velocity
-      if (column%opens .and. .not. initial%opening_given) then
-         call close_joints(state, error)
-         if (allocated(error)) return
-      end if
+      if (.not. initial%opening_given) call close_joints(state, error)
+      if (allocated(error)) return
       call state%springs%move_all(state%q)
-      state%at_begin = state%motion%column%kinetic_energy(state%q, state%v) + sum(state%springs%work) &
-                       + state%motion%column%potential_energy(state%q)
+      state%at_begin = state%motion%structure%kinetic_energy(state%q, state%v) + sum(state%springs%work) &
+                       + state%motion%structure%potential_energy(state%q)
    end subroutine start_state
 
-   !> The same column at rest once more, under ground motions that have taken the place of others.
+   !> The same structure at rest once more, under ground motions that have taken the place of others.
    subroutine restart_state(state)
       type(state_type), intent(inout) :: state
 
@@ -180,14 +178,14 @@ contains
       state%of_loads = 0.0_wp
       state%of_damping = 0.0_wp
       state%lost = .false.
-      call state%springs%restart(state%motion%column%spring%axial_load)
+      call state%springs%restart(state%motion%structure%spring%axial_load)
       call state%loads%at_time(state%time, state%load)
    end subroutine restart_state
 
-   !> The straight column at rest under the loads of the first moment.
-   subroutine create_state(state, column, loads, begin, error)
+   !> The structure at rest, undeformed, under the loads of the first moment.
+   subroutine create_state(state, structure, loads, begin, error)
       type(state_type), intent(out) :: state
-      class(column_type), intent(in) :: column
+      class(structure_type), intent(in) :: structure
       type(loads_type), intent(in) :: loads
       real(wp), intent(in) :: begin
       type(error_type), allocatable, intent(out) :: error
@@ -196,62 +194,63 @@ contains
       state%begin = begin
       state%clock = begin
       call state%loads%find_acting()
-      call state%motion%create(column, state%loads%acts, error)
+      call state%motion%create(structure, state%loads%acts, error)
       if (allocated(error)) return
-      call prepare_loads(state, column)
-      call create_springs(state, column)
-      allocate (state%q(column%unknowns), state%v(column%unknowns), source=0.0_wp)
+      call prepare_loads(state, structure)
+      call create_springs(state, structure)
+      allocate (state%q(size(structure%place)), state%v(size(structure%place)), source=0.0_wp)
    end subroutine create_state
 
    !> Loads by the time since the start of the run, and those of the moment.
-   subroutine prepare_loads(state, column)
+   subroutine prepare_loads(state, structure)
       type(state_type), intent(inout) :: state
-      class(column_type), intent(in) :: column
+      class(structure_type), intent(in) :: structure
 
       call state%loads%find_acting()
       call state%loads%set_begin(state%begin)
       ! The history is that of the whole axial load; the motion takes what it adds to the constant one.
-      if (state%loads%acts(top_axial)) state%loads%axial%value = state%loads%axial%value - column%axial_load
+      if (state%loads%acts(top_axial)) then
+         state%loads%axial%value = state%loads%axial%value - structure%axial_load
+      end if
       call state%loads%at_time(state%time, state%load)
    end subroutine prepare_loads
 
    !> Virgin springs; layered joints begin under the axial forces of the first moment.
-   subroutine create_springs(state, column)
+   subroutine create_springs(state, structure)
       type(state_type), intent(inout) :: state
-      class(column_type), intent(in) :: column
-      real(wp) :: axial_load(column%unknowns)
-      integer :: heard(column%unknowns), i
-      logical :: varies
+      class(structure_type), intent(in) :: structure
+      real(wp) :: axial_load(size(structure%place))
+      integer :: heard(size(structure%place)), i
 
-      heard = column%place%heard
-      axial_load = column%spring%axial_load
-      varies = any(state%loads%acts([vertical, top_axial]))
-      if (.not. varies) then
-         call state%springs%create(column%rules, heard, axial_load)
-         return
+      heard = structure%place%heard
+      axial_load = structure%spring%axial_load
+      if (state%motion%varies) then
+         do i = 1, size(axial_load)
+            axial_load(i) = structure%axial_force(i, state%load)
+         end do
       end if
-      do i = 1, column%n
-         axial_load(column%at(flexure, i)) = column%axial_force(i, state%load)
-      end do
-      call state%springs%create(column%rules, heard, axial_load)
+      call state%springs%create(structure%rules, heard, axial_load)
+      if (.not. state%motion%varies) return
       call vary_axial_loads(state%springs)
       call state%motion%press(state%springs, state%load)
    end subroutine create_springs
 
-   !> Openings in equilibrium with axial load and weight.
+   !> Openings of axial springs in equilibrium with axial load and weight.
    subroutine close_joints(state, error)
       type(state_type), intent(inout) :: state
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: tension
-      integer :: i, joint
+      real(wp) :: load(4), tension
+      integer :: i
       logical :: found
 
-      do joint = 1, state%motion%column%n
-         i = state%motion%column%at(axial, joint)
-         tension = -(state%motion%column%compression(joint) + state%load(top_axial))
+      load = state%load
+      load(vertical) = 0.0_wp
+      do i = 1, state%springs%count
+         if (state%motion%structure%place(i)%kind /= axial) cycle
+         tension = -state%motion%structure%axial_force(i, load)
          call state%springs%load_to(i, tension, found)
          if (.not. found) then
-            call fatal_error(error, analysis_failed, trim(spring_name(state%motion%column%place(i)))// &
+            call fatal_error(error, analysis_failed, trim(spring_name(state%motion%structure%place(i)))// &
                              ' cannot carry the axial force of '//to_text(-tension)//' N (compression '// &
                              'positive) at the start; change axial_load or the spring, or give the '// &
                              'openings at the start')

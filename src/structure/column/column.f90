@@ -93,7 +93,6 @@ module rbs_structure_column_column
       procedure :: axial_forces
       procedure :: axial_force
       procedure :: axial_rate
-      procedure :: index_of
       procedure :: add_stiffness
       procedure :: add_geometric
       procedure :: accelerations
@@ -164,14 +163,6 @@ contains
       if (self%held) axial(2*n) = 0.0_wp
    end subroutine axial_forces
 
-   !> Number of a spring's joint from the bottom up, that of a footing included.
-   pure integer function index_of(self, spring) result(i)
-      class(column_type), intent(in) :: self
-      integer, intent(in) :: spring
-
-      i = self%place(spring)%joint + merge(1, 0, self%footing)
-   end function index_of
-
    !> Axial force at a spring from axial load, weight and vertical motion, compression positive [N].
    pure real(wp) function axial_force(self, spring, load)
       class(column_type), intent(in) :: self
@@ -179,7 +170,7 @@ contains
       real(wp), intent(in) :: load(:)
       integer :: i
 
-      i = self%index_of(spring)
+      i = self%place(spring)%index
       axial_force = self%compression(i) + load(top_axial) + load(vertical)*self%lifted_joint(i)
    end function axial_force
 
@@ -189,7 +180,7 @@ contains
       integer, intent(in) :: spring
       real(wp), intent(in) :: load(:)
 
-      axial_rate = load(top_axial) + load(vertical)*self%lifted_joint(self%index_of(spring))
+      axial_rate = load(top_axial) + load(vertical)*self%lifted_joint(self%place(spring)%index)
    end function axial_rate
 
    !> Add B' diag(k) B.

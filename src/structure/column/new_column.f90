@@ -249,6 +249,7 @@ contains
       column%inverse_mass = 1.0_wp/column%mass
       column%inverse_inertia = 1.0_wp/column%inertia
       if (column%held) column%inverse_inertia(n) = 0.0_wp
+      column%axial_count = 2*n
       column%work_size = 2*m + n
       column%base_spring = [column%at(shear, 1)]
       column%base_factor = [1.0_wp]
