@@ -110,10 +110,6 @@ module rbs_structure_column_column
       procedure :: check_initial
       procedure :: channels
       procedure :: fill_row
-      procedure :: momentum_at_foot
-      procedure :: top_motion
-      procedure, non_overridable :: kinetic_of
-      procedure, non_overridable :: power_of_lifts
       procedure, non_overridable :: largest_turn
    end type column_type
 
@@ -524,98 +520,6 @@ contains
          row(at + n + i) = rest_of(springs, self%at(flexure, i))
       end do
    end subroutine fill_row
-
-   !> Kinetic energy of velocities of the joints with small rotations, relative to the ground [J].
-   pure real(wp) function kinetic_of(self, v) result(energy)
-      class(column_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: v(:)
-      real(wp) :: top, turning, centroid, height
-      integer :: i, n
-
-      n = self%n
-      top = 0.0_wp
-      turning = 0.0_wp
-      energy = 0.0_wp
-      do i = 1, n
-         turning = turning + v(n + i)
-         centroid = top + v(i) + self%lower(i)*turning
-         top = centroid + self%upper(i)*turning
-         energy = energy + 0.5_wp*(self%mass(i)*centroid**2 + self%inertia(i)*turning**2)
-      end do
-      if (.not. self%opens) return
-      height = 0.0_wp
-      do i = 1, n
-         height = height + v(2*n + i)
-         energy = energy + 0.5_wp*self%mass(i)*height**2
-      end do
-   end function kinetic_of
-
-   !> Power of vertical ground motion and of what is added to the axial load, small rotations [W].
-   pure real(wp) function power_of_lifts(self, d, v, load) result(watt)
-      class(column_type), intent(in) :: self
-      !> Deformations and their velocities (unknowns)
-      real(wp), intent(in), contiguous :: d(:), v(:)
-      !> Signals of the loads
-      real(wp), intent(in) :: load(4)
-      real(wp) :: rotation, turning, rising, body, joint
-      integer :: i, n
-
-      watt = 0.0_wp
-      n = self%n
-      rotation = 0.0_wp
-      turning = 0.0_wp
-      rising = 0.0_wp
-      do i = 1, n
-         body = load(top_axial)*self%axial_lever + load(vertical)*self%lifted_body(i)
-         joint = load(top_axial)*self%axial_lever + load(vertical)*self%lifted_joint(i)
-         if (i == n .and. self%held) joint = 0.0_wp
-         if (self%kinematics /= small) watt = watt + joint*(v(i)*rotation + d(i)*turning)
-         rotation = rotation + d(n + i)
-         turning = turning + v(n + i)
-         if (self%kinematics /= small) watt = watt + body*self%length(i)*rotation*turning
-         if (self%opens) then
-            rising = rising + v(2*n + i)
-            watt = watt - self%mass(i)*load(vertical)*rising
-         end if
-      end do
-      if (self%opens) watt = watt - load(top_axial)*rising
-   end function power_of_lifts
-
-   !> Momentum along x, relative to the ground [kg m/s], and angular momentum about the lowest joint, as it
-   !> has slipped and opened [kg m2/s]. They are conjugate to slip and rotation of that joint: the first
-   !> rows of M q'. With small rotations the centroids move along x at their heights.
-   pure function momentum_at_foot(self, d, v) result(momentum)
-      class(column_type), intent(in) :: self
-      !> Deformations and their velocities (unknowns)
-      real(wp), intent(in), contiguous :: d(:), v(:)
-      real(wp) :: momentum(2)
-      real(wp) :: top, turning, centroid
-      integer :: i, n
-
-      n = size(d)/self%kinds
-      momentum = 0.0_wp
-      top = 0.0_wp
-      turning = 0.0_wp
-      do i = 1, n
-         turning = turning + v(n + i)
-         centroid = top + v(i) + self%lower(i)*turning
-         top = centroid + self%upper(i)*turning
-         momentum(1) = momentum(1) + self%mass(i)*centroid
-         momentum(2) = momentum(2) + self%mass(i)*centroid*(self%joint_height(i) + self%lower(i)) &
-                       + self%inertia(i)*turning
-      end do
-   end function momentum_at_foot
-
-   !> Velocity and acceleration of the top along x, relative to the ground [m/s, m/s2].
-   pure subroutine top_motion(self, d, v, a, velocity, acceleration)
-      class(column_type), intent(in) :: self
-      !> Deformations and their first and second derivatives (unknowns)
-      real(wp), intent(in), contiguous :: d(:), v(:), a(:)
-      real(wp), intent(out) :: velocity, acceleration
-
-      velocity = inner_product(size(d), self%arm, v)
-      acceleration = inner_product(size(d), self%arm, a)
-   end subroutine top_motion
 
    !> Largest absolute rotation of a body in deformations, or in a change of them, in size [rad].
    pure real(wp) function largest_turn(self, change) result(largest)

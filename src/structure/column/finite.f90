@@ -45,8 +45,6 @@ module rbs_structure_column_finite
       procedure :: top_displacement
       procedure :: top_height
       procedure :: top_acceleration
-      procedure :: momentum_at_foot
-      procedure :: top_motion
    end type finite_chain_type
 
    !> A body on the way up the chain.
@@ -565,30 +563,5 @@ contains
                         + self%length(i)*(cos(rotation)*turn - sin(rotation)*spin**2)
       end do
    end function top_acceleration
-
-   !> Momentum along x [kg m/s], and angular momentum about the lowest joint, as it has slipped and opened
-   !> [kg m2/s].
-   pure function momentum_at_foot(self, d, v) result(momentum)
-      class(finite_chain_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:), v(:)
-      real(wp) :: momentum(2)
-      real(wp) :: speed(2)
-
-      call self%speeds(d, v, speed)
-      momentum = [-speed(horizontal), self%angular_momentum(d, v)]
-   end function momentum_at_foot
-
-   !> Velocity and acceleration of the top along x, relative to the ground [m/s, m/s2].
-   pure subroutine top_motion(self, d, v, a, velocity, acceleration)
-      class(finite_chain_type), intent(in) :: self
-      !> Deformations and their first and second derivatives (unknowns)
-      real(wp), intent(in), contiguous :: d(:), v(:), a(:)
-      real(wp), intent(out) :: velocity, acceleration
-      real(wp) :: speed(2)
-
-      call self%speeds(d, v, speed)
-      velocity = speed(lateral)
-      acceleration = self%top_acceleration(d, v, a)
-   end subroutine top_motion
 
 end module rbs_structure_column_finite
