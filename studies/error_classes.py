@@ -24,9 +24,9 @@ from pathlib import Path
 import numpy as np
 
 import rbsdem
-from rbsdem.methods.answer import Answer, errors_of
 from rbsdem.methods.scene import Setting as Way
 from rbsdem.methods.scene import make_scene
+from rbsdem.results.accuracy import Answer, errors_of
 
 ROOT = Path(__file__).resolve().parents[1]
 MOTION = ROOT / "examples" / "03-ground-motion" / "ground.csv"

@@ -53,12 +53,11 @@ from rbsdem.model.springs import (
 )
 from rbsdem.model.strains import Gauge, Strains
 from rbsdem.motions.motion import GroundMotion
-from rbsdem.output.files import load
-from rbsdem.result import Result
+from rbsdem.results.case import Case, read_case
+from rbsdem.results.result import Result, cyclic, time_history
+from rbsdem.results.saved import read_result
 from rbsdem.section.paper import paper_columns, paper_sections
-from rbsdem.solve.analysis import Matrices, Modes, cyclic, matrices, modes, time_history
-from rbsdem.solve.case import Case, read_case
-from rbsdem.solve.corners import path_of as path_of
+from rbsdem.solve.analysis import Matrices, Modes, matrices, modes
 from rbsdem.solve.protocol import protocol
 
 __version__ = _version()
@@ -120,7 +119,6 @@ __all__ = [
     "envelope",
     "fragility",
     "ida",
-    "load",
     "matrices",
     "modes",
     "motions",
@@ -131,6 +129,7 @@ __all__ = [
     "protocol",
     "read_case",
     "read_peer",
+    "read_result",
     "read_test",
     "springs",
     "stripes",

@@ -1,8 +1,7 @@
 """Modules that draw and tabulate records register their functions when they are imported."""
 
 # ruff: noqa: F401
-from rbsdem.checks import code_comparison, code_values, criteria, find, hinge
-from rbsdem.methods import refine
+from rbsdem.checks import code_comparison, code_values
 from rbsdem.output import (
     band_views,
     calibration_view,
@@ -14,8 +13,6 @@ from rbsdem.output import (
     ensemble_table,
     ensemble_tables,
     envelope_figure,
-    envelope_of_result,
-    files,
     gallery,
     interaction_figure,
     limit_state_figure,
@@ -28,7 +25,4 @@ from rbsdem.output import (
     section_figure,
     shear_figure,
     spread_figure,
-    state_figure,
-    table,
 )
-from rbsdem.solve import corners, state_file

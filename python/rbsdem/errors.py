@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rbsdem.batch.record import Ensemble
-    from rbsdem.solve.analysis import Result
+    from rbsdem.model.response import Response
 
 __all__ = [
     "AccuracyWarning",
@@ -43,11 +43,11 @@ class SolveError(RbsdemError, RuntimeError):
         The path up to that point; None if no path was computed.
     """
 
-    def __init__(self, message: str = "", result: Result | None = None) -> None:
+    def __init__(self, message: str = "", result: Response | None = None) -> None:
         super().__init__(message)
         self.result = result
 
-    def __reduce__(self) -> tuple[type[SolveError], tuple[str, Result | None]]:
+    def __reduce__(self) -> tuple[type[SolveError], tuple[str, Response | None]]:
         """Keep `result` when the error is sent to another process (pickle)."""
         return type(self), (str(self), self.result)
 

@@ -6,7 +6,8 @@ style, the dictionary `RC`; axes that are given keep the style of the caller.
 """
 
 from rbsdem.output.loops import Panel, four_panels, loop, loops_over_test
-from rbsdem.output.response import energy, history, profile, section_state
+from rbsdem.output.response import energy, history, profile
+from rbsdem.output.state_figure import section_state
 from rbsdem.output.style import (
     MODEL_LINE,
     RC,

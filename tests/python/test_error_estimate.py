@@ -18,7 +18,7 @@ import pytest
 import rbsdem
 from rbsdem import InputError
 from rbsdem import __main__ as command
-from rbsdem.methods.answer import Answer, errors_of
+from rbsdem.results.accuracy import Answer, errors_of
 from rbsdem.solve.methods import METHODS
 
 COLUMN = rbsdem.paper_columns("pdelta", top_mass=75.9e3)["soesianawati_1"]

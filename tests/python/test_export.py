@@ -64,7 +64,7 @@ RESULTS = results()
 def test_saved_result_comes_back_bit_for_bit(tmp_path, name, ending):
     path = tmp_path / f"{name}{ending}"
     RESULTS[name].save(path)
-    back = rbsdem.load(path)
+    back = rbsdem.read_result(path)
     assert back == RESULTS[name]
     assert pickle.loads(pickle.dumps(back)) == back
     assert [file.name for file in tmp_path.iterdir()] == [path.name]
@@ -75,7 +75,7 @@ def test_layers_and_a_case_come_back_too(tmp_path):
     path = column.height * rbsdem.protocol([0.01], points=5)
     kept = rbsdem.cyclic(column, displacement=path, openings=True)
     kept.save(tmp_path / "a.npz")
-    back = rbsdem.load(tmp_path / "a.npz")
+    back = rbsdem.read_result(tmp_path / "a.npz")
     assert back == kept  # with the drawing of its column
     assert list(back.limit_states()) == list(kept.limit_states())
     assert np.array_equal(back.layer_deformation(), kept.layer_deformation())
@@ -86,7 +86,7 @@ def test_layers_and_a_case_come_back_too(tmp_path):
     )
     run = rbsdem.read_case(case).run()
     run.save(tmp_path / "b.npz")
-    assert rbsdem.load(tmp_path / "b.npz") == run
+    assert rbsdem.read_result(tmp_path / "b.npz") == run
 
 
 def test_csv_is_that_of_the_executable(run_cli, tmp_path):
@@ -109,7 +109,7 @@ def test_csv_is_that_of_the_executable(run_cli, tmp_path):
 def test_frame_has_the_columns_of_the_csv(tmp_path, name):
     pytest.importorskip("pandas")
     result = RESULTS[name]
-    frame = result.to_pandas()
+    frame = result.to_frame()
     result.to_csv(tmp_path / "a.csv")
     names = (tmp_path / "a.csv").read_text().splitlines()[3].split(",")
     assert list(frame.columns) == names
@@ -142,12 +142,12 @@ def test_foreign_file_is_told(tmp_path, ending, content):
     path = tmp_path / f"a{ending}"
     path.write_bytes(content)
     with pytest.raises(InputError, match="no saved result"):
-        rbsdem.load(path)
+        rbsdem.read_result(path)
 
 
 def test_missing_later_and_damaged_files_are_told(tmp_path):
     with pytest.raises(InputError, match="no such file"):
-        rbsdem.load(tmp_path / "none.npz")
+        rbsdem.read_result(tmp_path / "none.npz")
     path = tmp_path / "a.npz"
     RESULTS["static"].save(path)
     with np.load(path) as file:
@@ -159,14 +159,14 @@ def test_missing_later_and_damaged_files_are_told(tmp_path):
 
     written(about=np.array(json.dumps(about | {"format_version": 99})))
     with pytest.raises(InputError, match="later format"):
-        rbsdem.load(path)
+        rbsdem.read_result(path)
     written(about=np.array(json.dumps(about | {"format": "another"})))
     with pytest.raises(InputError, match="no saved result"):
-        rbsdem.load(path)
+        rbsdem.read_result(path)
     del arrays["slip"]
     written()
     with pytest.raises(InputError, match="slip"):
-        rbsdem.load(path)
+        rbsdem.read_result(path)
 
 
 def test_state_between_rows_is_linear():

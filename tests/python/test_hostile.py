@@ -151,7 +151,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "read_case": (rbsdem.read_case, {"path": "x"}),
     "read_peer": (rbsdem.read_peer, {"path": "x"}),
     "read_test": (rbsdem.read_test, {"path": "x"}),
-    "load": (rbsdem.load, {"path": "x"}),
+    "read_result": (rbsdem.read_result, {"path": "x"}),
     "paper_columns": (rbsdem.paper_columns, {}),
     "Result.at": (RESULT.at, {"time": 1}),
     "Result.idealise": (RESULT.idealise, {}),

@@ -171,9 +171,9 @@ def test_a_result_and_its_files_begin_the_same_path(tmp_path):
     first = rbsdem.cyclic(column(), displacement=x[:6])
     on = rbsdem.cyclic(column(), displacement=x[6:], initial=first)
     first.save(tmp_path / "first.npz")
-    assert rbsdem.load(tmp_path / "first.npz") == first
+    assert rbsdem.read_result(tmp_path / "first.npz") == first
     loaded = rbsdem.cyclic(
-        column(), displacement=x[6:], initial=rbsdem.load(tmp_path / "first.npz")
+        column(), displacement=x[6:], initial=rbsdem.read_result(tmp_path / "first.npz")
     )
     first.save_state(tmp_path / "first.state")
     read = rbsdem.cyclic(column(), displacement=x[6:], initial=tmp_path / "first.state")
@@ -322,8 +322,8 @@ def test_the_motion_of_the_top_in_tables_files_and_summary(tmp_path):
     peak = np.abs(dense.absolute_acceleration).max()
     assert moved.summary["peak_floor_acceleration"] == peak
     moved.save(tmp_path / "moved.npz")
-    assert rbsdem.load(tmp_path / "moved.npz") == moved
-    frame = moved.to_pandas()
+    assert rbsdem.read_result(tmp_path / "moved.npz") == moved
+    frame = moved.to_frame()
     assert np.array_equal(frame["velocity_m/s"], moved.velocity)
     assert np.array_equal(frame["acceleration_m/s2"], moved.acceleration)
     with pytest.raises(InputError, match="motion=True"):

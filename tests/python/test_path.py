@@ -167,7 +167,7 @@ def test_a_path_that_goes_on_begins_where_the_other_one_ended(tmp_path):
     assert np.array_equal(second.path.force[1:], whole.path.force[-second.path.time.size + 1 :])
     # A saved result finds its path again.
     second.save(tmp_path / "second.npz")
-    assert rbsdem.load(tmp_path / "second.npz").path == second.path
+    assert rbsdem.read_result(tmp_path / "second.npz").path == second.path
 
 
 def test_a_path_that_breaks_off_has_corners_up_to_there():

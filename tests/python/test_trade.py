@@ -19,13 +19,14 @@ import pytest
 import rbsdem
 from rbsdem.cli import trade as trade_command
 from rbsdem.methods import scene
-from rbsdem.methods.answer import Answer, Setting, errors_of
+from rbsdem.methods.answer import Setting
 from rbsdem.methods.measure import trade
 from rbsdem.methods.outcome import Trade
-from rbsdem.methods.path import at_times, common_interval, reversals
+from rbsdem.methods.path import reversals
 from rbsdem.methods.physics import split_bodies
 from rbsdem.methods.rows import seconds_text
 from rbsdem.methods.scene import make_scene
+from rbsdem.results.accuracy import Answer, at_times, common_interval, errors_of
 
 LENGTH, MASS = 1.6, 614.4
 SHEAR, BENDING = 7.0387e8, 2.5428e8

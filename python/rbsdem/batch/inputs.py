@@ -16,8 +16,7 @@ from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column, checked_column
-from rbsdem.result import Result
-from rbsdem.solve.state_file import state_of
+from rbsdem.model.response import Response, state_of
 
 __all__ = [
     "AT_REST",
@@ -169,7 +168,7 @@ def states_of_columns(initial: Any, names: list[str | int], faults: list[str]) -
     """
     if initial is None:
         return [AT_REST] * len(names)
-    if isinstance(initial, (str, os.PathLike, Result, np.ndarray)):
+    if isinstance(initial, (str, os.PathLike, Response, np.ndarray)):
         return [_state(initial, "", faults)] * len(names)
     if isinstance(initial, Mapping):
         unknown = [name for name in initial if name not in names]

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 from rbsdem import _arguments, _core
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import InputError
-from rbsdem.result import Result
+from rbsdem.results.result import Result
 
 __all__ = ["LIMIT_STATES", "MEASURES", "STATUSES", "Measure", "checked_measures"]
 

@@ -16,7 +16,7 @@ from rbsdem.batch.measures import STATUSES
 from rbsdem.batch.tasks import one_run
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
-from rbsdem.result import Result
+from rbsdem.results.result import Result
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -18,7 +18,8 @@ from rbsdem.checks.criteria import criteria, watches
 from rbsdem.errors import RbsdemError
 from rbsdem.model.column import Column
 from rbsdem.model.springs import Layered
-from rbsdem.solve.analysis import time_history, without_notes
+from rbsdem.results.result import time_history
+from rbsdem.solve.analysis import without_notes
 
 __all__ = ["Piece", "Plan", "Task", "TaskResult", "compute", "cut", "watched"]
 

@@ -21,7 +21,7 @@ from rbsdem.curves.metrics import summarise
 from rbsdem.curves.strength import strength_loss
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
-from rbsdem.result import Result
+from rbsdem.model.response import Response
 from rbsdem.section.model import LayeredColumn
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ class CodeComparison:
         A measured loop.
     """
 
-    def __init__(self, values: CodeValues, result: Result, test: Curve | None) -> None:
+    def __init__(self, values: CodeValues, result: Response, test: Curve | None) -> None:
         self.values = values
         self.result = result
         self.test = None if test is None else _loop(test)
@@ -111,7 +111,7 @@ class CodeComparison:
 
 
 @view_of(CodeValues, "compare")
-def compare(values: CodeValues, result: Result, test: Curve | None) -> CodeComparison:
+def compare(values: CodeValues, result: Response, test: Curve | None) -> CodeComparison:
     """Return the comparison; see `CodeValues.compare`."""
     _check_same(values.quantities, result.column)
     return CodeComparison(values, result, test)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from rbsdem.checks.code_comparison import CodeComparison
     from rbsdem.curves.curve import Curve
-    from rbsdem.result import Result
+    from rbsdem.model.response import Response
 
 __all__ = ["CodeValue", "CodeValues", "code_values"]
 
@@ -87,7 +87,7 @@ class CodeValues:
         """Return the names."""
         return list(self._values)
 
-    def compare(self, result: Result, test: Curve | None = None) -> CodeComparison:
+    def compare(self, result: Response, test: Curve | None = None) -> CodeComparison:
         """Hold a response, and a test if there is one, against these values.
 
         Parameters

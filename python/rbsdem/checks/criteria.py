@@ -14,15 +14,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from rbsdem._arguments import Array
-from rbsdem._views import view_of
 from rbsdem.checks.code_drawing import quantities
 from rbsdem.checks.regressions import goodnight_buckling_strain
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
+from rbsdem.model.response import Response
 from rbsdem.model.section import Section
 from rbsdem.model.springs import Layered, Spring
 from rbsdem.model.strains import Gauge
-from rbsdem.result import Result
 from rbsdem.section.model import LayeredColumn
 
 __all__ = ["WATCHED", "Criterion", "buckling_strain", "criteria", "watches"]
@@ -77,7 +76,7 @@ class Criterion:
     rotation: float = 0.0
     opening: float = 0.0
 
-    def values(self, result: Result) -> Array:
+    def values(self, result: Response) -> Array:
         """Return what is compared with the threshold, shape (rows,)."""
         at = result.column.place_of(self.joint)
         if self.slip:
@@ -124,7 +123,6 @@ def _criteria(column: Column, names: Collection[str]) -> list[Criterion]:
     return [criterion for criterion in found if criterion.name in names]
 
 
-@view_of(Column, "watches")
 def all_watches(column: Column, openings: bool) -> Array:
     """Return what a run is watched for: all criteria, those of openings only if they are kept.
 

@@ -7,17 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from rbsdem._views import view_of
 from rbsdem.checks.criteria import Criterion, criteria
 from rbsdem.checks.limit_states import LimitState, LimitStates
 from rbsdem.curves.strength import strength_loss_point
-from rbsdem.result import Result
+from rbsdem.model.response import Response
 
 _LOSS = 0.2
 
 
-@view_of(Result, "limit_states")
-def limit_states(result: Result) -> LimitStates:
+def limit_states(result: Response) -> LimitStates:
     """Return the limit states that a result reaches; see `Result.limit_states`."""
     watched = criteria(result.column)
     path = result.path
@@ -43,7 +41,7 @@ def limit_states(result: Result) -> LimitStates:
 
 
 def _in_time(
-    result: Result, criterion: Criterion, time: float, displacement: float
+    result: Response, criterion: Criterion, time: float, displacement: float
 ) -> LimitState | None:
     """Return what all steps of an analysis in time have seen."""
     if math.isnan(time):
@@ -54,7 +52,7 @@ def _in_time(
     return replace(state, time=float(time), displacement=at, drift=at / result.column.height)
 
 
-def _in_rows(result: Result, criterion: Criterion) -> LimitState | None:
+def _in_rows(result: Response, criterion: Criterion) -> LimitState | None:
     values, threshold = criterion.values(result.path), criterion.threshold
     rows = np.flatnonzero(values >= threshold)
     if rows.size == 0:
@@ -66,7 +64,7 @@ def _in_rows(result: Result, criterion: Criterion) -> LimitState | None:
     return _state(result, criterion.name, place, threshold, criterion.source)
 
 
-def _losses(result: Result) -> list[LimitState]:
+def _losses(result: Response) -> list[LimitState]:
     """Return where a fifth of the strength of a side is lost first, as the comparison has it."""
     path = result.path
     place, loss = strength_loss_point(path.displacement, path.loop_force, share=_LOSS)
@@ -78,7 +76,7 @@ def _losses(result: Result) -> list[LimitState]:
     return [replace(state, displacement=at, drift=at / result.column.height)]
 
 
-def _state(result: Result, name: str, place: float, threshold: float, source: str) -> LimitState:
+def _state(result: Response, name: str, place: float, threshold: float, source: str) -> LimitState:
     """Return the state at a row of the path, or between two with the share of the way."""
     path = result.path
     rows = np.arange(path.time.size)

@@ -9,10 +9,9 @@ import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
-from rbsdem._views import view_of
 from rbsdem.checks.criteria import Criterion, criteria
 from rbsdem.errors import InputError
-from rbsdem.result import Result
+from rbsdem.model.response import Response
 
 __all__ = ["Hinge"]
 
@@ -84,8 +83,7 @@ class Hinge:
         )
 
 
-@view_of(Result, "hinge")
-def hinge(result: Result, joint: int, length: float | None) -> Hinge:
+def hinge(result: Response, joint: int, length: float | None) -> Hinge:
     """Return the response of a hinge; see `Result.hinge`."""
     joint = _arguments.whole(joint, "joint")
     at = result.column.place_of(joint)
@@ -115,7 +113,7 @@ def hinge(result: Result, joint: int, length: float | None) -> Hinge:
 
 
 def _yield_rotation(
-    result: Result, rotation: Array, yields: list[Criterion]
+    result: Response, rotation: Array, yields: list[Criterion]
 ) -> tuple[float, float]:
     """Return the rotations at yield to both sides."""
     if not any(criterion.opening for criterion in yields):
@@ -136,7 +134,7 @@ def _yield_rotation(
     )
 
 
-def _first(turned: Array, yields: list[Criterion], result: Result) -> float:
+def _first(turned: Array, yields: list[Criterion], result: Response) -> float:
     """Return the rotation at which one of the bars of a side yields first."""
     if not yields:
         return math.inf

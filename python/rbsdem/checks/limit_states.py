@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from rich.table import Table
 
-    from rbsdem.result import Result
+    from rbsdem.model.response import Response
 
 __all__ = ["LimitState", "LimitStates"]
 
@@ -63,7 +63,7 @@ class LimitStates:
         Those that are reached.
     """
 
-    def __init__(self, result: Result, states: list[LimitState]) -> None:
+    def __init__(self, result: Response, states: list[LimitState]) -> None:
         self.result = result
         self._states = sorted(states, key=lambda state: (state.time, state.row))
 

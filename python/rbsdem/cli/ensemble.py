@@ -16,7 +16,7 @@ from rbsdem.batch.record import Ensemble
 from rbsdem.cli.parser import INTERRUPTED, CommandParser, run_command
 from rbsdem.errors import InputError
 from rbsdem.motions.read import read_motion, read_motions
-from rbsdem.solve.case import Case, read_case
+from rbsdem.results.case import Case, read_case
 
 DESCRIPTION = """\
 Run the column of a case under records of ground motions at several scales. Method, step, collapse

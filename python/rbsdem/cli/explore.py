@@ -12,7 +12,7 @@ from typing import Any
 
 from rbsdem.cli.parser import CommandParser, run_command
 from rbsdem.errors import InputError
-from rbsdem.solve.case import read_case
+from rbsdem.results.case import read_case
 from rbsdem.web.near import Near
 from rbsdem.web.server import ExploreServer, opened
 from rbsdem.web.state import DEFAULT

@@ -25,7 +25,7 @@ from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.read import read_motion, read_motions
 from rbsdem.motions.synthetic import synthetic
 from rbsdem.output.ensemble_figure import draw_fragilities
-from rbsdem.solve.case import Case, read_case
+from rbsdem.results.case import Case, read_case
 
 DESCRIPTION = """\
 Incremental dynamic analysis: every record at growing intensity until the column of the case

@@ -13,7 +13,7 @@ from rbsdem.cli.parser import CommandParser, run_command
 from rbsdem.methods.measure import trade
 from rbsdem.output import methods_figure as figure
 from rbsdem.output import methods_table as table
-from rbsdem.solve.case import Case, read_case
+from rbsdem.results.case import Case, read_case
 
 DESCRIPTION = """\
 What accuracy costs in a case, and which parts of the model it needs: the case is run over methods,

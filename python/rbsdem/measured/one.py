@@ -18,10 +18,9 @@ from rbsdem.measured.columns import column as column_of
 from rbsdem.measured.prediction import Prediction
 from rbsdem.measured.specimen import Specimen
 from rbsdem.model.column import Column
-from rbsdem.result import Result
+from rbsdem.results.result import Result, cyclic
 from rbsdem.section.model import DEFAULT, model_name
 from rbsdem.section.spread import Spread
-from rbsdem.solve.analysis import cyclic
 
 __all__ = ["How", "Model", "light", "name_of", "predict_one"]
 

@@ -1,12 +1,10 @@
-"""A setting, its answer, and the difference between two answers."""
+"""A setting of a method, and what came of trying it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from rbsdem._arguments import Array
+from rbsdem.results.accuracy import Answer
 
 
 @dataclass(frozen=True)
@@ -68,102 +66,6 @@ class Setting:
 
 
 @dataclass(frozen=True)
-class Answer:
-    """The part of a result that is compared.
-
-    Attributes
-    ----------
-    time, response, moment : ndarray, shape (m,)
-        Times of the loading [s], top displacement [m] there (lateral force [N] if the displacement
-        is driven), and moment of the lowest joint [N m].
-    taken : ndarray, shape (m,)
-        Energy that springs and damping have taken by then [J]: the energy dissipated and the energy
-        that the springs still store.
-    status : str
-        "completed" or "collapsed".
-    reason : str
-        The method that the program chose, and why, if it was "auto".
-    """
-
-    time: Array
-    response: Array
-    moment: Array
-    taken: Array
-    status: str
-    reason: str = ""
-
-    @property
-    def energy(self) -> float:
-        """Energy that springs and damping have taken by the end [J]."""
-        return float(self.taken[-1])
-
-    @property
-    def largest_energy(self) -> float:
-        """Largest absolute value of that energy on the way [J]."""
-        return float(np.abs(self.taken).max())
-
-    @property
-    def peak(self) -> float:
-        """Largest absolute response over the times of the loading."""
-        return float(np.abs(self.response).max())
-
-    @property
-    def residual(self) -> float:
-        """Response at the end."""
-        return float(self.response[-1])
-
-    @property
-    def peak_moment(self) -> float:
-        """Largest absolute moment of the lowest joint over the times of the loading [N m]."""
-        return float(np.abs(self.moment).max())
-
-
-@dataclass(frozen=True)
-class Errors:
-    """Differences of an answer from another one, relative to the peaks of the other.
-
-    Attributes
-    ----------
-    response_rms, response_max : float
-        Root mean square and largest difference of the responses over the largest response.
-    moment : float
-        Root mean square difference of the base moments over the largest base moment.
-    energy : float
-        Difference of the energies at the end over the largest energy.
-    peak : float
-        Difference of the peak responses over the peak.
-    """
-
-    response_rms: float
-    response_max: float
-    moment: float
-    energy: float
-    peak: float
-
-    @property
-    def largest(self) -> float:
-        """The largest of the rms of response and moment, of energy and of peak."""
-        return max(self.response_rms, self.moment, self.energy, self.peak)
-
-
-def errors_of(answer: Answer, other: Answer) -> Errors:
-    """Return the differences of an answer from another, over the rows that both have."""
-    rows = min(answer.response.size, other.response.size)
-    response = answer.response[:rows] - other.response[:rows]
-    moment = answer.moment[:rows] - other.moment[:rows]
-    taken = answer.taken[rows - 1] - other.taken[rows - 1]
-    peak = _not_zero(other.peak)
-    higher = np.abs(answer.response[:rows]).max() - np.abs(other.response[:rows]).max()
-    return Errors(
-        response_rms=float(np.sqrt(np.mean(response**2))) / peak,
-        response_max=float(np.abs(response).max()) / peak,
-        moment=float(np.sqrt(np.mean(moment**2))) / _not_zero(other.peak_moment),
-        energy=abs(float(taken)) / _not_zero(other.largest_energy),
-        peak=abs(float(higher)) / peak,
-    )
-
-
-@dataclass(frozen=True)
 class Run:
     """A setting that was tried: its answer, or the reason why there is none.
 
@@ -187,7 +89,3 @@ class Run:
     repeats: int = 0
     status: str = "completed"
     reason: str = ""
-
-
-def _not_zero(value: float) -> float:
-    return value if value > 0 else 1.0

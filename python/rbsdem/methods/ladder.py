@@ -14,10 +14,10 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.methods.answer import Run, Setting
-from rbsdem.methods.path import common_interval
 from rbsdem.methods.scene import Scene
 from rbsdem.model.column import Column
-from rbsdem.solve.analysis import METHODS, time_history
+from rbsdem.results.accuracy import common_interval
+from rbsdem.solve.analysis import METHODS, no_watch, time_history
 from rbsdem.solve.methods import IMPLICIT
 from rbsdem.solve.methods import METHODS as FACTS
 
@@ -120,7 +120,9 @@ def probe(scene: Scene) -> Probe:
 
 
 def _stable_step(scene: Scene, keywords: dict[str, Any]) -> float:
-    return float(time_history(scene.column, scene.time, **keywords).summary["stable_step"])
+    return float(
+        time_history(no_watch, scene.column, scene.time, **keywords).summary["stable_step"]
+    )
 
 
 def _beginning(scene: Scene, duration: float) -> Scene:

@@ -9,13 +9,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from rbsdem.errors import InputError
-from rbsdem.methods.answer import Answer, Run, Setting, errors_of
+from rbsdem.methods.answer import Run, Setting
 from rbsdem.methods.ladder import LEVELS, Budget, Probe, predicted, too_expensive
 from rbsdem.methods.reference import Reference
 from rbsdem.methods.scene import VERTICAL, Scene
 from rbsdem.model.column import Column, without_notes
 from rbsdem.model.damping import Damping
 from rbsdem.model.springs import Spring
+from rbsdem.results.accuracy import Answer, errors_of
 from rbsdem.solve.methods import IMPLICIT
 
 #: Share of the rotary inertia that stays when it is taken off: a body without any has no equation

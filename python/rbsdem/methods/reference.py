@@ -9,9 +9,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from rbsdem.errors import RbsdemError
-from rbsdem.methods.answer import Answer, Run, Setting, errors_of
+from rbsdem.methods.answer import Run, Setting
 from rbsdem.methods.ladder import Budget, Probe, predicted
 from rbsdem.methods.scene import Scene
+from rbsdem.results.accuracy import Answer, errors_of
 from rbsdem.solve.methods import IMPLICIT
 
 #: First refinement of a method that was not run before: tolerance of rk45, and the part of the

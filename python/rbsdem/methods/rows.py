@@ -6,8 +6,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from rbsdem.methods.answer import Errors, Run, Setting, errors_of
+from rbsdem.methods.answer import Run, Setting
 from rbsdem.methods.reference import Reference
+from rbsdem.results.accuracy import Errors, errors_of
 from rbsdem.solve.methods import IMPLICIT
 
 

@@ -15,11 +15,12 @@ from numpy.typing import ArrayLike
 from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError
-from rbsdem.methods.answer import Answer, Run, Setting
-from rbsdem.methods.path import along, at_times, reversals
+from rbsdem.methods.answer import Run, Setting
+from rbsdem.methods.path import along, reversals
 from rbsdem.model.column import Column, checked_column, without_notes
-from rbsdem.result import Result
-from rbsdem.solve.analysis import cyclic, time_history
+from rbsdem.model.response import Response
+from rbsdem.results.accuracy import Answer, at_times
+from rbsdem.solve.analysis import cyclic, no_watch, time_history
 
 #: Least number of times at which histories are compared; a loading with fewer is interpolated.
 LEAST_ROWS = 200
@@ -76,7 +77,7 @@ class Scene:
             warnings.simplefilter("ignore", LongRunWarning)
             if self.static:
                 return self._solve_static(setting, column)
-            result = time_history(column, self.time, **self.keywords(setting, column))
+            result = time_history(no_watch, column, self.time, **self.keywords(setting, column))
         return self._answer(result)
 
     def keywords(self, setting: Setting, column: Column) -> dict[str, Any]:
@@ -105,7 +106,7 @@ class Scene:
             for name, values in self.initial.items()
         }
 
-    def _answer(self, result: Result) -> Answer:
+    def _answer(self, result: Response) -> Answer:
         """Return the answer at the times of the loading."""
         taken = result.energy["spring"] + result.energy["damping"]
         moment = result.moment[:, 0]

@@ -13,6 +13,7 @@ from rbsdem import _arguments
 from rbsdem._optional import need_matplotlib
 from rbsdem.curves.curve import Curve, loop_pair
 from rbsdem.errors import InputError
+from rbsdem.model.response import Response
 from rbsdem.output.style import (
     MODEL_LINE,
     TEST_LINE,
@@ -23,7 +24,6 @@ from rbsdem.output.style import (
     line_of,
     style,
 )
-from rbsdem.result import Result
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -99,7 +99,7 @@ def loop(
     >>> ax.get_xlabel()
     'Top displacement (mm)'
     """
-    shaken = force is None and isinstance(curve, Result) and curve.dynamic
+    shaken = force is None and isinstance(curve, Response) and curve.dynamic
     d, f = _curve((curve, force) if force is not None else curve, "the loop")
     with axes_or_new(ax) as drawn:
         drawn.plot(d, f, **line_of(MODEL_LINE, line))

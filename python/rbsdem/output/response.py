@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _arguments, _views
+from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
+from rbsdem.model.response import ENERGIES, Response
 from rbsdem.output.style import MODEL_LINE, ZERO_LINE, axes_or_new, line_of, new_axes, style_of
-from rbsdem.result import ENERGIES, Result
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["energy", "history", "profile", "section_state"]
+__all__ = ["energy", "history", "profile"]
 
 Over = Literal["displacement", "drift", "force", "base_shear", "base_moment"]
 
@@ -50,7 +50,7 @@ _ENERGY_LABELS = {
 
 
 def history(
-    result: Result, over: Over = "displacement", *, ax: Axes | None = None, **line: Any
+    result: Response, over: Over = "displacement", *, ax: Axes | None = None, **line: Any
 ) -> Axes:
     """Draw a response over time, or over the points of a static path.
 
@@ -77,7 +77,7 @@ def history(
     ImportError
         If matplotlib is not installed.
     """
-    _arguments.instance(result, "history: result", Result)
+    _arguments.instance(result, "history: result", Response)
     _arguments.choice(over, "over", _OVER)
     factor, label = _OVER[over]
     with axes_or_new(ax, (5.2, 2.4)) as drawn:
@@ -91,7 +91,7 @@ def history(
     return drawn
 
 
-def energy(result: Result, *, ax: Axes | None = None) -> Axes:
+def energy(result: Response, *, ax: Axes | None = None) -> Axes:
     """Draw the energies of a response over time; those that stay zero are left out.
 
     Parameters
@@ -127,7 +127,7 @@ def energy(result: Result, *, ax: Axes | None = None) -> Axes:
 
 
 def profile(
-    result: Result, time: ArrayLike | None = None, *, axes: Sequence[Axes] | None = None
+    result: Response, time: ArrayLike | None = None, *, axes: Sequence[Axes] | None = None
 ) -> list[Axes]:
     """Draw drift, shear and moment over the height at chosen moments.
 
@@ -189,36 +189,7 @@ def profile(
     return list(axes)
 
 
-def section_state(result: Result, time: float, *, axes: Sequence[Axes] | None = None) -> list[Axes]:
-    """Draw the hinge's section with its layers by state, and the strains over its depth.
-
-    Parameters
-    ----------
-    result : Result
-        Of a column that was made from a section, with its openings (``openings=True``).
-    time : float
-        The moment [s], or point of a static path; the nearest row is drawn.
-    axes : sequence of 2 matplotlib Axes, optional
-        Where to draw; a new figure without it.
-
-    Returns
-    -------
-    list of matplotlib.axes.Axes
-        For the section and the strains.
-
-    Raises
-    ------
-    InputError
-        If the column was not made from a section, the openings were not kept, or the moment is
-        outside of the rows.
-    ImportError
-        If matplotlib is not installed.
-    """
-    found: list[Axes] = _views.view(result, "section_state", time, axes)
-    return found
-
-
-def _lengths(result: Result) -> Array:
+def _lengths(result: Response) -> Array:
     column = result.column
     lengths = column.lengths or (column.height / column.n,) * column.n
     beneath = () if column.footing is None else (column.footing.height,)

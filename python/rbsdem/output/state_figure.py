@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rbsdem._arguments import Array
-from rbsdem._views import view_of
 from rbsdem.checks.criteria import buckling_strain
 from rbsdem.errors import InputError
+from rbsdem.model.response import Response
 from rbsdem.model.section import Section
 from rbsdem.output.style import MODEL_LINE, ZERO_LINE, new_axes, style_of
-from rbsdem.result import Result
 from rbsdem.section.model import LayeredColumn
 
 if TYPE_CHECKING:
@@ -34,9 +33,31 @@ _BARS: dict[str, dict[str, Any]] = {
 }
 
 
-@view_of(Result, "section_state")
-def draw(result: Result, time: float, axes: Sequence[Axes] | None) -> list[Axes]:
-    """Draw the section with its layers by state, and the strains over its depth."""
+def section_state(
+    result: Response, time: float, *, axes: Sequence[Axes] | None = None
+) -> list[Axes]:
+    """Draw the hinge's section with its layers by state, and the strains over its depth.
+
+    Parameters
+    ----------
+    result : Result
+        Of a column that was made from a section, with its openings (``openings=True``).
+    time : float
+        The moment [s], or point of a static path; the nearest row is drawn.
+    axes : sequence of 2 matplotlib Axes, optional
+        Where to draw; a new figure without it.
+
+    Returns
+    -------
+    list of matplotlib.axes.Axes
+        For the section and the strains.
+
+    Raises
+    ------
+    InputError
+        If the column was not made from a section, the openings were not kept, or the moment is
+        outside of the rows.
+    """
     column = result.column
     if not isinstance(column, LayeredColumn) or column.recipe is None:
         raise InputError(

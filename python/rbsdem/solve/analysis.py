@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import threading
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -13,24 +13,34 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _arguments, _core, _views
+from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning
 from rbsdem.model.column import Column, checked_column
+from rbsdem.model.response import Response, response_of, settings_of, state_of
 from rbsdem.motions.acting import acting
 from rbsdem.motions.motion import GroundMotion
-from rbsdem.result import Result, result_from_arrays
 from rbsdem.solve.methods import IN_TIME
-from rbsdem.solve.state_file import named_state, state_of
 
 #: Names of the methods in time.
 METHODS = IN_TIME
 
 Method = Literal["auto", "rk4", "rk45", "newmark", "hht", "generalised_alpha"]
 
+#: What a run in time is watched for: limit states of the column as criteria in numbers, shape
+#: (criteria, 6), given whether openings are kept.
+Watch = Callable[[Column, bool], Array]
+
 _DEFORMATIONS = ("slip", "rotation", "opening")
 _NONE = np.empty(0)
 _NONE.flags.writeable = False
+_NO_CRITERIA = np.empty((0, 6))
+
+
+def no_watch(column: Column, openings: bool) -> Array:
+    """Watch for nothing."""
+    return _NO_CRITERIA
+
 
 #: Threads whose runs are told nothing about.
 _silent = threading.local()
@@ -132,11 +142,11 @@ def cyclic(
     displacement: ArrayLike | None = None,
     force: ArrayLike | None = None,
     axial_load: ArrayLike | None = None,
-    initial: Result | str | os.PathLike[str] | None = None,
+    initial: Response | str | os.PathLike[str] | None = None,
     every: int | None = None,
     collapse_drift: float | None = None,
     openings: bool = False,
-) -> Result:
+) -> Response:
     """Follow the static path of a column through displacements of the top, or lateral forces.
 
     The path is exact for `kinematics` "small" and "pdelta": it goes from event to event (a spring
@@ -214,7 +224,7 @@ def cyclic(
     call = {
         name: values,
         "axial_load": load,
-        "initial": named_state(initial),
+        "initial": _recorded_state(initial),
         "every": every,
         "collapse_drift": collapse_drift,
     }
@@ -222,6 +232,7 @@ def cyclic(
 
 
 def time_history(
+    watch: Watch,
     column: Column,
     time: ArrayLike | None = None,
     *,
@@ -229,7 +240,7 @@ def time_history(
     ground_acceleration: ArrayLike | GroundMotion | None = None,
     dt: float | None = None,
     method: Method | None = None,
-    initial: Mapping[str, ArrayLike] | Result | str | os.PathLike[str] | None = None,
+    initial: Mapping[str, ArrayLike] | Response | str | os.PathLike[str] | None = None,
     vertical_acceleration: ArrayLike | GroundMotion | None = None,
     axial_load: ArrayLike | None = None,
     events: Literal["step", "located"] | None = None,
@@ -241,7 +252,7 @@ def time_history(
     every: int | None = None,
     openings: bool = False,
     motion: bool = False,
-) -> Result:
+) -> Response:
     """Compute the response in time to forces at the top and motions of the ground.
 
     Parameters
@@ -364,10 +375,10 @@ def time_history(
         loads,
         *((_NONE, False) if from_end else _initial_state(initial, column)),
         state_of(initial, "time_history") if from_end else None,
-        _views.view(column, "watches", kept),
-        lambda note: _tell(note, LongRunWarning, 5),
+        watch(column, kept),
+        lambda note: _tell(note, LongRunWarning, 6),
     )
-    kept_initial = named_state(initial) if from_end else initial
+    kept_initial = _recorded_state(initial) if from_end else initial
     call = {"time": times, **loads, "initial": kept_initial, **chosen, "every": every}
     return _return(column, run, {"analysis": "dynamic"}, call, reached)
 
@@ -394,18 +405,11 @@ def _checked(column: Column) -> Column:
     return checked_column(column)
 
 
-def settings_of(
-    every: int | None, openings: bool, motion: bool = False, **given: Any
-) -> _core.Statement:
-    """Return the groups analysis and output with the settings that are given."""
-    statement = _core.settings({name: v for name, v in given.items() if v is not None})
-    if every is None and not openings and not motion:
-        return statement
-    if every is not None and _arguments.whole(every, "every") < 1:
-        raise InputError(f"every = {every} must be 1 or more")
-    return statement + _core.group(
-        "output", {"every": every, "openings": int(openings) or None, "motion": int(motion) or None}
-    )
+def _recorded_state(initial: Any) -> Any:
+    """Return what a result records of `initial`: a path as text, of a result its state."""
+    if isinstance(initial, Response):
+        return initial.state
+    return os.fspath(initial) if isinstance(initial, (str, os.PathLike)) else initial
 
 
 def _loading(values: ArrayLike, name: str) -> Array:
@@ -445,17 +449,17 @@ def _return(
     about: dict[str, str],
     call: dict[str, Any],
     reached: Array | None = None,
-) -> Result:
+) -> Response:
     arrays, state, summary, error, note = run
     summary |= about
     summary["kinematics"] = column.kinematics
     if "lost_joint" in summary:
         summary["lost_joint"] = column.joint_numbers[summary["lost_joint"] - 1]
     given = {name: value for name, value in call.items() if value is not None}
-    result = result_from_arrays(arrays, column, summary, given, state, reached)
+    result = response_of(Response, arrays, column, summary, given, state, reached)
     if error is not None:
         error.result = result
         raise error
     if note:
-        _tell(note, AccuracyWarning, 4)
+        _tell(note, AccuracyWarning, 5)
     return result

@@ -21,10 +21,9 @@ from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError, RbsdemError, SolveError
 from rbsdem.motions.motion import GroundMotion
-from rbsdem.result import Result
+from rbsdem.results.case import Case
+from rbsdem.results.result import Result, cyclic, time_history
 from rbsdem.section.model import LayeredColumn
-from rbsdem.solve.analysis import cyclic, time_history
-from rbsdem.solve.case import Case
 from rbsdem.web.diagrams import defect, figure_of, number, numbers, own_laws, section_answer
 from rbsdem.web.state import (
     Drawn,

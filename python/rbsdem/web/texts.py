@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 from rbsdem import _arguments
 from rbsdem._files import whole_file
 from rbsdem.errors import InputError
-from rbsdem.result import Result
-from rbsdem.solve.case import Case, read_case
+from rbsdem.results.case import Case, read_case
+from rbsdem.results.result import Result
 from rbsdem.web.state import ENDS, SIZES
 
 if TYPE_CHECKING:

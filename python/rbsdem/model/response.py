@@ -2,87 +2,43 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 import os
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, Literal
+from pathlib import Path
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
-from rbsdem import _arguments, _views
+from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
-from rbsdem.errors import InputError, SolveError
+from rbsdem.errors import InputError
 from rbsdem.model.column import Column
 from rbsdem.model.springs import Layered
 from rbsdem.model.strains import Gauge, Strains, strains_of
-from rbsdem.solve.methods import METHODS
-
-if TYPE_CHECKING:
-    from rbsdem.checks.hinge import Hinge
-    from rbsdem.checks.limit_states import LimitStates
-    from rbsdem.curves.cycles import HalfCycles
-    from rbsdem.curves.envelope import Envelope
-    from rbsdem.curves.idealise import Idealisation, Method
-    from rbsdem.methods.answer import Errors
-    from rbsdem.solve.case import Case
-
-#: Most steps times bodies of a run that is short enough to be done once more.
-_SHORT = 50_000
 
 #: Names of the energies.
 ENERGIES = ("input", "kinetic", "spring", "damping", "axial", "residual")
 
+#: First line of a file with a state.
+STATE_HEAD = "# rbsdem state"
 
-@dataclass(frozen=True)
-class ErrorEstimate:
-    """What is known of the error of one result.
+R = TypeVar("R", bound="Response")
 
-    Attributes
-    ----------
-    method : str
-        The method that was used.
-    measured : float
-        The largest of `Result.refined_error`, where that run is short; NaN where it is not, and for
-        a static path.
-    usual, largest : float
-        Error of the method at its own step or tolerance, relative to the peaks: median and largest
-        of the responses of ``studies/error_classes.py``, which say little of another one. 0 for a
-        static path, which is exact but for round-off.
-    responses : int
-        How many responses those were.
-    own_setting : bool
-        Whether the result has this step or tolerance; else a setting of the user.
-    energy : float
-        What is missing in the energy balance of this result, over its largest energy. It is no
-        measure of the response, which may err by much more.
-    """
 
-    method: str
-    measured: float
-    usual: float
-    largest: float
-    responses: int
-    own_setting: bool
-    energy: float
+class Recorded(Protocol):
+    """The case of which a response is: `rbsdem.results.case.Case`."""
 
-    def __str__(self) -> str:
-        if not self.usual > 0:
-            return f"{self.method}: exact but for round-off"
-        at = "" if self.own_setting else " at its own setting, which this is not"
-        tried = (
-            f"{self.usual:g} in the median of {self.responses} other responses, "
-            f"{self.largest:g} at most{at}"
-        )
-        if math.isnan(self.measured):
-            return f"{self.method}: errors over the peaks: {tried}; refined_error() measures it"
-        return (
-            f"{self.method}: error about {self.measured:.1g} of the peaks, by a finer run ({tried})"
-        )
+    @property
+    def title(self) -> str:
+        """Title of the case."""
+
+    def to_namelist(self) -> str:
+        """Return the text of the case file."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Result:
+class Response:
     """Rows of an analysis: arrays with a row for each kept step and a column for each joint.
 
     Attributes
@@ -133,7 +89,7 @@ class Result:
         The loading and the settings that were given, as keywords of `cyclic` or `time_history`.
     channels : tuple of str
         Names of the quantities that the rows hold, in the order of the executable's csv.
-    case : Case or None
+    case : rbsdem.results.case.Case or None
         The case that was run; None if the analysis was called for the column.
     state : ndarray or None
         The state at the end, in numbers whose meaning is the program's own: what the springs
@@ -168,14 +124,14 @@ class Result:
     column: Column
     call: dict[str, Any]
     channels: tuple[str, ...]
-    case: Case | None = None
+    case: Recorded | None = None
     rest: Array | None = None
     state: Array | None = None
     motion: Array | None = None
     reached: Array | None = None
 
     @property
-    def path(self) -> Result:
+    def path(self: R) -> R:
         """A static path from corner to corner: the rows of all points, and of the events between.
 
         Between two rows a static path is straight with small rotations under a constant axial load;
@@ -186,13 +142,31 @@ class Result:
         found by the same analysis once more, when it is first asked for. A response in time is its
         own path.
         """
-        own = vars(self)
-        if self.dynamic or "_is_path" in own:
+        known = vars(self)
+        if self.dynamic or "_is_path" in known:
             return self
-        if "_path" not in own:
-            own["_path"] = _views.view(self, "path")
-        found: Result = own["_path"]
-        return found
+        if "_path" not in known:
+            known["_path"] = self._follow_corners()
+        path: R = known["_path"]
+        return path
+
+    def _follow_corners(self: R) -> R:
+        """Return a row for every corner, from the same analysis once more."""
+        call = self.call
+        by_force = self.summary["driven"] == "force"
+        run = _core.cyclic(
+            self.column._statement
+            + settings_of(None, True, collapse_drift=call.get("collapse_drift")),
+            by_force,
+            call["force" if by_force else "displacement"],
+            call.get("axial_load"),
+            state_of(call["initial"], "cyclic") if "initial" in call else None,
+            corners=True,
+        )
+        # Where the path broke off, the result has been told of it.
+        path = response_of(type(self), run[0], self.column, self.summary, call, self.state)
+        vars(path)["_is_path"] = True
+        return path
 
     def __getstate__(self) -> dict[str, Any]:
         """Leave out the path: it is found again."""
@@ -397,177 +371,10 @@ class Result:
         state: dict[str, Any] = {name: between(values) for name, values in arrays.items()}
         return state | {"energy": between(path.energy), "time": at}
 
-    def envelope(self, side: Literal[1, -1] = 1) -> Envelope:
-        """Return the envelope of the loop to one side; see `rbsdem.envelope`."""
-        found: Envelope = _views.view(self, "envelope", side)
-        return found
-
-    def idealise(
-        self,
-        method: Method = "asce_41",
-        side: Literal[1, -1] = 1,
-        *,
-        end: float | None = None,
-    ) -> Idealisation:
-        """Replace the envelope of a side by two straight lines; see `Envelope.idealise`."""
-        found: Idealisation = _views.view(self, "idealise", method, side, end)
-        return found
-
-    def half_cycles(self) -> HalfCycles:
-        """Return energy, stiffness and damping of each half-cycle.
-
-        See `rbsdem.curves.half_cycles`.
-        """
-        found: HalfCycles = _views.view(self, "half_cycles")
-        return found
-
-    def strength_loss(self, share: float = 0.2) -> float:
-        """Return the displacement at which a share of the strength is lost [m]; NaN if it is not.
-
-        See `rbsdem.curves.strength_loss`.
-        """
-        return float(_views.view(self, "strength_loss", share))
-
-    def limit_states(self) -> LimitStates:
-        """Return the limit states that the response reaches, with row, drift and source.
-
-        A layered hinge that knows its drawing: cracking, first yield, nominal moment, yield of the
-        hoops, spalling, the tensile strain before bars buckle, fracture of hoops and bars, by the
-        strains of its layers (in time the analysis needs ``openings=True``); other layered joints:
-        where a layer yields in tension. Other springs: their `Spring.landmarks`, cracking, yield
-        and cap.
-        All: the same of shear springs, loss of 20 % of the strength, collapse, loss of the axial
-        load. Nothing of the response is changed.
-
-        Raises
-        ------
-        InputError
-            If the openings of a layered hinge were not kept in time.
-        """
-        found: LimitStates = _views.view(self, "limit_states")
-        return found
-
-    def hinge(self, joint: int = 1, *, length: float | None = None) -> Hinge:
-        """Return rotation, plastic rotation and curvature of a hinge.
-
-        Parameters
-        ----------
-        joint : int, optional
-            The joint, from 1 at the ground to n.
-        length : float, optional
-            Length of the hinge for its curvature [m]. Known of the hinge of a column that was made
-            from its drawing by the layered model.
-
-        Raises
-        ------
-        InputError
-            If there is no such joint, or the openings of a layered hinge were not kept in time.
-        """
-        found: Hinge = _views.view(self, "hinge", joint, length)
-        return found
-
-    def to_pandas(self) -> Any:
-        """Return a DataFrame, a row for each of the result, with units in the names; needs pandas.
-
-        The names are those of the columns of the executable's csv.
-        """
-        return _views.view(self, "to_pandas")
-
-    def to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write the rows as csv with all digits, whole or not at all, as the executable does.
-
-        Parameters
-        ----------
-        path : path
-            File to write.
-        """
-        _views.view(self, "to_csv", path)
-
-    def to_xarray(self) -> Any:
-        """Return a Dataset of xarray with units and joints as coordinates; needs xarray."""
-        return _views.view(self, "to_xarray")
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the whole result into one file, which `rbsdem.load` reads back bit for bit.
-
-        It holds the arrays, the column and the case as text, the summary, the settings, units and
-        version. It is written whole or not at all. A column that a section made comes back as the
-        plain `Column` that was solved.
-
-        Parameters
-        ----------
-        path : path
-            File to write: ``.npz`` (numpy), or ``.nc`` (netCDF; needs the extra "netcdf").
-
-        Raises
-        ------
-        InputError
-            For another ending.
-        """
-        _views.view(self, "save", path)
-
-    def save_state(self, path: str | os.PathLike[str]) -> None:
-        """Write the state at the end as text, for ``initial=path`` and the executable.
-
-        Parameters
-        ----------
-        path : path
-            File to write, whole or not at all.
-
-        Raises
-        ------
-        InputError
-            If the result has no state, as after a failure.
-        """
-        _views.view(self, "save_state", path)
-
-    @property
-    def error_estimate(self) -> ErrorEstimate:
-        """What is known of the error: measured where that takes about 0.1 s, else by its method."""
-        about = self.summary
-        method = METHODS[about["method"]]
-        short = self.dynamic and about["steps"] * self.column.n <= _SHORT
-        measured = math.nan
-        if short and about["status"] == "completed":
-            with contextlib.suppress(SolveError):
-                measured = self.refined_error().largest
-        return ErrorEstimate(
-            method.name,
-            measured,
-            method.usual_error,
-            method.largest_error,
-            method.responses,
-            not {"dt", "tolerance", "rho_infinity"} & set(self.call),
-            about["relative_energy_residual"],
-        )
-
-    def refined_error(self) -> Errors:
-        """Solve once more by the next finer setting and return the distance to it.
-
-        That is half the step, or a hundredth of the tolerance, or half of the increments of a
-        static path, by the same method. Where the error falls with the setting, as it does unless
-        the response is chaotic, it is about as large as this distance. With a tolerance that cannot
-        be made much sharper it is the distance to one a hundred times as large, which is more than
-        the error. Nothing is below the last digits of the numbers, 2.2e-16 times the root of the
-        number of rows.
-
-        Returns
-        -------
-        rbsdem.methods.answer.Errors
-            Relative differences of the response (rms and largest), of the base moment, the energy
-            and the peak; `largest` is the largest of them.
-
-        Raises
-        ------
-        SolveError
-            If the finer setting does not solve the case.
-        """
-        return _views.view(self, "refined_error")
-
     def __repr__(self) -> str:
         about = self.summary
         return (
-            f"Result({about['method']}, {self.time.size} rows, {about['status']}, "
+            f"{type(self).__name__}({about['method']}, {self.time.size} rows, {about['status']}, "
             f"peak displacement {about['peak_displacement']:.4g} m, "
             + (
                 f"peak base shear {about['peak_base_shear']:.4g} N)"
@@ -578,7 +385,7 @@ class Result:
 
     def __eq__(self, other: object) -> bool:
         """Return whether another result has the same column, rows and summary, bit for bit."""
-        if not isinstance(other, Result):
+        if not isinstance(other, Response):
             return NotImplemented
         return all(
             _same(getattr(self, field.name), getattr(other, field.name)) for field in fields(self)
@@ -612,20 +419,21 @@ def _last_zero(displacement: Array, force: Array) -> float:
     return float(displacement[row] + share * (displacement[row + 1] - displacement[row]))
 
 
-def result_from_arrays(
+def response_of(
+    kind: type[R],
     arrays: dict[str, Array],
     column: Column,
     summary: dict[str, Any],
     call: dict[str, Any],
     state: Array | None = None,
     reached: Array | None = None,
-) -> Result:
-    """Return the result of the arrays of a run."""
+) -> R:
+    """Return the response of the arrays of a run."""
     motion = None
     if "velocity" in arrays:
         names = ("velocity", "acceleration", "ground_acceleration")
         motion = np.column_stack([arrays[name] for name in names])
-    return Result(
+    return kind(
         time=arrays["time" if "time" in arrays else "step"],
         displacement=arrays["displacement"],
         force=arrays["force"],
@@ -648,3 +456,76 @@ def result_from_arrays(
         motion=motion,
         reached=reached,
     )
+
+
+def settings_of(
+    every: int | None, openings: bool, motion: bool = False, **given: Any
+) -> _core.Statement:
+    """Return the groups analysis and output with the settings that are given."""
+    statement = _core.settings({name: v for name, v in given.items() if v is not None})
+    if every is None and not openings and not motion:
+        return statement
+    if every is not None and _arguments.whole(every, "every") < 1:
+        raise InputError(f"every = {every} must be 1 or more")
+    return statement + _core.group(
+        "output", {"every": every, "openings": int(openings) or None, "motion": int(motion) or None}
+    )
+
+
+def state_of(initial: Any, call: str) -> Array:
+    """Return the state that an analysis begins in, from a response or a path.
+
+    Parameters
+    ----------
+    initial : Response or path
+        As the user gave it.
+    call : str
+        Name of the analysis, for messages.
+
+    Raises
+    ------
+    InputError
+        If it is neither, has no state, or the file is damaged.
+    """
+    if isinstance(initial, (str, os.PathLike)):
+        return _read_state(_arguments.file(initial, f"{call}: initial"))
+    if isinstance(initial, Response):
+        return last_state(initial)
+    if isinstance(initial, np.ndarray):
+        # The state of a result, as `Result.call` keeps it.
+        return _arguments.vector(initial, "initial")
+    a_dict = " or a dict, as {'slip': [0.001]}" if call == "time_history" else ""
+    raise InputError(
+        f"{call}: initial = {_arguments.shown(initial)} must be a Result of this column, the path "
+        f"of a state{a_dict}"
+    )
+
+
+def last_state(response: Response) -> Array:
+    """Return the state that an analysis ended in; `InputError` if it has none."""
+    if response.state is None:
+        why = {
+            "failed": "the analysis failed on its way; end it before the failure",
+            "axial_failure": "the column has lost its axial load, and nothing can follow",
+        }.get(response.summary["status"], "run the analysis again")
+        raise InputError(f"initial: the result has no state at its end: {why}")
+    return response.state
+
+
+def _read_state(path: str) -> Array:
+    if not Path(path).is_file():
+        raise InputError(f"initial: {path}: there is no such file; check the path")
+    try:
+        lines = Path(path).read_text(encoding="ascii").splitlines()
+        if lines[0] != STATE_HEAD:
+            raise ValueError("another kind of file")
+        numbers = [line for line in lines if not line.startswith("#")]
+        state = np.array(numbers[1:], dtype=np.float64)
+        if state.size != int(numbers[0]):
+            raise ValueError(f"{state.size} numbers of {numbers[0]}")
+    except (OSError, ValueError, IndexError) as error:
+        raise InputError(
+            f"initial: {path} is no state of rbsdem, or it is damaged ({error}); "
+            "Result.save_state and the key state of the group output write one"
+        ) from error
+    return state

@@ -15,9 +15,8 @@ from rbsdem.model.column import Column
 from rbsdem.model.damping import Damping
 from rbsdem.model.footing import Footing
 from rbsdem.model.springs import SPRINGS, Spring
-from rbsdem.result import Result
+from rbsdem.results.result import Result, cyclic, time_history
 from rbsdem.section.reading import Groups, layered_column, recipe_of
-from rbsdem.solve.analysis import cyclic, time_history
 
 _DRIVES = ("displacement", "force", "ground_acceleration", "vertical_acceleration", "axial_load")
 
@@ -89,7 +88,7 @@ class Case:
                 keywords = {"method": self.method} | self.settings | changes
                 result = time_history(column, self.time, **loads, **keywords)
         except SolveError as error:
-            if error.result is not None:
+            if isinstance(error.result, Result):
                 error.result = replace(error.result, case=self)
             raise
         return replace(result, case=self)

@@ -1,0 +1,1 @@
+"""The result that users get, its files, its error, and the cases of the executable."""

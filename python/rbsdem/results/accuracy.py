@@ -1,0 +1,229 @@
+"""How far two responses are apart, and a response from that of the next finer setting."""
+
+from __future__ import annotations
+
+import math
+import sys
+import warnings
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from rbsdem._arguments import Array
+from rbsdem.errors import AccuracyWarning
+from rbsdem.model.response import Response
+from rbsdem.solve.analysis import cyclic, no_watch, time_history
+from rbsdem.solve.methods import METHODS
+
+#: By how much a tolerance is sharpened, at least to where it and not the stability limits the
+#: steps, and the least one.
+_SHARPER, _SHARP, _LEAST = 100.0, 1e-9, 1e-13
+
+#: Tolerance by default.
+_USUAL_TOLERANCE = 1e-6
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The part of a result that is compared.
+
+    Attributes
+    ----------
+    time, response, moment : ndarray, shape (m,)
+        Times of the loading [s], top displacement [m] there (lateral force [N] if the displacement
+        is driven), and moment of the lowest joint [N m].
+    taken : ndarray, shape (m,)
+        Energy that springs and damping have taken by then [J]: the energy dissipated and the energy
+        that the springs still store.
+    status : str
+        "completed" or "collapsed".
+    reason : str
+        The method that the program chose, and why, if it was "auto".
+    """
+
+    time: Array
+    response: Array
+    moment: Array
+    taken: Array
+    status: str
+    reason: str = ""
+
+    @property
+    def energy(self) -> float:
+        """Energy that springs and damping have taken by the end [J]."""
+        return float(self.taken[-1])
+
+    @property
+    def largest_energy(self) -> float:
+        """Largest absolute value of that energy on the way [J]."""
+        return float(np.abs(self.taken).max())
+
+    @property
+    def peak(self) -> float:
+        """Largest absolute response over the times of the loading."""
+        return float(np.abs(self.response).max())
+
+    @property
+    def residual(self) -> float:
+        """Response at the end."""
+        return float(self.response[-1])
+
+    @property
+    def peak_moment(self) -> float:
+        """Largest absolute moment of the lowest joint over the times of the loading [N m]."""
+        return float(np.abs(self.moment).max())
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Differences of an answer from another one, relative to the peaks of the other.
+
+    Attributes
+    ----------
+    response_rms, response_max : float
+        Root mean square and largest difference of the responses over the largest response.
+    moment : float
+        Root mean square difference of the base moments over the largest base moment.
+    energy : float
+        Difference of the energies at the end over the largest energy.
+    peak : float
+        Difference of the peak responses over the peak.
+    """
+
+    response_rms: float
+    response_max: float
+    moment: float
+    energy: float
+    peak: float
+
+    @property
+    def largest(self) -> float:
+        """The largest of the rms of response and moment, of energy and of peak."""
+        return max(self.response_rms, self.moment, self.energy, self.peak)
+
+
+def errors_of(answer: Answer, other: Answer) -> Errors:
+    """Return the differences of an answer from another, over the rows that both have."""
+    rows = min(answer.response.size, other.response.size)
+    response = answer.response[:rows] - other.response[:rows]
+    moment = answer.moment[:rows] - other.moment[:rows]
+    taken = answer.taken[rows - 1] - other.taken[rows - 1]
+    peak = _not_zero(other.peak)
+    higher = np.abs(answer.response[:rows]).max() - np.abs(other.response[:rows]).max()
+    return Errors(
+        response_rms=float(np.sqrt(np.mean(response**2))) / peak,
+        response_max=float(np.abs(response).max()) / peak,
+        moment=float(np.sqrt(np.mean(moment**2))) / _not_zero(other.peak_moment),
+        energy=abs(float(taken)) / _not_zero(other.largest_energy),
+        peak=abs(float(higher)) / peak,
+    )
+
+
+def _not_zero(value: float) -> float:
+    return value if value > 0 else 1.0
+
+
+def common_interval(time: Array) -> tuple[float, bool]:
+    """Return an interval that divides all intervals between the times, and whether one exists.
+
+    If none exists, the median interval is returned.
+    """
+    intervals = np.diff(time)
+    for parts in range(1, 21):
+        base = float(intervals.min()) / parts
+        # Taken from the whole length, which has more correct digits than one interval.
+        base = float(time[-1] - time[0]) / max(round(float(time[-1] - time[0]) / base), 1)
+        counts = intervals / base
+        if np.all(np.abs(counts - np.round(counts)) <= 1e-9 * np.maximum(counts, 1.0)):
+            return base, True
+    return float(np.median(intervals)), False
+
+
+def at_times(wanted: Array, time: Array, values: Array) -> Array:
+    """Return values between rows, by the cubic through the four nearest rows."""
+    if time.size < 4:
+        return np.interp(wanted, time, values)
+    first = np.clip(np.searchsorted(time, wanted) - 2, 0, time.size - 4)
+    at = time[first[:, None] + np.arange(4)]
+    result = np.zeros(wanted.size)
+    for i in range(4):
+        weight = np.ones(wanted.size)
+        for j in range(4):
+            if i != j:
+                weight *= (wanted - at[:, j]) / (at[:, i] - at[:, j])
+        result += weight * values[first + i]
+    return result
+
+
+def refined_error(result: Response) -> Errors:
+    """Return the differences of a result from that of the next finer setting."""
+    with warnings.catch_warnings():
+        # They were told with the result itself.
+        warnings.simplefilter("ignore", AccuracyWarning)
+        if result.dynamic:
+            finer = time_history(no_watch, result.column, **_finer(result))
+        else:
+            finer = cyclic(result.column, **_divided(result))
+    driven = "displacement" in result.call
+    one, other = (_answer(run, result.time, driven) for run in (result, finer))
+    found = asdict(errors_of(one, other))
+    # Two runs with the same digits say no more than that the error is within their last ones.
+    least = math.sqrt(one.time.size) * sys.float_info.epsilon
+    return Errors(**{name: max(error, least) for name, error in found.items()})
+
+
+def _finer(result: Response) -> dict[str, Any]:
+    """Return the keywords of `time_history` for the next finer setting."""
+    call, about = dict(result.call), result.summary
+    method = METHODS[about["method"]]
+    if call.get("method", "auto") == "auto":
+        call.pop("tolerance", None)
+        if method.name == "rk4" and "events located" in about["reason"]:
+            call["events"] = "located"
+        if method.adaptive and "tolerance" in result.call:
+            call["tolerance"] = result.call["tolerance"]
+    call["method"] = method.name
+    if method.adaptive:
+        tolerance = call.get("tolerance", _USUAL_TOLERANCE)
+        sharper = max(min(tolerance / _SHARPER, _SHARP), _LEAST)
+        # Where there is none that is much sharper, the distance to one that is not bounds it.
+        return call | {"tolerance": sharper if 10 * sharper <= tolerance else _SHARPER * tolerance}
+    if "every" in call:
+        call["every"] *= 2
+    if "dt" in call:
+        return call | {"dt": call["dt"] / 2}
+    # Rows stay at the times of the loading if the step divides all intervals.
+    interval, regular = common_interval(call["time"])
+    step = about["time_step"]
+    parts = 2 * max(math.ceil(interval / step * (1 - 1e-9)), 1)
+    return call | {"dt": interval / parts if regular else step / 2}
+
+
+def _divided(result: Response) -> dict[str, Any]:
+    """Return the keywords of `cyclic` with each increment cut in two."""
+    call = dict(result.call)
+    name = "displacement" if "displacement" in call else "force"
+    path = np.concatenate([[0.0], call[name]])
+    fine = np.repeat(call[name], 2)
+    fine[::2] = 0.5 * (path[:-1] + path[1:])
+    # From the middle of the first increment, every second point is one of the path.
+    return call | {name: fine, "every": None}
+
+
+def _answer(run: Response, times: np.ndarray, driven: bool) -> Answer:
+    """Return what is compared, at the rows of the first result."""
+    time = run.time
+    response = run.force if driven else run.displacement
+    taken = run.energy["spring"] + run.energy["damping"]
+    histories = [np.array(values) for values in (response, run.moment[:, 0], taken)]
+    if not run.dynamic and time.size != times.size:
+        places = (2 * times + 1).astype(int)
+        places = places[places < time.size]
+        histories = [values[places] for values in histories]
+        time = times[: places.size]
+    elif run.dynamic and not np.array_equal(time, times):
+        wanted = times[times <= time[-1]]
+        histories = [at_times(wanted, time, values) for values in histories]
+        time = wanted
+    return Answer(time, *histories, run.summary["status"])

@@ -1,0 +1,176 @@
+"""A response as table, as csv, as Dataset, and as one file that describes itself."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rbsdem import _arguments, _core
+from rbsdem._arguments import Array
+from rbsdem._files import whole_file
+from rbsdem._optional import need_xarray
+from rbsdem.errors import InputError
+from rbsdem.model.response import STATE_HEAD, Response, last_state
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FORMAT = "rbsdem result"
+FORMAT_VERSION = 1
+
+
+def quantities(result: Response) -> dict[str, Array]:
+    """Return the arrays of a result in the order of the executable's csv, joints as columns."""
+    known = result.energy | {"step": result.time, "top_height": result.top[:, 1]}
+    if result.motion is not None:
+        known["ground_acceleration"] = result.motion[:, 2]
+    return {
+        name: known[name] if name in known else getattr(result, name) for name in result.channels
+    }
+
+
+def columns(result: Response) -> dict[str, Array]:
+    """Return the columns of the csv: one for each value, with its unit in its name."""
+    found = {}
+    for name, values in quantities(result).items():
+        unit = f"_{_core.units()[name]}".replace(" ", "").rstrip("_")
+        if values.ndim == 1:
+            found[name + unit] = values
+        else:
+            for at, joint in enumerate(result.column.joint_numbers):
+                found[f"{name}_{joint}{unit}"] = values[:, at]
+    return found
+
+
+def to_frame(result: Response) -> pd.DataFrame:
+    """Return a DataFrame with the columns of the csv."""
+    import pandas  # noqa: PLC0415
+
+    frame = pandas.DataFrame(columns(result))
+    frame.attrs["summary"] = dict(result.summary)
+    return frame
+
+
+def to_xarray(result: Response) -> Any:
+    """Return a Dataset: rows along time (or step), joints from 1 at the ground."""
+    units = {name: {"units": unit} if unit else {} for name, unit in _core.units().items()}
+    arrays = quantities(result)
+    along = result.channels[0]
+    time = arrays.pop(along)
+    variables = {
+        name: ((along, "joint")[: values.ndim], values, units[name])
+        for name, values in arrays.items()
+    }
+    return need_xarray().Dataset(
+        variables,
+        {
+            along: (along, time, units[along]),
+            "joint": np.array(result.column.joint_numbers),
+        },
+        {"program": "rbsdem", "version": _core.version(), "column": result.column.to_namelist()}
+        | {name: value for name, value in result.summary.items() if not isinstance(value, dict)},
+    )
+
+
+def to_csv(result: Response, path: str | os.PathLike[str]) -> None:
+    """Write the columns with all digits, and the head of the executable's csv."""
+    table = columns(result)
+    about = result.summary
+    title = result.case.title if result.case is not None else ""
+    head = [
+        f"# rbsdem {_core.version()}",
+        f"# case: {title}".rstrip(),
+        f"# units: SI, in the names of the columns; method: {about['method']}, "
+        f"kinematics: {about['kinematics']}",
+        ",".join(table),
+    ]
+    with whole_file(path) as file:
+        file.write(("\n".join(head) + "\n").encode())
+        np.savetxt(file, np.column_stack(list(table.values())), fmt="%.17g", delimiter=",")
+
+
+def save_state(result: Response, path: str | os.PathLike[str]) -> None:
+    """Write a state as text: a head, then one number a line, whole or not at all."""
+    state = last_state(result)
+    head = f"{STATE_HEAD}\n# version: {_core.version()}\n{state.size}\n"
+    with whole_file(path) as file:
+        file.write((head + "\n".join(map(_text, state)) + "\n").encode())
+
+
+def _text(number: float) -> str:
+    """Return a number as the executable writes it: all digits, three for the exponent."""
+    digits, _, exponent = f"{number:.16E}".partition("E")
+    return f"{digits}E{int(exponent):+04d}"
+
+
+def save(result: Response, path: str | os.PathLike[str]) -> None:
+    """Write a result as npz or netCDF, whole or not at all."""
+    kind = ending_of(path)
+    about, arrays = _parts(result)
+    if kind == ".npz":
+        with whole_file(path) as file:
+            np.savez_compressed(file, about=np.array(json.dumps(about)), **arrays)
+        return
+    xarray = need_xarray()
+    variables = {
+        # Slashes part groups in netCDF.
+        name.replace("/", ":"): ([f"{name}_{axis}" for axis in range(values.ndim)], values)
+        for name, values in arrays.items()
+    }
+    dataset = xarray.Dataset(
+        {name.replace("/", ":"): value for name, value in variables.items()},
+        attrs={"about": json.dumps(about), "units": json.dumps(_core.units())},
+    )
+    for name, variable in dataset.variables.items():
+        if name in _core.units():
+            variable.attrs["units"] = _core.units()[name]
+    with whole_file(path) as file:
+        file.write(bytes(dataset.to_netcdf(engine="scipy")))
+
+
+def ending_of(path: str | os.PathLike[str]) -> str:
+    """Return the ending of the name of a saved result, checked."""
+    kind = _arguments.path(path).suffix.lower()
+    if kind not in (".npz", ".nc"):
+        raise InputError(
+            f"{os.fspath(path)}: the name of a saved result ends in .npz (numpy) or .nc (netCDF)"
+        )
+    return kind
+
+
+def _parts(result: Response) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return what is written as text, and the arrays by name."""
+    arrays: dict[str, Any] = {}
+    call = _apart("call", result.call, arrays)
+    for field in fields(result):
+        value = getattr(result, field.name)
+        if isinstance(value, np.ndarray):
+            arrays[field.name] = value
+    arrays |= {f"energy/{name}": value for name, value in result.energy.items()}
+    about = {
+        "format": FORMAT,
+        "format_version": FORMAT_VERSION,
+        "version": _core.version(),
+        "units": _core.units(),
+        "channels": result.channels,
+        "column": result.column.to_namelist(),
+        "case": None if result.case is None else result.case.to_namelist(),
+        "summary": result.summary,
+        "call": call,
+    }
+    return about, arrays
+
+
+def _apart(name: str, value: Any, arrays: dict[str, Any]) -> Any:
+    """Return a value for json; arrays in it are put aside under their names."""
+    if isinstance(value, Mapping):
+        return {key: _apart(f"{name}/{key}", each, arrays) for key, each in value.items()}
+    if isinstance(value, np.ndarray):
+        arrays[name] = value
+        return {"array": name}
+    return value.item() if isinstance(value, np.generic) else value

@@ -1,0 +1,283 @@
+"""The result of an analysis: its rows, what they reach and mean, how they are kept."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import inspect
+import math
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, ParamSpec
+
+from rbsdem.checks.criteria import all_watches
+from rbsdem.checks.find import limit_states as find_limit_states
+from rbsdem.checks.hinge import Hinge
+from rbsdem.checks.hinge import hinge as hinge_of
+from rbsdem.checks.limit_states import LimitStates
+from rbsdem.curves.curve import loop_pair
+from rbsdem.curves.cycles import HalfCycles, half_cycles
+from rbsdem.curves.envelope import Envelope
+from rbsdem.curves.envelope import envelope as curve_envelope
+from rbsdem.curves.idealise import Idealisation, Method
+from rbsdem.curves.strength import strength_loss
+from rbsdem.errors import SolveError
+from rbsdem.model.response import Response
+from rbsdem.results import files
+from rbsdem.results.accuracy import Errors, refined_error
+from rbsdem.solve import analysis
+from rbsdem.solve.methods import METHODS
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+P = ParamSpec("P")
+
+#: Most steps times bodies of a run that is short enough to be done once more.
+_SHORT = 50_000
+
+
+@dataclass(frozen=True)
+class ErrorEstimate:
+    """What is known of the error of one result.
+
+    Attributes
+    ----------
+    method : str
+        The method that was used.
+    measured : float
+        The largest of `Result.refined_error`, where that run is short; NaN where it is not, and for
+        a static path.
+    usual, largest : float
+        Error of the method at its own step or tolerance, relative to the peaks: median and largest
+        of the responses of ``studies/error_classes.py``, which say little of another one. 0 for a
+        static path, which is exact but for round-off.
+    responses : int
+        How many responses those were.
+    own_setting : bool
+        Whether the result has this step or tolerance; else a setting of the user.
+    energy : float
+        What is missing in the energy balance of this result, over its largest energy. It is no
+        measure of the response, which may err by much more.
+    """
+
+    method: str
+    measured: float
+    usual: float
+    largest: float
+    responses: int
+    own_setting: bool
+    energy: float
+
+    def __str__(self) -> str:
+        if not self.usual > 0:
+            return f"{self.method}: exact but for round-off"
+        at = "" if self.own_setting else " at its own setting, which this is not"
+        tried = (
+            f"{self.usual:g} in the median of {self.responses} other responses, "
+            f"{self.largest:g} at most{at}"
+        )
+        if math.isnan(self.measured):
+            return f"{self.method}: errors over the peaks: {tried}; refined_error() measures it"
+        return (
+            f"{self.method}: error about {self.measured:.1g} of the peaks, by a finer run ({tried})"
+        )
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Result(Response):
+    """What `cyclic` and `time_history` return: a response with what it reaches and means.
+
+    The rows are the attributes of `rbsdem.model.response.Response`.
+    """
+
+    def envelope(self, side: Literal[1, -1] = 1) -> Envelope:
+        """Return the envelope of the loop to one side; see `rbsdem.envelope`."""
+        return curve_envelope(self, side)
+
+    def idealise(
+        self,
+        method: Method = "asce_41",
+        side: Literal[1, -1] = 1,
+        *,
+        end: float | None = None,
+    ) -> Idealisation:
+        """Replace the envelope of a side by two straight lines; see `Envelope.idealise`."""
+        return self.envelope(side).idealise(method, end=end)
+
+    def half_cycles(self) -> HalfCycles:
+        """Return energy, stiffness and damping of each half-cycle.
+
+        See `rbsdem.curves.half_cycles`.
+        """
+        done = None if self.dynamic else self.path.energy["input"]
+        return half_cycles(*loop_pair(self, "result"), done=done)
+
+    def strength_loss(self, share: float = 0.2) -> float:
+        """Return the displacement at which a share of the strength is lost [m]; NaN if it is not.
+
+        See `rbsdem.curves.strength_loss`.
+        """
+        return strength_loss(*loop_pair(self, "result"), share=share)
+
+    def limit_states(self) -> LimitStates:
+        """Return the limit states that the response reaches, with row, drift and source.
+
+        A layered hinge that knows its drawing: cracking, first yield, nominal moment, yield of the
+        hoops, spalling, the tensile strain before bars buckle, fracture of hoops and bars, by the
+        strains of its layers (in time the analysis needs ``openings=True``); other layered joints:
+        where a layer yields in tension. Other springs: their `Spring.landmarks`, cracking, yield
+        and cap.
+        All: the same of shear springs, loss of 20 % of the strength, collapse, loss of the axial
+        load. Nothing of the response is changed.
+
+        Raises
+        ------
+        InputError
+            If the openings of a layered hinge were not kept in time.
+        """
+        return find_limit_states(self)
+
+    def hinge(self, joint: int = 1, *, length: float | None = None) -> Hinge:
+        """Return rotation, plastic rotation and curvature of a hinge.
+
+        Parameters
+        ----------
+        joint : int, optional
+            The joint, from 1 at the ground to n.
+        length : float, optional
+            Length of the hinge for its curvature [m]. Known of the hinge of a column that was made
+            from its drawing by the layered model.
+
+        Raises
+        ------
+        InputError
+            If there is no such joint, or the openings of a layered hinge were not kept in time.
+        """
+        return hinge_of(self, joint, length)
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return a DataFrame, a row for each of the result, with units in the names.
+
+        The names are those of the columns of the executable's csv.
+        """
+        return files.to_frame(self)
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write the rows as csv with all digits, whole or not at all, as the executable does.
+
+        Parameters
+        ----------
+        path : path
+            File to write.
+        """
+        files.to_csv(self, path)
+
+    def to_xarray(self) -> Any:
+        """Return a Dataset of xarray with units and joints as coordinates; needs xarray."""
+        return files.to_xarray(self)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the whole result into one file, which `rbsdem.read_result` reads back bit for bit.
+
+        It holds the arrays, the column and the case as text, the summary, the settings, units and
+        version. It is written whole or not at all. A column that a section made comes back as the
+        plain `Column` that was solved.
+
+        Parameters
+        ----------
+        path : path
+            File to write: ``.npz`` (numpy), or ``.nc`` (netCDF; needs the extra "netcdf").
+
+        Raises
+        ------
+        InputError
+            For another ending.
+        """
+        files.save(self, path)
+
+    def save_state(self, path: str | os.PathLike[str]) -> None:
+        """Write the state at the end as text, for ``initial=path`` and the executable.
+
+        Parameters
+        ----------
+        path : path
+            File to write, whole or not at all.
+
+        Raises
+        ------
+        InputError
+            If the result has no state, as after a failure.
+        """
+        files.save_state(self, path)
+
+    @property
+    def error_estimate(self) -> ErrorEstimate:
+        """What is known of the error: measured where that takes about 0.1 s, else by its method."""
+        about = self.summary
+        method = METHODS[about["method"]]
+        short = self.dynamic and about["steps"] * self.column.n <= _SHORT
+        measured = math.nan
+        if short and about["status"] == "completed":
+            with contextlib.suppress(SolveError):
+                measured = self.refined_error().largest
+        return ErrorEstimate(
+            method.name,
+            measured,
+            method.usual_error,
+            method.largest_error,
+            method.responses,
+            not {"dt", "tolerance", "rho_infinity"} & set(self.call),
+            about["relative_energy_residual"],
+        )
+
+    def refined_error(self) -> Errors:
+        """Solve once more by the next finer setting and return the distance to it.
+
+        That is half the step, or a hundredth of the tolerance, or half of the increments of a
+        static path, by the same method. Where the error falls with the setting, as it does unless
+        the response is chaotic, it is about as large as this distance. With a tolerance that cannot
+        be made much sharper it is the distance to one a hundred times as large, which is more than
+        the error. Nothing is below the last digits of the numbers, 2.2e-16 times the root of the
+        number of rows.
+
+        Returns
+        -------
+        rbsdem.results.accuracy.Errors
+            Relative differences of the response (rms and largest), of the base moment, the energy
+            and the peak; `largest` is the largest of them.
+
+        Raises
+        ------
+        SolveError
+            If the finer setting does not solve the case.
+        """
+        return refined_error(self)
+
+
+def result_of(response: Response) -> Result:
+    """Return a response as the object that users get."""
+    return Result(**{field: getattr(response, field) for field in response.__dataclass_fields__})
+
+
+def _public(run: Callable[P, Response], documented: Callable[..., Response]) -> Callable[P, Result]:
+    """Return an analysis with a `Result` in place of the plain response."""
+
+    @functools.wraps(documented)
+    def analyse(*arguments: P.args, **options: P.kwargs) -> Result:
+        try:
+            return result_of(run(*arguments, **options))
+        except SolveError as error:
+            if isinstance(error.result, Response):
+                error.result = result_of(error.result)
+            raise
+
+    signature = inspect.signature(run).replace(return_annotation="Result")
+    analyse.__signature__ = signature  # type: ignore[attr-defined]
+    return analyse
+
+
+cyclic = _public(analysis.cyclic, analysis.cyclic)
+# In time the limit states of the column are watched for at every step.
+time_history = _public(functools.partial(analysis.time_history, all_watches), analysis.time_history)
