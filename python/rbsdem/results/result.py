@@ -9,7 +9,7 @@ import math
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, ParamSpec
+from typing import TYPE_CHECKING, Any, Concatenate, Literal, ParamSpec
 
 from rbsdem.checks.criteria import all_watches
 from rbsdem.checks.find import limit_states as find_limit_states
@@ -278,6 +278,10 @@ def _public(run: Callable[P, Response], documented: Callable[..., Response]) -> 
     return analyse
 
 
+def _watched(run: Callable[Concatenate[analysis.Watch, P], Response]) -> Callable[P, Response]:
+    """Return the analysis in time that watches for the limit states of its column."""
+    return functools.partial(run, all_watches)
+
+
 cyclic = _public(analysis.cyclic, analysis.cyclic)
-# In time the limit states of the column are watched for at every step.
-time_history = _public(functools.partial(analysis.time_history, all_watches), analysis.time_history)
+time_history = _public(_watched(analysis.time_history), analysis.time_history)
