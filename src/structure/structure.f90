@@ -5,8 +5,10 @@
 !>
 !> A structure does not change once it has been made, and every run on it shares it.
 module rbs_structure_structure
-   use rbs_base_error, only: error_type
+   use rbs_base_error, only: error_type, fatal_error, bad_input
+   use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
    use rbs_hysteresis_rule, only: spring_rules
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: spring_array
@@ -15,7 +17,7 @@ module rbs_structure_structure
    implicit none
    private
 
-   public :: structure_type, load_pattern, unknown_group
+   public :: structure_type, load_pattern, unknown_group, accelerate_unknowns
    public :: small, pdelta, finite
    public :: lateral, horizontal, vertical, top_axial, signals
 
@@ -101,31 +103,27 @@ module rbs_structure_structure
       procedure(press), deferred :: axial_forces
       procedure(assemble), deferred :: add_stiffness
       procedure(assemble), deferred :: add_geometric
-      !> Accelerations of the springs, for explicit steps
-      procedure(accelerate), deferred :: accelerations
-      !> What the lateral force and the acceleration of the ground do work on, per unit of time
-      procedure(find_speeds), deferred :: speeds
-      procedure(find_power), deferred :: power_of_loads
-      procedure(of_motion), deferred :: kinetic_energy
-      !> Potential of constant loads, zero where no spring is deformed [J]
-      procedure(of_position), deferred :: potential_energy
-      !> Displacement of the top along x [m]
-      procedure(of_position), deferred :: top_displacement
-      procedure(find_top_acceleration), deferred :: top_acceleration
       !> Absolute rotations of the bodies
       procedure(turn), deferred :: rotations
-      !> Axial force at a spring under loads, compression positive [N], and its rate under their slopes
-      procedure(press_spring), deferred :: axial_force
+      !> Potential of constant loads, zero where no spring is deformed [J]
+      procedure(of_position), deferred :: potential_energy
+      !> Rate of the axial force at a spring under the slopes of the loads, compression positive [N/s]
       procedure(press_spring), deferred :: axial_rate
       !> What the loads of a moment and the forces in it may accelerate a spring by, in size
       procedure(scale_acceleration), deferred :: acceleration_scale
       !> What rows hold besides what all structures have, and the values of one
       procedure(list_channels), deferred :: channels
       procedure(fill_values), deferred :: fill_row
-      !> Refuse loads in time that do nothing, or cannot be
-      procedure(check_acting), deferred :: check_loads
-      !> Refuse deformations, or velocities, that supports do not allow
-      procedure(check_values), deferred :: check_initial
+      ! What follows from these where rotations are small
+      procedure :: accelerations => accelerate_unknowns
+      procedure :: speeds
+      procedure :: power_of_loads
+      procedure :: kinetic_energy
+      procedure :: top_displacement
+      procedure :: top_acceleration
+      procedure :: axial_force
+      procedure :: check_loads
+      procedure :: check_initial
       procedure :: spring_of
       procedure :: add_ground
       procedure :: work_of
@@ -142,7 +140,7 @@ module rbs_structure_structure
          real(wp), intent(out), contiguous :: dd(:)
       end subroutine gather
 
-      subroutine spread_out(self, dd, dx)
+      pure subroutine spread_out(self, dd, dx)
          import :: structure_type, wp
          implicit none
          class(structure_type), intent(in) :: self
@@ -186,65 +184,12 @@ module rbs_structure_structure
          real(wp), intent(inout), contiguous :: band(:, :)
       end subroutine assemble
 
-      subroutine accelerate(self, d, v, load, axial, f, work, a, of_speeds)
-         import :: structure_type, wp
-         implicit none
-         class(structure_type), intent(in) :: self
-         !> Deformations of the springs and their velocities (springs), signals of the loads, axial forces
-         !> that do second-order work (see `axial_forces`; none where they do not)
-         real(wp), intent(in), contiguous :: d(:), v(:), load(:), axial(:)
-         !> Forces of springs and damping; see `forces` (springs)
-         real(wp), intent(inout), contiguous :: f(:)
-         !> (work_size)
-         real(wp), intent(inout), contiguous :: work(:)
-         !> Second derivatives of the deformations, mass damping included (springs)
-         real(wp), intent(out), contiguous :: a(:)
-         !> Rates of `speeds`, where rotations are small
-         real(wp), intent(out) :: of_speeds(2)
-      end subroutine accelerate
-
-      pure subroutine find_speeds(self, d, v, speed)
-         import :: structure_type, wp
-         implicit none
-         class(structure_type), intent(in) :: self
-         !> Deformations of the springs and their velocities (springs)
-         real(wp), intent(in), contiguous :: d(:), v(:)
-         !> Velocity of the top along x [m/s], momentum along x relative to the ground with its sign turned
-         !> [kg m/s]: power per lateral force and per acceleration of the ground
-         real(wp), intent(out) :: speed(2)
-      end subroutine find_speeds
-
-      !> Power of the loads, constant ones left out [W].
-      pure real(wp) function find_power(self, d, v, load)
-         import :: structure_type, wp
-         implicit none
-         class(structure_type), intent(in) :: self
-         real(wp), intent(in), contiguous :: d(:), v(:), load(:)
-      end function find_power
-
-      !> Energy of a motion relative to the ground [J].
-      pure real(wp) function of_motion(self, d, v)
-         import :: structure_type, wp
-         implicit none
-         class(structure_type), intent(in) :: self
-         real(wp), intent(in), contiguous :: d(:), v(:)
-      end function of_motion
-
       pure real(wp) function of_position(self, d)
          import :: structure_type, wp
          implicit none
          class(structure_type), intent(in) :: self
          real(wp), intent(in), contiguous :: d(:)
       end function of_position
-
-      !> Acceleration of the top along x, relative to the ground [m/s2].
-      pure real(wp) function find_top_acceleration(self, d, v, a)
-         import :: structure_type, wp
-         implicit none
-         class(structure_type), intent(in) :: self
-         !> Deformations of the springs and their derivatives (springs)
-         real(wp), intent(in), contiguous :: d(:), v(:), a(:)
-      end function find_top_acceleration
 
       pure subroutine turn(self, d, rotation)
          import :: structure_type, wp
@@ -261,7 +206,7 @@ module rbs_structure_structure
          implicit none
          class(structure_type), intent(in) :: self
          integer, intent(in) :: spring
-         !> Signals of the loads, or their slopes
+         !> Slopes of the loads, or loads besides the constant ones
          real(wp), intent(in) :: load(:)
       end function press_spring
 
@@ -274,26 +219,6 @@ module rbs_structure_structure
          type(spring_array), intent(in) :: springs
          real(wp), intent(in) :: load(:)
       end function scale_acceleration
-
-      subroutine check_acting(self, acts, error)
-         import :: structure_type, error_type, signals
-         implicit none
-         class(structure_type), intent(in) :: self
-         !> Which loads act (signals)
-         logical, intent(in) :: acts(signals)
-         type(error_type), allocatable, intent(inout) :: error
-      end subroutine check_acting
-
-      subroutine check_values(self, name, value, error)
-         import :: structure_type, error_type, wp
-         implicit none
-         class(structure_type), intent(in) :: self
-         !> For messages
-         character(len=*), intent(in) :: name
-         !> (springs)
-         real(wp), intent(in), contiguous :: value(:)
-         type(error_type), allocatable, intent(inout) :: error
-      end subroutine check_values
 
       pure subroutine list_channels(self, contents, channel)
          import :: structure_type, row_contents, channel_type
@@ -318,6 +243,129 @@ module rbs_structure_structure
    end interface
 
 contains
+
+   !> Accelerations of the springs, for explicit steps.
+   subroutine accelerate_unknowns(self, d, v, load, axial, f, work, a, of_speeds)
+      class(structure_type), intent(in) :: self
+      !> Deformations of the springs and their velocities (springs), signals of the loads, axial forces
+      !> that do second-order work (see `axial_forces`; none where they do not)
+      real(wp), intent(in), contiguous :: d(:), v(:), load(:), axial(:)
+      !> Forces of springs and damping; see `forces` (springs)
+      real(wp), intent(inout), contiguous :: f(:)
+      !> (work_size), here at least the number of unknowns
+      real(wp), intent(inout), contiguous :: work(:)
+      !> Second derivatives of the deformations, mass damping included (springs)
+      real(wp), intent(out), contiguous :: a(:)
+      !> Rates of `speeds`, mass damping left out
+      real(wp), intent(out) :: of_speeds(2)
+      integer :: i
+
+      associate (x => work(:self%unknowns))
+         call self%forces(d, load, axial, f, x)
+         call self%add_ground(load, x)
+         do i = 1, self%unknowns
+            x(i) = merge(0.0_wp, x(i)/self%inertias(i), self%is_held(i))
+         end do
+         call self%spring_rates(x, a)
+         of_speeds = [self%work_of(lateral, x), self%work_of(horizontal, x)]
+      end associate
+      if (self%mass_damping > 0.0_wp) a = a - self%mass_damping*v
+   end subroutine accelerate_unknowns
+
+   !> What the lateral force and the acceleration of the ground do work on, per unit of time: velocity of the
+   !> top along x [m/s], momentum along x relative to the ground with its sign turned [kg m/s].
+   pure subroutine speeds(self, d, v, speed)
+      class(structure_type), intent(in) :: self
+      !> Deformations of the springs and their velocities (springs)
+      real(wp), intent(in), contiguous :: d(:), v(:)
+      real(wp), intent(out) :: speed(2)
+      real(wp) :: x(self%unknowns)
+
+      call self%unknown_rates(v(:size(d)), x)
+      speed = [self%work_of(lateral, x), self%work_of(horizontal, x)]
+   end subroutine speeds
+
+   !> Power of the loads, constant ones left out [W].
+   pure real(wp) function power_of_loads(self, d, v, load) result(watt)
+      class(structure_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:), load(:)
+      real(wp) :: x(self%unknowns)
+      integer :: j
+
+      call self%unknown_rates(v(:size(d)), x)
+      watt = 0.0_wp
+      do j = 1, signals
+         watt = watt + load(j)*self%work_of(j, x)
+      end do
+   end function power_of_loads
+
+   !> Energy of a motion relative to the ground [J].
+   pure real(wp) function kinetic_energy(self, d, v) result(energy)
+      class(structure_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:)
+      real(wp) :: x(self%unknowns)
+
+      call self%unknown_rates(v(:size(d)), x)
+      energy = 0.5_wp*sum(self%inertias*x**2)
+   end function kinetic_energy
+
+   !> Displacement of the top along x [m].
+   pure real(wp) function top_displacement(self, d) result(x)
+      class(structure_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+
+      x = inner_product(size(d), self%arm, d)
+   end function top_displacement
+
+   !> Acceleration of the top along x, relative to the ground [m/s2].
+   pure real(wp) function top_acceleration(self, d, v, a) result(acceleration)
+      class(structure_type), intent(in) :: self
+      !> Deformations of the springs and their derivatives (springs)
+      real(wp), intent(in), contiguous :: d(:), v(:), a(:)
+
+      acceleration = inner_product(min(size(d), size(v)), self%arm, a)
+   end function top_acceleration
+
+   !> Axial force at a spring under loads, compression positive [N].
+   pure real(wp) function axial_force(self, spring, load)
+      class(structure_type), intent(in) :: self
+      integer, intent(in) :: spring
+      real(wp), intent(in) :: load(:)
+
+      axial_force = self%spring(spring)%axial_load + self%axial_rate(spring, load)
+   end function axial_force
+
+   !> Refuse loads in time that do nothing.
+   subroutine check_loads(self, acts, error)
+      class(structure_type), intent(in) :: self
+      !> Which loads act (signals)
+      logical, intent(in) :: acts(signals)
+      type(error_type), allocatable, intent(inout) :: error
+      character(len=*), parameter :: name(signals) = [character(len=21) :: 'force', 'ground_acceleration', &
+                                                      'vertical_acceleration', 'axial_load']
+      integer :: j
+
+      do j = 1, signals
+         if (.not. acts(j) .or. self%pattern(j)%last >= self%pattern(j)%first) cycle
+         if (self%kinematics /= small .and. (j == vertical .or. j == top_axial)) cycle
+         call fatal_error(error, bad_input, trim(name(j))//': it does nothing on this structure; remove it')
+         return
+      end do
+   end subroutine check_loads
+
+   !> Refuse deformations at the start, or velocities, that the structure cannot have.
+   subroutine check_initial(self, name, value, error)
+      class(structure_type), intent(in) :: self
+      !> For messages
+      character(len=*), intent(in) :: name
+      !> (springs)
+      real(wp), intent(in), contiguous :: value(:)
+      type(error_type), allocatable, intent(inout) :: error
+
+      if (allocated(error) .or. size(value) == size(self%place)) return
+      call fatal_error(error, bad_input, name//': '//to_text(size(value))//' values for '// &
+                       to_text(size(self%place))//' springs; give one for each')
+   end subroutine check_initial
 
    !> The spring of a kind that comes in a place among those of the kind; 0 if there are not so many.
    pure integer function spring_of(self, kind, number) result(i)

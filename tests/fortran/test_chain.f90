@@ -303,8 +303,8 @@ contains
       call check_close(error, x(2*n - 1) + column%upper(n)*x(2*n), dot_product(column%arm, v), 0.0_wp, &
                        1.0e-14_wp, 'velocity of the top')
       call symmetric_mass(column, mass)
-      call check_close(error, column%kinetic_energy(0.0_wp*v, v), 0.5_wp*dot_product(v, matmul(mass, v)), 1.0e-13_wp, &
-                       0.0_wp, 'kinetic energy')
+      call check_close(error, column%kinetic_energy(0.0_wp*v, v), 0.5_wp*dot_product(v, matmul(mass, v)), &
+                       1.0e-13_wp, 0.0_wp, 'kinetic energy')
    end subroutine check_bodies
 
    !> The potential of the axial load alone is the load times the rise of the top.

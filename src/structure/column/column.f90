@@ -21,8 +21,8 @@ module rbs_structure_column_column
    use rbs_hysteresis_interaction_joints, only: opening_of, rest_of
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_spring_place, only: flexure
-   use rbs_structure_structure, only: structure_type, small, pdelta, finite, lateral, horizontal, &
-                                      vertical, top_axial, signals
+   use rbs_structure_structure, only: structure_type, accelerate_unknowns, small, pdelta, finite, lateral, &
+                                      horizontal, vertical, top_axial, signals
    implicit none
    private
 
@@ -91,7 +91,6 @@ module rbs_structure_column_column
       procedure :: unknown_rates
       procedure :: forces
       procedure :: axial_forces
-      procedure :: axial_force
       procedure :: axial_rate
       procedure :: add_stiffness
       procedure :: add_geometric
@@ -102,7 +101,6 @@ module rbs_structure_column_column
       procedure :: potential_energy
       procedure :: top_displacement
       procedure :: top_height
-      procedure :: top_acceleration
       procedure :: rotations
       procedure :: angular_momentum
       procedure :: acceleration_scale
@@ -125,7 +123,7 @@ contains
    end subroutine spring_rates
 
    !> Changes of the displacements of the bodies from those of the joints.
-   subroutine unknown_rates(self, dd, dx)
+   pure subroutine unknown_rates(self, dd, dx)
       class(column_type), intent(in) :: self
       real(wp), intent(in), contiguous :: dd(:)
       real(wp), intent(out), contiguous :: dx(:)
@@ -159,17 +157,6 @@ contains
       if (self%held) axial(2*n) = 0.0_wp
    end subroutine axial_forces
 
-   !> Axial force at a spring from axial load, weight and vertical motion, compression positive [N].
-   pure real(wp) function axial_force(self, spring, load)
-      class(column_type), intent(in) :: self
-      integer, intent(in) :: spring
-      real(wp), intent(in) :: load(:)
-      integer :: i
-
-      i = self%place(spring)%index
-      axial_force = self%compression(i) + load(top_axial) + load(vertical)*self%lifted_joint(i)
-   end function axial_force
-
    !> Rate of the axial force at a spring under the slopes of the loads [N/s].
    pure real(wp) function axial_rate(self, spring, load)
       class(column_type), intent(in) :: self
@@ -202,38 +189,26 @@ contains
       class(column_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:), v(:), load(:), axial(:)
       real(wp), intent(inout), contiguous :: f(:)
-      !> Forces on the bodies, their accelerations, second-order moments
+      !> Accelerations of the bodies along x and in rotation, second-order moments
       real(wp), intent(inout), contiguous :: work(:)
       real(wp), intent(out), contiguous :: a(:)
       real(wp), intent(out) :: of_speeds(2)
-      integer :: i, m, n
+      integer :: m, n
 
+      if (self%opens) then
+         call accelerate_unknowns(self, d, v, load, axial, f, work, a, of_speeds)
+         return
+      end if
       n = self%n
       m = self%unknowns
-      if (self%opens) then
-         call self%forces(d, load, axial, f, work(:m))
-         associate (force => work(:m), x => work(m + 1:2*m))
-            do i = 1, n
-               x(2*i - 1) = force(2*i - 1)*self%inverse_mass(i) - load(horizontal)
-               x(2*i) = force(2*i)*self%inverse_inertia(i)
-               x(2*n + i) = force(2*n + i)*self%inverse_mass(i) - load(vertical)
-            end do
-            call self%spring_rates(x, a)
-            of_speeds(lateral) = x(2*n - 1) + self%upper(n)*x(2*n)
-         end associate
-      else
-         if (size(axial) > 0) then
-            call second_order_forces(n, self%length, axial, d, f, 1, work(2*m + 1:2*m + n))
-         else
-            work(2*m + 1:2*m + n) = 0.0_wp
-         end if
-         associate (along => work(m + 1:m + n), turning => work(m + n + 1:2*m))
-            call chain_accelerations(n, self%lower, self%upper, self%inverse_mass, self%inverse_inertia, f, &
-                                     work(2*m + 1:), load(lateral), load(horizontal), along, turning, a)
-            of_speeds(lateral) = along(n) + self%upper(n)*turning(n)
-         end associate
-      end if
-      of_speeds(horizontal) = -(load(lateral) - f(1) - self%mass_above(1)*load(horizontal))
+      associate (along => work(:n), turning => work(n + 1:m), moment => work(m + 1:m + n))
+         moment = 0.0_wp
+         if (size(axial) > 0) call second_order_forces(n, self%length, axial, d, f, 1, moment)
+         call chain_accelerations(n, self%lower, self%upper, self%inverse_mass, self%inverse_inertia, f, &
+                                  moment, load(lateral), load(horizontal), along, turning, a)
+         of_speeds = [along(n) + self%upper(n)*turning(n), &
+                      -(load(lateral) - f(1) - self%mass_above(1)*load(horizontal))]
+      end associate
       if (self%mass_damping > 0.0_wp) a = a - self%mass_damping*v
    end subroutine accelerations
 
@@ -353,13 +328,6 @@ contains
       end if
       if (self%opens) y = y + sum(d(2*n + 1:))
    end function top_height
-
-   pure real(wp) function top_acceleration(self, d, v, a) result(acceleration)
-      class(column_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:), v(:), a(:)
-
-      acceleration = inner_product(min(size(d), size(v)), self%arm, a)
-   end function top_acceleration
 
    pure subroutine rotations(self, d, rotation)
       class(column_type), intent(in) :: self

@@ -250,7 +250,7 @@ contains
       column%inverse_inertia = 1.0_wp/column%inertia
       if (column%held) column%inverse_inertia(n) = 0.0_wp
       column%axial_count = 2*n
-      column%work_size = 2*m + n
+      column%work_size = 5*n
       column%base_spring = [column%at(shear, 1)]
       column%base_factor = [1.0_wp]
       allocate (column%group(merge(3, 2, column%opens)))
