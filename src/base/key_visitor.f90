@@ -1,8 +1,9 @@
 !> How a record presents its keys: its procedure `visit` names each component once, with unit, bounds and
-!> meaning, to a visitor. The visitor does one of four things:
+!> meaning, to a visitor. The visitor does one of five things:
 !>
 !>     collect   makes the list of keys with their defaults, for documentation, hints and the reader
 !>     put       sets one component by name
+!>     take      sets all numbers in their order; those that are not given stay as they are
 !>     check     adds a message for each value that is missing or out of bounds
 !>     list      lists the values that differ from the defaults, for the writer
 module rbs_base_key_visitor
@@ -19,7 +20,7 @@ module rbs_base_key_visitor
 
    public :: key_visitor, entry_type, visited_record
 
-   integer, parameter :: collecting = 1, putting = 2, checking = 3, listing = 4
+   integer, parameter :: collecting = 1, putting = 2, checking = 3, listing = 4, taking = 5
 
    !> A record whose components are the values of keys.
    type, abstract :: visited_record
@@ -40,7 +41,7 @@ module rbs_base_key_visitor
 
    type :: key_visitor
       !> Name of the record in messages: 'column'
-      character(len=16) :: group = ''
+      character(len=:), allocatable :: group
       !> The list of keys
       integer :: count = 0
       type(key_type), allocatable :: keys(:)
@@ -50,25 +51,28 @@ module rbs_base_key_visitor
       !> Whether all numbers passed the last check
       logical :: sound = .true.
       integer, private :: mode = collecting
-      !> The value to put
+      !> The value to put, or the values to take, and how many have been taken
       character(len=key_length), private :: wanted = ''
       real(wp), allocatable, private :: number(:)
+      integer, private :: taken = 0
       character(len=:), allocatable, private :: text
       type(message_list), private :: messages
    contains
       procedure :: collect
       procedure :: put
+      procedure :: take
       procedure :: start_check
       procedure :: end_check
       procedure :: list
-      procedure, private :: real_key, integer_key, logical_key, text_key, long_text_key
+      procedure, private :: real_key, integer_key, logical_key, choice_key, text_key, long_text_key
       procedure, private :: real_list_key, integer_list_key
       !> `call visitor%parameters(keys, value)`, the parameters of a rule
       procedure :: parameters
       !> `call visitor%key(name, component, unit, bound, meaning)`
       generic :: key => real_key, integer_key, logical_key, real_list_key, integer_list_key
-      !> `call visitor%word(name, component, meaning, choices)`
-      generic :: word => text_key
+      !> `call visitor%word(name, component, meaning, choices)`; the component is the word, or its place among
+      !> the choices
+      generic :: word => text_key, choice_key
       !> `call visitor%long_text(name, component, meaning)`
       generic :: long_text => long_text_key
    end type key_visitor
@@ -105,7 +109,7 @@ contains
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: group
 
-      self%group = group
+      self%group = trim(group)
       self%mode = collecting
       self%count = 0
       if (.not. allocated(self%keys)) allocate (self%keys(24))
@@ -124,12 +128,22 @@ contains
       if (present(text)) self%text = text
    end subroutine put
 
+   !> The next visit sets the numbers of a record in their order.
+   subroutine take(self, number)
+      class(key_visitor), intent(inout) :: self
+      real(wp), intent(in) :: number(:)
+
+      self%mode = taking
+      self%number = number
+      self%taken = 0
+   end subroutine take
+
    !> The next visit checks values.
    subroutine start_check(self, group)
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: group
 
-      self%group = group
+      self%group = trim(group)
       self%mode = checking
       self%sound = .true.
       self%messages = message_list()
@@ -196,6 +210,20 @@ contains
       l = abs(x) > 0.0_wp
    end subroutine logical_key
 
+   !> A word by its place among the choices.
+   subroutine choice_key(self, name, place, meaning, choices)
+      class(key_visitor), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer, intent(inout) :: place
+      character(len=*), intent(in) :: meaning, choices
+      real(wp) :: x
+
+      x = place
+      call one_number(self, key_type(name=name, kind=word_kind, default=x, choices=choices, &
+                                     meaning=meaning), x)
+      place = nint(x)
+   end subroutine choice_key
+
    !> The parameters of a rule, a value for each of its keys; a word is its place among the choices. The rule
    !> checks them.
    subroutine parameters(self, keys, value)
@@ -220,8 +248,17 @@ contains
          call append(self, key)
       case (putting)
          if (key%name == self%wanted) x = self%number(1)
+      case (taking)
+         self%taken = self%taken + 1
+         if (is_given(self%number(self%taken))) x = self%number(self%taken)
       case (checking)
-         call check_number(x, trim(self%group), key, self%messages, self%sound)
+         if (key%kind /= word_kind) then
+            call check_number(x, self%group, key, self%messages, self%sound)
+         else if (choice_name(key, nint(x)) == '') then
+            self%sound = .false.
+            call self%messages%add(self%group//': '//trim(key%name)//' is not known; it is one of '// &
+                                   trim(key%choices))
+         end if
       case (listing)
          if (is_given(x)) call list_numbers(self, key%name, [x])
       case default                                  ! no other mode
@@ -279,7 +316,7 @@ contains
          one%optional = .false.
          do i = 1, size(x)
             if (size(x) > 1) one%name = trim(key%name)//'('//to_text(i)//')'
-            call check_number(x(i), trim(self%group), one, self%messages, self%sound)
+            call check_number(x(i), self%group, one, self%messages, self%sound)
          end do
       case default                                  ! no other mode
       end select
@@ -305,7 +342,7 @@ contains
       value = trim(text)
       call one_text(self, key, value)
       if (len(value) > len(text)) then
-         call self%messages%add(trim(self%group)//': '//name//" = '"//value(:min(40, len(value)))// &
+         call self%messages%add(self%group//': '//name//" = '"//value(:min(40, len(value)))// &
                                 "' has "//to_text(len(value))//' characters; at most '//to_text(len(text))// &
                                 ' are allowed')
       end if
@@ -354,7 +391,7 @@ contains
       if (choice_place(key, word) > 0) return
       self%sound = .false.
       name = [(choice_name(key, i), i=1, size(name))]
-      call self%messages%add(trim(self%group)//': '//trim(key%name)//" = '"//trim(word)// &
+      call self%messages%add(self%group//': '//trim(key%name)//" = '"//trim(word)// &
                              "' is not known; it is one of "//trim(choice_list(key))//" (did you mean '"// &
                              nearest_name(word, name(:count(name /= '')))//"'?)")
    end subroutine check_word

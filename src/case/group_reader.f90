@@ -188,14 +188,16 @@ contains
       !> From `find`
       integer, intent(in) :: place
       real(wp), intent(in) :: number(:)
-      real(wp) :: si(size(number))
 
       if (place == ignored) return
-      si = number
-      if (.not. self%units%is_si()) then
-         si = self%units%into_si(number, unit_in_group(self%keys(place)%unit, self%group))
-      end if
-      call self%visitor%put(self%keys(place)%name, number=si)
+      associate (key => self%keys(place))
+         if (self%units%is_si()) then
+            call self%visitor%put(key%name, number=number)
+         else
+            call self%visitor%put(key%name, number=self%units%into_si(number, &
+                                                                       unit_in_group(key%unit, self%group)))
+         end if
+      end associate
       call self%visit_open()
    end subroutine put_numbers
 

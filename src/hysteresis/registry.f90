@@ -1,17 +1,18 @@
 !> All rules by name. A new rule needs a file of its own, and a line here.
 module rbs_hysteresis_registry
+   use rbs_base_key_visitor, only: key_visitor
    use rbs_base_keys, only: key_type
    use rbs_hysteresis_layered_layered_joint, only: layered_rule
    use rbs_hysteresis_rule, only: rule_type, rule_length, places_length, in_shear, in_flexure, in_axial, &
                                   in_layer
-   use rbs_hysteresis_rules_bilinear, only: bilinear_rule, bilinear_keys
-   use rbs_hysteresis_rules_compression, only: compression_rule, compression_keys
-   use rbs_hysteresis_rules_concrete, only: concrete_rule, concrete_keys
-   use rbs_hysteresis_rules_elastic, only: elastic_rule, elastic_keys
-   use rbs_hysteresis_rules_peak_oriented, only: peak_oriented_rule, capped_keys
-   use rbs_hysteresis_rules_pinching, only: pinching_rule, pinching_keys
-   use rbs_hysteresis_rules_steel, only: steel_rule, steel_keys
-   use rbs_hysteresis_rules_takeda, only: takeda_rule, takeda_keys
+   use rbs_hysteresis_rules_bilinear, only: bilinear_rule
+   use rbs_hysteresis_rules_compression, only: compression_rule
+   use rbs_hysteresis_rules_concrete, only: concrete_rule
+   use rbs_hysteresis_rules_elastic, only: elastic_rule
+   use rbs_hysteresis_rules_peak_oriented, only: peak_oriented_rule
+   use rbs_hysteresis_rules_pinching, only: pinching_rule
+   use rbs_hysteresis_rules_steel, only: steel_rule
+   use rbs_hysteresis_rules_takeda, only: takeda_rule
    implicit none
    private
 
@@ -27,40 +28,37 @@ module rbs_hysteresis_registry
 
 contains
 
-   !> A rule without parameters yet, its keys, and where springs of this rule may be used: some of the words
-   !> of `rbs_hysteresis_rule`, separated by blanks. If the name is not known, no rule, no keys and blanks.
-   subroutine new_rule(name, rule, keys, places)
+   !> A rule without parameters yet, and where springs of this rule may be used: some of the words of
+   !> `rbs_hysteresis_rule`, separated by blanks. If the name is not known, no rule and blanks.
+   subroutine new_rule(name, rule, places)
       character(len=*), intent(in) :: name
       class(rule_type), allocatable, intent(out) :: rule
-      type(key_type), allocatable, intent(out) :: keys(:)
       character(len=places_length), intent(out), optional :: places
       character(len=places_length) :: where_used
 
       where_used = ''
       select case (name)
-      case ('elastic');       call enter(elastic_rule(), elastic_keys, anywhere)
-      case ('bilinear');      call enter(bilinear_rule(), bilinear_keys, anywhere)
-      case ('takeda');        call enter(takeda_rule(), takeda_keys, in_joints)
-      case ('compression');   call enter(compression_rule(), compression_keys, across_joints)
-      case ('peak_oriented'); call enter(peak_oriented_rule(), capped_keys, in_joints)
-      case ('pinching');      call enter(pinching_rule(), pinching_keys, in_joints)
-      case ('concrete');      call enter(concrete_rule(), concrete_keys, across_joints)
-      case ('steel');         call enter(steel_rule(), steel_keys, anywhere)
+      case ('elastic');       call enter(elastic_rule(), anywhere)
+      case ('bilinear');      call enter(bilinear_rule(), anywhere)
+      case ('takeda');        call enter(takeda_rule(), in_joints)
+      case ('compression');   call enter(compression_rule(), across_joints)
+      case ('peak_oriented'); call enter(peak_oriented_rule(), in_joints)
+      case ('pinching');      call enter(pinching_rule(), in_joints)
+      case ('concrete');      call enter(concrete_rule(), across_joints)
+      case ('steel');         call enter(steel_rule(), anywhere)
       ! Its layers are springs with parameters of their own.
-      case ('layered');       call enter(layered_rule(), [key_type ::], in_flexure)
-      case default;           allocate (keys(0))
+      case ('layered');       call enter(layered_rule(), in_flexure)
+      case default
       end select
       if (present(places)) places = where_used
 
    contains
 
-      subroutine enter(new, list, used)
+      subroutine enter(new, used)
          class(rule_type), intent(in) :: new
-         type(key_type), intent(in) :: list(:)
          character(len=*), intent(in) :: used
 
          allocate (rule, source=new)
-         keys = list
          where_used = used
       end subroutine enter
    end subroutine new_rule
@@ -70,8 +68,12 @@ contains
       character(len=*), intent(in) :: name
       type(key_type), allocatable, intent(out) :: keys(:)
       class(rule_type), allocatable :: rule
+      type(key_visitor) :: v
 
-      call new_rule(name, rule, keys)
+      call new_rule(name, rule)
+      call v%collect(name)
+      if (allocated(rule)) call rule%visit(v)
+      keys = v%keys(:v%count)
    end subroutine keys_of
 
    !> Whether springs of a rule may be used in a place, one of the words of `rbs_hysteresis_rule`.
@@ -86,9 +88,8 @@ contains
       character(len=*), intent(in) :: name
       character(len=places_length) :: places
       class(rule_type), allocatable :: rule
-      type(key_type), allocatable :: keys(:)
 
-      call new_rule(name, rule, keys, places)
+      call new_rule(name, rule, places)
    end function places_of
 
 end module rbs_hysteresis_registry

@@ -2,6 +2,7 @@
 !> changes along the path of a spring is the memory of that spring.
 module rbs_hysteresis_rule
    use rbs_base_error, only: message_list
+   use rbs_base_key_visitor, only: key_visitor, visited_record
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
@@ -31,15 +32,15 @@ module rbs_hysteresis_rule
       procedure :: serialize
    end type rule_memory
 
-   !> The parameters of a spring. They do not change once they are set.
-   type, abstract :: rule_type
+   !> The parameters of a spring, which do not change once they are prepared. `visit` presents their keys.
+   type, extends(visited_record), abstract :: rule_type
       !> Stiffness of the virgin spring, of the stiffer side if they differ [N/m or N m/rad]
       real(wp) :: initial_stiffness = 0.0_wp
       !> Whether the spring decays with the work of the flexural spring of its joint
       logical :: uses_flexural_work = .false.
    contains
-      procedure(set_interface), deferred :: set
-      procedure :: check
+      procedure :: take
+      procedure :: check_relations
       procedure :: prepare
       procedure(start_interface), deferred :: start
       procedure(next_interface), deferred :: next
@@ -64,14 +65,6 @@ module rbs_hysteresis_rule
    end type spring_rules
 
    abstract interface
-      !> Set the parameters, in the order of the keys of the rule.
-      pure subroutine set_interface(self, value)
-         import :: rule_type, wp
-         implicit none
-         class(rule_type), intent(inout) :: self
-         real(wp), intent(in) :: value(:)
-      end subroutine set_interface
-
       !> The memory of a virgin spring, and its branch.
       subroutine start_interface(self, memory, branch)
          import :: rule_type, rule_memory, segment
@@ -138,19 +131,29 @@ contains
       end if
    end subroutine copy_memory
 
+   !> Take the parameters in the order of their keys; one that is not given has its default.
+   subroutine take(self, value)
+      class(rule_type), intent(inout) :: self
+      real(wp), intent(in) :: value(:)
+      type(key_visitor) :: v
+
+      call v%take(value)
+      call self%visit(v)
+   end subroutine take
+
    !> Add messages on relations between parameters that are each within their bounds. A rule without such
    !> relations inherits this procedure.
-   subroutine check(self, name, messages)
-      class(rule_type), intent(in) :: self
+   subroutine check_relations(self, name, messages)
+      class(rule_type), intent(inout) :: self
       !> Name of the spring: 'shear spring of joint 2'
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
 
       if (.false.) call messages%add(name//to_text(self%initial_stiffness))
-   end subroutine check
+   end subroutine check_relations
 
    !> Compute what follows from the parameters alone, once they have been checked.
-   pure subroutine prepare(self)
+   subroutine prepare(self)
       class(rule_type), intent(inout) :: self
 
       if (.false.) self%uses_flexural_work = .false.

@@ -3,10 +3,9 @@
 !> Deformation is slip [m], rotation [rad] or opening [m], force is shear [N], moment [N m] or axial
 !> force [N].
 module rbs_hysteresis_spring_record
-   use rbs_base_check, only: is_given, check_finite, check_name
+   use rbs_base_check, only: check_finite, check_name
    use rbs_base_constants, only: unset
    use rbs_base_error, only: message_list
-   use rbs_base_keys, only: key_type, word_kind, check_number, choice_name
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text, list_of
    use rbs_hysteresis_layered_layered_joint, only: layered_rule
@@ -91,52 +90,24 @@ contains
       layer%line = self%layer_line(i)
    end function layer
 
-   !> The parameters; those that are not given have the defaults of the rule.
-   pure subroutine whole_values(self, keys, value)
-      class(spring_record), intent(in) :: self
-      type(key_type), intent(in) :: keys(:)
-      real(wp), intent(out) :: value(most_parameters)
-      integer :: i
-
-      value = self%value
-      do i = 1, size(keys)
-         if (.not. is_given(value(i))) value(i) = keys(i)%default
-      end do
-   end subroutine whole_values
-
    !> Add a message for every parameter that the rule does not allow.
    recursive subroutine validate(self, name, messages)
       class(spring_record), intent(in) :: self
       !> Name of the spring: 'shear spring of joint 2'
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
-      type(key_type), allocatable :: keys(:)
       class(rule_type), allocatable :: rule
-      real(wp) :: value(most_parameters)
-      integer :: i, place
-      logical :: ok
+      integer :: place
+      logical :: sound
 
-      call new_rule(self%rule, rule, keys)
+      call new_rule(self%rule, rule)
       if (.not. allocated(rule)) then
          call check_name(self%rule, rule_names, name//': rule', messages, place)
          return
       end if
-      call whole_values(self, keys, value)
-      ok = .true.
-      do i = 1, size(keys)
-         if (keys(i)%kind == word_kind) then
-            if (choice_name(keys(i), nint(value(i))) /= '') cycle
-            call messages%add(name//': '//trim(keys(i)%name)//' is not known; it is one of '// &
-                              trim(keys(i)%choices))
-            ok = .false.
-         else
-            call check_number(value(i), name, keys(i), messages, ok)
-         end if
-      end do
-      if (ok) then
-         call rule%set(value)
-         call rule%check(name, messages)
-      end if
+      call rule%take(self%value)
+      call rule%check(name, messages, sound)
+      if (sound) call rule%check_relations(name, messages)
       if (self%rule == 'layered') then
          call validate_layers(self, name, messages)
       else if (allocated(self%y)) then
@@ -237,12 +208,9 @@ contains
    recursive subroutine make(self, rule)
       class(spring_record), intent(in) :: self
       class(rule_type), allocatable, intent(out) :: rule
-      type(key_type), allocatable :: keys(:)
-      real(wp) :: value(most_parameters)
 
-      call new_rule(self%rule, rule, keys)
-      call whole_values(self, keys, value)
-      call rule%set(value)
+      call new_rule(self%rule, rule)
+      call rule%take(self%value)
       select type (rule)
       type is (layered_rule)
          call make_layers(self, rule)

@@ -4,6 +4,7 @@
 !> event to event.
 module rbs_hysteresis_layered_layered_joint
    use rbs_base_constants, only: no_stiffness, unbounded
+   use rbs_base_key_visitor, only: key_visitor
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_hysteresis_layered_fibre_path, only: choose_branches, go
@@ -26,7 +27,7 @@ module rbs_hysteresis_layered_layered_joint
       type(rule_slot), allocatable :: rule(:)
       integer, allocatable :: rule_of(:)
    contains
-      procedure :: set
+      procedure :: visit
       procedure :: prepare
       procedure :: start
       procedure :: next
@@ -35,15 +36,16 @@ module rbs_hysteresis_layered_layered_joint
 contains
 
    !> The rule has no parameters of its own.
-   pure subroutine set(self, value)
+   subroutine visit(self, v)
       class(layered_rule), intent(inout) :: self
-      real(wp), intent(in) :: value(:)
+      type(key_visitor), intent(inout) :: v
 
-      self%uses_flexural_work = size(value) < 0
-   end subroutine set
+      if (.false.) call v%list()
+      if (.false.) self%uses_flexural_work = .false.
+   end subroutine visit
 
    !> The rotational stiffness with all layers uncracked.
-   pure subroutine prepare(self)
+   subroutine prepare(self)
       class(layered_rule), intent(inout) :: self
       real(wp) :: k(size(self%y))
       integer :: i

@@ -15,44 +15,17 @@ module rbs_hysteresis_rules_backbone_parameters
    use rbs_base_error, only: message_list
    use rbs_base_text, only: to_text
    use rbs_base_check, only: is_given
-   use rbs_base_keys, only: key_type, above_zero, not_negative, force, deformation
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: bound_type, above_zero, not_negative, force, deformation
    implicit none
    private
 
-   public :: backbone_parameters, backbone_keys, other_side_keys, from_values
+   public :: backbone_parameters
 
    character(len=*), parameter :: as_positive = 'the same on the negative side; without it as on the positive'
 
    !> Slopes this close to each other are the same.
    real(wp), parameter :: round_off = 1.0e-9_wp
-
-   !> The keys of one side; the optional ones have no default.
-   type(key_type), parameter :: backbone_keys(9) = [ &
-      key_type('d_y', unit=deformation, bound=above_zero, meaning='yield deformation'), &
-      key_type('f_y', unit=force, bound=above_zero, meaning='yield force'), &
-      key_type('d_cap', unit=deformation, bound=above_zero, meaning='deformation at the cap, from d_y on'), &
-      key_type('f_cap', unit=force, bound=above_zero, meaning='largest force, from f_y on'), &
-      key_type('d_pc', unit=deformation, bound=above_zero, &
-               meaning='from the cap along the softening line to where it would have no force left'), &
-      key_type('f_res', unit=force, bound=not_negative, default=0.0_wp, &
-               meaning='residual force, below f_y, which softening does not fall below'), &
-      key_type('d_u', unit=deformation, bound=above_zero, optional=.true., &
-               meaning='deformation beyond which the force falls to zero; without it there is none'), &
-      key_type('d_c', unit=deformation, bound=not_negative, default=0.0_wp, &
-               meaning='cracking deformation; 0: elastic up to yield'), &
-      key_type('f_c', unit=force, bound=not_negative, default=0.0_wp, meaning='cracking force')]
-
-   !> The same for the negative side: positive values, by default those of the positive side.
-   type(key_type), parameter :: other_side_keys(9) = [ &
-      key_type('d_y_neg', unit=deformation, bound=above_zero, optional=.true., meaning=as_positive), &
-      key_type('f_y_neg', unit=force, bound=above_zero, optional=.true., meaning=as_positive), &
-      key_type('d_cap_neg', unit=deformation, bound=above_zero, optional=.true., meaning=as_positive), &
-      key_type('f_cap_neg', unit=force, bound=above_zero, optional=.true., meaning=as_positive), &
-      key_type('d_pc_neg', unit=deformation, bound=above_zero, optional=.true., meaning=as_positive), &
-      key_type('f_res_neg', unit=force, bound=not_negative, optional=.true., meaning=as_positive), &
-      key_type('d_u_neg', unit=deformation, bound=above_zero, optional=.true., meaning=as_positive), &
-      key_type('d_c_neg', unit=deformation, bound=not_negative, optional=.true., meaning=as_positive), &
-      key_type('f_c_neg', unit=force, bound=not_negative, optional=.true., meaning=as_positive)]
 
    type :: backbone_parameters
       !> Cracking point [m], [N]; zero: uncracked from the start, elastic up to yield
@@ -68,19 +41,65 @@ module rbs_hysteresis_rules_backbone_parameters
       !> Deformation beyond which the force drops to zero [m]; `unset`: none
       real(wp) :: d_u = unset
    contains
+      procedure :: visit
+      procedure :: completed
       procedure :: check
       procedure :: stiffness
    end type backbone_parameters
 
 contains
 
-   !> The parameters of a side from their values in the order of `backbone_keys`.
-   pure type(backbone_parameters) function from_values(value) result(side)
-      real(wp), intent(in) :: value(:)
+   !> The keys of a side. All of those of the negative side are optional and have a suffix.
+   subroutine visit(self, v, negative)
+      class(backbone_parameters), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+      logical, intent(in) :: negative
 
-      side = backbone_parameters(d_y=value(1), f_y=value(2), d_cap=value(3), f_cap=value(4), d_pc=value(5), &
-                                 f_res=value(6), d_u=value(7), d_c=value(8), f_c=value(9))
-   end function from_values
+      call key('d_y', self%d_y, deformation, above_zero, 'yield deformation')
+      call key('f_y', self%f_y, force, above_zero, 'yield force')
+      call key('d_cap', self%d_cap, deformation, above_zero, 'deformation at the cap, from d_y on')
+      call key('f_cap', self%f_cap, force, above_zero, 'largest force, from f_y on')
+      call key('d_pc', self%d_pc, deformation, above_zero, &
+               'from the cap along the softening line to where it would have no force left')
+      call key('f_res', self%f_res, force, not_negative, &
+               'residual force, below f_y, which softening does not fall below')
+      call key('d_u', self%d_u, deformation, above_zero, &
+               'deformation beyond which the force falls to zero; without it there is none')
+      call key('d_c', self%d_c, deformation, not_negative, 'cracking deformation; 0: elastic up to yield')
+      call key('f_c', self%f_c, force, not_negative, 'cracking force')
+
+   contains
+
+      subroutine key(name, x, unit, bound, meaning)
+         character(len=*), intent(in) :: name, unit, meaning
+         real(wp), intent(inout) :: x
+         type(bound_type), intent(in) :: bound
+
+         if (negative) then
+            call v%key(name//'_neg', x, unit, bound, as_positive, optional=.true.)
+         else
+            call v%key(name, x, unit, bound, meaning, optional=name == 'd_u')
+         end if
+      end subroutine key
+   end subroutine visit
+
+   !> A side; what is not given of it is as on the other side.
+   pure type(backbone_parameters) function completed(self, other)
+      class(backbone_parameters), intent(in) :: self, other
+
+      completed = backbone_parameters( &
+                  d_c=either(self%d_c, other%d_c), f_c=either(self%f_c, other%f_c), &
+                  d_y=either(self%d_y, other%d_y), f_y=either(self%f_y, other%f_y), &
+                  d_cap=either(self%d_cap, other%d_cap), f_cap=either(self%f_cap, other%f_cap), &
+                  d_pc=either(self%d_pc, other%d_pc), f_res=either(self%f_res, other%f_res), &
+                  d_u=either(self%d_u, other%d_u))
+   end function completed
+
+   pure real(wp) function either(x, other)
+      real(wp), intent(in) :: x, other
+
+      either = merge(x, other, is_given(x))
+   end function either
 
    !> Add a message for every relation that does not hold.
    subroutine check(self, name, suffix, messages)

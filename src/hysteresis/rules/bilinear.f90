@@ -4,10 +4,11 @@
 !> elastic with slope k; the elastic range is 2 d_y wide and travels with the plastic deformation.
 module rbs_hysteresis_rules_bilinear
    use rbs_base_error, only: message_list
-   use rbs_base_keys, only: key_type, above_zero, not_negative, deformation, stiffness
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: above_zero, not_negative, deformation, stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_base_constants, only: unbounded
+   use rbs_base_constants, only: unbounded, unset
    use rbs_hysteresis_rule, only: rule_type, rule_memory, check_product
    use rbs_hysteresis_segment, only: segment
    implicit none
@@ -15,42 +16,40 @@ module rbs_hysteresis_rules_bilinear
 
    public :: bilinear_rule
 
-   type(key_type), parameter, public :: bilinear_keys(*) = [ &
-      key_type('k', unit=stiffness, bound=above_zero, &
-               meaning='initial stiffness'), &
-      key_type('d_y', unit=deformation, bound=above_zero, &
-               meaning='yield deformation'), &
-      key_type('k_post', unit=stiffness, bound=not_negative, &
-               meaning='stiffness after yield, below k')]
-
    type, extends(rule_type) :: bilinear_rule
       !> Initial stiffness [N/m or N m/rad]
-      real(wp) :: k = 0.0_wp
+      real(wp) :: k = unset
       !> Yield deformation [m or rad]
-      real(wp) :: d_y = 0.0_wp
+      real(wp) :: d_y = unset
       !> Stiffness after yield [N/m or N m/rad]
-      real(wp) :: k_post = 0.0_wp
+      real(wp) :: k_post = unset
    contains
-      procedure :: set
-      procedure :: check
+      procedure :: visit
+      procedure :: prepare
+      procedure :: check_relations
       procedure :: start
       procedure :: next
    end type bilinear_rule
 
 contains
 
-   pure subroutine set(self, value)
+   subroutine visit(self, v)
       class(bilinear_rule), intent(inout) :: self
-      real(wp), intent(in) :: value(:)
+      type(key_visitor), intent(inout) :: v
 
-      self%k = value(1)
+      call v%key('k', self%k, stiffness, above_zero, 'initial stiffness')
+      call v%key('d_y', self%d_y, deformation, above_zero, 'yield deformation')
+      call v%key('k_post', self%k_post, stiffness, not_negative, 'stiffness after yield, below k')
+   end subroutine visit
+
+   subroutine prepare(self)
+      class(bilinear_rule), intent(inout) :: self
+
       self%initial_stiffness = self%k
-      self%d_y = value(2)
-      self%k_post = value(3)
-   end subroutine set
+   end subroutine prepare
 
-   subroutine check(self, name, messages)
-      class(bilinear_rule), intent(in) :: self
+   subroutine check_relations(self, name, messages)
+      class(bilinear_rule), intent(inout) :: self
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
 
@@ -59,7 +58,7 @@ contains
                            to_text(self%k)//'; use an elastic spring for one that does not yield')
       end if
       call check_product(self%k, self%d_y, name, 'k d_y', messages)
-   end subroutine check
+   end subroutine check_relations
 
    subroutine start(self, memory, branch)
       class(bilinear_rule), intent(in) :: self

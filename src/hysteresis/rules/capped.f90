@@ -58,7 +58,9 @@ module rbs_hysteresis_rules_capped
    !> The parameters of a part.
    type :: capped_part
       !> Of both sides
-      type(backbone_parameters) :: given(-1:1)
+      type(backbone_parameters) :: given(-1:1) = [ &
+         backbone_parameters(), backbone_parameters(), &
+         backbone_parameters(f_res=0.0_wp, d_c=0.0_wp, f_c=0.0_wp)]
       !> Exponent of the unloading stiffness over ductility
       real(wp) :: b0 = 0.0_wp
       type(deterioration_type) :: deterioration

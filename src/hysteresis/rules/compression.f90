@@ -1,9 +1,10 @@
 !> A contact: elastic while the joint is closed, without force while it is open. With a gap it closes only
 !> after the joint has closed by that much.
 module rbs_hysteresis_rules_compression
-   use rbs_base_keys, only: key_type, above_zero, not_negative, deformation, stiffness
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: above_zero, not_negative, deformation, stiffness
    use rbs_base_kinds, only: wp
-   use rbs_base_constants, only: unbounded
+   use rbs_base_constants, only: unbounded, unset
    use rbs_hysteresis_rule, only: rule_type, rule_memory
    use rbs_hysteresis_segment, only: segment
    implicit none
@@ -11,33 +12,33 @@ module rbs_hysteresis_rules_compression
 
    public :: compression_rule
 
-   type(key_type), parameter, public :: compression_keys(*) = [ &
-      key_type('k', unit=stiffness, bound=above_zero, &
-               meaning='stiffness in compression; there is none in tension'), &
-      key_type('gap', unit=deformation, bound=not_negative, default=0.0_wp, &
-               meaning='closing before the faces touch')]
-
    type, extends(rule_type) :: compression_rule
       !> Stiffness of the closed joint [N/m]
-      real(wp) :: k = 0.0_wp
+      real(wp) :: k = unset
       !> Closing at which it begins to carry [m]
       real(wp) :: gap = 0.0_wp
    contains
-      procedure :: set
+      procedure :: visit
+      procedure :: prepare
       procedure :: start
       procedure :: next
    end type compression_rule
 
 contains
 
-   pure subroutine set(self, value)
+   subroutine visit(self, v)
       class(compression_rule), intent(inout) :: self
-      real(wp), intent(in) :: value(:)
+      type(key_visitor), intent(inout) :: v
 
-      self%k = value(1)
+      call v%key('k', self%k, stiffness, above_zero, 'stiffness in compression; there is none in tension')
+      call v%key('gap', self%gap, deformation, not_negative, 'closing before the faces touch')
+   end subroutine visit
+
+   subroutine prepare(self)
+      class(compression_rule), intent(inout) :: self
+
       self%initial_stiffness = self%k
-      self%gap = value(2)
-   end subroutine set
+   end subroutine prepare
 
    !> The joint is closed at zero opening, or with a gap at minus that; openings are positive.
    subroutine start(self, memory, branch)

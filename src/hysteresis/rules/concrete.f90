@@ -16,12 +16,13 @@
 !> up energy, whether the crack opens or not.
 module rbs_hysteresis_rules_concrete
    use rbs_base_error, only: message_list
-   use rbs_base_keys, only: bound_type, key_type, above_zero, not_negative, share_below_one, &
-                           force, deformation, stiffness
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: bound_type, above_zero, not_negative, share_below_one, force, deformation, &
+                            stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_base_constants, only: unbounded
+   use rbs_base_constants, only: unbounded, unset
    use rbs_hysteresis_rule, only: rule_type, rule_memory, check_product
    use rbs_hysteresis_segment, only: segment
    implicit none
@@ -36,31 +37,6 @@ module rbs_hysteresis_rules_concrete
 
    !> Corners of the chords of the rising curve, as shares of the closing at the peak
    real(wp), parameter :: chord_ends(4) = [0.25_wp, 0.5_wp, 0.75_wp, 1.0_wp]
-
-   type(key_type), parameter, public :: concrete_keys(*) = [ &
-      key_type('k', unit=stiffness, bound=above_zero, &
-               meaning='initial stiffness'), &
-      key_type('f_peak', unit=force, bound=above_zero, &
-               meaning='largest compression'), &
-      key_type('d_peak', unit=deformation, bound=above_zero, &
-               meaning='closing at the largest compression'), &
-      key_type('k_soft', unit=stiffness, bound=above_zero, &
-               meaning='slope of softening behind the peak, as a positive number'), &
-      key_type('f_res', unit=force, bound=not_negative, default=0.0_wp, &
-               meaning='force that softening leaves'), &
-      key_type('plastic', bound=not_negative, default=1.0_wp, &
-               meaning='factor of the plastic closing of Karsan and Jirsa'), &
-      key_type('contact', bound=share_below_one, default=0.0_wp, &
-               meaning='share of the force at unloading at which a closing crack is fully closed'), &
-      key_type('misfit', bound=share_below_one, default=0.0_wp, &
-               meaning='share of the widest opening at which the faces of a closing crack touch'), &
-      key_type('wear', bound=share_below_one, default=0.0_wp, &
-               meaning='share of the strength that a wide opening of the crack takes'), &
-      key_type('friction', bound=share_below_one, default=0.0_wp, &
-               meaning='share of the force that opening gives up at once after closing to d_peak or more'), &
-      key_type('seating', bound=bound_type(0.0_wp, 1.0_wp, reason='(it is a share)'), default=0.0_wp, &
-               meaning='share of the early touch that opening does not follow: what was pressed '// &
-               'together fits')]
 
    type :: concrete_state
       !> Kind of the present branch
@@ -84,11 +60,11 @@ module rbs_hysteresis_rules_concrete
 
    type, extends(rule_type) :: concrete_rule
       !> Initial stiffness [N/m]
-      real(wp) :: k = 0.0_wp
+      real(wp) :: k = unset
       !> Largest force [N] and the closing there [m]
-      real(wp) :: f_peak = 0.0_wp, d_peak = 0.0_wp
+      real(wp) :: f_peak = unset, d_peak = unset
       !> Slope of softening after the peak [N/m], positive, and the residual force [N]
-      real(wp) :: k_soft = 0.0_wp, f_res = 0.0_wp
+      real(wp) :: k_soft = unset, f_res = 0.0_wp
       !> Factor of the plastic closing
       real(wp) :: plastic = 1.0_wp
       !> Share of the force at unloading at which a closing crack is fully closed
@@ -103,35 +79,48 @@ module rbs_hysteresis_rules_concrete
       real(wp) :: seating = 0.0_wp
       logical, private :: rubs = .false.
    contains
-      procedure :: set
-      procedure :: check
+      procedure :: visit
+      procedure :: prepare
+      procedure :: check_relations
       procedure :: start
       procedure :: next
    end type concrete_rule
 
 contains
 
-   pure subroutine set(self, value)
+   subroutine visit(self, v)
       class(concrete_rule), intent(inout) :: self
-      real(wp), intent(in) :: value(:)
+      type(key_visitor), intent(inout) :: v
 
-      self%k = value(1)
+      call v%key('k', self%k, stiffness, above_zero, 'initial stiffness')
+      call v%key('f_peak', self%f_peak, force, above_zero, 'largest compression')
+      call v%key('d_peak', self%d_peak, deformation, above_zero, 'closing at the largest compression')
+      call v%key('k_soft', self%k_soft, stiffness, above_zero, &
+                 'slope of softening behind the peak, as a positive number')
+      call v%key('f_res', self%f_res, force, not_negative, 'force that softening leaves')
+      call v%key('plastic', self%plastic, '', not_negative, &
+                 'factor of the plastic closing of Karsan and Jirsa')
+      call v%key('contact', self%contact, '', share_below_one, &
+                 'share of the force at unloading at which a closing crack is fully closed')
+      call v%key('misfit', self%misfit, '', share_below_one, &
+                 'share of the widest opening at which the faces of a closing crack touch')
+      call v%key('wear', self%wear, '', share_below_one, &
+                 'share of the strength that a wide opening of the crack takes')
+      call v%key('friction', self%friction, '', share_below_one, &
+                 'share of the force that opening gives up at once after closing to d_peak or more')
+      call v%key('seating', self%seating, '', bound_type(0.0_wp, 1.0_wp, reason='(it is a share)'), &
+                 'share of the early touch that opening does not follow: what was pressed together fits')
+   end subroutine visit
+
+   subroutine prepare(self)
+      class(concrete_rule), intent(inout) :: self
+
       self%initial_stiffness = self%k
-      self%f_peak = value(2)
-      self%d_peak = value(3)
-      self%k_soft = value(4)
-      self%f_res = value(5)
-      self%plastic = value(6)
-      self%contact = value(7)
-      self%misfit = value(8)
-      self%wear = value(9)
-      self%friction = value(10)
-      self%seating = value(11)
       self%rubs = self%friction > 0.0_wp .or. self%seating > 0.0_wp
-   end subroutine set
+   end subroutine prepare
 
-   subroutine check(self, name, messages)
-      class(concrete_rule), intent(in) :: self
+   subroutine check_relations(self, name, messages)
+      class(concrete_rule), intent(inout) :: self
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
 
@@ -144,7 +133,7 @@ contains
                            to_text(self%f_peak)//' (it is what is left of it)')
       end if
       call check_product(self%k, self%d_peak, name, 'k d_peak', messages)
-   end subroutine check
+   end subroutine check_relations
 
    subroutine start(self, memory, branch)
       class(concrete_rule), intent(in) :: self

@@ -1,6 +1,8 @@
 !> A spring that stays on one straight line.
 module rbs_hysteresis_rules_elastic
-   use rbs_base_keys, only: key_type, above_zero, stiffness
+   use rbs_base_constants, only: unset
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: above_zero, stiffness
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_rule, only: rule_type, rule_memory
    use rbs_hysteresis_segment, only: segment
@@ -9,28 +11,30 @@ module rbs_hysteresis_rules_elastic
 
    public :: elastic_rule
 
-   type(key_type), parameter, public :: elastic_keys(*) = [ &
-      key_type('k', unit=stiffness, bound=above_zero, &
-               meaning='stiffness')]
-
    type, extends(rule_type) :: elastic_rule
       !> Stiffness [N/m or N m/rad]
-      real(wp) :: k = 0.0_wp
+      real(wp) :: k = unset
    contains
-      procedure :: set
+      procedure :: visit
+      procedure :: prepare
       procedure :: start
       procedure :: next
    end type elastic_rule
 
 contains
 
-   pure subroutine set(self, value)
+   subroutine visit(self, v)
       class(elastic_rule), intent(inout) :: self
-      real(wp), intent(in) :: value(:)
+      type(key_visitor), intent(inout) :: v
 
-      self%k = value(1)
+      call v%key('k', self%k, stiffness, above_zero, 'stiffness')
+   end subroutine visit
+
+   subroutine prepare(self)
+      class(elastic_rule), intent(inout) :: self
+
       self%initial_stiffness = self%k
-   end subroutine set
+   end subroutine prepare
 
    subroutine start(self, memory, branch)
       class(elastic_rule), intent(in) :: self

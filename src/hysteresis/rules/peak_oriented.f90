@@ -2,14 +2,13 @@
 !> (Earthquake Eng. Struct. Dyn. 34, 1489-1511), with a cracking point and an unloading stiffness that may
 !> decrease with ductility (Takeda 1970). Its mechanics are those of `rbs_hysteresis_rules_capped`.
 module rbs_hysteresis_rules_peak_oriented
-   use rbs_base_check, only: is_given
    use rbs_base_error, only: message_list
-   use rbs_base_keys, only: key_type, bound_type, not_negative, share_below_one
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: bound_type, not_negative, share_below_one
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_hysteresis_rules_backbone_parameters, only: backbone_parameters, backbone_keys, other_side_keys, &
-                                                  from_values
+   use rbs_hysteresis_rules_backbone_parameters, only: backbone_parameters
    use rbs_hysteresis_rules_capped, only: capped_part, capped_memory
    use rbs_hysteresis_rules_deterioration, only: deterioration_type
    use rbs_hysteresis_rule, only: rule_type, rule_memory
@@ -17,36 +16,12 @@ module rbs_hysteresis_rules_peak_oriented
    implicit none
    private
 
-   public :: peak_oriented_rule, capped_keys
+   public :: peak_oriented_rule
 
    character(len=*), parameter :: range_of_source = '(the range of its source)'
 
-   !> Parameters of this rule and of those that extend it: of the positive side, of both sides, of the
-   !> negative side.
-   type(key_type), parameter :: shared_keys(9) = [ &
-      key_type('b0', bound=bound_type(least=0.0_wp, most=1.0_wp), default=0.0_wp, &
-               meaning='exponent of the unloading stiffness over ductility'), &
-      key_type('lambda_s', bound=not_negative, default=0.0_wp, &
-               meaning='energy over f_y d_y that deterioration of the strength lasts for; 0: none'), &
-      key_type('lambda_c', bound=not_negative, default=0.0_wp, &
-               meaning='the same for the softening line behind the cap'), &
-      key_type('lambda_k', bound=not_negative, default=0.0_wp, &
-               meaning='the same for the unloading stiffness'), &
-      key_type('lambda_a', bound=not_negative, default=0.0_wp, &
-               meaning='the same for the target of reloading'), &
-      key_type('c', bound=bound_type(least=1.0_wp, most=2.0_wp, reason=range_of_source), default=1.0_wp, &
-               meaning='exponent of deterioration'), &
-      key_type('lambda_h', bound=not_negative, default=0.0_wp, &
-               meaning='work of the flexural spring over f_y d_y that halves what can decay; 0: none'), &
-      key_type('s_min', bound=share_below_one, default=0.0_wp, &
-               meaning='share of the strength that stays, whatever the flexural spring has done'), &
-      key_type('fade', bound=bound_type(least=0.0_wp, most=4.0_wp), default=0.0_wp, &
-               meaning='strength falls ever more slowly, its rate as its power fade; 0: evenly, to nothing')]
    !> Capacities are divided by the energy at yield and multiplied by it.
    real(wp), parameter :: round_off = 1.0e-9_wp
-
-   integer, parameter :: sides = size(backbone_keys), shared = size(shared_keys)
-   type(key_type), parameter :: capped_keys(*) = [backbone_keys, shared_keys, other_side_keys]
 
    type, extends(rule_type) :: peak_oriented_rule
       !> The peak-oriented part and, in the rule `pinching`, the one that slips; how many there are, and the
@@ -54,9 +29,13 @@ module rbs_hysteresis_rules_peak_oriented
       type(capped_part) :: part(2)
       integer :: parts = 1
       real(wp) :: share = 1.0_wp
+      !> Energies that deterioration of strength, softening line, unloading stiffness and target last for, and
+      !> work of the flexural spring that halves what can decay, over f_y d_y; 0: none
+      real(wp) :: lambda(4) = 0.0_wp, lambda_h = 0.0_wp
    contains
-      procedure :: set
-      procedure :: check
+      procedure :: visit
+      procedure :: prepare
+      procedure :: check_relations
       procedure :: start
       procedure :: next
    end type peak_oriented_rule
@@ -73,26 +52,49 @@ module rbs_hysteresis_rules_peak_oriented
 
 contains
 
-   pure subroutine set(self, value)
+   !> The keys of the positive side, of both sides, of the negative side.
+   subroutine visit(self, v)
       class(peak_oriented_rule), intent(inout) :: self
-      real(wp), intent(in) :: value(:)
+      type(key_visitor), intent(inout) :: v
 
-      associate (part => self%part(1), positive => value(:sides), &
-                 negative => value(sides + shared + 1:2*sides + shared), lambda => value(sides + 2:sides + 5))
-         part%given(1) = from_values(positive)
-         part%given(-1) = from_values(merge(negative, positive, is_given(negative)))
-         part%b0 = value(sides + 1)
-         associate (energy => energy_of(part))
-            part%deterioration = deterioration_type(lambda(1)*energy, lambda(2)*energy, lambda(3)*energy, &
-                                                    lambda(4)*energy, value(sides + 6), value(sides + 9))
-            part%hinge_work = value(sides + 7)*energy
-            part%s_min = value(sides + 8)
-         end associate
+      associate (part => self%part(1))
+         call part%given(1)%visit(v, negative=.false.)
+         call v%key('b0', part%b0, '', bound_type(0.0_wp, 1.0_wp), &
+                    'exponent of the unloading stiffness over ductility')
+         call v%key('lambda_s', self%lambda(1), '', not_negative, &
+                    'energy over f_y d_y that deterioration of the strength lasts for; 0: none')
+         call v%key('lambda_c', self%lambda(2), '', not_negative, &
+                    'the same for the softening line behind the cap')
+         call v%key('lambda_k', self%lambda(3), '', not_negative, 'the same for the unloading stiffness')
+         call v%key('lambda_a', self%lambda(4), '', not_negative, 'the same for the target of reloading')
+         call v%key('c', part%deterioration%c, '', bound_type(1.0_wp, 2.0_wp, reason=range_of_source), &
+                    'exponent of deterioration')
+         call v%key('lambda_h', self%lambda_h, '', not_negative, &
+                    'work of the flexural spring over f_y d_y that halves what can decay; 0: none')
+         call v%key('s_min', part%s_min, '', share_below_one, &
+                    'share of the strength that stays, whatever the flexural spring has done')
+         call v%key('fade', part%deterioration%fade, '', bound_type(0.0_wp, 4.0_wp), &
+                    'strength falls ever more slowly, its rate as its power fade; 0: evenly, to nothing')
+         call part%given(-1)%visit(v, negative=.true.)
+      end associate
+   end subroutine visit
+
+   subroutine prepare(self)
+      class(peak_oriented_rule), intent(inout) :: self
+      real(wp) :: energy
+
+      associate (part => self%part(1))
+         part%given(-1) = part%given(-1)%completed(part%given(1))
+         energy = energy_of(part)
+         part%deterioration = deterioration_type(self%lambda(1)*energy, self%lambda(2)*energy, &
+                                                 self%lambda(3)*energy, self%lambda(4)*energy, &
+                                                 part%deterioration%c, part%deterioration%fade)
+         part%hinge_work = self%lambda_h*energy
          part%k_0 = max(part%given(1)%stiffness(), part%given(-1)%stiffness())
          self%initial_stiffness = part%k_0
          self%uses_flexural_work = part%hinge_work > 0.0_wp
       end associate
-   end subroutine set
+   end subroutine prepare
 
    !> The energy in whose units capacities are given: f_y d_y, the mean of both sides [J].
    pure real(wp) function energy_of(part)
@@ -101,12 +103,13 @@ contains
       energy_of = 0.5_wp*(part%given(1)%f_y*part%given(1)%d_y + part%given(-1)%f_y*part%given(-1)%d_y)
    end function energy_of
 
-   subroutine check(self, name, messages)
-      class(peak_oriented_rule), intent(in) :: self
+   subroutine check_relations(self, name, messages)
+      class(peak_oriented_rule), intent(inout) :: self
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
       integer :: known
 
+      call self%prepare()
       known = messages%count
       call self%part(1)%given(1)%check(name, '', messages)
       ! Otherwise errors of the positive side would be reported twice.
@@ -134,7 +137,7 @@ contains
                            'or at least f_cap**2 (1 + d_cap/d_pc)/(k f_y d_y) = '//to_text(least/unit)// &
                            ' (the force would fall faster than the spring is stiff)')
       end subroutine check_capacity
-   end subroutine check
+   end subroutine check_relations
 
    !> Largest product of a force that dissipates and the force at zero deformation of the softening line.
    pure real(wp) function fastest(side)

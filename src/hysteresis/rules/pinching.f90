@@ -7,40 +7,46 @@
 !> line from zero force to the peak has its break there, with kappa_f times the force of the straight line, as
 !> in the source, and what holds for each part holds for both.
 module rbs_hysteresis_rules_pinching
-   use rbs_base_keys, only: key_type, share_above_zero
+   use rbs_base_constants, only: unset
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: share_above_zero
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_rules_peak_oriented, only: peak_oriented_rule, capped_keys
+   use rbs_hysteresis_rules_peak_oriented, only: peak_oriented_rule
    implicit none
    private
 
    public :: pinching_rule
 
-   type(key_type), parameter :: own_keys(2) = [ &
-      key_type('kappa_f', bound=share_above_zero, &
-               meaning='force at the break of the reloading line over that of the straight line there'), &
-      key_type('kappa_d', bound=share_above_zero, &
-               meaning='share of the permanent deformation that is missing at the break')]
-   type(key_type), parameter, public :: pinching_keys(*) = [capped_keys, own_keys]
-   integer, parameter :: before = size(capped_keys)
-
    !> The second part slips.
    type, extends(peak_oriented_rule) :: pinching_rule
+      real(wp) :: kappa_f = unset, kappa_d = unset
    contains
-      procedure :: set
+      procedure :: visit
+      procedure :: prepare
    end type pinching_rule
 
 contains
 
-   pure subroutine set(self, value)
+   subroutine visit(self, v)
       class(pinching_rule), intent(inout) :: self
-      real(wp), intent(in) :: value(:)
+      type(key_visitor), intent(inout) :: v
 
-      call self%peak_oriented_rule%set(value)
+      call self%peak_oriented_rule%visit(v)
+      call v%key('kappa_f', self%kappa_f, '', share_above_zero, &
+                 'force at the break of the reloading line over that of the straight line there')
+      call v%key('kappa_d', self%kappa_d, '', share_above_zero, &
+                 'share of the permanent deformation that is missing at the break')
+   end subroutine visit
+
+   subroutine prepare(self)
+      class(pinching_rule), intent(inout) :: self
+
+      call self%peak_oriented_rule%prepare()
       self%parts = 2
-      self%share = value(before + 1)
+      self%share = self%kappa_f
       self%part(2) = self%part(1)
       self%part(2)%slips = .true.
-      self%part(2)%slip = 1.0_wp - value(before + 2)
-   end subroutine set
+      self%part(2)%slip = 1.0_wp - self%kappa_d
+   end subroutine prepare
 
 end module rbs_hysteresis_rules_pinching

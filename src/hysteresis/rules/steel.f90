@@ -10,7 +10,8 @@ module rbs_hysteresis_rules_steel
    use rbs_base_check, only: is_given
    use rbs_base_constants, only: no_stiffness, unbounded, unset
    use rbs_base_error, only: message_list
-   use rbs_base_keys, only: key_type, above_zero, not_negative, share_below_one, force, stiffness, deformation
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: above_zero, not_negative, share_below_one, force, stiffness, deformation
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
@@ -39,34 +40,6 @@ module rbs_hysteresis_rules_steel
    !> A limit that moves with at least this share of its element's stiffness carries the element with it
    real(wp), parameter :: as_fast = 1.0_wp - 1.0e-9_wp
 
-   type(key_type), parameter, public :: steel_keys(*) = [ &
-      key_type('k', unit=stiffness, bound=above_zero, &
-               meaning='elastic stiffness'), &
-      key_type('f_y', unit=force, bound=above_zero, &
-               meaning='yield force'), &
-      key_type('k_post', unit=stiffness, bound=not_negative, &
-               meaning='stiffness of hardening, below k'), &
-      key_type('r0', bound=above_zero, default=20.0_wp, &
-               meaning='roundness of branches after little yielding'), &
-      key_type('cr1', bound=share_below_one, default=0.925_wp, &
-               meaning='largest share by which the plastic reach lowers the roundness'), &
-      key_type('cr2', bound=above_zero, default=0.15_wp, &
-               meaning='plastic reach over the yield deformation at half of that share'), &
-      key_type('isotropic_hardening', bound=not_negative, default=0.0_wp, &
-               meaning='share by which the strength has grown at a plastic reach of 2 hardening_reach'), &
-      key_type('hardening_reach', bound=above_zero, default=1.0_wp, &
-               meaning='half of that plastic reach, over the yield deformation'), &
-      key_type('f_u', unit=force, bound=above_zero, optional=.true., &
-               meaning='force at which hardening with k_post ends'), &
-      key_type('plateau', bound=not_negative, default=0.0_wp, &
-               meaning='length of the yield plateau over the yield deformation; needs f_u'), &
-      key_type('endurance', bound=not_negative, default=0.0_wp, &
-               meaning='plastic deformation over d_y inside the reach that halves the strength; 0: none'), &
-      key_type('d_buckle', unit=deformation, bound=above_zero, optional=.true., &
-               meaning='tensile deformation from which on bars bow when they are compressed again'), &
-      key_type('buckling', bound=not_negative, default=0.0_wp, &
-               meaning='by how much more compression wears a bar that has been stretched to 2 d_buckle')]
-
    !> Limits over k_i d_y in rows of the plastic reach: linear between them, constant after the last.
    type :: table_type
       integer :: rows = 1
@@ -92,7 +65,7 @@ module rbs_hysteresis_rules_steel
 
    type, extends(rule_type) :: steel_rule
       !> Elastic stiffness [N/m], yield force [N], stiffness of hardening [N/m]
-      real(wp) :: k = 0.0_wp, f_y = 0.0_wp, k_post = 0.0_wp
+      real(wp) :: k = unset, f_y = unset, k_post = unset
       !> Roundness, and its decrease with the plastic reach
       real(wp) :: r0 = 20.0_wp, cr1 = 0.925_wp, cr2 = 0.15_wp
       !> Growth of the strength with the plastic reach, and half of the reach that it belongs to
@@ -113,8 +86,8 @@ module rbs_hysteresis_rules_steel
       !> Stiffness of the elements [N/m]
       real(wp), private :: k_element(elements) = 0.0_wp
    contains
-      procedure :: set
-      procedure :: check
+      procedure :: visit
+      procedure :: check_relations
       procedure :: prepare
       procedure :: start
       procedure :: next
@@ -122,28 +95,36 @@ module rbs_hysteresis_rules_steel
 
 contains
 
-   pure subroutine set(self, value)
+   subroutine visit(self, v)
       class(steel_rule), intent(inout) :: self
-      real(wp), intent(in) :: value(:)
+      type(key_visitor), intent(inout) :: v
 
-      self%k = value(1)
-      self%initial_stiffness = self%k
-      self%f_y = value(2)
-      self%k_post = value(3)
-      self%r0 = value(4)
-      self%cr1 = value(5)
-      self%cr2 = value(6)
-      self%isotropic_hardening = value(7)
-      self%hardening_reach = value(8)
-      self%f_u = value(9)
-      self%plateau = value(10)
-      self%endurance = value(11)
-      self%d_buckle = value(12)
-      self%buckling = value(13)
-   end subroutine set
+      call v%key('k', self%k, stiffness, above_zero, 'elastic stiffness')
+      call v%key('f_y', self%f_y, force, above_zero, 'yield force')
+      call v%key('k_post', self%k_post, stiffness, not_negative, 'stiffness of hardening, below k')
+      call v%key('r0', self%r0, '', above_zero, 'roundness of branches after little yielding')
+      call v%key('cr1', self%cr1, '', share_below_one, &
+                 'largest share by which the plastic reach lowers the roundness')
+      call v%key('cr2', self%cr2, '', above_zero, &
+                 'plastic reach over the yield deformation at half of that share')
+      call v%key('isotropic_hardening', self%isotropic_hardening, '', not_negative, &
+                 'share by which the strength has grown at a plastic reach of 2 hardening_reach')
+      call v%key('hardening_reach', self%hardening_reach, '', above_zero, &
+                 'half of that plastic reach, over the yield deformation')
+      call v%key('f_u', self%f_u, force, above_zero, 'force at which hardening with k_post ends', &
+                 optional=.true.)
+      call v%key('plateau', self%plateau, '', not_negative, &
+                 'length of the yield plateau over the yield deformation; needs f_u')
+      call v%key('endurance', self%endurance, '', not_negative, &
+                 'plastic deformation over d_y inside the reach that halves the strength; 0: none')
+      call v%key('d_buckle', self%d_buckle, deformation, above_zero, &
+                 'tensile deformation from which on bars bow when they are compressed again', optional=.true.)
+      call v%key('buckling', self%buckling, '', not_negative, &
+                 'by how much more compression wears a bar that has been stretched to 2 d_buckle')
+   end subroutine visit
 
-   subroutine check(self, name, messages)
-      class(steel_rule), intent(in) :: self
+   subroutine check_relations(self, name, messages)
+      class(steel_rule), intent(inout) :: self
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
       real(wp) :: largest
@@ -177,7 +158,7 @@ contains
          call messages%add(name//': endurance = '//to_text(self%endurance)//' must be '//to_text(largest)// &
                            ' or more, the widest limit of an element over d_y; 0 means no wear')
       end if
-   end subroutine check
+   end subroutine check_relations
 
    subroutine start(self, memory, branch)
       class(steel_rule), intent(in) :: self
@@ -190,9 +171,10 @@ contains
    end subroutine start
 
    !> What follows from the parameters alone.
-   pure subroutine prepare(self)
+   subroutine prepare(self)
       class(steel_rule), intent(inout) :: self
 
+      self%initial_stiffness = self%k
       self%d_y = self%f_y/self%k
       self%k_element = [(self%k - self%k_post)*share, self%k_post]
       self%limited = merge(elements, yielding, is_given(self%f_u))

@@ -15,11 +15,12 @@
 module rbs_hysteresis_rules_takeda
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_error, only: message_list
-   use rbs_base_keys, only: key_type, word_kind, above_zero, not_negative, deformation, stiffness
+   use rbs_base_key_visitor, only: key_visitor
+   use rbs_base_keys, only: above_zero, not_negative, deformation, stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_base_constants, only: unbounded
+   use rbs_base_constants, only: unbounded, unset
    use rbs_hysteresis_rules_open_turns, only: point, turn, open_turns
    use rbs_hysteresis_rule, only: rule_type, rule_memory, check_product
    use rbs_hysteresis_segment, only: segment
@@ -40,24 +41,6 @@ module rbs_hysteresis_rules_takeda
    !> A branch this close to the slope of the yielded backbone does not meet it. K_r is so close only at
    !> unrealistic ductilities.
    real(wp), parameter :: parallel = 1.0e-9_wp
-
-   type(key_type), parameter, public :: takeda_keys(*) = [ &
-      key_type('k_c', unit=stiffness, bound=above_zero, &
-               meaning='uncracked stiffness'), &
-      key_type('d_c', unit=deformation, bound=above_zero, &
-               meaning='cracking deformation'), &
-      key_type('k_y', unit=stiffness, bound=above_zero, &
-               meaning='cracked stiffness, below k_c'), &
-      key_type('d_y', unit=deformation, bound=above_zero, &
-               meaning='yield deformation, above d_c'), &
-      key_type('k_u', unit=stiffness, bound=not_negative, &
-               meaning='stiffness after yield, up to k_y'), &
-      key_type('b0', bound=not_negative, default=0.4_wp, &
-               meaning='exponent of the outer unloading stiffness'), &
-      key_type('b1', bound=above_zero, default=1.0_wp, &
-               meaning='factor of the inner unloading stiffness'), &
-      key_type('inner', kind=word_kind, default=1.0_wp, choices='kc kr one', &
-               meaning='what b1 multiplies: k_c, the outer unloading stiffness, or nothing')]
 
    !> Where a spring is on its rule.
    type :: takeda_state
@@ -83,43 +66,50 @@ module rbs_hysteresis_rules_takeda
 
    type, extends(rule_type) :: takeda_rule
       !> Uncracked, cracked and yielded stiffness [N/m or N m/rad]
-      real(wp) :: k_c = 0.0_wp, k_y = 0.0_wp, k_u = 0.0_wp
+      real(wp) :: k_c = unset, k_y = unset, k_u = unset
       !> Cracking and yield deformation [m or rad]
-      real(wp) :: d_c = 0.0_wp, d_y = 0.0_wp
+      real(wp) :: d_c = unset, d_y = unset
       !> Degradation factors
-      real(wp) :: b0 = 0.0_wp, b1 = 0.0_wp
+      real(wp) :: b0 = 0.4_wp, b1 = 1.0_wp
       !> What B1 multiplies, the place of its name among the choices
       integer :: inner = of_uncracked
       !> Cracking and yield force [N or N m]
       real(wp), private :: f_c = 0.0_wp, f_y = 0.0_wp
    contains
-      procedure :: set
-      procedure :: check
+      procedure :: visit
+      procedure :: prepare
+      procedure :: check_relations
       procedure :: start
       procedure :: next
    end type takeda_rule
 
 contains
 
-   pure subroutine set(self, value)
+   subroutine visit(self, v)
       class(takeda_rule), intent(inout) :: self
-      real(wp), intent(in) :: value(:)
+      type(key_visitor), intent(inout) :: v
 
-      self%k_c = value(1)
+      call v%key('k_c', self%k_c, stiffness, above_zero, 'uncracked stiffness')
+      call v%key('d_c', self%d_c, deformation, above_zero, 'cracking deformation')
+      call v%key('k_y', self%k_y, stiffness, above_zero, 'cracked stiffness, below k_c')
+      call v%key('d_y', self%d_y, deformation, above_zero, 'yield deformation, above d_c')
+      call v%key('k_u', self%k_u, stiffness, not_negative, 'stiffness after yield, up to k_y')
+      call v%key('b0', self%b0, '', not_negative, 'exponent of the outer unloading stiffness')
+      call v%key('b1', self%b1, '', above_zero, 'factor of the inner unloading stiffness')
+      call v%word('inner', self%inner, &
+                  'what b1 multiplies: k_c, the outer unloading stiffness, or nothing', 'kc kr one')
+   end subroutine visit
+
+   subroutine prepare(self)
+      class(takeda_rule), intent(inout) :: self
+
       self%initial_stiffness = self%k_c
-      self%d_c = value(2)
-      self%k_y = value(3)
-      self%d_y = value(4)
-      self%k_u = value(5)
-      self%b0 = value(6)
-      self%b1 = value(7)
-      self%inner = nint(value(8))
       self%f_c = self%k_c*self%d_c
       self%f_y = self%f_c + self%k_y*(self%d_y - self%d_c)
-   end subroutine set
+   end subroutine prepare
 
-   subroutine check(self, name, messages)
-      class(takeda_rule), intent(in) :: self
+   subroutine check_relations(self, name, messages)
+      class(takeda_rule), intent(inout) :: self
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
 
@@ -136,7 +126,7 @@ contains
                            to_text(self%k_y)//' (yielding softens)')
       end if
       call check_product(self%k_c, self%d_y, name, 'k_c d_y', messages)
-   end subroutine check
+   end subroutine check_relations
 
    subroutine start(self, memory, branch)
       class(takeda_rule), intent(in) :: self
