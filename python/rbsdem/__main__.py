@@ -12,14 +12,14 @@ from importlib.resources import files
 
 #: Commands that are run by Python, and their modules.
 COMMANDS = {
-    "trade": "rbsdem.cli.trade",
-    "peer": "rbsdem.cli.peer",
-    "predict": "rbsdem.cli.predict",
-    "ensemble": "rbsdem.cli.ensemble",
-    "ida": "rbsdem.cli.ida",
-    "completion": "rbsdem.cli.completion",
-    "explore": "rbsdem.cli.explore",
-    "report": "rbsdem.cli.report",
+    "trade": "rbsdem.cli.columns",
+    "peer": "rbsdem.cli.measured",
+    "predict": "rbsdem.cli.measured",
+    "ensemble": "rbsdem.cli.columns",
+    "ida": "rbsdem.cli.columns",
+    "completion": "rbsdem.cli",
+    "explore": "rbsdem.cli.columns",
+    "report": "rbsdem.cli.columns",
 }
 
 
@@ -45,8 +45,9 @@ def main() -> int:
     words = sys.argv[1:]
     if words[:1] in (["--help"], ["-h"]) and words[1:2] and words[1] in COMMANDS:
         words = [words[1], "--help"]
-    if words and words[0] in COMMANDS:
-        code: int = import_module(COMMANDS[words[0]]).main(words[1:])
+    if (words and words[0] in COMMANDS) or "_RBSDEM_COMPLETE" in os.environ:
+        # Only now: the executable starts without the package.
+        code: int = import_module("rbsdem.cli").main(words)
         return code
     try:
         program = executable()

@@ -127,8 +127,8 @@ def vector(values: ArrayLike, name: str, *, shape: str = "m") -> Array:
     """
     if np.ma.is_masked(values):
         raise InputError(
-            f"{name} has masked values, which would be taken as they are; leave them out, or fill "
-            "them"
+            f"{name} has masked values, which would be used as they are; remove them or fill them",
+            name,
         )
     try:
         array = np.asarray(values)
@@ -136,13 +136,13 @@ def vector(values: ArrayLike, name: str, *, shape: str = "m") -> Array:
             raise TypeError
         array = array.astype(np.float64)
     except Exception:  # Of any class of the caller.
-        raise InputError(f"{name} must be an array of numbers") from None
+        raise InputError(f"{name} must be an array of numbers", name) from None
     if shape == "any":
         return array
     if shape == "1 or m" and array.ndim == 0:
         array = array[None]
     if array.ndim != 1:
-        raise InputError(f"{name} has shape {array.shape}; it must have one dimension")
+        raise InputError(f"{name} has shape {array.shape}; it must have one dimension", name)
     return np.ascontiguousarray(array)
 
 

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from rbsdem.batch.record import Ensemble
-    from rbsdem.model.response import Response
+import re
+from typing import Any
 
 __all__ = [
     "AccuracyWarning",
@@ -18,13 +15,54 @@ __all__ = [
     "SolveError",
 ]
 
+#: How a message begins that tells of a value: "cover = ...", "layout: number = ...", after the
+#: place of the value in a file, if it came from one.
+_FIELD = re.compile(
+    r"(?:.* line \d+: )?(?:(\w+)(?:\(\d+\))?: )?([a-z]\w*)(?:\(\d+\))?"
+    r"(?: = |: value \d| is missing)"
+)
+
 
 class RbsdemError(Exception):
     """Base of every error that rbsdem raises on purpose."""
 
 
 class InputError(RbsdemError, ValueError):
-    """The input is wrong: the message names the object, its value and a remedy."""
+    """The input is wrong: the message names the object, its value and a remedy.
+
+    Parameters
+    ----------
+    message : str
+        One line for each fault, as "layout: number = 11 ...".
+    field : str, optional
+        The value that is wrong, as "layout.number". By default it is read from the beginning of
+        each line, where the messages of rbsdem have it.
+
+    Attributes
+    ----------
+    faults : tuple of (str, str)
+        Field and line of each fault; the field is "" where the line names none.
+    """
+
+    def __init__(self, message: str = "", field: str = "") -> None:
+        super().__init__(message)
+        field = field.replace(": ", ".")
+        self.faults = tuple((field or _field(line), line) for line in str(message).splitlines())
+
+    @property
+    def field(self) -> str:
+        """The value that is wrong, the first if there are several."""
+        return self.faults[0][0] if self.faults else ""
+
+    def __reduce__(self) -> tuple[type[InputError], tuple[str, str]]:
+        """Keep `field` when the error is sent to another process (pickle)."""
+        fields = {field for field, _ in self.faults}
+        return type(self), (str(self), fields.pop() if len(fields) == 1 else "")
+
+
+def _field(line: str) -> str:
+    match = _FIELD.match(line)
+    return "" if match is None else ".".join(filter(None, match.groups()))
 
 
 class SolveError(RbsdemError, RuntimeError):
@@ -43,11 +81,11 @@ class SolveError(RbsdemError, RuntimeError):
         The path up to that point; None if no path was computed.
     """
 
-    def __init__(self, message: str = "", result: Response | None = None) -> None:
+    def __init__(self, message: str = "", result: Any = None) -> None:
         super().__init__(message)
         self.result = result
 
-    def __reduce__(self) -> tuple[type[SolveError], tuple[str, Response | None]]:
+    def __reduce__(self) -> tuple[type[SolveError], tuple[str, Any]]:
         """Keep `result` when the error is sent to another process (pickle)."""
         return type(self), (str(self), self.result)
 
@@ -61,20 +99,20 @@ class Interrupted(KeyboardInterrupt):
     ----------
     message : str
         What was done, and how to go on.
-    ensemble : rbsdem.batch.record.Ensemble, optional
+    ensemble : rbsdem.fragility.Ensemble, optional
         The runs that were done.
 
     Attributes
     ----------
-    ensemble : rbsdem.batch.record.Ensemble or None
+    ensemble : rbsdem.fragility.Ensemble or None
         The runs that were done; the status of the others is "".
     """
 
-    def __init__(self, message: str = "", ensemble: Ensemble | None = None) -> None:
+    def __init__(self, message: str = "", ensemble: Any = None) -> None:
         super().__init__(message)
         self.ensemble = ensemble
 
-    def __reduce__(self) -> tuple[type[Interrupted], tuple[str, Ensemble | None]]:
+    def __reduce__(self) -> tuple[type[Interrupted], tuple[str, Any]]:
         """Keep `ensemble` when the exception is sent to another process (pickle)."""
         return type(self), (str(self), self.ensemble)
 

@@ -77,7 +77,7 @@ def test_help_of_a_command_of_the_package(command):
         ).stdout
         for arguments in ([command, "--help"], ["--help", command])
     ]
-    assert shown[0].startswith(f"usage: rbsdem {command} ")
+    assert shown[0].startswith(f"Usage: rbsdem {command} ")
     assert shown[1] == shown[0]
 
 

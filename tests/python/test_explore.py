@@ -17,8 +17,8 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem.cli.explore import main, start_of
-from rbsdem.cli.report import main as report_main
+from rbsdem.cli import main
+from rbsdem.cli.columns import start_of
 from rbsdem.web import texts
 from rbsdem.web.compute import shown_rows
 from rbsdem.web.near import Near
@@ -170,7 +170,7 @@ def test_the_newest_of_a_tab_wins(server, send):
 
 
 def test_a_port_that_is_taken(server, capsys):
-    assert main(["--no-browser", "--port", str(server.port)]) == 2
+    assert main(["explore", "--no-browser", "--port", str(server.port)]) == 2
     assert f"--port {server.port}: cannot be opened" in capsys.readouterr().err
 
 
@@ -448,7 +448,7 @@ def test_a_report_of_a_file_knows_the_limit_states(post):
 def test_a_report_is_one_file(tmp_path, post, capsys):
     case = tmp_path / "pier.nml"
     case.write_text(post("export", state=state(), form="namelist")["text"])
-    assert report_main([str(case), "--title", "A </script> pier"]) == 0
+    assert main(["report", str(case), "--title", "A </script> pier"]) == 0
     assert capsys.readouterr().out.strip() == f"wrote {tmp_path / 'pier.html'}"
     page = (tmp_path / "pier.html").read_text("utf-8")
     assert 20e3 < len(page.encode()) < 2e6

@@ -13,8 +13,7 @@ import pytest
 
 import rbsdem
 from rbsdem import peer
-from rbsdem.cli import peer as command
-from rbsdem.cli import predict as predict_command
+from rbsdem.cli import main
 from rbsdem.errors import AccuracyWarning, InputError
 
 HEADER = (
@@ -141,7 +140,7 @@ def test_folder_goes_on_with_the_same_bits(folder: Path, tmp_path: Path) -> None
 def test_commands(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "peer"
     given = ["--only", "T1", "--bands", "--loops", "--jobs", "1", "--out", str(out)]
-    assert command.main([str(folder), *given]) == 0
+    assert main(["peer", str(folder), *given]) == 0
     assert "Within" in capsys.readouterr().out
     names = {path.name for path in out.iterdir()}
     assert {"bands.csv", "bands.png", "bands", "loops"} <= names
@@ -149,11 +148,11 @@ def test_commands(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[st
     out = tmp_path / "mine"
     drifts = [str(drift) for drift in DRIFTS]
     given = ["--cycles", "1", "--near", str(folder), "--out", str(out)]
-    assert predict_command.main([str(folder), "T5", *given, "--drifts", *drifts]) == 0
+    assert main(["predict", str(folder), "T5", *given, "--drifts", *drifts]) == 0
     assert "Nearest tests" in capsys.readouterr().out
     (numbers,) = cells(out / "numbers.csv")
     assert (numbers["nearest_1"], numbers["peak_force_N_test"]) == ("T4", "")
     assert len(list(cells(out / "T5.csv"))) == PATH.size
     assert (out / "T5.png").stat().st_size > 1e4
-    assert predict_command.main([str(folder), "T5"]) == 2
+    assert main(["predict", str(folder), "T5"]) == 2
     assert "--drifts" in capsys.readouterr().err

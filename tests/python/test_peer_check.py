@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rbsdem import peer
-from rbsdem.cli import peer as command
+from rbsdem.cli import main
 
 LENGTH, LOAD, BOTTOM = 1.6, 1.2e6, 0.3
 
@@ -163,7 +163,7 @@ def test_tests_without_history_are_left_out(tmp_path: Path) -> None:
 def test_the_shared_tests(
     peer_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert command.main([str(peer_folder), "--check", "--out", str(tmp_path)]) == 0
+    assert main(["peer", str(peer_folder), "--check", "--out", str(tmp_path)]) == 0
     assert "surely doubtful" in capsys.readouterr().out
     with (tmp_path / "check.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
@@ -179,7 +179,7 @@ def test_the_shared_tests(
 def test_mended_predictions(peer_folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = [str(peer_folder), "--quiet", "--jobs", "1", "--only", "Bayrak*AS-3HT*"]
     for more in ([], ["--mended"]):
-        assert command.main([*arguments, *more]) == 0
+        assert main(["peer", *arguments, *more]) == 0
     printed = capsys.readouterr().out.splitlines()
     labelled, mended = (float(row.split()[4]) for row in printed if row.strip().startswith("all"))
     # A net force that is corrected once more loses far too much.

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from rbsdem import peer
-from rbsdem.cli import peer as command
+from rbsdem.cli import main
 from rbsdem.errors import InputError
 from rbsdem.measured import processes
 from rbsdem.measured.journal import Journal
@@ -52,7 +52,7 @@ def table(folder: Path, rows: list[dict[str, str]]) -> peer.Specimens:
 
 
 def run(*arguments: object) -> int:
-    return command.main([str(argument) for argument in arguments])
+    return main(["peer", *map(str, arguments)])
 
 
 # ---- what is in the table ------------------------------------------------------------------------
@@ -226,7 +226,7 @@ def test_journal_is_refused(tests, tmp_path):
 # The command, whose workers wait in their second test.
 WAITING = """
 import os, pathlib, sys, time
-from rbsdem.cli import peer as command
+from rbsdem.cli import main
 from rbsdem.measured import processes
 
 one = processes.predict_one
@@ -240,7 +240,7 @@ def waiting(specimen, model, **options):
 processes.predict_one = waiting
 processes._CHUNK = 1
 if __name__ == "__main__":
-    raise SystemExit(command.main(sys.argv[1:]))
+    raise SystemExit(main(["peer", *sys.argv[1:]]))
 """
 
 
@@ -291,5 +291,5 @@ def test_second_start_of_the_command_says_what_it_took_over(tmp_path, capsys):
     (tmp_path / "out").mkdir()
     peer.predict(tests[:1], "paper", journal=tmp_path / "out" / "unfinished.jsonl")
     assert run(tmp_path, "--model", "paper", "--jobs", "1", "--out", tmp_path / "out") == 0
-    assert "1 of them are from an earlier start" in capsys.readouterr().out
+    assert "1 of them are from an earlier run" in capsys.readouterr().out
     assert not (tmp_path / "out" / "unfinished.jsonl").exists()

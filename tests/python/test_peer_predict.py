@@ -21,9 +21,9 @@ import pytest
 
 import rbsdem
 from rbsdem import peer
-from rbsdem.cli import peer as command
+from rbsdem.cli import main
 from rbsdem.errors import InputError
-from rbsdem.output import pictures
+from rbsdem.measured import pictures
 
 HEADER = (
     "peer_id,file,name,author,year,section,L_mm,b_mm,h_mm,cover_mm,fc_MPa,axial_kN,n_long,"
@@ -60,7 +60,7 @@ def deadly(specimen: peer.Specimen) -> rbsdem.Column:
 # The command with a model that does not come to an end on its third test.
 ENDLESS = """
 import itertools, pathlib, sys, time
-from rbsdem.cli import peer as command
+from rbsdem.cli import main
 from rbsdem.measured import one
 
 make = one.column_of
@@ -73,7 +73,7 @@ def endless(specimen, model):
     return make(specimen, model)
 
 one.column_of = endless
-raise SystemExit(command.main(sys.argv[1:] + ["--model", "paper"]))
+raise SystemExit(main(["peer", *sys.argv[1:], "--model", "paper"]))
 """
 
 
@@ -380,7 +380,7 @@ def test_tables(table):
 
 def run(*arguments: str | Path) -> tuple[int, list[str]]:
     """Run the command in this process; return its code."""
-    return command.main([str(argument) for argument in arguments])
+    return main(["peer", *map(str, arguments)])
 
 
 def test_command(folder, tmp_path, capsys):
@@ -448,7 +448,7 @@ def test_command_broken_off(tmp_path, peer_folder):
         time.sleep(0.05)
     running.send_signal(signal.SIGINT)
     out, error = running.communicate(timeout=30)
-    assert running.returncode == command.INTERRUPTED, error
+    assert running.returncode == 130, error
     assert "Traceback" not in error
-    assert "broken off after 2 of" in error
+    assert "interrupted after 2 of" in error
     assert "paper" in out

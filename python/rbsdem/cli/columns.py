@@ -1,0 +1,556 @@
+"""The commands for the column of a case: `trade`, `ensemble`, `ida`, `explore` and `report`."""
+
+from __future__ import annotations
+
+import csv
+import math
+import sys
+import threading
+import warnings
+import webbrowser
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+import numpy as np
+
+from rbsdem._files import write_csv, write_figure
+from rbsdem._optional import console, need_parquet, need_rich, plain
+from rbsdem.batch.engine import ensemble as run_ensemble
+from rbsdem.batch.intensity import NAMES
+from rbsdem.batch.record import Ensemble
+from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
+from rbsdem.errors import InputError, RepairWarning
+from rbsdem.many.fragility import Fragility
+from rbsdem.many.hazard import Hazard
+from rbsdem.many.ida import IDA
+from rbsdem.many.ida import ida as run_ida
+from rbsdem.methods.measure import trade as compare_methods
+from rbsdem.motions.motion import GroundMotion
+from rbsdem.motions.read import read_motion, read_motions
+from rbsdem.motions.synthetic import synthetic
+from rbsdem.output import methods_figure, methods_table
+from rbsdem.output.ensemble_figure import draw_fragilities
+from rbsdem.results.case import Case, read_case
+from rbsdem.web.near import Near
+from rbsdem.web.report import write_report
+from rbsdem.web.server import ExploreServer, opened
+from rbsdem.web.state import DEFAULT
+from rbsdem.web.texts import drawing_in
+
+#: Collapse drift of an IDA if the case has none.
+_DRIFT = 0.1
+#: Settings of a case that belong to its method.
+_OF_METHOD = ("dt", "events", "tolerance", "rho_infinity", "allow_unstable", "max_seconds")
+
+_units = click.option("--units", help="unit of records that name none: g, m/s2, cm/s2")
+_jobs = click.option("--jobs", type=int, metavar="N", help="threads; default one per processor")
+_tests = click.option("--tests", type=FOLDER, metavar="DIR", help="show the nearest measured tests")
+
+
+# ---- methods ------------------------------------------------------------------------------------
+
+
+@click.command("trade")
+@CASE
+@click.option("--tolerance", type=float, metavar="X", help="name the cheapest setting within it")
+@click.option("--budget", type=float, default=60.0, metavar="S", help="wall time; default 60 s")
+@click.option("--methods", metavar="A,B", help="methods in time to try; default all of them")
+@click.option("--output", type=FOLDER, metavar="DIR", help="folder of files; default CASE-trade")
+@quiet
+def trade(
+    case: Path,
+    tolerance: float | None,
+    budget: float,
+    methods: str | None,
+    output: Path | None,
+    quiet: bool,
+) -> int:
+    r"""Measure what accuracy costs in a case, and which parts of the model it needs.
+
+    The case is run with different methods, steps and tolerances and compared with a reference on
+    which two methods agree.
+
+    \b
+    Files: trade.csv (settings), physics.csv (parts of the model), trade.png (error, wall time).
+    Exit codes: 0 success, 1 the analysis failed, 2 the input is wrong.
+    """
+    model = read_case(case)
+    study = compare_methods(
+        model.column,
+        **_loading(model),
+        methods=methods.split(",") if methods else None,
+        setting=None if model.method == "static" else _settings(model, _OF_METHOD[:4]),
+        tolerance=tolerance,
+        budget=budget,
+        progress=not quiet and sys.stderr.isatty(),
+    )
+    folder = output or case.with_name(f"{case.stem}-trade")
+    folder.mkdir(parents=True, exist_ok=True)
+    written = [folder / "trade.csv", folder / "physics.csv"]
+    study.to_csv(written[0])
+    study.physics_to_csv(written[1])
+    figure = methods_figure.save(study, folder / "trade.png", model.title)
+    if figure is not None:
+        written.append(figure)
+    if not quiet:
+        methods_table.report(study, model.title or case.stem)
+        if figure is None:
+            print("no figure: there is no reference")
+        _tell_files(written)
+    return 0
+
+
+def _settings(case: Case, names: Sequence[str]) -> dict[str, Any]:
+    """Return method and settings of a case that runs in time."""
+    return {"method": case.method, **{n: case.settings[n] for n in names if n in case.settings}}
+
+
+def _loading(case: Case) -> dict[str, Any]:
+    """Return the arguments of a comparison of methods for a case."""
+    names = ("displacement", "force", "ground_acceleration", "vertical_acceleration", "axial_load")
+    loads = {name: getattr(case, name) for name in names if getattr(case, name) is not None}
+    if case.method != "static":
+        loads["time"] = case.time
+    if "collapse_drift" in case.settings:
+        loads["collapse_drift"] = case.settings["collapse_drift"]
+    return loads
+
+
+def _tell_files(paths: Sequence[Path]) -> None:
+    for path in paths:
+        print(f"wrote {path}")
+
+
+# ---- records ------------------------------------------------------------------------------------
+
+
+def _records(words: Sequence[str], units: str | None) -> list[GroundMotion]:
+    """Return the records of folders and files, or synthetic ones; report all that is wrong."""
+    records: list[GroundMotion] = []
+    faults = []
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", RepairWarning)
+        for word in words:
+            try:
+                records += _records_of(word, units)
+            except InputError as error:
+                faults.append(str(error))
+    for warning in caught:
+        tell(str(warning.message))
+    if faults:
+        raise InputError("\n".join(faults))
+    return records
+
+
+def _records_of(word: str, units: str | None) -> Sequence[GroundMotion]:
+    name, _, number = word.partition(":")
+    if name == "synthetic" and not Path(word).exists():
+        return synthetic(int(number) if number.isdigit() else 20)
+    return read_motions(word, units) if Path(word).is_dir() else [read_motion(word, units)]
+
+
+def _numbers(text: str, option: str, example: str) -> list[float]:
+    try:
+        return [float(word) for word in text.split(",")]
+    except ValueError:
+        raise InputError(f"{option} {text}: give {example}") from None
+
+
+# ---- ensembles ----------------------------------------------------------------------------------
+
+
+@click.command("ensemble")
+@CASE
+@click.argument("records", nargs=-1, type=FILE, metavar="[RECORD]...")
+@click.option("--scales", default="1", metavar="A,B,...", help="factors of the records; default 1")
+@_units
+@click.option("--out", type=FOLDER, required=True, metavar="DIR", help="folder for the files")
+@_jobs
+@click.option("--shard", metavar="I/N", help="do part I of N, from 1 to N")
+@quiet
+def ensemble(
+    case: Path,
+    records: tuple[Path, ...],
+    scales: str,
+    units: str | None,
+    out: Path,
+    jobs: int | None,
+    shard: str | None,
+    quiet: bool,
+) -> int:
+    r"""Run the column of a case under ground motions at several scales.
+
+    RECORD is a file or a folder; without records the ground acceleration of the case is used.
+    Method, step, collapse drift and initial state are those of the case.
+
+    \b
+    Files (--out): store/ (finished runs in Parquet files of a few seconds of work each),
+    runs.csv (one row per run, written when all parts are finished).
+    A second start computes only what the store does not hold: after an interruption, or with more
+    records or scales. In a job array, give every job the same command with --shard I/N.
+    Exit codes: 0 every run was completed or collapsed, 1 some failed, 2 the input is wrong,
+    130 interrupted by the keyboard (finished runs are kept).
+    """
+    need_parquet()
+    model = read_case(case)
+    if model.method == "static":
+        raise InputError(
+            f"{case}: method = 'static' takes no records; give a method in time, as 'auto'"
+        )
+    names = (*_OF_METHOD, "collapse_drift", "initial")
+    runs = run_ensemble(
+        {model.title or case.stem: model.column},
+        _records(list(map(str, records)), units) if records else [_own_motion(case, model)],
+        scales=_numbers(scales, "--scales", "numbers separated by commas, as 0.5,1,2"),
+        **_settings(model, names),
+        jobs=jobs,
+        store=out / "store",
+        shard=None if shard is None else _part(shard),
+        progress=not quiet,
+        allow_partial=True,
+    )
+    if "" not in runs.status:
+        write_csv(out / "runs.csv", _rows(runs))
+    if not quiet:
+        counts = ", ".join(f"{number} {status}" for status, number in runs.counts.items())
+        resumed = f", {runs.resumed} of them from the store" if runs.resumed else ""
+        print(f"{len(runs)} runs{resumed}: {counts}; {runs.seconds:.3g} s")
+        if "" in runs.status:
+            print(f"runs.csv is written when all parts are in {out / 'store'}")
+        else:
+            _tell_files([out / "runs.csv"])
+    if runs.interrupted:
+        return INTERRUPTED
+    return 1 if runs.errors else 0
+
+
+def _own_motion(path: Path, case: Case) -> Any:
+    """Return the ground motion of a case."""
+    if case.ground_acceleration is None:
+        raise InputError(
+            f"{path} has no ground acceleration; give records: rbsdem ensemble {path} RECORD ..."
+        )
+    for name in ("force", "vertical_acceleration", "axial_load"):
+        if getattr(case, name) is not None:
+            raise InputError(
+                f"{path}: an ensemble takes horizontal ground motions only, no {name}; remove it "
+                "from the case, or run the case alone: rbsdem run"
+            )
+    return case.time, case.ground_acceleration
+
+
+def _part(text: str) -> tuple[int, int]:
+    part, _, parts = text.partition("/")
+    try:
+        return int(part), int(parts)
+    except ValueError:
+        raise InputError(f"--shard {text}: give part and number of parts, as 3/20") from None
+
+
+def _rows(runs: Ensemble) -> list[list[object]]:
+    columns, motions = list(runs.columns), list(runs.motions)
+    rows: list[list[object]] = [["column", "motion", "scale", "status", *runs.measures, "error"]]
+    for run in range(len(runs)):
+        numbers = [float(values[run]) for values in runs.measures.values()]
+        names = str(columns[runs.column[run]]), str(motions[runs.motion[run]])
+        status = str(runs.status[run])
+        rows.append([*names, float(runs.scale[run]), status, *numbers, runs.errors.get(run, "")])
+    return rows
+
+
+# ---- incremental dynamic analysis ---------------------------------------------------------------
+
+
+@click.command("ida")
+@CASE
+@click.argument("records", nargs=-1, required=True, type=FILE, metavar="RECORDS...")
+@_units
+@click.option("--intensity", default="sa_t1", help=f"{', '.join(NAMES)}; default sa_t1")
+@click.option("--levels", default="hunt", metavar="A,B", help="m/s2; default: found by search")
+@click.option("--limit", multiple=True, metavar="NAME=DRIFT", help="limit state: repair=0.01")
+@click.option("--beta", multiple=True, metavar="NAME=BETA", help="stated dispersion: yield=0.4")
+@click.option("--collapse-drift", type=float, metavar="X", help=f"default: the case, else {_DRIFT}")
+@click.option("--method", help="method in time; default that of the case")
+@click.option("--dt", type=float, metavar="S", help="step; default that of the case")
+@click.option("--hazard", type=FILE, metavar="FILE", help="csv of intensity, annual frequency")
+@_jobs
+@click.option("--out", type=FOLDER, metavar="DIR", help="folder for the files")
+@click.option("--parquet", is_flag=True, help="write the runs as Parquet too")
+@quiet
+def ida(
+    case: Path,
+    records: tuple[Path, ...],
+    units: str | None,
+    intensity: Any,
+    levels: str,
+    limit: tuple[str, ...],
+    beta: tuple[str, ...],
+    hazard: Path | None,
+    jobs: int | None,
+    out: Path | None,
+    parquet: bool,
+    quiet: bool,
+    **method: Any,
+) -> int:
+    r"""Run an incremental dynamic analysis: each record at growing intensity until collapse.
+
+    Fragility curves of the limit states are fitted to the runs. RECORDS is a folder of records
+    (AT2, csv), files of records, or synthetic[:N]. The loading of the case is not used.
+    --limit and --beta may be repeated.
+
+    \b
+    Files (--out): ida.csv (one row per run), fractiles.csv, fragility.csv, ida.png,
+    fragility.png; with --parquet ida.parquet.
+    Exit codes: 0 success, 1 the analysis failed, 2 the input is wrong, 130 interrupted.
+    """
+    # What is missing or wrong is reported before the work.
+    if parquet:
+        need_parquet()
+        if out is None:
+            raise InputError("--parquet writes a file; give its folder with --out DIR")
+    model = read_case(case)
+    limits = _limits(limit)
+    spreads = _spreads(beta, limits)
+    site = None if hazard is None else _read_hazard(hazard)
+    example = "intensities in m/s2 separated by commas, or hunt"
+    motions = _records(list(map(str, records)), units)
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
+    analysis = run_ida(
+        model.column,
+        motions,
+        intensity=intensity,
+        levels=levels if levels == "hunt" else _numbers(levels, "--levels", example),
+        jobs=jobs,
+        progress=not quiet and sys.stderr.isatty(),
+        **_ida_settings(model, **method),
+    )
+    curves, notes = _curves(analysis, limits, spreads)
+    written = [] if out is None else _write(analysis, curves, out, parquet)
+    if not quiet:
+        _report(analysis, curves, notes, site)
+        _tell_files(written)
+    return 0
+
+
+def _ida_settings(
+    case: Case, method: str | None, dt: float | None, collapse_drift: float | None
+) -> dict[str, Any]:
+    """Return method, step and collapse drift of the command line, else of the case."""
+    # What belongs to the method of the case has no meaning for another one.
+    settings = _settings(case, () if method else _OF_METHOD)
+    if method or case.method == "static":
+        settings["method"] = method or "auto"
+    if dt is not None:
+        settings["dt"] = dt
+    if "initial" in case.settings:
+        settings["initial"] = case.settings["initial"]
+    drift = case.settings.get("collapse_drift", _DRIFT)
+    return settings | {"collapse_drift": drift if collapse_drift is None else collapse_drift}
+
+
+def _limits(texts: Sequence[str]) -> dict[str, Any]:
+    """Return yield, the limit states of the command line, and collapse."""
+    limits: dict[str, Any] = {"yield": ("first_yield", None)}
+    for text in texts:
+        name, drift = _named_number(text)
+        if not (name and 0 < drift < 1):
+            raise InputError(f"--limit {text}: give a name and a drift, as repair=0.01")
+        limits[name] = drift
+    return limits | {"collapse": ("collapse", None)}
+
+
+def _spreads(texts: Sequence[str], limits: Mapping[str, Any]) -> dict[str, float]:
+    """Return the dispersions that the command line states."""
+    spreads = {}
+    for text in texts:
+        name, beta = _named_number(text)
+        if name not in limits or not 0 < beta < math.inf:
+            raise InputError(
+                f"--beta {text}: give a limit state ({', '.join(limits)}) and its dispersion, as "
+                "yield=0.4"
+            )
+        spreads[name] = beta
+    return spreads
+
+
+def _named_number(text: str) -> tuple[str, float]:
+    """Return the parts of NAME=NUMBER; NaN where there is no number."""
+    name, _, value = text.partition("=")
+    try:
+        return name, float(value)
+    except ValueError:
+        return name, math.nan
+
+
+def _read_hazard(path: Path) -> Hazard:
+    """Return the hazard of a csv with two columns, perhaps with names."""
+    try:
+        text = path.read_text("utf-8-sig")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror}); check the path") from None
+    rows: list[tuple[float, float]] = []
+    for number, row in enumerate(csv.reader(text.splitlines()), 1):
+        if not row or row[0].startswith("#"):
+            continue
+        try:
+            intensity, frequency = map(float, row)
+        except ValueError:
+            if rows or number > 10:
+                raise InputError(
+                    f"{path} line {number}: {','.join(row)[:40]!r} is not an intensity and an "
+                    "annual frequency"
+                ) from None
+            continue
+        rows.append((intensity, frequency))
+    if not rows:
+        raise InputError(f"{path}: has no rows of an intensity and an annual frequency")
+    return Hazard(*zip(*rows, strict=True))
+
+
+def _curves(
+    analysis: IDA, limits: Mapping[str, Any], spreads: Mapping[str, float]
+) -> tuple[dict[str, Fragility], list[str]]:
+    """Return the curves, and why some limit states have none."""
+    curves: dict[str, Fragility] = {}
+    notes: list[str] = []
+    for name, limit in limits.items():
+        try:
+            beta = {name: spreads[name]} if name in spreads else None
+            curves |= analysis.fragilities({name: limit}, beta=beta)
+        except InputError as error:
+            notes.append(str(error))
+    return curves, notes
+
+
+def _write(
+    analysis: IDA, curves: Mapping[str, Fragility], folder: Path, parquet: bool
+) -> list[Path]:
+    written = [folder / "ida.csv", folder / "fractiles.csv", folder / "fragility.csv"]
+    analysis.runs.to_csv(written[0])
+    level, fractiles = analysis.fractiles()
+    head = ("intensity_m/s2", "peak_drift_16", "peak_drift_50", "peak_drift_84")
+    write_csv(written[1], [head, *np.vstack([level, fractiles]).T.tolist()])
+    names = ("limit_state", "theta_m/s2", "beta", "se_theta_m/s2", "se_beta", "records")
+    rows = [(name, f.theta, f.beta, *_errors(f), f.data.size) for name, f in curves.items()]
+    write_csv(written[2], [names, *rows])
+    if parquet:
+        written.append(folder / "ida.parquet")
+        analysis.runs.to_parquet(written[-1])
+    figures = {"ida.png": analysis.plot(), "fragility.png": draw_fragilities(dict(curves))}
+    for name, ax in figures.items():
+        written.append(folder / name)
+        write_figure(ax.figure.savefig, written[-1], dpi=150)
+    return written
+
+
+def _errors(curve: Fragility) -> list[float]:
+    """Return the standard errors of median and dispersion."""
+    return [float(variance) ** 0.5 for variance in curve.covariance.diagonal()]
+
+
+def _report(
+    analysis: IDA, curves: Mapping[str, Fragility], notes: list[str], hazard: Hazard | None
+) -> None:
+    rich = need_rich()
+    table = rich.table.Table(box=rich.box.SIMPLE_HEAD, padding=(0, 1), show_edge=False)
+    heads = ["Limit state", "θ (m/s²)", "±", "β", "±", "90 % band at θ", "Records"]
+    for number, head in enumerate([*heads, "1/a"] if hazard else heads):
+        table.add_column(head, justify="right" if number else "left", no_wrap=True)
+    for name, curve in curves.items():
+        errors = _errors(curve)
+        cells = [f"{curve.theta:.3g}", f"{errors[0]:.2g}", f"{curve.beta:.2f}"]
+        cells += ["stated" if curve.stated else f"{errors[1]:.2f}"]
+        try:
+            low, high = curve.band([curve.theta])
+            cells.append(f"{float(low[0]):.2f} to {float(high[0]):.2f}")
+        except InputError as error:
+            cells.append("-")
+            notes = [*notes, str(error)]
+        cells.append(str(curve.data.size))
+        if hazard:
+            cells.append(f"{curve.mean_annual_frequency(hazard):.2e}")
+        table.add_row(plain(name), *cells)
+    out = console(100)
+    label, size = analysis.runs.measure.label, analysis.lower.size
+    out.print(
+        plain(f"{label}: {size} records, {len(analysis.runs)} runs, {analysis.seconds:.3g} s")
+    )
+    out.print(table)
+    for note in notes:
+        out.print(plain(note))
+
+
+# ---- the page -----------------------------------------------------------------------------------
+
+
+@click.command("explore")
+@click.argument("case", required=False, type=FILE, metavar="[CASE.nml]")
+@click.option("--no-browser", is_flag=True, help="print the address, open no browser")
+@click.option("--port", type=int, default=0, metavar="N", help="on 127.0.0.1; default a free one")
+@_tests
+def explore(case: Path | None, no_browser: bool, port: int, tests: Path | None) -> int:
+    r"""Open a page in the browser on which one draws a column and sees its loops.
+
+    It shows section, limit states, bands, moment-curvature, interaction, code values and similar
+    measured tests. The page is served on this machine only, under an address with a token, and
+    uses no network. Ctrl-C ends it.
+
+    \b
+    Exit codes: 0 ended, 2 the input is wrong.
+    """
+    start = DEFAULT if case is None else start_of(case)
+    server = ExploreServer(port, start, None if tests is None else Near(tests))
+    print(server.address, flush=True)
+    if not no_browser:
+        # Some browsers come back only when they are closed.
+        threading.Thread(target=webbrowser.open, args=(server.address,), daemon=True).start()
+        tell("Ctrl-C ends it")
+    try:
+        server.serve_forever(poll_interval=0.2)
+    except KeyboardInterrupt:
+        pass
+    finally:
+        server.server_close()
+    return 0
+
+
+@click.command("report")
+@CASE
+@click.option("-o", "--output", type=FILE, metavar="FILE", help="default CASE.html")
+@click.option("--title", help="title; default that of the case")
+@_tests
+def report(case: Path, output: Path | None, title: str | None, tests: Path | None) -> int:
+    r"""Write a case as one html file that opens offline.
+
+    It holds loops and limit states and, for a drawn column, section, diagrams, band and code
+    values.
+
+    \b
+    Exit codes: 0 written, 1 the file cannot be written, 2 the input is wrong.
+    """
+    start = start_of(case)
+    near = None if tests is None else Near(tests)
+    title = title or start["title"] or case.stem
+    _tell_files([write_report(output or case.with_suffix(".html"), start, title, near)])
+    return 0
+
+
+def start_of(path: Path) -> Mapping[str, Any]:
+    """Return the state of a case file; its histories are put into it.
+
+    Raises
+    ------
+    InputError
+        As `rbsdem.read_case`.
+    """
+    case = read_case(path)
+    written = path.read_text(encoding="utf-8", errors="replace")
+    found = opened(written) if drawing_in(written) is not None else {"faults": []}
+    if "faults" in found:
+        found = opened(case.to_namelist())
+    if "faults" in found:
+        raise InputError("\n".join(fault["text"] for fault in found["faults"]))
+    return {**found["state"], "note": found.get("note", ""), "title": case.title}
