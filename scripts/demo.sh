@@ -3,7 +3,6 @@
 # from their drawings, and with the springs of the paper, over their tests.
 #
 #   bash scripts/demo.sh [--peer DIR] [--out DIR] [--no-plot]
-RBSDEM_EXTRA=all
 . "$(dirname "${BASH_SOURCE[0]}")/build.sh"
 
 cd "$root"

@@ -62,12 +62,12 @@ if [ ! -x "$venv/bin/python" ]; then
     say "making the virtual environment ${venv#"$root"/}"
     "$python" -m venv "$venv" || fail "$python -m venv failed; apt-get install python3-venv"
 fi
-# The lists of pyproject.toml are the only ones: build requirements and the extra that the caller wants.
-stamp="$venv/.rbsdem-${RBSDEM_EXTRA:-plot}"
+# The lists of pyproject.toml are the only ones: requirements and the extra that the caller wants.
+stamp="$venv/.rbsdem-${RBSDEM_EXTRA:-plain}"
 if [ ! -e "$stamp" ] || [ "$root/pyproject.toml" -nt "$stamp" ]; then
-    say "installing Python packages (${RBSDEM_EXTRA:-plot})"
+    say "installing Python packages${RBSDEM_EXTRA:+ ($RBSDEM_EXTRA)}"
     # The pip of older distributions cannot pass settings to the build.
-    { echo "pip>=23.1"; "$venv/bin/python" "$root/scripts/requirements.py" "${RBSDEM_EXTRA:-plot}"; } |
+    { echo "pip>=23.1"; "$venv/bin/python" "$root/scripts/requirements.py" ${RBSDEM_EXTRA:+"$RBSDEM_EXTRA"}; } |
         "$venv/bin/python" -m pip install -q --disable-pip-version-check -r /dev/stdin ||
         fail "pip could not install the packages named in pyproject.toml"
     touch "$stamp"

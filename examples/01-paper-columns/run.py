@@ -32,18 +32,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+from rich import box
+from rich.console import Console
+from rich.table import Table
 
 import rbsdem
 from rbsdem import curves as comparison
 from rbsdem import plot
 from rbsdem.peer import FOLDER_VARIABLE, find_history, measured_loops, shipped_reversals
-
-try:
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-except ImportError:
-    sys.exit("run.py: the tables need rich, which is not installed: pip install rich")
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -404,6 +400,6 @@ if __name__ == "__main__":
     except rbsdem.InputError as error:
         print(f"run.py: {error}", file=sys.stderr)
         sys.exit(2)
-    except (rbsdem.RbsdemError, OSError, ImportError) as error:
+    except (rbsdem.RbsdemError, OSError) as error:
         print(f"run.py: {error}", file=sys.stderr)
         sys.exit(1)

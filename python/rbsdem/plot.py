@@ -1,6 +1,6 @@
 """Figures for publication, in mm, kN and s.
 
-Needs matplotlib (``pip install "rbsdem[plot]"``), which is imported when a figure is asked for.
+matplotlib is imported when a figure is asked for.
 Functions take SI and draw millimetres and kilonewtons. Without axes they make a figure in the house
 style, the dictionary `RC`; axes that are given keep the style of the caller.
 """

@@ -594,12 +594,6 @@ def test_zero_start_with_bounds():
     assert fit.parameters[0].unit == "N m/rad"
 
 
-def test_without_scipy(monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "scipy.optimize", None)
-    with pytest.raises(ImportError, match=r"rbsdem\[calibrate\]"):
-        rbsdem.calibrate(COLUMNS["zahn_7"], (D, F), ["flexure.k_y"])
-
-
 # ---- report, table, figure -----------------------------------------------------------------------
 
 

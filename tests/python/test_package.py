@@ -421,10 +421,8 @@ def test_arrays_of_any_layout_and_kind_are_taken():
 @pytest.mark.parametrize(
     ("package", "extra", "what"),
     [
-        ("matplotlib", "plot", "rbsdem.plot.loop([0, 1], [0, 1])"),
-        ("scipy", "calibrate", "rbsdem.calibrate(column, test, free=['flexure.k_u'])"),
-        ("pandas", "pandas", "rbsdem.peer.Predictions([]).to_pandas()"),
-        ("pandas", "pandas", "rbsdem.peer.Specimens([]).to_pandas()"),
+        ("pyarrow", "ensembles", "rbsdem.ensemble(column, ([0, 1], [0, 1]), store='nowhere')"),
+        ("xarray", "netcdf", "rbsdem.cyclic(column, displacement=[0.001]).to_xarray()"),
     ],
 )
 def test_extra_that_is_missing_is_named(package, extra, what):
@@ -434,7 +432,6 @@ import sys
 sys.modules[{package!r}] = None
 import rbsdem
 column = rbsdem.paper_columns("pdelta")["zahn_7"]
-test = ([0.0, 0.01, -0.01], [0.0, 1e5, -1e5])
 try:
     {what}
 except ImportError as error:
@@ -447,10 +444,3 @@ except ImportError as error:
     project = (ROOT / "pyproject.toml").read_text()
     assert re.search(rf'^{extra} = \["{package}>=', project, re.M)
     assert f".[{extra}]" in (ROOT / "README.md").read_text()
-
-
-def test_base_has_what_the_commands_need():
-    """`trade` and `peer` print tables of rich."""
-    project = (ROOT / "pyproject.toml").read_text()
-    base = re.search(r"^dependencies = \[(.*)\]", project, re.M)[1]
-    assert re.findall(r'"(\w+)', base) == ["numpy", "rich"]

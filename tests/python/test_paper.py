@@ -418,11 +418,3 @@ def test_what_cannot_be_drawn_is_refused():
         plot.loop(3.0, ax=Figure().subplots())
     with pytest.raises(InputError, match="height"):
         plot.four_panels([replace(panels()[0], height=-1.0)])
-
-
-def test_without_matplotlib_the_message_says_what_to_install(monkeypatch):
-    from rbsdem import plot  # noqa: PLC0415
-
-    monkeypatch.setitem(__import__("sys").modules, "matplotlib", None)
-    with pytest.raises(ImportError, match=r"pip install .rbsdem\[plot\]"):
-        plot.loop([0.0, 1.0], [0.0, 1.0])
