@@ -6,7 +6,7 @@ module test_linalg
    use rbs_base_kinds, only: wp
    use rbs_base_band_matrix, only: band_matrix
    use rbs_base_linalg, only: solve_tridiagonal, solve_general_band, solve_dense
-   use rbs_base_small_systems, only: solve_rows, row_length
+   use rbs_solve_static_few_bodies, only: solve_rows, row_length
    implicit none
    private
 

@@ -1,4 +1,4 @@
-!> The lines on which a column leaves a corner of its static path.
+!> The lines on which a structure leaves a corner of its static path.
 !>
 !> At a corner a spring stands at an end of its line, or on a one-way line against its way. Which springs
 !> go on and which turn back must be found together: a linear complementarity problem.
@@ -7,7 +7,6 @@ module rbs_solve_static_corner
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: choose_lines
-   use rbs_structure_column_axial, only: critical_factor
    use rbs_solve_static_path, only: static_path, describe_state, name_spring
    implicit none
    private
@@ -26,7 +25,7 @@ contains
    !> Find the lines that lead on in a direction, and the rates on them.
    !>
    !> Springs without room are put on the next line, all at once as long as this leaves fewer and fewer
-   !> without room, else the first one first: while the column is stable this ends (Murty's least-index
+   !> without room, else the first one first: while the structure is stable this ends (Murty's least-index
    !> rule; with blocks: Judice and Pires, Computers Oper. Res. 21 (1994) 587-596). Beyond the peak it may
    !> cycle.
    subroutine turn_corner(path, direction, target, error)
@@ -214,22 +213,16 @@ contains
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: spring, state, remark
-      real(wp) :: factor
 
       call describe_state(path, state)
       remark = ''
-      if (path%column%axially_loaded) remark = ' above what the axial load takes away'
+      if (path%structure%axially_loaded) remark = ' above what the axial load takes away'
       call name_spring(path, spring)
-      call critical_factor(path%column, factor)
       if (.not. path%by_force) then
          call fatal_error(error, analysis_failed, 'the equilibrium is not unique at the displacement '// &
                           to_text(target)//' m at '//state//': '//spring// &
                           ' and the axial load leave it without stiffness. Change the axial load '// &
                           'or the stiffness after yield')
-      else if (factor <= 1.0_wp .and. .not. abs(path%displacement) > 0.0_wp) then
-         call fatal_error(error, analysis_failed, 'the axial load is '//to_text(1.0_wp/factor)// &
-                          ' times the critical load of the uncracked column, which buckles by itself; '// &
-                          'reduce axial_load, stiffen the springs, or drive it by displacement')
       else
          call fatal_error(error, analysis_failed, 'the lateral force '//to_text(target)// &
                           ' N is beyond the capacity of the column: '//spring// &

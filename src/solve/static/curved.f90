@@ -63,14 +63,14 @@ contains
    !> Follow the targets one after the other.
    subroutine trace_curved(column, by_force, target, load, task, error)
       !> Under the axial load with which the path begins
-      class(column_type), intent(in) :: column
+      class(column_type), intent(in), target :: column
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
       !> Targets (m), and axial loads at the top there; empty where it is constant [N]
       real(wp), intent(in) :: target(:), load(:)
       type(task_type), intent(inout), target :: task
       type(error_type), allocatable, intent(out) :: error
-      type(curved_path) :: path
+      type(curved_path), target :: path
       logical :: varies
       integer :: m
 
@@ -80,8 +80,9 @@ contains
       call path%stride%equilibrium%create(column, by_force, varies)
       allocate (path%stride%here%q(m), path%stride%here%rate(m), path%stride%there%q(m), &
                 path%stride%there%rate(m), source=0.0_wp)
-      path%steady = path%stride%equilibrium%steady
-      call begin_path(path, column, by_force, m, varies, error, task%before)
+      path%structure => column
+      path%steady => path%stride%equilibrium%steady
+      call begin_path(path, by_force, m, varies, task%before, error)
       if (allocated(error)) return
       if (.not. task%resumes()) then
          call path%stand_still()
@@ -147,7 +148,7 @@ contains
 
       call self%stride%equilibrium%solve(self%springs, self%stride%here, found)
       if (.not. found) return
-      self%rate = direction*clean(self%column, self%stride%here)
+      self%rate = direction*clean(self%stride%equilibrium%steady, self%stride%here)
       if (self%stride%equilibrium%varies) self%stride%here%rate = self%rate
       self%axial_rate = self%stride%here%axial_rate
    end subroutine solve_line
@@ -163,7 +164,7 @@ contains
 
       self%stride%direction = self%direction
       way = abs(self%goal - self%stride%here%t)
-      turn = self%column%largest_turn(self%stride%here%rate)
+      turn = self%stride%equilibrium%steady%largest_turn(self%stride%here%rate)
       length = min(way, self%next_length)
       if (turn*length > most_turn) length = most_turn/turn
       shortest = no_stride*max(abs(self%stride%here%t), length)
@@ -206,21 +207,21 @@ contains
       associate (way => abs(self%stride%there%t - self%stride%here%t))
          near = (self%stride%spring > 0 .or. .not. abs(self%goal - limit) > 0.0_wp) .and. &
                 way <= close_by*self%extent .and. &
-                way*self%column%largest_turn(self%stride%here%rate) <= close_by
+                way*self%stride%equilibrium%steady%largest_turn(self%stride%here%rate) <= close_by
       end associate
       done = near
       if (.not. near) call self%stride%find_point(self%springs, limit, .true., done)
-      if (done) call self%stride%curve%set(self%column, self%stride%here, self%stride%there)
+      if (done) call self%stride%curve%set(self%stride%equilibrium%steady, self%stride%here, self%stride%there)
       if (done .and. .not. near) then
-         done = self%stride%curve%is_gentle(self%column)
+         done = self%stride%curve%is_gentle(self%stride%equilibrium%steady)
          if (done) turns = self%stride%curve%least_rate(self%springs, self%stride%there) < 0.0_wp
          if (turns) then
             call self%stride%find_turn(self%springs, done)
-            if (done) call self%stride%curve%set(self%column, self%stride%here, self%stride%there)
+            if (done) call self%stride%curve%set(self%stride%equilibrium%steady, self%stride%here, self%stride%there)
          end if
          ! With small rotations the curve is so slight that no layer goes out of its line and back.
          if (done) done = .not. self%stride%curve%hides_event(self%springs, self%stride%equilibrium%above, &
-                                                              self%column%kinematics == finite .and. &
+                                                              self%stride%equilibrium%steady%kinematics == finite .and. &
                                                               cuts < most_looks)
       end if
       if (.not. done) return
@@ -270,7 +271,7 @@ contains
          call put_springs(self)
          ! A motion may have turned by less than the search resolves.
          if (turns .or. spring > 0 .or. &
-             any(self%springs%unload_on_reversal*self%direction*clean(self%column, &
+             any(self%springs%unload_on_reversal*self%direction*clean(self%stride%equilibrium%steady, &
                                                                       there) < 0.0_wp)) self%direction = 0
       end associate
       self%force = self%stride%there%force

@@ -2,14 +2,20 @@
 !> displacement of the top their update where one spring has changed its line.
 !>
 !>     K rate = a dF,   a rate = 1        K = diag(k) + K_G
+!>
+!> They are solved at every event, in loops of our own: a call of LAPACK costs more than their arithmetic, and
+!> one with threads wakes them for nothing, which on a busy machine takes a thousand times as long.
 module rbs_solve_static_few_bodies
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
-   use rbs_base_small_systems, only: solve_rows, row_length
    implicit none
    private
 
-   public :: few_bodies
+   public :: few_bodies, most_unknowns, solve_rows, row_length
+
+   !> Length of an equation in `solve_rows`: unknowns, the force and three right-hand sides; and the most
+   !> unknowns for which full matrices are faster than bands.
+   integer, parameter :: row_length = 8, most_unknowns = row_length - 4
 
    !> Most lines in a row whose rates are updated and not solved for.
    integer, parameter :: most_updates = 8
@@ -18,9 +24,8 @@ module rbs_solve_static_few_bodies
    real(wp), parameter :: lost_digits = 1.0e-14_wp
 
    type :: few_bodies
+      !> 0 where full matrices are not used
       integer :: unknowns = 0
-      !> Whether the equations are as few as `solve_rows` takes
-      logical :: fits = .false.
       !> The equations without springs, and the last solution (row_length, unknowns + 1)
       real(wp), allocatable, private :: row(:, :), solved(:, :)
       !> The stiffness of that solution (unknowns), the spring that is expected to change next, and how often
@@ -37,28 +42,27 @@ module rbs_solve_static_few_bodies
 
 contains
 
-   subroutine create(self, geometric)
+   subroutine create(self, row)
       class(few_bodies), intent(out) :: self
-      !> Geometric stiffness, bordered by the arms of the lateral force (unknowns + 1, unknowns + 1)
-      real(wp), intent(in) :: geometric(:, :)
-      integer :: m
+      !> Each column an equation without springs: geometric stiffness and the force; in the last one the
+      !> displacement (unknowns + 1, unknowns + 1)
+      real(wp), intent(in) :: row(:, :)
 
-      m = size(geometric, 1) - 1
-      self%unknowns = m
-      self%fits = m + 4 <= row_length
-      if (.not. self%fits) return
-      allocate (self%row(row_length, m + 1), source=0.0_wp)
-      allocate (self%k(m), source=0.0_wp)
-      self%row(:m + 1, :) = transpose(geometric)
-      self%row(row_length - 2, m + 1) = 1.0_wp
-      self%solved = self%row
-      self%changing = m
+      associate (m => self%unknowns)
+         m = size(row, 1) - 1
+         allocate (self%row(row_length, m + 1), source=0.0_wp)
+         allocate (self%k(m), source=0.0_wp)
+         self%row(:m + 1, :) = row
+         self%row(row_length - 2, m + 1) = 1.0_wp
+         self%solved = self%row
+         self%changing = m
+      end associate
    end subroutine create
 
    !> Change of deformations and force per metre, and what takes the residuals away.
    subroutine solve(self, k, r, gap, rate, force_rate, correction, force_correction, regular)
       class(few_bodies), intent(inout) :: self
-      !> Stiffness of the springs, residual (unknowns), and what is missing from the displacement [m]
+      !> Stiffness of the springs and more, residual (unknowns), and what is missing from the displacement [m]
       real(wp), intent(in) :: k(:), r(:), gap
       real(wp), intent(out) :: rate(:), force_rate, correction(:), force_correction
       !> Whether there is a unique solution
@@ -89,14 +93,14 @@ contains
    end subroutine solve
 
    !> Driven by the force: elimination without pivots, which shows whether the column is stable.
-   pure subroutine solve_force(self, k, least, right, positive)
+   pure subroutine solve_force(self, k, least, arm, r, rate, correction, positive)
       class(few_bodies), intent(in) :: self
-      !> Stiffness of the springs, and pivots that count as none (unknowns)
-      real(wp), intent(in) :: k(:), least(:)
-      !> Right-hand sides, replaced by the solutions (unknowns, 2)
-      real(wp), intent(inout) :: right(:, :)
+      !> Stiffness of the springs and more; pivots that count as none, arms of the force, residual (unknowns)
+      real(wp), intent(in) :: k(:), least(:), arm(:), r(:)
+      !> Change of the deformations per newton, and what takes the residual away (unknowns)
+      real(wp), intent(out) :: rate(:), correction(:)
       logical, intent(out) :: positive
-      real(wp) :: a(row_length, row_length), share
+      real(wp) :: a(row_length, row_length), right(2, most_unknowns), share
       integer :: i, j, m
 
       m = self%unknowns
@@ -104,21 +108,24 @@ contains
       a(:, :m) = self%row(:, :m)
       do j = 1, m
          a(j, j) = a(j, j) + k(j)
+         right(:, j) = [arm(j), r(j)]
       end do
       do j = 1, m
          if (.not. a(j, j) > least(j)) return
          do i = j + 1, m
             share = a(j, i)/a(j, j)
             a(j:m, i) = a(j:m, i) - share*a(j:m, j)
-            right(i, :) = right(i, :) - share*right(j, :)
+            right(:, i) = right(:, i) - share*right(:, j)
          end do
       end do
       do j = m, 1, -1
          do i = j + 1, m
-            right(j, :) = right(j, :) - a(i, j)*right(i, :)
+            right(:, j) = right(:, j) - a(i, j)*right(:, i)
          end do
-         right(j, :) = right(j, :)/a(j, j)
+         right(:, j) = right(:, j)/a(j, j)
       end do
+      rate = right(1, :m)
+      correction = right(2, :m)
       positive = .true.
    end subroutine solve_force
 
@@ -131,7 +138,7 @@ contains
    !> What is missing from equilibrium, round-off of a few lines, waits for the next solution.
    subroutine update(self, k, rate, force_rate, done)
       class(few_bodies), intent(inout) :: self
-      !> Stiffness of the springs (unknowns)
+      !> Stiffness of the springs and more
       real(wp), intent(in), contiguous :: k(:)
       !> Change of the deformations (unknowns) and of the force [N/m] per metre
       real(wp), intent(inout), contiguous :: rate(:)
@@ -142,7 +149,7 @@ contains
       integer :: i, j, m
 
       done = .false.
-      if (.not. self%fits .or. self%updates >= most_updates) return
+      if (self%updates >= most_updates) return
       m = self%unknowns
       i = self%changing
       do j = 1, m
@@ -197,6 +204,47 @@ contains
          still_solves = still_solves .and. abs(missing) <= lost_digits*size
       end do
    end function still_solves
+
+   !> Solve a very small system for three right-hand sides by elimination with partial pivoting. All equations
+   !> have the same length, known when this is compiled: they are added without loops.
+   pure subroutine solve_rows(n, row, regular)
+      !> Number of unknowns, at the most `row_length` - 3
+      integer, intent(in) :: n
+      !> Each column an equation: its coefficients, and in the last three places the right-hand sides, which
+      !> the solutions replace
+      real(wp), intent(inout) :: row(row_length, n)
+      !> Whether the matrix has an inverse
+      logical, intent(out) :: regular
+      integer, parameter :: right = row_length - 2
+      real(wp) :: factor, pivot(row_length)
+      integer :: i, k, p
+
+      regular = .false.
+      do k = 1, n
+         p = k
+         do i = k + 1, n
+            if (abs(row(k, i)) > abs(row(k, p))) p = i
+         end do
+         if (.not. abs(row(k, p)) > 0.0_wp) return
+         pivot = row(:, p)
+         if (p /= k) then
+            row(:, p) = row(:, k)
+            row(:, k) = pivot
+         end if
+         do i = k + 1, n
+            if (.not. abs(row(k, i)) > 0.0_wp) cycle
+            factor = row(k, i)/pivot(k)
+            row(:, i) = row(:, i) - factor*pivot
+         end do
+      end do
+      do i = n, 1, -1
+         do k = n, i + 1, -1
+            row(right:, i) = row(right:, i) - row(k, i)*row(right:, k)
+         end do
+         row(right:, i) = row(right:, i)/row(i, i)
+      end do
+      regular = .true.
+   end subroutine solve_rows
 
    !> Save or restore the last solution, from which the next one may follow.
    pure subroutine serialize(self, stream)

@@ -1,4 +1,4 @@
-!> What the static paths have in common, whatever the kinematics: the springs, what is driven, the way from
+!> What the static paths have in common, whatever the structure: the springs, what is driven, the way from
 !> target to target, and the rows.
 module rbs_solve_static_path
    use rbs_base_check, only: is_given
@@ -6,25 +6,19 @@ module rbs_solve_static_path
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_structure_column_column, only: column_type, finite
-   use rbs_hysteresis_interaction_joints, only: fall_of, vary_axial_loads
+   use rbs_hysteresis_interaction_joints, only: fall_of
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_solve_static_row_check, only: row_check
+   use rbs_solve_static_row_check, only: row_check, on_the_end
    use rbs_solve_task, only: task_type
    use rbs_structure_channel, only: energy_type, response_type
    use rbs_structure_spring_place, only: spring_name, axial
+   use rbs_structure_structure, only: structure_type, finite
    implicit none
    private
 
-   public :: static_path, kept_rows, is_on_end, describe_state, missing_work, name_spring, &
-             on_the_end, serialize_path
+   public :: static_path, kept_rows, is_on_end, describe_state, name_spring, on_the_end, serialize_path
 
-   !> A spring this close to an end of its line, relative to the end, is on it. Not a tolerance of the
-   !> solution: where a cycle returns to its peak, round-off would otherwise decide between outer and inner
-   !> unloading.
-   real(wp), parameter :: on_the_end = 1.0e-11_wp
-
-   !> What round-off alone moves the top, as a share of what all joints do.
+   !> What round-off alone moves the top, as a share of what all springs do.
    real(wp), parameter :: same_place = 2.0e-13_wp
 
    !> A force is reached if less than this share of it is missing.
@@ -32,10 +26,11 @@ module rbs_solve_static_path
 
    !> The state of a path and how it goes on.
    type, abstract :: static_path
-      !> The column, and under its constant axial loads alone where others vary, as the potential needs it
-      class(column_type), allocatable :: column, steady
+      !> The structure, and the one whose potential belongs to the balance of energy: where axial loads vary,
+      !> under the constant ones alone
+      class(structure_type), pointer :: structure => null(), steady => null()
       type(spring_array) :: springs
-      !> Number of springs that can move: with small rotations the openings keep still
+      !> Number of springs that can move, the first ones
       integer :: moving = 0
       !> Whether the force is driven, else the displacement
       logical :: by_force = .false.
@@ -44,14 +39,13 @@ module rbs_solve_static_path
       !> What is driven, and the way it goes on the line found last: +1, -1, 0 for no line
       real(wp) :: control = 0.0_wp
       integer :: direction = 0
-      !> Change of the deformations per unit of what is driven, in its direction (unknowns)
+      !> Change of the deformations per unit of what is driven, in its direction (springs)
       real(wp), allocatable :: rate(:)
       !> The same of the axial load at the top where it varies [N]
       real(wp) :: axial_rate = 0.0_wp
-      !> Number of the straight line that the path is on, 0 for a curve, and where the line begins
-      integer :: line = 0
-      real(wp) :: start = 0.0_wp
-      !> How often each spring has changed its line at the present corner (unknowns)
+      !> Whether the path consists of straight lines, and is looked at where they end
+      logical :: is_straight = .false.
+      !> How often each spring has changed its line at the present corner (springs)
       integer, allocatable :: changed(:)
       !> Energy of springs and axial load at the start, work of the axial load as far as it varies [J], and
       !> the steps that were cut
@@ -62,18 +56,23 @@ module rbs_solve_static_path
       !> What is driven where the way to the present target begins, and the number of the target, from 0
       real(wp) :: way_begin = 0.0_wp
       integer, private :: number = 0
+      !> What a state of the structure may miss, and whether the present point was found to be none
+      type(row_check), private :: check
+      logical, private :: is_wrong = .false.
+      !> Rotations of the bodies, a work array (n)
+      real(wp), allocatable, private :: rotation(:)
       !> What is told of a corner between two targets: its summary, and its recorder if the row is to be kept
       type(task_type), pointer, private :: task => null()
    contains
       procedure :: prepare
-      procedure :: begin
       procedure :: compress
       procedure :: follow
+      procedure :: look
       procedure :: see_corner
+      procedure :: energies
       procedure(serialize_interface), deferred :: serialize
       procedure(advance_interface), deferred :: advance
       procedure(solve_line_interface), deferred :: solve_line
-      procedure, private :: axial_work
       procedure(balance_interface), deferred :: find_balance
       procedure(unbalance_interface), deferred :: unbalance
       procedure(stand_interface), deferred :: stand_still
@@ -90,7 +89,7 @@ module rbs_solve_static_path
          type(error_type), allocatable, intent(out) :: error
       end subroutine advance_interface
 
-      !> Find the rates of the column on the present lines of its springs.
+      !> Find the rates of the structure on the present lines of its springs.
       subroutine solve_line_interface(self, direction, found)
          import :: static_path
          implicit none
@@ -147,44 +146,24 @@ contains
       end if
    end function kept_rows
 
-   !> The column as it is given, its springs without load.
-   subroutine prepare(self, column, by_force, moving)
+   !> The structure as it is given, its springs without load.
+   subroutine prepare(self, by_force, moving)
       class(static_path), intent(inout) :: self
-      class(column_type), intent(in) :: column
       logical, intent(in) :: by_force
       !> Number of springs that can move
       integer, intent(in) :: moving
-      integer :: heard(column%unknowns)
-      real(wp) :: axial_load(column%unknowns)
+      integer :: heard(size(self%structure%place))
+      real(wp) :: axial_load(size(self%structure%place))
 
-      self%column = column
       self%by_force = by_force
       self%moving = moving
-      heard = column%place%heard
-      axial_load = column%spring%axial_load
-      call self%springs%create(column%rules, heard, axial_load)
-      allocate (self%rate(column%unknowns), source=0.0_wp)
-      allocate (self%changed(column%unknowns), source=0)
+      heard = self%structure%place%heard
+      axial_load = self%structure%spring%axial_load
+      call self%springs%create(self%structure%rules, heard, axial_load)
+      allocate (self%rate(size(heard)), source=0.0_wp)
+      allocate (self%changed(size(heard)), source=0)
+      allocate (self%rotation(self%structure%n))
    end subroutine prepare
-
-   !> The straight column under its axial load.
-   subroutine begin(self, column, by_force, moving, varies, error)
-      class(static_path), intent(inout) :: self
-      class(column_type), intent(in) :: column
-      logical, intent(in) :: by_force
-      !> Number of springs that can move
-      integer, intent(in) :: moving
-      !> Whether the axial loads of layered joints vary
-      logical, intent(in) :: varies
-      type(error_type), allocatable, intent(out) :: error
-
-      call self%prepare(column, by_force, moving)
-      if (column%opens) call self%compress(error)
-      if (allocated(error)) return
-      if (varies) call vary_axial_loads(self%springs)
-      self%load_now = column%axial_load
-      self%at_begin = sum(self%springs%work) + self%axial_work()
-   end subroutine begin
 
    !> Save or restore what every path remembers; solvers add what is their own.
    subroutine serialize_path(self, stream)
@@ -204,20 +183,18 @@ contains
    subroutine compress(self, error)
       class(static_path), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
-      character(len=:), allocatable :: kind
       real(wp) :: tension
       logical :: found
-      integer :: i, joint
+      integer :: i
 
-      do joint = 1, self%column%n
-         i = self%column%at(axial, joint)
-         tension = -self%column%compression(joint)
+      do i = 1, self%springs%count
+         if (self%structure%place(i)%kind /= axial) cycle
+         tension = -self%structure%spring(i)%axial_load
          call self%springs%load_to(i, tension, found)
          if (found .or. abs(tension - self%springs%force(i)) <= no_force*abs(tension)) cycle
-         kind = 'tension'
-         if (tension < 0.0_wp) kind = 'compression'
-         call fatal_error(error, analysis_failed, trim(spring_name(self%column%place(i)))//" (rule '"// &
-                          trim(self%column%spring(i)%rule)//"') cannot carry the "//kind//' of '// &
+         call fatal_error(error, analysis_failed, trim(spring_name(self%structure%place(i)))//" (rule '"// &
+                          trim(self%structure%spring(i)%rule)//"') cannot carry the "// &
+                          trim(merge('compression', 'tension    ', tension < 0.0_wp))//' of '// &
                           to_text(abs(tension))//' N from axial load and weight: it has no stiffness '// &
                           'left. Change axial_load, or give the joint a spring that holds')
          return
@@ -233,78 +210,93 @@ contains
       !> On failure everything up to the last good state has been recorded
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: failure
-      type(row_check) :: check
-      type(response_type) :: response
-      real(wp) :: way
-      logical :: may_collapse
-      integer :: i, n, lost, line
+      type(energy_type) :: energy
+      logical :: may_collapse, ends
+      integer :: i, every, lost
 
-      n = task%every
-      if (.not. is_given(n)) n = 1
+      every = task%every
+      if (.not. is_given(every)) every = 1
       may_collapse = is_given(task%collapse_drift)
       self%task => task
-      call check%begin(self%column, missing_work(self))
+      energy = self%energies()
+      call self%check%begin(self%structure, energy%residual)
       ! A path that goes on has forces and works from before, and the round-off of theirs.
-      call check_row(self, check, self%control, failure)
+      call self%look(self%control, self%unbalance(), .false., failure)
       if (allocated(failure)) deallocate (failure)
-      line = -1
-      way = 0.0_wp
+      self%is_wrong = .false.
       do i = 1, size(target)
          self%number = i - 1
          self%way_begin = self%control
          ! A path whose first target is not where it begins has a way to it.
          if (i == 1 .and. abs(target(1) - self%control) > 0.0_wp) call self%see_corner(0.0_wp)
          call self%advance(target(i), failure)
-         if (.not. allocated(failure) .and. self%springs%lost_joint() == 0) then
-            call stand_on_ends(self)
-            ! On a straight line what is wrong grows with the way.
-            if (self%line == 0 .or. self%line /= line .or. abs(self%control - self%start) > 2.0_wp*way .or. &
-                i == size(target)) then
-               call check_row(self, check, target(i), failure)
-               line = self%line
-               way = abs(self%control - self%start)
-            end if
-            if (allocated(failure)) then
-               ! What is no state of the column is no row.
-               failure%message = 'row '//to_text(i)//': '//failure%message
-               call move_alloc(failure, error)
-               return
-            end if
-         end if
          lost = self%springs%lost_joint()
          if (lost > 0) then
-            task%summary%lost_joint = self%column%place(lost)%index
+            task%summary%lost_joint = self%structure%place(lost)%index
             call fall_of(self%springs, lost, task%summary%fall)
+            ! That is what ends the path.
+            if (allocated(failure)) deallocate (failure)
+         else if (.not. allocated(failure)) then
+            call stand_on_ends(self)
          end if
-         ! Where a joint has lost its axial load, that is what ends the path.
-         if (task%summary%lost_joint > 0 .and. allocated(failure)) deallocate (failure)
-         if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message
-         call see_peaks(self)
          if (may_collapse) then
-            task%summary%collapsed = abs(self%displacement)/self%column%height >= task%collapse_drift
+            task%summary%collapsed = abs(self%displacement)/self%structure%height >= task%collapse_drift
          end if
-         call find_energies(self, response%energy)
-         call task%summary%see_energies(response%energy)
-         if (mod(i - 1, n) == 0 .or. i == size(target) .or. allocated(failure) .or. &
-             task%summary%collapsed .or. task%summary%lost_joint > 0) then
-            task%summary%rows = task%summary%rows + 1
-            call find_response(self, real(i - 1, wp), response)
-            task%summary%last_time = response%time
-            call task%recorder%keep(self%column, response, self%springs, self%springs%d, error)
-            if (allocated(error)) return
+         ends = i == size(target) .or. lost > 0 .or. task%summary%collapsed .or. allocated(failure)
+         if (lost > 0 .or. allocated(failure)) then
+            if (.not. self%is_wrong) call see_state(self, self%energies())
+         else if (ends .or. .not. self%is_straight) then
+            call self%look(target(i), self%unbalance(), .false., failure)
          end if
-         task%summary%steps = i
-         if (mod(i, 8192) == 0 .and. associated(task%progress)) call task%progress%update(real(i, &
-              wp)/size(target))
-         task%summary%events = self%springs%events
-         task%summary%cut_steps = self%cuts
-         if (allocated(failure)) then
-            call move_alloc(failure, error)
-            return
+         if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message
+         ! What is no state of the structure is no row.
+         if (.not. self%is_wrong) then
+            call see_peak(self)
+            if (ends .or. mod(i - 1, every) == 0) then
+               task%summary%rows = task%summary%rows + 1
+               task%summary%last_time = i - 1
+               call keep_row(self, real(i - 1, wp), error)
+               if (allocated(error)) return
+            end if
+            task%summary%steps = i
+            task%summary%events = self%springs%events
+            task%summary%cut_steps = self%cuts
          end if
-         if (task%summary%collapsed .or. task%summary%lost_joint > 0) return
+         if (allocated(failure)) call move_alloc(failure, error)
+         if (allocated(error) .or. ends) return
+         if (mod(i, 8192) == 0 .and. associated(task%progress)) then
+            call task%progress%update(real(i, wp)/size(target))
+         end if
       end do
    end subroutine follow
+
+   !> Where a straight line ends, at a row of a curve, and at the end of the path: energies and rotations
+   !> belong to the summary, and the point must be a state of the structure. On a straight line forces and
+   !> rotations are linear and energies quadratic, so that nothing is larger between its ends.
+   subroutine look(self, target, unbalance, on_ends, failure)
+      class(static_path), intent(inout) :: self
+      !> On the way to which the path is, and the largest force out of equilibrium [N]
+      real(wp), intent(in) :: target, unbalance
+      !> Whether springs were put on ends of their lines since the displacement was found
+      logical, intent(in) :: on_ends
+      type(error_type), allocatable, intent(inout) :: failure
+      character(len=:), allocatable :: fault, spring
+      type(energy_type) :: energy
+
+      energy = self%energies()
+      call see_state(self, energy)
+      call self%check%look(self%structure, self%springs, self%displacement, self%force, unbalance, energy, &
+                           on_ends, fault)
+      if (.not. allocated(fault)) return
+      self%is_wrong = .true.
+      call name_spring(self, spring)
+      call fatal_error(failure, analysis_failed, 'on the way to '//to_text(target)//' '// &
+                       merge('N', 'm', self%by_force)//' the arithmetic has lost the static path: at a '// &
+                       'displacement of '//to_text(self%displacement)//' m '//fault//'. The path up to '// &
+                       'there is kept. The stiffnesses of the springs are too far apart ('//spring// &
+                       ' has the least left): give it more stiffness after yield, or take stiff springs '// &
+                       'less stiff')
+   end subroutine look
 
    !> The path is at a corner, a share of the way to the present target: its figures belong to the summary,
    !> and its row to those who keep every corner.
@@ -312,24 +304,44 @@ contains
       class(static_path), intent(inout) :: self
       real(wp), intent(in) :: share
       type(error_type), allocatable :: error
-      type(response_type) :: response
 
-      call see_peaks(self)
-      if (.not. self%task%recorder%corners) return
-      call find_energies(self, response%energy)
-      call find_response(self, self%number - 1 + share, response)
-      call self%task%recorder%keep(self%column, response, self%springs, self%springs%d, error)
+      call see_peak(self)
+      if (self%task%recorder%corners) call keep_row(self, self%number - 1 + share, error)
    end subroutine see_corner
 
-   !> Tell the summary of the present force, displacement and rotations.
-   subroutine see_peaks(self)
+   !> Tell the summary of the present energies and rotations.
+   subroutine see_state(self, energy)
+      class(static_path), intent(inout) :: self
+      type(energy_type), intent(in) :: energy
+
+      call self%structure%rotations(self%springs%d, self%rotation)
+      call self%task%summary%see_turn(maxval(abs(self%rotation)))
+      call self%task%summary%see_energies(energy)
+   end subroutine see_state
+
+   !> Tell the summary of the present force and displacement.
+   subroutine see_peak(self)
       class(static_path), intent(inout) :: self
 
-      ! A force that pulls the column back, as where second-order moments drive it on, is no strength.
+      ! A force that pulls the structure back, as where second-order moments drive it on, is no strength.
       call self%task%summary%see_peak(self%displacement, merge(self%force, 0.0_wp, &
                                                           self%force*self%displacement >= 0.0_wp))
-      call self%task%summary%see_turn(self%column%largest_turn(self%springs%d))
-   end subroutine see_peaks
+   end subroutine see_peak
+
+   !> Keep the row of the present point.
+   subroutine keep_row(self, number, error)
+      class(static_path), intent(inout) :: self
+      !> Of the row, between two targets with the share of the way
+      real(wp), intent(in) :: number
+      type(error_type), allocatable, intent(inout) :: error
+      type(response_type) :: response
+
+      response%time = number
+      response%displacement = self%displacement
+      response%force = self%force
+      response%energy = self%energies()
+      call self%task%recorder%keep(self%structure, response, self%springs, self%springs%d, error)
+   end subroutine keep_row
 
    !> Whether a spring has come to the open end that it goes to.
    pure logical function is_on_end(springs, i, d, rate)
@@ -357,9 +369,9 @@ contains
       class(static_path), intent(inout) :: self
       real(wp) :: there, reach
 
-      if (self%by_force .or. self%direction /= 0 .or. self%column%kinematics == finite) return
-      there = self%column%top_displacement(self%springs%d)
-      reach = sum(abs(self%column%arm*self%springs%d))
+      if (self%by_force .or. self%direction /= 0 .or. self%structure%kinematics == finite) return
+      there = self%structure%top_displacement(self%springs%d)
+      reach = sum(abs(self%structure%arm*self%springs%d))
       if (abs(there - self%displacement) <= same_place*reach .or. &
           abs(there - self%displacement) > 2.0_wp*on_the_end*reach) return
       self%work = self%work + self%force*(there - self%displacement)
@@ -367,64 +379,16 @@ contains
       self%control = there
    end subroutine stand_on_ends
 
-   !> Whether the present row is a state of the column.
-   subroutine check_row(self, check, target, failure)
-      class(static_path), intent(inout) :: self
-      type(row_check), intent(inout) :: check
-      real(wp), intent(in) :: target
-      type(error_type), allocatable, intent(inout) :: failure
-      character(len=:), allocatable :: fault, spring
-
-      call check%look(self%column, self%springs, self%displacement, self%force, self%unbalance(), &
-                      [self%work, sum(self%springs%work), self%axial_work()], missing_work(self), fault)
-      if (.not. allocated(fault)) return
-      call name_spring(self, spring)
-      call fatal_error(failure, analysis_failed, 'on the way to '//to_text(target)//' '// &
-                       merge('N', 'm', self%by_force)//' the arithmetic has lost the static path: at a '// &
-                       'displacement of '//to_text(self%displacement)//' m '//fault//'. The path up to '// &
-                       'there is kept. The stiffnesses of the springs are too far apart ('//spring// &
-                       ' has the least left): give it more stiffness after yield, or take stiff springs '// &
-                       'less stiff')
-   end subroutine check_row
-
-   !> Work that the balance of energy misses [J].
-   pure real(wp) function missing_work(self)
+   !> The energies at the present point; the residual is what the balance misses.
+   type(energy_type) function energies(self) result(energy)
       class(static_path), intent(in) :: self
-
-      missing_work = self%work + self%at_begin - sum(self%springs%work) - self%damped_before &
-                     - self%axial_work()
-   end function missing_work
-
-   !> Potential of the constant axial loads, and the work of those that vary [J].
-   pure real(wp) function axial_work(self)
-      class(static_path), intent(in) :: self
-
-      axial_work = self%steady%potential_energy(self%springs%d) + self%load_work
-   end function axial_work
-
-   !> The energies at the present point.
-   subroutine find_energies(self, energy)
-      class(static_path), intent(in) :: self
-      type(energy_type), intent(out) :: energy
 
       energy%input = self%work
       energy%spring = sum(self%springs%work)
       energy%damping = self%damped_before
-      energy%axial = self%axial_work()
-      energy%residual = self%work + self%at_begin - energy%spring - self%damped_before - energy%axial
-   end subroutine find_energies
-
-   !> The response at the present point, whose energies are known.
-   subroutine find_response(self, number, response)
-      class(static_path), intent(in) :: self
-      !> Of the row, between two targets with the share of the way
-      real(wp), intent(in) :: number
-      type(response_type), intent(inout) :: response
-
-      response%time = number
-      response%displacement = self%displacement
-      response%force = self%force
-   end subroutine find_response
+      energy%axial = self%steady%potential_energy(self%springs%d) + self%load_work
+      energy%residual = self%work + self%at_begin - energy%spring - energy%damping - energy%axial
+   end function energies
 
    !> Where the path is, for a message.
    subroutine describe_state(path, text)
@@ -439,8 +403,10 @@ contains
       class(static_path), intent(in) :: path
       character(len=:), allocatable, intent(out) :: text
 
-      text = trim(spring_name(path%column%place(minloc(path%springs%k(:path%moving)/ &
-                                                        path%column%initial_stiffness(:path%moving), dim=1))))
+      associate (structure => path%structure, m => path%moving)
+         text = trim(spring_name(structure%place(minloc(path%springs%k(:m)/structure%initial_stiffness(:m), &
+                                                        dim=1))))
+      end associate
    end subroutine name_spring
 
 end module rbs_solve_static_path

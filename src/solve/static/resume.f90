@@ -4,10 +4,10 @@ module rbs_solve_static_resume
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: go_under, vary_axial_loads
-   use rbs_structure_column_column, only: column_type
    use rbs_solve_end_state, only: end_state, standing_type, static_state
    use rbs_solve_line_search, only: false_position
-   use rbs_solve_static_path, only: static_path, missing_work
+   use rbs_solve_static_path, only: static_path
+   use rbs_structure_channel, only: energy_type
    use rbs_structure_spring_place, only: spring_name
    implicit none
    private
@@ -21,27 +21,30 @@ module rbs_solve_static_resume
 
 contains
 
-   !> The straight column under its axial load, or the state that another analysis ended in.
-   subroutine begin_path(path, column, by_force, moving, varies, error, before)
+   !> The structure without lateral force, under its axial load, or the state that another analysis ended in.
+   subroutine begin_path(path, by_force, moving, varies, before, error)
       class(static_path), intent(inout) :: path
-      class(column_type), intent(in) :: column
       logical, intent(in) :: by_force
       !> Number of springs that can move
       integer, intent(in) :: moving
       !> Whether the axial loads of layered joints vary
       logical, intent(in) :: varies
-      type(error_type), allocatable, intent(out) :: error
       !> Empty where there is none
-      type(end_state), intent(inout), optional :: before
+      type(end_state), intent(inout) :: before
+      type(error_type), allocatable, intent(out) :: error
+      type(energy_type) :: energy
 
-      if (present(before)) then
-         if (before%is_given()) then
-            call path%prepare(column, by_force, moving)
-            call begin_from(path, before, varies, error)
-            return
-         end if
+      call path%prepare(by_force, moving)
+      if (before%is_given()) then
+         call begin_from(path, before, varies, error)
+         return
       end if
-      call path%begin(column, by_force, moving, varies, error)
+      call path%compress(error)
+      if (allocated(error)) return
+      if (varies) call vary_axial_loads(path%springs)
+      path%load_now = path%structure%axial_load
+      energy = path%energies()
+      path%at_begin = energy%spring + energy%axial
    end subroutine begin_path
 
    !> Begin in the state that another analysis ended in. A static path of the same kind under the same axial
@@ -53,26 +56,27 @@ contains
       logical, intent(in) :: varies
       type(error_type), allocatable, intent(out) :: error
       type(standing_type) :: standing
-      real(wp) :: press(size(path%column%place)), missing
+      real(wp) :: press(size(path%structure%place)), missing
       integer :: lost
+      type(energy_type) :: energy
       logical :: goes_on
 
-      call before%take_up(path%column, standing, path%springs, error)
+      call before%take_up(path%structure, standing, path%springs, error)
       if (allocated(error)) return
       if (varies) call vary_axial_loads(path%springs)
-      press = path%column%spring%axial_load
+      press = path%structure%spring%axial_load
       if (varies) press = standing%press
       goes_on = standing%kind == static_state .and. all(abs(press - standing%press) <= 0.0_wp)
       call go_under(path%springs, press, standing%pressed)
       lost = path%springs%lost_joint()
       if (lost > 0) then
          call fatal_error(error, analysis_failed, 'initial: the layers of '// &
-                          trim(spring_name(path%column%place(lost)))// &
+                          trim(spring_name(path%structure%place(lost)))// &
                           ' cannot carry the axial load of '//to_text(press(lost))// &
                           ' N in the state that the first analysis ended in; give a smaller axial_load')
          return
       end if
-      path%load_now = merge(standing%axial_load, path%column%axial_load, varies)
+      path%load_now = merge(standing%axial_load, path%structure%axial_load, varies)
       path%work = standing%input
       path%damped_before = standing%damping
       path%at_begin = standing%at_begin
@@ -90,25 +94,26 @@ contains
             call path%stand_still()
          end if
       else
-         path%displacement = path%column%top_displacement(path%springs%d)
+         path%displacement = path%structure%top_displacement(path%springs%d)
          path%force = standing%force
-         if (path%column%opens) call path%compress(error)
+         call path%compress(error)
          if (.not. allocated(error)) call settle(path, error)
          if (allocated(error)) return
          call path%stand_still()
       end if
       if (path%direction == 0) path%control = merge(path%force, path%displacement, path%by_force)
-      missing = standing%residual - missing_work(path)
+      energy = path%energies()
+      missing = standing%residual - energy%residual
       if (abs(missing) > 0.0_wp) path%at_begin = path%at_begin + missing
    end subroutine begin_from
 
-   !> What must be the same for a path to go on with what another one remembered: the solver, and what is
-   !> driven.
+   !> What must be the same for a path to go on with what another one remembered: what is driven, and whether
+   !> the axial load varies.
    pure integer function kind_of(path, varies)
       class(static_path), intent(in) :: path
       logical, intent(in) :: varies
 
-      kind_of = 1 + path%column%kinematics + merge(10, 0, path%by_force) + merge(100, 0, varies)
+      kind_of = 1 + merge(10, 0, path%by_force) + merge(100, 0, varies)
    end function kind_of
 
    !> The joints come to equilibrium at the displacement of the top, by Newton's method with a line search.
@@ -117,7 +122,7 @@ contains
    subroutine settle(path, error)
       class(static_path), intent(inout) :: path
       type(error_type), allocatable, intent(out) :: error
-      real(wp), dimension(path%column%unknowns) :: q, way, next
+      real(wp), dimension(path%springs%count) :: q, way, next
       real(wp) :: more, next_more, before, change, slope, share, now, largest
       type(false_position) :: line
       integer :: round, trial
@@ -186,7 +191,7 @@ contains
       pure real(wp) function measure_of(a, b)
          real(wp), intent(in) :: a(:), b(:)
 
-         measure_of = sum(path%column%initial_stiffness*a*b)
+         measure_of = sum(path%structure%initial_stiffness*a*b)
       end function measure_of
 
    end subroutine settle
@@ -197,6 +202,7 @@ contains
       logical, intent(in) :: varies
       type(end_state), intent(inout) :: after
       type(standing_type) :: standing
+      type(energy_type) :: energy
       integer :: i
 
       standing%kind = static_state
@@ -204,10 +210,10 @@ contains
       standing%displacement = path%displacement
       standing%force = path%force
       standing%axial_load = path%load_now
-      standing%press = path%column%spring%axial_load
+      standing%press = path%structure%spring%axial_load
       if (varies) then
-         standing%press = path%load_now + path%column%axial_force_ratio*path%force &
-                          + (path%column%spring%axial_load - path%column%axial_load)
+         standing%press = path%load_now + path%structure%axial_force_ratio*path%force &
+                          + (path%structure%spring%axial_load - path%structure%axial_load)
          if (path%springs%pressed) then
             do i = 1, size(path%springs%layered)
                associate (place => path%springs%layered(i))
@@ -216,14 +222,15 @@ contains
             end do
          end if
       end if
-      allocate (standing%v(path%column%unknowns), source=0.0_wp)
+      allocate (standing%v(path%springs%count), source=0.0_wp)
       standing%input = path%work
       standing%damping = path%damped_before
       standing%at_begin = path%at_begin
-      standing%residual = missing_work(path)
+      energy = path%energies()
+      standing%residual = energy%residual
       standing%load(1) = path%force
       standing%method = kind_of(path, varies)
-      call after%start_saving(path%column, standing, path%springs)
+      call after%start_saving(path%structure, standing, path%springs)
       call path%serialize(after%stream)
       call after%finish_saving()
    end subroutine end_path

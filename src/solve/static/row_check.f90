@@ -1,18 +1,24 @@
-!> Whether a row of a static path is a state of the column: the top is where its joints are, each joint is in
-!> equilibrium, and no work is missing. A path is found without tolerances, so that what a row may miss is
-!> round-off; more means that the arithmetic could not carry the path on.
+!> Whether a point of a static path is a state of the structure: the top is where its springs are, each joint
+!> is in equilibrium, and no work is missing. A path is found without tolerances, so that what a point may
+!> miss is round-off; more means that the arithmetic could not carry the path on.
 module rbs_solve_static_row_check
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_structure_column_column, only: column_type, finite
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_structure_spring_place, only: shear, flexure, axial
+   use rbs_structure_channel, only: energy_type
+   use rbs_structure_spring_place, only: flexure, axial
+   use rbs_structure_structure, only: structure_type, finite
    implicit none
    private
 
-   public :: row_check
+   public :: row_check, on_the_end
 
-   !> What a row may miss: of the displacement, in shares of what all joints contribute; of equilibrium, in
+   !> A spring this close to an end of its line, relative to the end, is on it. Not a tolerance of the
+   !> solution: where a cycle returns to its peak, round-off would otherwise decide between outer and inner
+   !> unloading.
+   real(wp), parameter :: on_the_end = 1.0e-11_wp
+
+   !> What a point may miss: of the displacement, in shares of what all springs contribute; of equilibrium, in
    !> shares of the forces; of work, in shares of the works; each the largest so far. Where Newton's method
    !> follows a curve, and work is an integral over it, place and work have limits of their own.
    real(wp), parameter :: of_place = 1.0e-12_wp, of_force = 1.0e-9_wp, of_work = 1.0e-9_wp
@@ -27,7 +33,7 @@ module rbs_solve_static_row_check
 
    type :: row_check
       real(wp), private :: place = of_place, work = of_work
-      !> Largest way of all joints, force and work so far [m, N, J]; the work that was missing at the start
+      !> Largest way of all springs, force and work so far [m, N, J]; the work that was missing at the start
       real(wp), private :: largest_place = 0.0_wp, largest_force = 0.0_wp, largest_work = 0.0_wp
       real(wp), private :: at_begin = 0.0_wp
       !> Force and work of the springs if they had their initial stiffness, the largest so far [N, J]
@@ -39,68 +45,78 @@ module rbs_solve_static_row_check
 
 contains
 
-   subroutine begin(self, column, missing_work)
+   subroutine begin(self, structure, missing_work)
       class(row_check), intent(out) :: self
-      class(column_type), intent(in) :: column
+      class(structure_type), intent(in) :: structure
       real(wp), intent(in) :: missing_work
+      real(wp) :: d, reach
+      integer :: i
 
       self%at_begin = missing_work
-      associate (k => column%initial_stiffness, way => no_way*column%joint_height(column%n + 1), &
-                 slips => column%at(shear, :), turns => column%at(flexure, :))
-         self%largest_place = no_digits*column%joint_height(column%n + 1)
-         self%largest_force = no_digits*maxval(abs(column%compression))
-         self%stiff_force = max(maxval(k(slips))*way, maxval(k(turns))*no_way**2/way)
-         self%stiff_work = sum(k(slips))*way**2 + sum(k(turns))*no_way**2
-      end associate
-      if (column%kinematics /= finite) return
+      self%largest_place = no_digits*structure%total_height
+      self%largest_force = no_digits*maxval(abs(structure%spring%axial_load))
+      do i = 1, size(structure%place)
+         if (structure%place(i)%kind == axial) cycle
+         reach = reach_of(structure, i)
+         d = no_way*structure%total_height/reach
+         self%stiff_force = max(self%stiff_force, structure%initial_stiffness(i)*d/reach)
+         self%stiff_work = self%stiff_work + structure%initial_stiffness(i)*d**2
+      end do
+      if (structure%kinematics /= finite) return
       self%place = of_place_on_curve
       self%work = of_work_on_curve
    end subroutine begin
 
-   !> Look at a row.
-   subroutine look(self, column, springs, displacement, force, unbalance, works, missing_work, fault)
+   !> Length over which the force of a spring is one at the top [m]: moments count over the height.
+   pure real(wp) function reach_of(structure, i) result(reach)
+      class(structure_type), intent(in) :: structure
+      integer, intent(in) :: i
+
+      reach = merge(structure%total_height, 1.0_wp, structure%place(i)%kind == flexure)
+   end function reach_of
+
+   !> Look at a point.
+   subroutine look(self, structure, springs, displacement, force, unbalance, energy, on_ends, fault)
       class(row_check), intent(inout) :: self
-      class(column_type), intent(in) :: column
+      class(structure_type), intent(in) :: structure
       type(spring_array), intent(in) :: springs
       !> Of the top [m], and lateral force [N]
       real(wp), intent(in) :: displacement, force
       !> Largest force that is out of balance; moments over the height [N]
       real(wp), intent(in) :: unbalance
-      !> Works of which the balance consists, and what it misses [J]
-      real(wp), intent(in) :: works(:), missing_work
+      type(energy_type), intent(in) :: energy
+      !> Whether springs were put on ends of their lines since the displacement was found
+      logical, intent(in) :: on_ends
       !> What is wrong, for a message; not allocated if nothing is
       character(len=:), allocatable, intent(out) :: fault
-      real(wp) :: place, reach, term, stiff_work
+      real(wp) :: place, reach, term, stiff_work, there, missing
       integer :: i
 
       place = 0.0_wp
       stiff_work = 0.0_wp
       self%largest_force = max(self%largest_force, abs(force))
-      associate (height => column%joint_height(column%n + 1))
-         do i = 1, size(column%place)
-            if (column%place(i)%kind == axial) cycle
-            reach = 1.0_wp
-            if (column%place(i)%kind == flexure) reach = height
-            place = place + abs(column%arm(i)*springs%d(i))
-            self%largest_force = max(self%largest_force, abs(springs%force(i))/reach)
-            term = column%initial_stiffness(i)*abs(springs%d(i))
-            self%stiff_force = max(self%stiff_force, term/reach)
-            stiff_work = stiff_work + term*abs(springs%d(i))
-         end do
-      end associate
+      do i = 1, springs%count
+         if (structure%place(i)%kind == axial) cycle
+         reach = reach_of(structure, i)
+         place = place + abs(structure%arm(i)*springs%d(i))
+         self%largest_force = max(self%largest_force, abs(springs%force(i))/reach)
+         term = structure%initial_stiffness(i)*abs(springs%d(i))
+         self%stiff_force = max(self%stiff_force, term/reach)
+         stiff_work = stiff_work + term*abs(springs%d(i))
+      end do
       self%stiff_work = max(self%stiff_work, stiff_work)
       self%largest_place = max(self%largest_place, place)
-      self%largest_work = max(self%largest_work, maxval(abs(works)))
-      associate (there => column%top_displacement(springs%d))
-         if (abs(there - displacement) > self%place*self%largest_place) then
-            fault = 'its joints move the top by '//to_text(there)//' m'
-         else if (unbalance > of_force*self%largest_force + digits*self%stiff_force) then
-            fault = to_text(unbalance)//' N of its forces are out of balance'
-         else if (abs(missing_work - self%at_begin) > self%work*self%largest_work &
-                  + digits*self%stiff_work) then
-            fault = to_text(missing_work - self%at_begin)//' J of its work are missing'
-         end if
-      end associate
+      self%largest_work = max(self%largest_work, abs(energy%input), abs(energy%spring), abs(energy%axial))
+      there = structure%top_displacement(springs%d)
+      missing = energy%residual - self%at_begin
+      if (abs(there - displacement) > (self%place + merge(2.0_wp*on_the_end, 0.0_wp, on_ends)) &
+          *self%largest_place) then
+         fault = 'its joints move the top by '//to_text(there)//' m'
+      else if (unbalance > of_force*self%largest_force + digits*self%stiff_force) then
+         fault = to_text(unbalance)//' N of its forces are out of balance'
+      else if (abs(missing) > self%work*self%largest_work + digits*self%stiff_work) then
+         fault = to_text(missing)//' J of its work are missing'
+      end if
    end subroutine look
 
 end module rbs_solve_static_row_check

@@ -3,12 +3,13 @@ module rbs_solve_static_run_static
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
+   use rbs_structure_column_axial, only: critical_factor
    use rbs_structure_column_column, only: column_type, small, finite
    use rbs_solve_check_values, only: check_values
+   use rbs_solve_static_chain_equilibrium, only: chain_equilibrium
    use rbs_solve_static_curved, only: trace_curved
    use rbs_solve_static_straight, only: trace_straight
    use rbs_solve_task, only: task_type
-   use rbs_structure_spring_place, only: flexure
    implicit none
    private
 
@@ -21,7 +22,7 @@ contains
 
    !> Static path through displacements of the top or lateral forces.
    subroutine run_static(column, by_force, target, task, error, axial_load)
-      class(column_type), intent(in) :: column
+      class(column_type), intent(in), target :: column
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
       !> Targets (m)
@@ -30,11 +31,13 @@ contains
       type(error_type), allocatable, intent(out) :: error
       !> Axial load at the top at each target (m), instead of the constant one; empty: constant [N]
       real(wp), intent(in), optional :: axial_load(:)
-      class(column_type), allocatable :: loaded
+      class(column_type), allocatable, target :: other
+      class(column_type), pointer :: loaded
+      type(chain_equilibrium) :: equilibrium
       real(wp) :: load(size(target))
       logical :: varies, curved
 
-      loaded = column
+      loaded => column
       load = column%axial_load
       varies = abs(column%axial_force_ratio) > 0.0_wp
       if (present(axial_load)) then
@@ -44,7 +47,9 @@ contains
             load = axial_load
             ! From the state of another analysis the load goes to its first value.
             varies = varies .or. task%resumes() .or. any(abs(load - load(1)) > same_load*maxval(abs(load)))
-            call put_under(loaded, load(1))
+            allocate (other, source=column)
+            call put_under(other, load(1))
+            loaded => other
          end if
       end if
       curved = varies .or. column%kinematics == finite
@@ -54,27 +59,41 @@ contains
                           'stability; use a dynamic analysis')
          return
       end if
-      if (by_force) then
-         call check_values(target, 'force', error)
-      else
-         call check_values(target, 'displacement', error)
-      end if
+      call check_values(target, trim(merge('force       ', 'displacement', by_force)), error)
       if (allocated(error)) return
       if (curved) then
          call trace_curved(loaded, by_force, target, pack(load, varies), task, error)
       else
-         call trace_straight(loaded, by_force, target, task, error)
+         call equilibrium%create(loaded)
+         call trace_straight(loaded, equilibrium, by_force, target, task, error)
+      end if
+      if (allocated(error) .and. by_force .and. .not. abs(task%summary%peak_displacement) > 0.0_wp) then
+         call explain_buckling(loaded, error)
       end if
       ! Without inertia the ground holds what drives the column.
       task%summary%peak_base_shear = task%summary%peak_force
       task%summary%method = 'static'
    end subroutine run_static
 
+   !> A column that could not be moved by a force may have buckled before.
+   subroutine explain_buckling(column, error)
+      class(column_type), intent(in) :: column
+      type(error_type), intent(inout) :: error
+      real(wp) :: factor
+
+      call critical_factor(column, factor)
+      if (factor > 1.0_wp) return
+      error%message = 'row 1: the axial load is '//to_text(1.0_wp/factor)// &
+                      ' times the critical load of the uncracked column, which buckles by itself; '// &
+                      'reduce axial_load, stiffen the springs, or drive it by displacement'
+   end subroutine explain_buckling
+
    !> Put a column under another constant axial load at its top.
    pure subroutine put_under(column, load)
-      type(column_type), intent(inout) :: column
+      class(column_type), intent(inout) :: column
       real(wp), intent(in) :: load
       real(wp) :: more
+      integer :: i
 
       more = load - column%axial_load
       if (.not. abs(more) > 0.0_wp) return
@@ -85,7 +104,9 @@ contains
          column%axial_slip = column%axial_joint
          if (column%held) column%axial_slip(n) = 0.0_wp
          column%compression = column%compression + more
-         column%spring(column%at(flexure, :))%axial_load = column%compression
+         do i = n + 1, column%unknowns
+            column%spring(i)%axial_load = column%compression(column%place(i)%index)
+         end do
          column%axially_loaded = column%kinematics /= small .and. &
                                  (abs(load) > 0.0_wp .or. column%gravity > 0.0_wp)
       end associate

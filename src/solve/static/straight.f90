@@ -1,18 +1,16 @@
-!> Static path for small rotations, event to event: the column goes along its line to the target or to the
+!> Static path for small rotations, event to event: the structure goes along its line to the target or to the
 !> next end of a spring's line, whichever comes first. Exact for `small` and `pdelta`; no tolerance, no
 !> increments.
 module rbs_solve_static_straight
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
-   use rbs_base_text, only: to_text
-   use rbs_structure_column_column, only: column_type
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_equilibrium, only: equilibrium_type
-   use rbs_solve_static_path, only: static_path, describe_state, is_on_end, on_the_end, &
-                                    serialize_path
+   use rbs_solve_static_path, only: static_path, describe_state, is_on_end, on_the_end, serialize_path
    use rbs_solve_static_resume, only: begin_path, end_path
    use rbs_solve_task, only: task_type
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
@@ -23,16 +21,14 @@ module rbs_solve_static_straight
 
    !> The state of a path and the line it is on.
    type, extends(static_path) :: straight_path
-      type(equilibrium_type) :: equilibrium
-      !> The line: values at `start`, and rates per unit of what is driven
+      class(equilibrium_type), pointer :: equilibrium => null()
+      !> The line: what is driven, deformations (moving), force and displacement where it begins
+      real(wp) :: start = 0.0_wp
       real(wp), allocatable :: q(:)
-      real(wp) :: force_start = 0.0_wp, force_rate = 0.0_wp
-      real(wp) :: displacement_start = 0.0_wp, displacement_rate = 0.0_wp
+      real(wp) :: force_start = 0.0_wp, displacement_start = 0.0_wp
       !> Its end, and the spring that ends it (0: none)
       real(wp) :: finish = 0.0_wp
       integer :: ends = 0
-      !> Work arrays (2 n)
-      real(wp), allocatable :: residual(:), correction(:), f(:)
    contains
       procedure :: advance
       procedure :: solve_line
@@ -45,8 +41,10 @@ module rbs_solve_static_straight
 contains
 
    !> Follow the targets one after the other.
-   subroutine trace_straight(column, by_force, target, task, error)
-      class(column_type), intent(in) :: column
+   subroutine trace_straight(structure, equilibrium, by_force, target, task, error)
+      class(structure_type), intent(in), target :: structure
+      !> That of the structure
+      class(equilibrium_type), intent(inout), target :: equilibrium
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
       !> Targets (m)
@@ -54,13 +52,13 @@ contains
       type(task_type), intent(inout), target :: task
       type(error_type), allocatable, intent(out) :: error
       type(straight_path) :: path
-      integer :: m
 
-      m = 2*column%n
-      call path%equilibrium%create(column)
-      allocate (path%q(m), path%residual(m), path%correction(m), path%f(m), source=0.0_wp)
-      path%steady = column
-      call begin_path(path, column, by_force, m, .false., error, task%before)
+      path%structure => structure
+      path%steady => structure
+      path%equilibrium => equilibrium
+      path%is_straight = .true.
+      allocate (path%q(equilibrium%moving), source=0.0_wp)
+      call begin_path(path, by_force, equilibrium%moving, .false., task%before, error)
       if (allocated(error)) return
       call path%follow(target, task, error)
       if (allocated(error) .or. .not. task%keeps_end) return
@@ -82,6 +80,8 @@ contains
          if (self%direction /= direction) then
             call turn_corner(self, direction, target, error)
             if (allocated(error) .or. self%springs%lost_joint() > 0) return
+            call self%look(target, self%equilibrium%unbalance, .true., error)
+            if (allocated(error)) return
             call begin_line(self, direction)
          end if
          if (direction*(self%finish - target) > on_the_end*abs(target)) then
@@ -100,44 +100,15 @@ contains
                        'parameters of the springs or the targets are too extreme for the arithmetic')
    end subroutine advance
 
-   !> Rates of the column on the present lines of its springs.
+   !> Rates of the structure on the present lines of its springs.
    subroutine solve_line(self, direction, found)
       class(straight_path), intent(inout) :: self
       integer, intent(in) :: direction
       logical, intent(out) :: found
-      real(wp) :: gap, force_correction
-      integer :: m, weakest
 
-      m = self%moving
-      if (.not. self%by_force) then
-         call self%equilibrium%few%update(self%springs%k(:m), self%rate(:m), self%force_rate, found)
-         if (found) then
-            self%displacement_rate = 1.0_wp
-            self%correction = 0.0_wp
-            self%force_start = self%force
-            if (direction < 0) self%rate = -self%rate
-            return
-         end if
-      end if
-      associate (springs => self%springs, equilibrium => self%equilibrium)
-         self%f = springs%f0(:m) + springs%k(:m)*(springs%d(:m) - springs%d0(:m))
-         call equilibrium%residual(springs%d(:m), self%f, self%force, self%residual)
-         if (self%by_force) then
-            call equilibrium%follow_force(springs%k(:m), self%residual, self%rate(:m), self%correction, &
-                                          weakest)
-            found = weakest == 0
-            self%force_rate = 1.0_wp
-            force_correction = 0.0_wp
-            self%displacement_rate = sum(equilibrium%arm*self%rate(:m))
-         else
-            gap = self%displacement - sum(equilibrium%arm*springs%d(:m))
-            call equilibrium%follow_displacement(springs%k(:m), self%residual, gap, self%rate(:m), &
-                                                 self%force_rate, self%correction, force_correction, found)
-            self%displacement_rate = 1.0_wp
-         end if
-         self%force_start = self%force + force_correction
-         if (direction < 0) self%rate = -self%rate
-      end associate
+      call self%equilibrium%follow(self%springs, self%by_force, .false., self%displacement, self%force, &
+                                   self%rate(:self%moving), found)
+      if (direction < 0) self%rate = -self%rate
    end subroutine solve_line
 
    !> Begin the line that was found: where it starts and where it ends.
@@ -147,20 +118,20 @@ contains
       real(wp) :: way, missing
       integer :: i
 
-      self%line = self%line + 1
       self%start = self%control
       self%displacement_start = self%displacement
+      self%force_start = self%force + self%equilibrium%force_correction
       do i = 1, self%moving
          ! What is no more than round-off of the equilibrium moves no spring off its line, however soft it is.
-         self%q(i) = min(max(self%springs%d(i) + self%correction(i), self%springs%first(i)), &
+         self%q(i) = min(max(self%springs%d(i) + self%equilibrium%correction(i), self%springs%first(i)), &
                          self%springs%last(i))
       end do
-      missing = self%displacement - sum(self%equilibrium%arm*self%q)
+      missing = self%displacement - sum(self%structure%arm(:self%moving)*self%q)
       if (self%by_force) then
          self%displacement_start = self%displacement - missing
       else if (abs(missing) > 0.0_wp) then
          self%q(:) = self%q + direction*missing*self%rate(:self%moving)
-         self%force_start = self%force_start + self%force_rate*missing
+         self%force_start = self%force_start + self%equilibrium%force_rate*missing
       end if
       call self%springs%nearest_end(self%q, self%rate, way, self%ends)
       self%finish = direction*huge(1.0_wp)
@@ -188,14 +159,17 @@ contains
             end if
          end do
       end associate
-      force = self%force_start + self%force_rate*change
-      displacement = self%displacement_start + self%displacement_rate*change
-      if (self%by_force) then
-         force = control
-      else
-         displacement = control
-      end if
-      self%work = self%work + 0.5_wp*(force + self%force)*(displacement - self%displacement)
+      associate (line => self%equilibrium)
+         force = self%force_start + line%force_rate*change
+         displacement = self%displacement_start + line%displacement_rate*change
+         if (self%by_force) then
+            force = control
+         else
+            displacement = control
+         end if
+         self%work = self%work + 0.5_wp*(force + self%force)*(displacement - self%displacement &
+                                                              + line%further_rate*(control - self%control))
+      end associate
       self%force = force
       self%displacement = displacement
       self%control = control
@@ -217,34 +191,20 @@ contains
       class(straight_path), intent(inout) :: self
       real(wp), intent(out) :: correction(:), force
       logical, intent(out) :: found
-      real(wp) :: force_rate
-      integer :: m
 
-      m = self%moving
+      call self%equilibrium%follow(self%springs, .false., .true., self%displacement, self%force, &
+                                   self%rate(:self%moving), found)
       correction = 0.0_wp
-      force = 0.0_wp
-      associate (springs => self%springs)
-         self%f = springs%f0(:m) + springs%k(:m)*(springs%d(:m) - springs%d0(:m))
-         call self%equilibrium%residual(springs%d(:m), self%f, self%force, self%residual)
-         call self%equilibrium%follow_displacement(springs%k(:m), self%residual, self%displacement &
-                                                   - sum(self%equilibrium%arm*springs%d(:m)), self%rate(:m), &
-                                                   force_rate, correction(:m), force, found)
-      end associate
+      correction(:self%moving) = self%equilibrium%correction
+      force = self%equilibrium%force_correction
    end subroutine find_balance
 
    !> The largest force by which a joint is out of equilibrium, moments over the height [N].
    real(wp) function unbalance(self)
       class(straight_path), intent(inout) :: self
-      integer :: m, n
 
-      n = self%column%n
-      m = self%moving
-      self%f = self%springs%f0(:m) + self%springs%k(:m)*(self%springs%d(:m) - self%springs%d0(:m))
-      call self%equilibrium%residual(self%springs%d(:m), self%f, self%force, self%residual)
-      ! The moment that holds the top acts on all rotations.
-      if (self%column%held) self%residual(n + 1:) = self%residual(n + 1:) - self%residual(m)
-      unbalance = max(maxval(abs(self%residual(:n))), &
-                      maxval(abs(self%residual(n + 1:)))/self%column%joint_height(n + 1))
+      call self%equilibrium%find_unbalance(self%springs, self%force)
+      unbalance = self%equilibrium%unbalance
    end function unbalance
 
    !> Nothing but the springs tells where the path is.
@@ -254,7 +214,7 @@ contains
       self%direction = 0
    end subroutine stand_still
 
-   !> Save or restore the line that the column is on.
+   !> Save or restore the line that the structure is on.
    subroutine serialize(self, stream)
       class(straight_path), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
@@ -263,12 +223,10 @@ contains
       call stream%item(self%start)
       call stream%item(self%q)
       call stream%item(self%force_start)
-      call stream%item(self%force_rate)
       call stream%item(self%displacement_start)
-      call stream%item(self%displacement_rate)
       call stream%item(self%finish)
       call stream%item(self%ends)
-      call self%equilibrium%few%serialize(stream)
+      call self%equilibrium%serialize(stream)
    end subroutine serialize
 
 end module rbs_solve_static_straight
