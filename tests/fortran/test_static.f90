@@ -2,7 +2,7 @@
 module test_static
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use dense, only: factor_positive, solve_general, solve_positive
-   use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_true
+   use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_same, check_true
    use rbs_base_constants, only: unset_integer
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
@@ -16,10 +16,12 @@ module test_static
    use rbs_solve_static_chain_equilibrium, only: chain_equilibrium
    use rbs_solve_static_run_static, only: run_static
    use rbs_solve_static_path, only: kept_rows
+   use rbs_solve_static_straight, only: trace_straight
    use rbs_solve_task, only: task_type
    use rbs_structure_column_column_record, only: column_record
    use samples, only: set_value, value_of, bilinear, bilinear_1, chain, column_1, elastic, made, &
                       random_type, takeda_1, k_c, d_y, f_y, k_u, s_k, s_d, height_1
+   use storeys, only: storeys_type, storeys_equilibrium, new_storeys, share
    use row_places, only: row_time, row_displacement, row_force, row_axial, row_residual, row_joints, &
                          row_spring, row_input, row_top
    implicit none
@@ -66,7 +68,10 @@ contains
                unit_test('a mechanism in a band', band_mechanism), &
                unit_test('openings do not move and have no other effect', openings), &
                unit_test('height of the top, largest rotation', height_of_top), &
-               unit_test('collapse ends the path', collapse)]
+               unit_test('collapse ends the path', collapse), &
+               unit_test('another structure: indeterminate, loaded elsewhere than driven', &
+                         other_structure), &
+               unit_test('another structure is cut and goes on with the same bits', cut_structure)]
    end subroutine collect_static
 
    subroutine record_and_fail(self, row, error)
@@ -770,6 +775,85 @@ contains
       call check_passed(error, outcome, 'static path')
       call check_true(error, rows(row_force, 3) < rows(row_force, 2), 'the force falls')
    end subroutine long_chain
+
+   !> Yielding springs of the two storeys and the brace of `storeys`.
+   subroutine trace_storeys(by_force, target, task, recorder, outcome)
+      logical, intent(in) :: by_force
+      real(wp), intent(in) :: target(:)
+      type(task_type), intent(inout) :: task
+      type(array_recorder), intent(out), target :: recorder
+      type(error_type), allocatable, intent(out) :: outcome
+      type(storeys_type) :: structure
+      type(storeys_equilibrium) :: equilibrium
+
+      call new_storeys(structure, [bilinear(4.0e6_wp, 0.010_wp, 4.0e5_wp), &
+                                   bilinear(2.0e6_wp, 0.008_wp, 1.0e5_wp), &
+                                   bilinear(1.0e6_wp, 0.030_wp, 5.0e4_wp)])
+      equilibrium%moving = 3
+      recorder%channels = new_channels(structure, .false., .false., .false.)
+      task%recorder => recorder
+      call trace_straight(structure, equilibrium, by_force, target, task, outcome)
+   end subroutine trace_storeys
+
+   !> Every row is in equilibrium on both floors, and the balance of energy holds with the work of the load on
+   !> the floors it acts on. Driven by its own forces it takes the same way.
+   subroutine other_structure(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(array_recorder) :: recorder, by_force
+      type(task_type) :: task
+      type(spring_array) :: springs
+      real(wp), parameter :: target(8) = [0.005_wp, 0.02_wp, 0.05_wp, 0.08_wp, -0.01_wp, -0.08_wp, 0.0_wp, &
+                                          0.09_wp]
+      real(wp) :: f(3)
+      integer :: i
+
+      call trace_storeys(.false., target, task, recorder, outcome)
+      call check_passed(error, outcome, 'path')
+      if (allocated(error)) return
+      call springs%create([bilinear(4.0e6_wp, 0.010_wp, 4.0e5_wp), bilinear(2.0e6_wp, 0.008_wp, 1.0e5_wp), &
+                           bilinear(1.0e6_wp, 0.030_wp, 5.0e4_wp)])
+      associate (rows => recorder%rows, first => size(recorder%rows, 1) - 2)
+         do i = 1, size(target)
+            ! Each deformation goes one way between these targets.
+            call springs%move_all(rows(first:, i))
+            f = [springs%force(1), springs%force(2), springs%force(3)]
+            call check_close(error, f(1) - f(2), share(1)*rows(row_force, i), 1.0e-12_wp, 1.0e-6_wp, &
+                             'lower floor')
+            call check_close(error, f(2) + f(3), share(2)*rows(row_force, i), 1.0e-12_wp, 1.0e-6_wp, &
+                             'upper floor')
+            call check_close(error, sum(rows(first:first + 1, i)), target(i), 1.0e-12_wp, 1.0e-15_wp, 'storeys')
+         end do
+         call check_true(error, springs%events > 10, 'springs yield and unload')
+         call check_true(error, maxval(abs(rows(row_residual, :))) < 1.0e-12_wp*rows(row_input, size(target)), &
+                         'balance of energy')
+         call check_equal(error, springs%events, task%summary%events, 'events')
+         call trace_storeys(.true., rows(row_force, :), task, by_force, outcome)
+         call check_passed(error, outcome, 'path by force')
+         if (allocated(error)) return
+         do i = 1, size(target)
+            call check_close(error, by_force%rows(:, i), rows(:, i), 1.0e-10_wp, 1.0e-9_wp, 'driven by force')
+         end do
+      end associate
+   end subroutine other_structure
+
+   subroutine cut_structure(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(array_recorder) :: whole, first, second
+      type(task_type) :: task, cut
+      real(wp), parameter :: target(5) = [0.05_wp, -0.03_wp, 0.02_wp, 0.04_wp, -0.08_wp]
+
+      call trace_storeys(.false., target, task, whole, outcome)
+      cut%keeps_end = .true.
+      call trace_storeys(.false., target(:3), cut, first, outcome)
+      cut%before = cut%after
+      call trace_storeys(.false., target(4:), cut, second, outcome)
+      call check_passed(error, outcome, 'second part')
+      if (allocated(error)) return
+      call check_same(error, second%rows(row_displacement:, 1), whole%rows(row_displacement:, 4), 'row 4')
+      call check_same(error, second%rows(row_displacement:, 2), whole%rows(row_displacement:, 5), 'row 5')
+   end subroutine cut_structure
 
    !> The shear spring of the base has no stiffness left: its row of K is zero, and K has no inverse.
    subroutine band_mechanism(error)
