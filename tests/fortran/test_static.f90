@@ -822,11 +822,12 @@ contains
                              'lower floor')
             call check_close(error, f(2) + f(3), share(2)*rows(row_force, i), 1.0e-12_wp, 1.0e-6_wp, &
                              'upper floor')
-            call check_close(error, sum(rows(first:first + 1, i)), target(i), 1.0e-12_wp, 1.0e-15_wp, 'storeys')
+            call check_close(error, sum(rows(first:first + 1, i)), target(i), 1.0e-12_wp, 1.0e-15_wp, &
+                             'both storeys')
          end do
          call check_true(error, springs%events > 10, 'springs yield and unload')
-         call check_true(error, maxval(abs(rows(row_residual, :))) < 1.0e-12_wp*rows(row_input, size(target)), &
-                         'balance of energy')
+         call check_true(error, maxval(abs(rows(row_residual, :))) &
+                         < 1.0e-12_wp*rows(row_input, size(target)), 'balance of energy')
          call check_equal(error, springs%events, task%summary%events, 'events')
          call trace_storeys(.true., rows(row_force, :), task, by_force, outcome)
          call check_passed(error, outcome, 'path by force')
