@@ -80,7 +80,8 @@ contains
       unit = 0.0_wp
       unit(n + 1) = 1.0_wp
       allocate (self%geometric(n, 2), source=0.0_wp)
-      call second_order_forces(n, self%length, self%axial, unit, self%geometric(:, 1), 1, self%geometric(:, 2))
+      call second_order_forces(n, self%length, self%axial, unit, self%geometric(:, 1), 1, &
+                               self%geometric(:, 2))
       if (n <= most_unknowns/2 .and. .not. column%held) then
          call create_few(self)
       else

@@ -211,17 +211,17 @@ contains
       end associate
       done = near
       if (.not. near) call self%stride%find_point(self%springs, limit, .true., done)
-      if (done) call self%stride%curve%set(self%stride%equilibrium%steady, self%stride%here, self%stride%there)
+      if (done) call set_curve(self)
       if (done .and. .not. near) then
          done = self%stride%curve%is_gentle(self%stride%equilibrium%steady)
          if (done) turns = self%stride%curve%least_rate(self%springs, self%stride%there) < 0.0_wp
          if (turns) then
             call self%stride%find_turn(self%springs, done)
-            if (done) call self%stride%curve%set(self%stride%equilibrium%steady, self%stride%here, self%stride%there)
+            if (done) call set_curve(self)
          end if
          ! With small rotations the curve is so slight that no layer goes out of its line and back.
          if (done) done = .not. self%stride%curve%hides_event(self%springs, self%stride%equilibrium%above, &
-                                                              self%stride%equilibrium%steady%kinematics == finite .and. &
+                                                              self%structure%kinematics == finite .and. &
                                                               cuts < most_looks)
       end if
       if (.not. done) return
@@ -229,6 +229,15 @@ contains
                                   works, done)
       if (done) call accept(self, turns, works)
    end subroutine try_stride
+
+   !> The curve between the present point and the one that is tried.
+   subroutine set_curve(self)
+      class(curved_path), intent(inout) :: self
+
+      associate (stride => self%stride)
+         call stride%curve%set(stride%equilibrium%steady, stride%here, stride%there)
+      end associate
+   end subroutine set_curve
 
    !> Go to the point that was found.
    subroutine accept(self, turns, works)
