@@ -234,9 +234,7 @@ contains
    subroutine set_curve(self)
       class(curved_path), intent(inout) :: self
 
-      associate (stride => self%stride)
-         call stride%curve%set(stride%equilibrium%steady, stride%here, stride%there)
-      end associate
+      call self%stride%curve%set(self%stride%equilibrium%steady, self%stride%here, self%stride%there)
    end subroutine set_curve
 
    !> Go to the point that was found.
