@@ -542,9 +542,9 @@ def section_quantities() -> dict[str, tuple[str, ...]]:
     """Return the names of the values that come back, by what they belong to.
 
     "section" and "spring" have figures; "point" and "shear" the values of a point of a
-    moment-curvature and of a shear diagram; "profile" and "layer" those of layers.
+    moment-curvature and of a shear diagram; "profile" those of layers.
     """
-    kinds = ("section", "spring", "point", "shear", "profile", "layer")
+    kinds = ("section", "spring", "point", "shear", "profile")
     return {kind: tuple(text.split(", ")) for kind, text in zip(kinds, _names()[2:], strict=True)}
 
 
@@ -639,15 +639,6 @@ def section_strips(section: Statement, round_core: bool, number: int) -> tuple[A
     """Return centroids and areas of core and of cover in strips, a strip a column."""
     rows = _evaluate("section_strips", section, round_core=round_core, number=number).rows.T
     return rows[:2], rows[2:]
-
-
-def layer_response(
-    concrete: Statement, steel: Statement, settings: Mapping[str, Any], path: Array
-) -> tuple[Array, Array]:
-    """Return states of a layer along a path (a column each), and whether they carry the stress."""
-    statement = concrete + steel + group("layer", settings)
-    rows = _evaluate("layer_response", statement, path=path.T).rows.T
-    return rows[:-1], rows[-1]
 
 
 def _finish(answer: Answer, values: Array) -> Run:

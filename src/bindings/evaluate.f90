@@ -23,8 +23,7 @@ module rbs_bindings_evaluate
    use rbs_structure_column_column_notes, only: column_notes
    use rbs_output_channels, only: channel_units
    use rbs_section_flexural_spring, only: spring_figures
-   use rbs_section_section_figures, only: layer_values, point_values, profile_values, section_figures, &
-                                          shear_values
+   use rbs_section_section_figures, only: point_values, profile_values, section_figures, shear_values
    use rbs_solve_ensemble_run_result, only: measure_names
    use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
    use rbs_solve_modal_modes, only: modes_type, find_modes
@@ -89,7 +88,7 @@ contains
 
       answer%text = trim(channel_units())//line//trim(measure_names())//line// &
                     list_of(section_figures)//line//list_of(spring_figures)//line//list_of(point_values)// &
-                    line//list_of(shear_values)//line//list_of(profile_values)//line//list_of(layer_values)
+                    line//list_of(shear_values)//line//list_of(profile_values)
    end subroutine name_quantities
 
    !> Whether the rule allows a spring, or the forces of a virgin one along a path of deformations.

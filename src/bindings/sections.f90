@@ -1,4 +1,4 @@
-!> What is evaluated of a section, of its materials and of one layer.
+!> What is evaluated of a section and of its materials.
 module rbs_bindings_sections
    use, intrinsic :: iso_c_binding, only: c_double
    use rbs_base_error, only: error_type, message_list
@@ -11,11 +11,9 @@ module rbs_bindings_sections
    use rbs_section_cross_section, only: section_type
    use rbs_section_events, only: check_rules, events_type, find_events, rule_type
    use rbs_section_flexural_spring, only: fit_flexural_spring, flexural_spring_type
-   use rbs_section_mcft_layer, only: layer_state, layer_type, solve_layer, stress_of_state
    use rbs_section_resultants, only: laws_type, resultants_type, section_laws
    use rbs_section_section_build, only: make_section, outline_core
-   use rbs_section_section_figures, only: figures_of_section, values_of_layer, values_of_point, &
-                                          values_of_shear_point
+   use rbs_section_section_figures, only: figures_of_section, values_of_point, values_of_shear_point
    use rbs_section_shape, only: shape_type
    use rbs_section_shear_diagram, only: check_curvatures, follow_shear, shear_diagram_type
    use rbs_section_steel_law, only: steel_stress
@@ -50,9 +48,6 @@ contains
          if (.not. allocated(answer%error)) then
             answer%value = steel_stress(reader%case%drawing%section%steels(1)%law(), request%array('strain'))
          end if
-         return
-      case ('layer_response')
-         call respond_layer(reader, request%array('path'), answer)
          return
       case ('section_strips')
          call cut_section(reader, request%wants('round_core'), request%whole('number'), answer)
@@ -172,29 +167,6 @@ contains
       law%tension = tension_place(reader%diagram%tension)
       answer%value = concrete_stress(law, strain)
    end subroutine respond_concrete
-
-   !> One layer along a path of longitudinal strain (tension positive) and shear stress [Pa], one after the
-   !> other, from its virgin state: its states, and whether it carries the stress.
-   subroutine respond_layer(reader, path, answer)
-      type(group_reader), intent(in) :: reader
-      real(c_double), intent(in) :: path(:)
-      type(answer_type), intent(inout) :: answer
-      type(layer_type) :: layer
-      type(layer_state) :: state
-      logical :: found
-      integer :: i
-
-      layer%concrete = reader%case%drawing%section%concrete%law()
-      layer%concrete%tension = tension_place(reader%layer%tension)
-      layer%rho_z = reader%layer%rho_z
-      layer%stirrup = reader%case%drawing%section%steels(1)%law()
-      allocate (answer%rows(6, size(path)/2))
-      do i = 1, size(answer%rows, 2)
-         call solve_layer(layer, path(2*i - 1), path(2*i), state, found)
-         answer%rows(:, i) = [values_of_layer(state, stress_of_state(layer, state)), &
-                              merge(1.0_wp, 0.0_wp, found)]
-      end do
-   end subroutine respond_layer
 
    !> Strips: y of the centroid and area of the core, then of the cover.
    subroutine cut_section(reader, round_core, number, answer)

@@ -14,7 +14,6 @@ module rbs_case_group_reader
    use rbs_hysteresis_registry, only: rule_names, keys_of
    use rbs_section_events, only: diagram_record
    use rbs_section_flexural_spring, only: hinge_record
-   use rbs_section_mcft_layer, only: layer_record
    use rbs_section_shape, only: shape_names
    use rbs_section_shear_diagram, only: shear_record
    implicit none
@@ -26,9 +25,9 @@ module rbs_case_group_reader
    character(len=16), parameter, public :: group_names(*) = [character(len=16) :: &
       'case', 'units', 'column', 'damping', spring_groups, drawing_groups, 'loading', 'analysis', 'output']
 
-   !> The groups that Python gives of a section: the drawing, and last the four kinds of what is asked of it.
-   character(len=16), parameter, public :: section_groups(10) = [character(len=16) :: &
-      'section', 'concrete', 'steel', 'bars', 'ties', 'spiral', 'diagram', 'springs', 'shear', 'layer']
+   !> The groups that Python gives of a section: the drawing, and last the three kinds of what is asked of it.
+   character(len=16), parameter, public :: section_groups(9) = [character(len=16) :: &
+      'section', 'concrete', 'steel', 'bars', 'ties', 'spiral', 'diagram', 'springs', 'shear']
 
    !> Groups that may appear several times.
    character(len=16), parameter :: repeated(*) = [character(len=16) :: &
@@ -45,7 +44,6 @@ module rbs_case_group_reader
       type(diagram_record) :: diagram
       type(hinge_record) :: springs
       type(shear_record) :: shear
-      type(layer_record) :: layer
       !> Units of the numbers that are set
       type(unit_system) :: units
       !> Keys of the open group
@@ -142,8 +140,6 @@ contains
          call self%springs%visit(self%visitor)
       case ('shear')
          call self%shear%visit(self%visitor)
-      case ('layer')
-         call self%layer%visit(self%visitor)
       case default
          call self%case%visit_group(self%group, self%visitor)
       end select
@@ -252,7 +248,7 @@ contains
          call place_springs(self%entries, self%case%column, messages)
          return
       end if
-      do i = size(section_groups) - 3, size(section_groups)
+      do i = size(section_groups) - 2, size(section_groups)
          if (.not. self%seen(i)) cycle
          self%group = section_groups(i)
          call self%visitor%start_check(self%group)

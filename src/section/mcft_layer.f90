@@ -15,25 +15,13 @@
 !> step does not converge. Where no step does, as the concrete loses stress abruptly when it cracks, states
 !> of increasing eps_1, each with eps_2 from sigma_z = 0, are searched for the first that carries tau.
 module rbs_section_mcft_layer
-   use rbs_base_key_visitor, only: key_visitor, visited_record
-   use rbs_base_keys, only: not_negative
    use rbs_base_kinds, only: wp
-   use rbs_section_concrete_law, only: concrete_type, concrete_both, tension_choices
+   use rbs_section_concrete_law, only: concrete_type, concrete_both
    use rbs_section_steel_law, only: steel_type, steel_both, steel_stress
    implicit none
    private
 
-   public :: layer_record, layer_type, layer_state, layer_stress, stress_of_state, solve_layer, &
-             crack_softening
-
-   !> One layer of the modified compression field theory.
-   type, extends(visited_record) :: layer_record
-      !> Smeared stirrups
-      real(wp) :: rho_z = 0.0_wp
-      character(len=8) :: tension = 'ts'
-   contains
-      procedure :: visit
-   end type layer_record
+   public :: layer_type, layer_state, layer_stress, stress_of_state, solve_layer, crack_softening
 
    !> Materials of a layer.
    type :: layer_type
@@ -68,14 +56,6 @@ module rbs_section_mcft_layer
    real(wp), parameter :: growth = 1.08_wp, largest_strain = 0.1_wp
 
 contains
-
-   subroutine visit(self, v)
-      class(layer_record), intent(inout) :: self
-      type(key_visitor), intent(inout) :: v
-
-      call v%key('rho_z', self%rho_z, '', not_negative, 'transverse reinforcement over width and spacing')
-      call v%word('tension', self%tension, 'tension law of the concrete', tension_choices)
-   end subroutine visit
 
    !> Factor of the compressive strength of cracked concrete (Vecchio and Collins 1986).
    elemental subroutine crack_softening(cracking, eps_1, factor, slope)

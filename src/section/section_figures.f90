@@ -1,15 +1,14 @@
-!> Figures of a section, of points of its diagrams and of layers, with their names.
+!> Figures of a section and of points of its diagrams, with their names.
 module rbs_section_section_figures
    use rbs_base_kinds, only: wp
    use rbs_section_confinement, only: volumetric_ratio
    use rbs_section_cross_section, only: no_ties, section_type
    use rbs_section_events, only: point_type
-   use rbs_section_mcft_layer, only: layer_state, layer_stress
    use rbs_section_shear_diagram, only: shear_point
    implicit none
    private
 
-   public :: figures_of_section, values_of_point, values_of_shear_point, values_of_layer
+   public :: figures_of_section, values_of_point, values_of_shear_point
 
    !> Area, second moment and shear area of the outline [m2, m4, m2]; law of the plain concrete [Pa]; then the
    !> confined core with its sizes [m], zero without hoops.
@@ -26,10 +25,6 @@ module rbs_section_section_figures
       'curvature', 'moment', 'force', 'strain']
    character(len=16), parameter, public :: profile_values(5) = [character(len=16) :: &
       'y', 'eps_x', 'tau', 'gamma', 'eps_z']
-
-   !> State of one layer [Pa].
-   character(len=16), parameter, public :: layer_values(5) = [character(len=16) :: &
-      'eps_z', 'gamma', 'sigma_x', 'sigma_z', 'tau']
 
 contains
 
@@ -63,14 +58,5 @@ contains
 
       values = [point%curvature, point%moment, point%force, point%strain]
    end function values_of_shear_point
-
-   !> In the order of `layer_values`.
-   pure function values_of_layer(state, stress) result(values)
-      type(layer_state), intent(in) :: state
-      type(layer_stress), intent(in) :: stress
-      real(wp) :: values(size(layer_values))
-
-      values = [state%eps_z, state%gamma, stress%sigma_x, stress%sigma_z, stress%tau]
-   end function values_of_layer
 
 end module rbs_section_section_figures
