@@ -6,8 +6,6 @@ SI units throughout: N, m, kg, s, rad. Axial load is positive in compression.
 from rbsdem import _registered as _registered
 from rbsdem import codes, curves, fragility, motions, peer, plot, springs
 from rbsdem._core import version as _version
-from rbsdem.batch.engine import ensemble
-from rbsdem.batch.record import Ensemble
 from rbsdem.calibration.fit import calibrate
 from rbsdem.calibration.outcome import Calibration
 from rbsdem.checks.limit_states import LimitState, LimitStates
@@ -24,6 +22,7 @@ from rbsdem.errors import (
     SolveError,
 )
 from rbsdem.many.cloud import cloud
+from rbsdem.many.ensemble import Ensemble, ensemble
 from rbsdem.many.ida import ida
 from rbsdem.many.stripes import stripes
 from rbsdem.measured.file import PeerTest, read_peer

@@ -6,7 +6,6 @@ points come with rbsdem.
 """
 
 from rbsdem.measured.bands import band
-from rbsdem.measured.batch import predict, predict_one
 from rbsdem.measured.columns import column
 from rbsdem.measured.doubts import Checked, Doubt, check
 from rbsdem.measured.drawing import Drawing, DrawnBar, draw
@@ -15,6 +14,7 @@ from rbsdem.measured.indicators import Indicators, indicators
 from rbsdem.measured.laboratory import read_test
 from rbsdem.measured.measured import PDELTA_CODES, MeasuredTest, net_force
 from rbsdem.measured.nearest import Neighbour, nearest, properties
+from rbsdem.measured.predict import predict, predict_one
 from rbsdem.measured.prediction import Prediction
 from rbsdem.measured.predictions import Group, Predictions, Quartiles
 from rbsdem.measured.shipped import (

@@ -24,9 +24,9 @@ from benchmark import record_20_s
 from rows import Row, newest, show
 
 import rbsdem
-from rbsdem.batch.inputs import Motion
-from rbsdem.batch.measures import core_measures
-from rbsdem.batch.tasks import Task, compute
+from rbsdem.many.inputs import Motion
+from rbsdem.many.measures import core_measures
+from rbsdem.many.plan import Plan, compute
 
 #: Runs of the largest ensemble.
 MANY = 1_000_000
@@ -78,7 +78,7 @@ def lanes(program: Path | None, repeats: int, runs: int) -> list[Row]:
         for scale in (0.01, 0.25, 1.0):
             scales = scale * np.linspace(0.95, 1.05, runs)
             motions = [Motion("made up", time_, motion)]
-            task = Task([pier()], motions, {"method": method, **settings}, place, place, scales)
+            task = Plan([pier()], motions, {"method": method, **settings}, place, place, scales)
             few = dataclasses.replace(task, column=place[:8], motion=place[:8], scale=scales[:8])
             alone, _ = processor(lambda few=few: compute(few, kernel=-1), 1)
             times, answer = processor(lambda task=task: compute(task), repeats)
@@ -110,7 +110,7 @@ def other_lanes(repeats: int, runs: int) -> list[Row]:
             points = 200 if method == "rk4" else time_.size
             motions = [Motion("made up", time_[:points], motion[:points])]
             scales = np.linspace(0.2, 0.3, runs)
-            task = Task([column], motions, {"method": method, **settings}, place, place, scales)
+            task = Plan([column], motions, {"method": method, **settings}, place, place, scales)
             few = dataclasses.replace(task, column=place[:8], motion=place[:8], scale=scales[:8])
             row = Row(f"{method}, {name}, lanes over single runs", "x")
             for _ in range(repeats):

@@ -15,7 +15,7 @@ from test_ensembles import column, motion
 
 import rbsdem
 from rbsdem import InputError
-from rbsdem.batch import engine
+from rbsdem.many import ensemble
 
 distributed = pytest.importorskip("distributed", reason="the extra 'cluster' brings distributed")
 
@@ -33,7 +33,7 @@ def cluster() -> Iterator[Any]:
 
 @pytest.fixture
 def client(cluster: Any, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
-    monkeypatch.setattr(engine, "_LONGEST", 0.2)
+    monkeypatch.setattr(ensemble, "_LONGEST", 0.2)
     with distributed.Client(cluster) as client:
         yield client
 
@@ -72,15 +72,15 @@ def test_runs_at_which_workers_die_are_failed(cluster: Any, client: Any) -> None
 @pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
 def test_ctrl_c_keeps_what_came_back(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """At the first result: the tasks that have not ended are taken back."""
-    take = engine.Collected.put
+    take = ensemble.Outcome.put
 
     def put(self: Any, *given: Any) -> None:
         os.kill(os.getpid(), signal.SIGINT)
-        monkeypatch.setattr(engine.Collected, "put", take)
+        monkeypatch.setattr(ensemble.Outcome, "put", take)
         take(self, *given)
 
-    monkeypatch.setattr(engine.Collected, "put", put)
-    monkeypatch.setattr(engine, "_LONGEST", 1e-3)
+    monkeypatch.setattr(ensemble.Outcome, "put", put)
+    monkeypatch.setattr(ensemble, "_LONGEST", 1e-3)
     found = rbsdem.ensemble(
         column(), motion(1, 2000), client=client, allow_partial=True, **GIVEN | {"dt": 1e-5}
     )

@@ -97,7 +97,7 @@ def test_the_state_of_the_case(
 def test_parts(
     case: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(rbsdem.batch.engine, "_LONGEST", 1e-4)
+    monkeypatch.setattr(rbsdem.many.ensemble, "_LONGEST", 1e-4)
     out = case.parent / "out"
     scales = ",".join(map(str, range(1, 30)))
     for part in ("2/2", "1/2"):
@@ -163,7 +163,8 @@ def test_ctrl_c_keeps_what_is_done(case: Path) -> None:
     case.write_text(text)
     out = case.parent / "out"
     scales = ",".join(f"{0.1 + 0.001 * k:.4g}" for k in range(1500))
-    code = "from rbsdem.batch import engine, store; engine._LONGEST = store._BEAT = 0.05\n"
+    code = "from rbsdem.batch import store\nfrom rbsdem.many import ensemble\n"
+    code += "ensemble._LONGEST = store._BEAT = 0.05\n"
     code += "import sys; from rbsdem.__main__ import main; sys.exit(main())"
     words = ["ensemble", case, "--scales", scales, "--out", out, "--jobs", "1"]
     with subprocess.Popen([sys.executable, "-c", code, *words], stdout=subprocess.PIPE) as process:

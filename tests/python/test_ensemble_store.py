@@ -17,9 +17,10 @@ from test_ensembles import column, motion
 
 import rbsdem
 from rbsdem import InputError
-from rbsdem.batch import engine, store, threads
-from rbsdem.batch.measures import MEASURES
-from rbsdem.batch.tasks import Task
+from rbsdem.batch import store
+from rbsdem.many import ensemble
+from rbsdem.many.measures import MEASURES
+from rbsdem.many.plan import Plan
 
 parquet = pytest.importorskip("pyarrow.parquet", reason="the extra 'ensembles' brings pyarrow")
 
@@ -29,7 +30,7 @@ GIVEN = {"scales": np.linspace(0.1, 3.0, 12), "method": "newmark", "jobs": 1}
 @pytest.fixture(autouse=True)
 def small_shards(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut the work of these tests into tasks of a run or two, and write each into a shard."""
-    monkeypatch.setattr(engine, "_LONGEST", 1e-6)
+    monkeypatch.setattr(ensemble, "_LONGEST", 1e-6)
     monkeypatch.setattr(store, "_BEAT", 0.0)
 
 
@@ -153,13 +154,13 @@ def test_what_is_added_is_computed_alone(
     else:
         scales = np.array([*scales, 1.4])
     done = []
-    real = threads.compute
+    real = ensemble.compute
 
-    def count(task: Task, control: object) -> object:
+    def count(task: Plan, control: object) -> object:
         done.append(len(task))
         return real(task, control)
 
-    monkeypatch.setattr(threads, "compute", count)
+    monkeypatch.setattr(ensemble, "compute", count)
     given = GIVEN | {"scales": scales}
     found = rbsdem.ensemble(columns, motions, store=tmp_path, **given)
     assert found.resumed == 24
@@ -190,15 +191,15 @@ def test_ctrl_c_is_an_exception_with_what_is_done(
 ) -> None:
     """At the third task; the runs that had ended are in it and in the store."""
     tasks = []
-    real = threads.compute
+    real = ensemble.compute
 
-    def break_off(task: Task, control: object) -> object:
+    def break_off(task: Plan, control: object) -> object:
         tasks.append(task)
         if len(tasks) == 3:
             os.kill(os.getpid(), signal.SIGINT)
         return real(task, control)
 
-    monkeypatch.setattr(threads, "compute", break_off)
+    monkeypatch.setattr(ensemble, "compute", break_off)
     with pytest.raises(KeyboardInterrupt, match=r"broken off after [0-9]+ of 24 runs") as caught:
         run(tmp_path)
     assert isinstance(caught.value, rbsdem.Interrupted)
@@ -317,17 +318,15 @@ import sys
 sys.path.insert(0, {tests!r})
 from test_ensembles import column, motion
 import numpy as np, rbsdem
-from rbsdem.batch import engine, store, work
-engine._LONGEST = {longest}
+from contextlib import contextmanager
+from rbsdem.batch import store
+from rbsdem.many import ensemble
+ensemble._LONGEST = {longest}
 store._BEAT = {beat}
-real = engine.work_through
-def told(workers, pieces, take, tell, asked):
-    def say(done):
-        print(done, flush=True)
-        tell(done)
-    real(workers, pieces, take, say, asked)
-    print("done", workers.runs(), flush=True)
-engine.work_through = told
+@contextmanager
+def said(wanted, total):
+    yield lambda done, text: print(done, flush=True)
+ensemble.progress_bar = said
 rbsdem.ensemble([column(), column(15e3)], motion(1, 4000, 0.005), store={folder!r},
                 scales=np.linspace(0.1, 3.0, 80), method="rk4", dt={dt}, jobs=1)
 """
@@ -379,7 +378,7 @@ def test_every_run_that_has_ended_is_kept(tmp_path: Path, number: signal.Signals
         assert not list((tmp_path / "shards").iterdir())
         process.send_signal(number)
         out, err = process.communicate(timeout=60)
-    ended = int(out.split("done")[-1])
+    ended = int(out.split()[-1])
     assert 0 < ended < 160
     assert len(rows(tmp_path)) == ended
     if number == signal.SIGTERM:

@@ -14,9 +14,9 @@ import pytest
 
 import rbsdem
 from rbsdem import InputError, SolveError
-from rbsdem.batch.inputs import Motion
-from rbsdem.batch.measures import LIMIT_STATES, MEASURES, STATUSES, core_measures
-from rbsdem.batch.tasks import Task, compute
+from rbsdem.many.inputs import Motion
+from rbsdem.many.measures import LIMIT_STATES, MEASURES, STATUSES, core_measures
+from rbsdem.many.plan import Plan, compute
 
 TIME = 0.01 * np.arange(400)
 
@@ -345,7 +345,7 @@ def test_lanes_have_the_bits_of_a_run_alone(columns: Callable, settings: dict) -
     own = columns()
     grid = np.meshgrid(np.arange(len(own)), np.arange(3), np.arange(7), indexing="ij")
     place = [axis.ravel().astype(np.int32) for axis in grid]
-    task = Task(
+    task = Plan(
         own, motions, settings, place[0], place[1], scales[place[2]], states=tuple(LIMIT_STATES)
     )
     alone = compute(task, kernel=-1)

@@ -202,7 +202,7 @@ def test_a_hunt_goes_on_from_its_store(column, records, tmp_path, monkeypatch):
     first = rbsdem.ida(column, records[:2], **options, **SETTINGS)
     more = rbsdem.ida(column, records[:3], **options, **SETTINGS)
     assert np.array_equal(more.upper[:, :2], first.upper)
-    monkeypatch.setattr("rbsdem.batch.threads.compute", None)
+    monkeypatch.setattr("rbsdem.many.ensemble.compute", None)
     again = rbsdem.ida(column, records[:2], **options, **SETTINGS)
     assert np.array_equal(again.upper, first.upper)
     assert np.array_equal(again.runs.measures["peak_drift"], first.runs.measures["peak_drift"])

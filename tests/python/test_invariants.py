@@ -31,8 +31,8 @@ from strategies import (
 
 import rbsdem
 from rbsdem import _core
-from rbsdem.batch.inputs import Motion
-from rbsdem.batch.tasks import Task, compute
+from rbsdem.many.inputs import Motion
+from rbsdem.many.plan import Plan, compute
 from rbsdem.model.ends import turned
 from rbsdem.springs import Layered, Spring
 
@@ -945,7 +945,7 @@ def test_lanes_have_the_bits_of_runs_alone(rng: Rng) -> None:
     grid = np.meshgrid(np.arange(2), np.arange(2), np.arange(5), indexing="ij")
     place = [axis.ravel().astype(np.int32) for axis in grid]
     settings = chosen | ({"collapse_drift": 0.05} if rng.random() < 0.5 else {})
-    task = Task(columns, motions, settings, place[0], place[1], scales[place[2]])
+    task = Plan(columns, motions, settings, place[0], place[1], scales[place[2]])
     alone = compute(task, kernel=-1)
     kernel = int(rng.integers(1, 4))
     together = compute(task, kernel=kernel)

@@ -120,13 +120,13 @@ def test_what_cannot_be_drawn_is_no_neighbour(table: peer.Specimens) -> None:
 def test_folder_goes_on_with_the_same_bits(folder: Path, tmp_path: Path) -> None:
     """One process or two, begun anew or not: bands, neighbours and files are the same."""
     whole = peer.predict(folder, bands=True, samples=8)
-    journal = tmp_path / "journal"
+    store = tmp_path / "store"
     tests = peer.read_specimens(folder).with_history()
-    peer.predict(tests[:2], bands=True, samples=8, journal=journal)
-    rest = peer.predict(folder, bands=True, samples=8, journal=journal, jobs=2)
+    peer.predict(tests[:2], bands=True, samples=8, store=store)
+    rest = peer.predict(folder, bands=True, samples=8, store=store, jobs=2)
     assert (rest.resumed, len(rest)) == (2, 4)
     # Another number of samples is another prediction.
-    assert peer.predict(tests[:1], bands=True, samples=9, journal=journal).resumed == 0
+    assert peer.predict(tests[:1], bands=True, samples=9, store=store).resumed == 0
     for number, found in enumerate((whole, rest)):
         found.bands_to_csv(tmp_path / f"{number}.csv")
         found.paths_to_csv(tmp_path / f"bands{number}")
@@ -144,7 +144,7 @@ def test_commands(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert "Within" in capsys.readouterr().out
     names = {path.name for path in out.iterdir()}
     assert {"bands.csv", "bands.png", "bands", "loops"} <= names
-    assert "unfinished.jsonl" not in names
+    assert "unfinished" not in names
     out = tmp_path / "mine"
     drifts = [str(drift) for drift in DRIFTS]
     given = ["--cycles", "1", "--near", str(folder), "--out", str(out)]

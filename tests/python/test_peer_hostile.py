@@ -19,8 +19,8 @@ import pytest
 from rbsdem import peer
 from rbsdem.cli import main
 from rbsdem.errors import InputError
-from rbsdem.measured import processes
-from rbsdem.measured.journal import Journal
+from rbsdem.measured import predict
+from rbsdem.measured.prediction_store import PredictionStore
 
 ROW = {
     "peer_id": "1", "file": "a.csv", "name": "Me 1990 No. 1", "author": "Me", "year": "1990",
@@ -143,7 +143,7 @@ def test_bad_line_of_the_terminal_is_not_the_end_of_the_work(tmp_path):
     assert (tmp_path / "o" / "results.csv").is_file()
 
 
-# ---- the journal ---------------------------------------------------------------------------------
+# ---- the store -----------------------------------------------------------------------------------
 
 
 @pytest.fixture
@@ -161,75 +161,66 @@ def same(one: peer.Prediction, other: peer.Prediction) -> bool:
 
 
 def test_second_start_goes_on(tests, tmp_path, monkeypatch):
-    """What is in the journal comes back bit for bit, and only the rest is done."""
-    path = tmp_path / "journal.jsonl"
-    first = peer.predict(tests[:3], "paper", journal=path)
+    """What is in the store comes back bit for bit, and only the rest is done."""
+    folder = tmp_path / "store"
+    first = peer.predict(tests[:3], "paper", store=folder)
     assert first.resumed == 0
     done = []
-    one = processes.predict_one
+    one = predict.predict_one
     monkeypatch.setattr(
-        processes, "predict_one", lambda s, *a, **o: done.append(s.peer_id) or one(s, *a, **o)
+        predict, "predict_one", lambda s, *a, **o: done.append(s.peer_id) or one(s, *a, **o)
     )
-    whole = peer.predict(tests, "paper", journal=path)
+    whole = peer.predict(tests, "paper", store=folder)
     assert done == [4]
     assert whole.resumed == 3
     assert all(same(row, before) for row, before in zip(whole, first, strict=False))
     for row, before in zip(whole[:2], first, strict=False):
         assert np.array_equal(row.comparison.model_force, before.comparison.model_force)
         assert row.comparison.nrmse == before.comparison.nrmse
-    with path.open() as file:
-        lines = [json.loads(line) for line in file]
+    shards = sorted((folder / "shards").iterdir(), key=lambda path: path.stat().st_mtime_ns)
+    lines = [json.loads(line) for path in shards for line in path.read_text().splitlines()]
     assert [line["name"] for line in lines] == [s.name for s in tests]
 
 
 def test_what_has_changed_is_done_again(tests, tmp_path):
-    path = tmp_path / "journal.jsonl"
-    peer.predict(tests[:1], "paper", journal=path)
-    assert peer.predict(tests[:1], "paper", journal=path).resumed == 1
-    assert peer.predict(tests[:1], "layered", journal=path).resumed == 0
-    assert peer.predict(tests[:1], "paper", n=2, journal=path).resumed == 0
+    folder = tmp_path / "store"
+    peer.predict(tests[:1], "paper", store=folder)
+    assert peer.predict(tests[:1], "paper", store=folder).resumed == 1
+    assert peer.predict(tests[:1], "layered", store=folder).resumed == 0
+    assert peer.predict(tests[:1], "paper", n=2, store=folder).resumed == 0
     history(tmp_path / "T1.csv", 1.01)
-    assert peer.predict(tests[:1], "paper", journal=path).resumed == 0
-    assert peer.predict(tests[:1], "paper", journal=path).resumed == 1
+    assert peer.predict(tests[:1], "paper", store=folder).resumed == 0
+    assert peer.predict(tests[:1], "paper", store=folder).resumed == 1
     changed = table(tmp_path, [{"file": "T1.csv", "fc_MPa": "46.6"}])
-    assert peer.predict(changed, "paper", journal=path).resumed == 0
-
-
-@pytest.mark.parametrize("harm", [b'{"key": "', b"\xff\x00", b"[1]\n", b'{"key": 1}\n'])
-def test_line_that_was_broken_off_is_passed_over(tests, tmp_path, harm):
-    path = tmp_path / "journal.jsonl"
-    peer.predict(tests[:2], "paper", journal=path)
-    path.write_bytes(path.read_bytes() + harm)
-    assert peer.predict(tests[:3], "paper", journal=path).resumed == 2
-    assert peer.predict(tests[:3], "paper", journal=path).resumed == 3
+    assert peer.predict(changed, "paper", store=folder).resumed == 0
 
 
 def test_lines_of_other_batches_are_kept(tests, tmp_path):
-    path = tmp_path / "journal.jsonl"
-    found = peer.predict(tests[:1], "paper", journal=path)
-    peer.predict(tests[:2], "paper", journal=path, n=2)
-    Journal(path, tests[:1], found.model, {}).forget()
-    assert peer.predict(tests[:2], "paper", journal=path, n=2).resumed == 2
-    Journal(path, tests[:2], found.model, {"n": 2}).forget()
-    assert not path.exists()
+    folder = tmp_path / "store"
+    found = peer.predict(tests[:1], "paper", store=folder)
+    peer.predict(tests[:2], "paper", store=folder, n=2)
+    PredictionStore(folder, tests[:1], found.model, {}).forget()
+    assert peer.predict(tests[:2], "paper", store=folder, n=2).resumed == 2
+    PredictionStore(folder, tests[:2], found.model, {"n": 2}).forget()
+    assert not folder.exists()
 
 
-def test_journal_is_refused(tests, tmp_path):
-    (tmp_path / "link").symlink_to(tmp_path / "T1.csv")
-    for path in (tmp_path, tmp_path / "link"):
-        with pytest.raises(InputError, match="no ordinary file"):
-            peer.predict(tests, "paper", journal=path)
+def test_store_is_refused(tests, tmp_path):
+    with pytest.raises(InputError, match="is no folder"):
+        peer.predict(tests, "paper", store=tmp_path / "T1.csv")
+    with pytest.raises(InputError, match=r"holds other files"):
+        peer.predict(tests, "paper", store=tmp_path)
     with pytest.raises(InputError, match="is a function"):
-        peer.predict(tests, lambda specimen: None, journal=tmp_path / "j")
+        peer.predict(tests, lambda specimen: None, store=tmp_path / "j")
 
 
 # The command, whose workers wait in their second test.
 WAITING = """
 import os, pathlib, sys, time
 from rbsdem.cli import main
-from rbsdem.measured import processes
+from rbsdem.measured import predict
 
-one = processes.predict_one
+one = predict.predict_one
 
 def waiting(specimen, model, **options):
     if specimen.peer_id > 1:
@@ -237,8 +228,7 @@ def waiting(specimen, model, **options):
         time.sleep(60)
     return one(specimen, model, **options)
 
-processes.predict_one = waiting
-processes._CHUNK = 1
+predict.predict_one = waiting
 if __name__ == "__main__":
     raise SystemExit(main(["peer", *sys.argv[1:]]))
 """
@@ -262,11 +252,11 @@ def test_killed_batch_leaves_no_process_and_goes_on(tmp_path, number):
     running = subprocess.Popen(
         [sys.executable, "waiting.py", *arguments], cwd=tmp_path, stderr=subprocess.PIPE
     )
-    journal = tmp_path / "out" / "unfinished.jsonl"
+    shards = tmp_path / "out" / "unfinished" / "shards"
     deadline = time.monotonic() + PATIENCE
     while time.monotonic() < deadline and running.poll() is None:
         workers = [int(p.name[7:]) for p in tmp_path.glob("worker-*")]
-        if len(workers) == 2 and journal.exists() and journal.stat().st_size:
+        if len(workers) == 2 and list(shards.glob("*.jsonl")):
             break
         time.sleep(0.02)
     assert len(workers) == 2
@@ -289,7 +279,7 @@ def test_second_start_of_the_command_says_what_it_took_over(tmp_path, capsys):
     history(tmp_path / "a.csv")
     tests = table(tmp_path, [{}, {}])
     (tmp_path / "out").mkdir()
-    peer.predict(tests[:1], "paper", journal=tmp_path / "out" / "unfinished.jsonl")
+    peer.predict(tests[:1], "paper", store=tmp_path / "out" / "unfinished")
     assert run(tmp_path, "--model", "paper", "--jobs", "1", "--out", tmp_path / "out") == 0
     assert "1 of them are from an earlier run" in capsys.readouterr().out
-    assert not (tmp_path / "out" / "unfinished.jsonl").exists()
+    assert not (tmp_path / "out" / "unfinished").exists()

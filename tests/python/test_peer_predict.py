@@ -61,9 +61,9 @@ def deadly(specimen: peer.Specimen) -> rbsdem.Column:
 ENDLESS = """
 import itertools, pathlib, sys, time
 from rbsdem.cli import main
-from rbsdem.measured import one
+from rbsdem.measured import predict
 
-make = one.column_of
+make = predict.column_of
 count = itertools.count()
 
 def endless(specimen, model):
@@ -72,7 +72,7 @@ def endless(specimen, model):
         time.sleep(60)
     return make(specimen, model)
 
-one.column_of = endless
+predict.column_of = endless
 raise SystemExit(main(["peer", *sys.argv[1:], "--model", "paper"]))
 """
 
@@ -116,10 +116,10 @@ def table(folder) -> peer.Specimens:
 
 
 def test_limit_states_are_columns(table, tmp_path):
-    """If asked for, also of what comes from the journal of an earlier start."""
-    kept = tmp_path / "journal"
+    """If asked for, also of what comes from the store of an earlier start."""
+    kept = tmp_path / "store"
     for _ in range(2):
-        found = peer.predict(table, limit_states=True, journal=kept)
+        found = peer.predict(table, limit_states=True, store=kept)
         for row in found[:2]:
             path = row.specimen.test().displacement
             result = rbsdem.cyclic(peer.column(row.specimen), displacement=path, openings=True)
@@ -165,7 +165,7 @@ def test_an_early_end_keeps_what_was_reached(table, monkeypatch):
         broken = replace(result, summary={**result.summary, "status": "failed"})
         raise rbsdem.SolveError("step 150: no", broken)
 
-    monkeypatch.setattr("rbsdem.measured.one.cyclic", half)
+    monkeypatch.setattr("rbsdem.measured.predict.cyclic", half)
     row = peer.predict_one(table[0], good)
     assert (row.status, row.error) == ("stopped", "step 150: no")
     assert row.comparison.rows == 150
@@ -200,8 +200,7 @@ def test_processes_give_the_same(table):
     assert [row.nrmse for row in two[:5]] == [row.nrmse for row in one[:5]]
 
 
-def test_a_process_that_dies_is_rows_too(folder, monkeypatch):
-    monkeypatch.setattr("rbsdem.measured.processes._CHUNK", 2)
+def test_a_process_that_dies_is_rows_too(folder):
     table = peer.read_specimens(folder)
     found = peer.predict(table, deadly, jobs=2)
     # Its neighbours go on.

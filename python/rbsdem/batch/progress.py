@@ -1,4 +1,4 @@
-"""The progress of an ensemble on the terminal."""
+"""The progress of work on the terminal."""
 
 from __future__ import annotations
 
@@ -10,13 +10,20 @@ from rbsdem._optional import need_rich
 
 
 @contextmanager
-def telling(wanted: bool, total: int) -> Iterator[Callable[[int], None]]:
-    """Show on stderr how many runs are done, how many a second, and the time left.
+def progress_bar(
+    wanted: bool, total: int, unit: str = "runs"
+) -> Iterator[Callable[[int, str], None]]:
+    """Show on stderr how much is done, how much a second, the time left, and a text.
 
     Where stderr is a pipe or a file, nothing is shown.
+
+    Yields
+    ------
+    callable
+        Takes the number that is done and the text.
     """
     if not wanted or not sys.stderr.isatty():
-        yield lambda done: None
+        yield lambda done, text: None
         return
     rich = need_rich()
     from rich.console import Console  # noqa: PLC0415
@@ -24,7 +31,7 @@ def telling(wanted: bool, total: int) -> Iterator[Callable[[int], None]]:
     bar = rich.progress.Progress(
         rich.progress.BarColumn(bar_width=24),
         rich.progress.MofNCompleteColumn(),
-        rich.progress.TextColumn("{task.description}"),
+        rich.progress.TextColumn("{task.description}", markup=False),
         rich.progress.TimeRemainingColumn(),
         console=Console(stderr=True),
         transient=True,
@@ -32,9 +39,10 @@ def telling(wanted: bool, total: int) -> Iterator[Callable[[int], None]]:
     with bar:
         task = bar.add_task("", total=total)
 
-        def told(done: int) -> None:
+        def show(done: int, text: str) -> None:
             speed = bar.tasks[task].speed
-            rate = "" if speed is None else f"{speed:.3g} runs/s,"
-            bar.update(task, completed=done, description=rate)
+            rate = "" if speed is None else f"{speed:.3g} {unit}/s"
+            parts = [part for part in (rate, text) if part]
+            bar.update(task, completed=done, description=", ".join(parts))
 
-        yield told
+        yield show

@@ -1,4 +1,7 @@
-"""Tasks on their way to workers and back, until all are done or somebody ends the work."""
+"""Tasks on their way to an executor and back, until all are done or somebody ends the work.
+
+A task is whatever its caller takes it for; work is a function and its inputs.
+"""
 
 from __future__ import annotations
 
@@ -6,42 +9,19 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import contextmanager
-from typing import Any, Protocol
+from typing import Any, TypeVar
 
-from rbsdem.batch.tasks import Piece, TaskResult
-
-__all__ = ["BEAT", "Asked", "work_through"]
+__all__ = ["BEAT", "EndRequest", "work_through"]
 
 #: How often the display is renewed, and a signal seen [s].
 BEAT = 0.2
 
-
-class Workers(Protocol):
-    """Those that do tasks: threads of this process or a cluster."""
-
-    ahead: int
-
-    def submit(self, piece: Piece) -> Any:
-        """Give them a task; return by what it is known."""
-
-    def ended(self, futures: Iterable[Any]) -> Iterable[Any]:
-        """Return the tasks that have ended, after a moment at the latest."""
-
-    def result(self, future: Any, piece: Piece) -> TaskResult:
-        """Return what a task has come to."""
-
-    def runs(self) -> int:
-        """Return the number of runs that are done."""
-
-    def stop(self) -> None:
-        """Let every task end soon, with the runs that it has done."""
-
-    def close(self) -> None:
-        """Let go of them."""
+Task = TypeVar("Task")
 
 
-class Asked:
+class EndRequest:
     """Whether the work is to end before it is done, by Ctrl-C or SIGTERM.
 
     The signals are noted and looked at between two tasks: an exception from anywhere would lose a
@@ -49,15 +29,15 @@ class Asked:
     """
 
     def __init__(self) -> None:
-        self.by: int | None = None
+        self.signal: int | None = None
 
     def __bool__(self) -> bool:
         """Return whether a signal has come."""
-        return self.by is not None
+        return self.signal is not None
 
     @contextmanager
     def listening(self, also_terminated: bool) -> Iterator[None]:
-        """Note signals while the block lasts; pass SIGTERM on to whom it belongs to after it."""
+        """Note signals while the block lasts; pass SIGTERM on to its own handler after it."""
         if threading.current_thread() is not threading.main_thread():
             yield
             return
@@ -71,51 +51,74 @@ class Asked:
         finally:
             for number, handler in before.items():
                 signal.signal(number, handler)
-            if self.by == signal.SIGTERM:
+            if self.signal == signal.SIGTERM:
                 os.kill(os.getpid(), signal.SIGTERM)
 
     def _note(self, number: int, frame: object) -> None:
         del frame
-        if self.by is not None and number == signal.SIGINT:
+        if self.signal is not None and number == signal.SIGINT:
             raise KeyboardInterrupt
-        self.by = number
+        self.signal = number
 
 
 def work_through(
-    workers: Workers,
-    pieces: Iterable[Piece],
-    take: Callable[[Piece, TaskResult], None],
-    told: Callable[[int], None],
-    asked: Asked,
+    submit: Callable[[Task], Future[Any]],
+    tasks: Iterable[Task],
+    take: Callable[[Task, Future[Any]], None],
+    *,
+    ahead: int,
+    end: EndRequest,
+    beat: Callable[[], None],
+    stop: Callable[[], None],
 ) -> None:
-    """Do all pieces; `take` gets their results as they come.
+    """Do all tasks.
 
-    Where the work is asked to end, or `take` raises an error, the runs under way are finished and
-    the others are not started; after the question `take` gets what was finished.
+    Where the end is requested, or `take` raises an error, the tasks under way are finished and the
+    others are not started; after the request `take` gets what was finished.
+
+    Parameters
+    ----------
+    submit : callable
+        Gives a task to an executor.
+    tasks : iterable
+        The next one is asked for when it is submitted.
+    take : callable
+        Gets each task with its future, which is done, as they come.
+    ahead : int
+        Tasks that are submitted and not done, at the most.
+    end : EndRequest
+        Whether the work is to end.
+    beat : callable
+        Called several times a second.
+    stop : callable
+        Called where the work ends before it is done: it lets tasks under way end soon.
     """
-    waiting: dict[Any, Piece] = {}
+    waiting: dict[Future[Any], Task] = {}
 
     def take_ended() -> None:
-        for future in workers.ended(waiting):
-            piece = waiting.pop(future)
-            take(piece, workers.result(future, piece))
-        told(workers.runs())
+        for future in wait(waiting, BEAT, FIRST_COMPLETED).done:
+            take(waiting.pop(future), future)
+        beat()
 
     try:
-        for piece in pieces:
-            waiting[workers.submit(piece)] = piece
-            while len(waiting) >= workers.ahead and not asked:
+        for task in tasks:
+            waiting[submit(task)] = task
+            while len(waiting) >= ahead and not end:
                 take_ended()
-            if asked:
+            if end:
                 break
-        while waiting and not asked:
+        while waiting and not end:
             take_ended()
-        if asked:
-            workers.stop()
+        if end:
+            _cancel(waiting, stop)
         while waiting:
             take_ended()
     except BaseException:
-        workers.stop()
+        _cancel(waiting, stop)
         raise
-    finally:
-        workers.close()
+
+
+def _cancel(waiting: dict[Future[Any], Task], stop: Callable[[], None]) -> None:
+    stop()
+    for future in [future for future in waiting if future.cancel()]:
+        del waiting[future]

@@ -17,15 +17,15 @@ import numpy as np
 
 from rbsdem._files import write_csv, write_figure
 from rbsdem._optional import console, need_parquet, need_rich, plain
-from rbsdem.batch.engine import ensemble as run_ensemble
-from rbsdem.batch.intensity import NAMES
-from rbsdem.batch.record import Ensemble
 from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
 from rbsdem.errors import InputError, RepairWarning
+from rbsdem.many.ensemble import Ensemble
+from rbsdem.many.ensemble import ensemble as run_ensemble
 from rbsdem.many.fragility import Fragility
 from rbsdem.many.hazard import Hazard
 from rbsdem.many.ida import IDA
 from rbsdem.many.ida import ida as run_ida
+from rbsdem.many.runs import NAMES
 from rbsdem.methods.measure import trade as compare_methods
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.read import read_motion, read_motions

@@ -18,11 +18,11 @@ from rbsdem._files import write_figure
 from rbsdem._optional import console
 from rbsdem.cli import FILE, FOLDER, INTERRUPTED, Command, Values, quiet, tell
 from rbsdem.errors import AccuracyWarning, InputError
-from rbsdem.measured.batch import predict as run_predictions
 from rbsdem.measured.doubts import Checked
 from rbsdem.measured.doubts import check as check_tests
-from rbsdem.measured.journal import Journal
-from rbsdem.measured.one import How
+from rbsdem.measured.predict import PredictionOptions
+from rbsdem.measured.predict import predict as run_predictions
+from rbsdem.measured.prediction_store import PredictionStore
 from rbsdem.measured.predictions import Predictions
 from rbsdem.measured.records import loop_names
 from rbsdem.measured.specimen import Specimen
@@ -30,8 +30,8 @@ from rbsdem.measured.specimens import Specimens, read_specimens
 from rbsdem.section.model import DEFAULT, MODELS, model_name
 from rbsdem.solve.protocol import protocol
 
-#: Name of the journal in the folder of `--out`, as long as the batch is not finished.
-UNFINISHED = "unfinished.jsonl"
+#: Name of the store in the folder of `--out`, as long as the batch is not finished.
+UNFINISHED = "unfinished"
 
 _SECTIONS = click.Choice(["rectangular", "circular", "all"])
 _version = click.option("--model-version", metavar="VERSION", help="of the parameters; the newest")
@@ -83,7 +83,7 @@ def peer(
     gallery.html (all loops, to sort and filter), loops.png; with --bands also bands.csv
     (intervals, nearest tests) and bands.png, with --loops bands/ (the band along the path of each
     test); with --check only check.csv (indicators and doubts).
-    An interrupted batch leaves its finished tests in unfinished.jsonl; the same command with the
+    An interrupted batch leaves its finished tests in the folder unfinished; the same command with the
     same --out resumes there.
     Exit codes: 0 every test was analysed to its end, 1 some were not, 2 the input is wrong,
     130 interrupted by the keyboard (finished tests are reported).
@@ -102,22 +102,22 @@ def peer(
         raise InputError("--loops writes files; give their folder with --out DIR")
     if out is not None:
         out.mkdir(parents=True, exist_ok=True)
-    journal = None if out is None else out / UNFINISHED
+    store = None if out is None else out / UNFINISHED
     predictions = run_predictions(
         tests,
         model,
         jobs=jobs,
         bands=bands,
         progress=not quiet and sys.stderr.isatty(),
-        journal=journal,
+        store=store,
         limit_states=limit_states,
         **options,
     )
     # The files come first: whoever reads the report may stop reading.
     lines = [] if out is None else written(predictions, out, by, loops)
-    if journal is not None and not predictions.interrupted:
-        how = How(bands=bands, limit_states=limit_states)
-        Journal(journal, tests, predictions.model, how.given(options)).forget()
+    if store is not None and not predictions.interrupted:
+        how = PredictionOptions(bands=bands, limit_states=limit_states)
+        PredictionStore(store, tests, predictions.model, how.given(options)).forget()
     _report(predictions, by, quiet)
     for line in lines:
         print(line)

@@ -13,15 +13,21 @@ from numpy.typing import ArrayLike, NDArray
 from rbsdem import _arguments, _views
 from rbsdem._arguments import Array
 from rbsdem._optional import need_scipy
-from rbsdem.batch.intensity import Name, make_intensity, motions_by_name
-from rbsdem.batch.limits import is_switch
-from rbsdem.batch.measures import Measure, measures_in_a_list
-from rbsdem.batch.runs import Collector, Runs, checked_drift, columns_by_name
 from rbsdem.errors import InputError
 from rbsdem.many.fragile import Fragile
 from rbsdem.many.fragility import Fragility
 from rbsdem.many.hazard import Hazard
+from rbsdem.many.measures import Measure, is_switch, measures_in_a_list
 from rbsdem.many.regression import Logistic, PowerLaw, fit_line, fit_logistic
+from rbsdem.many.runs import (
+    Collector,
+    Name,
+    Runs,
+    checked_drift,
+    columns_by_name,
+    make_intensity,
+    motions_by_name,
+)
 from rbsdem.model.column import Column
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.solve.analysis import Method

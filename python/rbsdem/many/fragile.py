@@ -6,10 +6,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from rbsdem.batch.limits import limit_states
-from rbsdem.batch.runs import Runs
 from rbsdem.errors import InputError
 from rbsdem.many.fragility import Fragility
+from rbsdem.many.measures import limit_states
+from rbsdem.many.runs import Runs
 
 if TYPE_CHECKING:
     import pandas as pd

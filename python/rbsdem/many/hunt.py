@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
-from rbsdem.batch.runs import LOST, Collector
 from rbsdem.errors import InputError
+from rbsdem.many.runs import LOST, Collector
 
 _SMALLEST = 1e-4
 _MOST_REPAIRS = 5

@@ -13,14 +13,22 @@ from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments, _views
 from rbsdem._arguments import Array
-from rbsdem.batch.intensity import Name, checked_levels, make_intensity, motions_by_name
-from rbsdem.batch.limits import is_switch, limit_states
-from rbsdem.batch.measures import Measure, measures_in_a_list
-from rbsdem.batch.runs import MEASURES, Collector, Runs, checked_drift, columns_by_name
 from rbsdem.errors import InputError
 from rbsdem.many.fragile import Fragile
 from rbsdem.many.fragility import Capacities, Fragility, fit_fragility
 from rbsdem.many.hunt import Hunt, hunt_and_fill
+from rbsdem.many.measures import Measure, is_switch, limit_states, measures_in_a_list
+from rbsdem.many.runs import (
+    MEASURES,
+    Collector,
+    Name,
+    Runs,
+    checked_drift,
+    checked_levels,
+    columns_by_name,
+    make_intensity,
+    motions_by_name,
+)
 from rbsdem.model.column import Column
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.solve.analysis import Method

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem._optional import need_scipy
-from rbsdem.batch.inputs import raise_faults
 from rbsdem.errors import InputError
+from rbsdem.many.inputs import raise_faults
 from rbsdem.model.column import Column, without_notes
 
 _MOST = 1_000_000

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rbsdem._views import view_of
-from rbsdem.batch.runs import Runs
 from rbsdem.errors import InputError
 from rbsdem.many.cloud import Cloud
 from rbsdem.many.fragility import Capacities, Counts, Fragility
 from rbsdem.many.ida import IDA
+from rbsdem.many.runs import Runs
 from rbsdem.many.stripes import Stripes
 from rbsdem.output.style import MODEL_LINE, axes_or_new, line_of
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from rbsdem._optional import need_pandas
 from rbsdem._views import view_of
-from rbsdem.batch.measures import COUNTS, STATUSES
-from rbsdem.batch.record import Ensemble
+from rbsdem.many.ensemble import Ensemble
+from rbsdem.many.measures import COUNTS, STATUSES
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -10,7 +10,7 @@ import numpy as np
 from rbsdem._files import whole_file, write_csv
 from rbsdem._optional import need_pandas, need_pyarrow
 from rbsdem._views import view_of
-from rbsdem.batch.runs import Runs
+from rbsdem.many.runs import Runs
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,8 +9,8 @@ from typing import Any
 
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.measured.nearest import nearest
-from rbsdem.measured.one import predict_one
 from rbsdem.measured.pictures import picture
+from rbsdem.measured.predict import predict_one
 from rbsdem.measured.prediction import Prediction
 from rbsdem.measured.specimen import Specimen
 from rbsdem.measured.specimens import read_specimens

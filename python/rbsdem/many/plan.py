@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 
 from rbsdem import _core
 from rbsdem._arguments import Array
-from rbsdem.batch.inputs import AT_REST, Motion
-from rbsdem.batch.measures import STATUSES, Measure, core_measures
 from rbsdem.checks.criteria import criteria, watches
 from rbsdem.errors import RbsdemError
+from rbsdem.many.inputs import AT_REST, Motion
+from rbsdem.many.measures import STATUSES, Measure, core_measures
 from rbsdem.model.column import Column
 from rbsdem.model.springs import Layered
 from rbsdem.results.result import time_history
 from rbsdem.solve.analysis import without_notes
 
-__all__ = ["Piece", "Plan", "Task", "TaskResult", "compute", "cut", "watched"]
+__all__ = ["Outcome", "Piece", "Plan", "compute", "cut", "watched"]
 
 Integers = NDArray[np.int32]
 
@@ -43,11 +43,11 @@ FAULT_OF_MEASURE = "measure "
 
 
 @dataclass(frozen=True, eq=False)
-class Task:
-    """Runs that are done at one go, with all that they need; it can be sent to another process.
+class Plan:
+    """Runs with all that they need: some can be taken out of it and sent to another process.
 
-    `initial` are the states that the runs of each column begin in; an empty one is at rest, no list
-    that all are.
+    `column` and `motion` are places in `columns` and `motions`. `initial` are the states that the
+    runs of each column begin in; an empty one is at rest, no list that all are.
     """
 
     columns: list[Column]
@@ -69,12 +69,37 @@ class Task:
         """Return the number of runs."""
         return self.scale.size
 
+    @property
+    def before(self) -> list[Array]:
+        """States that the runs of each column begin in."""
+        return self.initial or [AT_REST] * len(self.columns)
+
+    def only(self, runs: NDArray[np.int_]) -> Plan:
+        """Return the plan of some of the runs."""
+        return replace(
+            self, column=self.column[runs], motion=self.motion[runs], scale=self.scale[runs]
+        )
+
+    def task(self, first: int, last: int) -> Plan:
+        """Return the runs from first to before last, with their columns and motions alone."""
+        columns, column = np.unique(self.column[first:last], return_inverse=True)
+        motions, motion = np.unique(self.motion[first:last], return_inverse=True)
+        return replace(
+            self,
+            columns=[self.columns[i] for i in columns],
+            motions=[self.motions[j] for j in motions],
+            column=column.astype(np.int32),
+            motion=motion.astype(np.int32),
+            scale=self.scale[first:last],
+            initial=[self.initial[i] for i in columns] if self.initial else [],
+        )
+
 
 @dataclass(frozen=True, eq=False)
-class TaskResult:
+class Outcome:
     """Fates (runs,), measures (measures, runs), those of functions by name, errors by run.
 
-    `seconds` is the time that the task took.
+    `seconds` is the time that the runs took.
     """
 
     fates: NDArray[np.int8]
@@ -83,47 +108,24 @@ class TaskResult:
     errors: dict[int, str]
     seconds: float = 0.0
 
-
-@dataclass(frozen=True, eq=False)
-class Plan:
-    """All runs of an ensemble: columns x motions x scales, without those whose scale is NaN."""
-
-    columns: list[Column]
-    motions: list[Motion]
-    settings: dict[str, Any]
-    functions: dict[str, Measure]
-    column: Integers
-    motion: Integers
-    scale: Array
-    states: tuple[str, ...] = ()
-    initial: list[Array] = field(default_factory=list)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names of the measures, those of functions left out."""
-        return core_measures() + self.states
-
-    def only(self, runs: NDArray[np.int_]) -> Plan:
-        """Return the plan of some of the runs."""
-        return replace(
-            self, column=self.column[runs], motion=self.motion[runs], scale=self.scale[runs]
+    @classmethod
+    def none(cls, plan: Plan, status: str = "", error: str = "") -> Outcome:
+        """Return the outcome of runs of which nothing came back."""
+        runs = len(plan)
+        return cls(
+            np.full(runs, STATUSES.index(status), dtype=np.int8),
+            np.full((len(plan.names), runs), np.nan),
+            {name: np.full(runs, np.nan) for name in plan.functions},
+            dict.fromkeys(range(runs), error) if error else {},
         )
 
-    def task(self, first: int, last: int) -> Task:
-        """Return the runs from first to before last."""
-        columns, column = np.unique(self.column[first:last], return_inverse=True)
-        motions, motion = np.unique(self.motion[first:last], return_inverse=True)
-        return Task(
-            [self.columns[i] for i in columns],
-            [self.motions[j] for j in motions],
-            self.settings,
-            column.astype(np.int32),
-            motion.astype(np.int32),
-            self.scale[first:last],
-            self.functions,
-            self.states,
-            [self.initial[i] for i in columns] if self.initial else [],
-        )
+    def put(self, runs: NDArray[np.int_], other: Outcome) -> None:
+        """Take the outcome of some runs."""
+        self.fates[runs] = other.fates
+        self.values[:, runs] = np.where(other.fates != 0, other.values, np.nan)
+        for name, values in other.extra.items():
+            self.extra[name][runs] = values
+        self.errors.update({int(runs[run]): text for run, text in other.errors.items()})
 
 
 def cut(seconds: Array, longest: Callable[[], float]) -> Iterator[Piece]:
@@ -151,13 +153,13 @@ def expected(plan: Plan) -> tuple[Array, Integers, list[tuple[int, str]]]:
         [column._statement for column in plan.columns],
         _core.settings(plan.settings),
         [_NO_WATCH] * len(plan.columns),
-        _before(plan),
+        plan.before,
         [(motion.time, motion.acceleration) for motion in plan.motions],
     )
 
 
-def compute(task: Task, control: Integers | None = None, kernel: int = 0) -> TaskResult:
-    """Do the runs of a task.
+def compute(task: Plan, control: Integers | None = None, kernel: int = 0) -> Outcome:
+    """Do the runs of a plan.
 
     `control` is shared with the thread that waits: it sets the first number to end the task before
     its next run, and reads in the second how many runs are done.
@@ -168,7 +170,7 @@ def compute(task: Task, control: Integers | None = None, kernel: int = 0) -> Tas
         [column._statement for column in task.columns],
         _core.settings(task.settings),
         [watched(column, task.states) for column in task.columns],
-        _before(task),
+        task.before,
         [(motion.time, motion.acceleration) for motion in task.motions],
         (task.column, task.motion, task.scale),
         control,
@@ -180,15 +182,10 @@ def compute(task: Task, control: Integers | None = None, kernel: int = 0) -> Tas
     if extra:
         _call_functions(task, control, fates, errors, extra)
     seconds = time.monotonic() - begin
-    return TaskResult(fates.astype(np.int8), values, extra, errors, seconds)
+    return Outcome(fates.astype(np.int8), values, extra, errors, seconds)
 
 
-def _before(work: Plan | Task) -> list[Array]:
-    """Return the states that the runs of each column begin in."""
-    return work.initial or [AT_REST] * len(work.columns)
-
-
-def _name_joints(task: Task, values: Array) -> None:
+def _name_joints(task: Plan, values: Array) -> None:
     """Give the joints that were lost the numbers by which columns know them; NaN: none was.
 
     The solver counts them from the ground, from 1, a footing's included.
@@ -200,7 +197,7 @@ def _name_joints(task: Task, values: Array) -> None:
 
 
 def _call_functions(
-    task: Task,
+    task: Plan,
     control: Integers,
     fates: Integers,
     errors: dict[int, str],
@@ -220,7 +217,7 @@ def _call_functions(
                     task.motions[task.motion[run]],
                     float(task.scale[run]),
                     task.settings,
-                    task.initial[task.column[run]] if task.initial else AT_REST,
+                    task.before[task.column[run]],
                 )
         except RbsdemError as error:
             fates[run], errors[int(run)] = _FAILED, str(error)

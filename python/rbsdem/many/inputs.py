@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 from unicodedata import category
@@ -21,8 +22,10 @@ from rbsdem.model.response import Response, state_of
 __all__ = [
     "AT_REST",
     "Motion",
+    "collected",
     "named_columns",
     "named_motions",
+    "raise_faults",
     "scale_array",
     "states_of_columns",
 ]
@@ -43,6 +46,15 @@ class Motion:
     acceleration: Array
 
 
+@contextmanager
+def collected(faults: list[str], who: str = "") -> Iterator[None]:
+    """Add what is wrong with an input to the faults, to tell all of them at once."""
+    try:
+        yield
+    except InputError as error:
+        faults.append(f"{who}{error}")
+
+
 def raise_faults(faults: list[str]) -> None:
     """Raise `InputError` with a line for each fault, if there is any."""
     if not faults:
@@ -58,10 +70,8 @@ def named_columns(columns: Any, faults: list[str]) -> tuple[list[str | int], lis
         columns = [columns]
     names, items = _named(columns, "columns", "Column", faults)
     for name, item in zip(names, items, strict=True):
-        try:
+        with collected(faults, f"column {name!r}: "):
             checked_column(item)
-        except InputError as error:
-            faults.append(f"column {name!r}: {error}")
     _check_names(names, "columns", "Column", faults)
     if not names and not faults:
         faults.append("columns is empty; give at least one Column")
@@ -82,10 +92,8 @@ def named_motions(motions: Any, faults: list[str]) -> tuple[int, list[Motion]]:
         names = [_own_name(item, name) for name, item in zip(names, items, strict=True)]
     found = []
     for name, item in zip(names, items, strict=True):
-        try:
+        with collected(faults, f"motion {name!r}: "):
             found.append(_motion(name, item))
-        except InputError as error:
-            faults.append(f"motion {name!r}: {error}")
     _check_names(names, "motions", "motion", faults)
     if not names and not faults:
         faults.append("motions is empty; give at least one motion")
@@ -195,11 +203,9 @@ def states_of_columns(initial: Any, names: list[str | int], faults: list[str]) -
 
 
 def _state(initial: Any, who: str, faults: list[str]) -> Array:
-    try:
+    with collected(faults, who):
         return state_of(initial, "ensemble")
-    except InputError as error:
-        faults.append(f"{who}{error}")
-        return AT_REST
+    return AT_REST
 
 
 def scale_array(scales: ArrayLike, columns: int, motions: int, faults: list[str]) -> Array:
@@ -228,12 +234,3 @@ def scale_array(scales: ArrayLike, columns: int, motions: int, faults: list[str]
     elif np.isnan(given).all():
         faults.append("scales: no run is asked for; give at least one number")
     return full
-
-
-def check_jobs(jobs: Any, faults: list[str]) -> None:
-    """Add a fault if the number of threads is not one."""
-    try:
-        if jobs is not None and _arguments.whole(jobs, "jobs") < 1:
-            faults.append(f"jobs = {jobs} must be 1 or more")
-    except InputError as error:
-        faults.append(str(error))

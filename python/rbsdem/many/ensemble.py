@@ -5,40 +5,156 @@ from __future__ import annotations
 import heapq
 import os
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
-from typing import Any, Literal
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rbsdem import _arguments
+from rbsdem import _arguments, _views
 from rbsdem._arguments import Array
-from rbsdem.batch.cluster import Cluster, check_client
-from rbsdem.batch.collected import Collected
-from rbsdem.batch.inputs import (
+from rbsdem.batch.executors import (
+    Cluster,
+    available_processors,
+    check_client,
     check_jobs,
+)
+from rbsdem.batch.progress import progress_bar
+from rbsdem.batch.work import EndRequest, work_through
+from rbsdem.errors import InputError, Interrupted
+from rbsdem.many.inputs import (
+    AT_REST,
+    Motion,
+    collected,
     named_columns,
     named_motions,
     raise_faults,
     scale_array,
     states_of_columns,
 )
-from rbsdem.batch.measures import STATUSES, Measure, checked_measures, limit_states_among
-from rbsdem.batch.progress import telling
-from rbsdem.batch.record import Ensemble
-from rbsdem.batch.store import Store
-from rbsdem.batch.tasks import Piece, Plan, TaskResult, cut, expected
-from rbsdem.batch.threads import Threads
-from rbsdem.batch.work import Asked, work_through
-from rbsdem.errors import InputError, Interrupted
+from rbsdem.many.measures import STATUSES, Measure, checked_measures, limit_states_among
+from rbsdem.many.plan import Outcome, Piece, Plan, compute, cut, expected, one_run
+from rbsdem.many.run_store import RunStore
+from rbsdem.model.column import Column
+from rbsdem.results.result import Result
 from rbsdem.solve.analysis import Method
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 #: Seconds of a task at the most, as far as that is known: what a kill may cost.
 _LONGEST = 2.0
 
 #: Runs that advance side by side.
 _LANES = 64
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Ensemble:
+    """The runs of an ensemble, columns x motions x scales, the scales running fastest.
+
+    Attributes
+    ----------
+    columns : dict
+        The columns by their names.
+    motions : dict
+        The motions by their names, with `time` [s] and `acceleration` [m/s2].
+    settings : dict
+        The settings of the analysis that were given, as keywords of `time_history`.
+    initial : dict of ndarray
+        The states that runs of a column began in, by its name; the others began at rest.
+    column, motion : ndarray of int, shape (runs,)
+        Places of column and motion of each run in `columns` and `motions`.
+    scale : ndarray, shape (runs,)
+        Factor of the accelerations.
+    status : ndarray of str, shape (runs,)
+        "completed", "collapsed", "axial_failure" or "failed"; "" for a run that was not started
+        because the ensemble was broken off.
+    measures : dict of ndarray, shape (runs,)
+        The measures (`MEASURES`, and those of functions); NaN for failed runs.
+    errors : dict
+        Texts of the errors of failed runs, by the number of the run.
+    seconds : float
+        Wall time.
+    interrupted : bool
+        Whether Ctrl-C broke the ensemble off.
+    resumed : int
+        Number of runs that the store had.
+    """
+
+    columns: Mapping[str | int, Column]
+    motions: Mapping[str | int, Motion]
+    settings: dict[str, Any]
+    initial: dict[str | int, Array]
+    column: NDArray[np.int32]
+    motion: NDArray[np.int32]
+    scale: Array
+    status: NDArray[np.str_]
+    measures: dict[str, Array]
+    errors: dict[int, str]
+    seconds: float
+    interrupted: bool = False
+    resumed: int = 0
+
+    def __len__(self) -> int:
+        """Return the number of runs."""
+        return self.scale.size
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{number} {status}" for status, number in self.counts.items())
+        return (
+            f"Ensemble({len(self.columns)} columns x {len(self.motions)} motions, {len(self)} "
+            f"runs: {counts}; {self.seconds:.3g} s)"
+        )
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Number of runs of each status that occurs."""
+        found = {status: int((self.status == status).sum()) for status in STATUSES}
+        return {status or "not started": number for status, number in found.items() if number}
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """A row for each run: column, motion, scale, status, the measures, error.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
+        return _views.view(self, "table")
+
+    def history(self, run: int) -> Result:
+        """Solve one run again, with its history; the bits are those of the run.
+
+        Parameters
+        ----------
+        run : int
+            Its number, that of its row in the table, from 0.
+
+        Returns
+        -------
+        Result
+            As `time_history` returns it.
+
+        Raises
+        ------
+        InputError
+            If there is no such run.
+        SolveError
+            If the run failed; its attribute `result` holds the rows up to there.
+        """
+        if not 0 <= _arguments.whole(run, "run") < len(self):
+            raise InputError(f"run = {run} must be from 0 to {len(self) - 1}")
+        name, column = list(self.columns.items())[self.column[run]]
+        motion = list(self.motions.values())[self.motion[run]]
+        state = self.initial.get(name, AT_REST)
+        result: Result = one_run(column, motion, float(self.scale[run]), self.settings, state)
+        return result
 
 
 def ensemble(
@@ -81,7 +197,7 @@ def ensemble(
         Factors of the accelerations: shape (k,) for all, (motions, k) or (columns, motions, k).
         NaN stands for no run.
     measures : sequence of str and callable, optional
-        What is kept of each run: names of `rbsdem.batch.measures.MEASURES` (by default all), limit
+        What is kept of each run: names of `rbsdem.many.measures.MEASURES` (by default all), limit
         states (`LIMIT_STATES`: the time at which each is first reached, NaN if it
         is not), and functions of a `Result` that return a number. A function makes the run's
         history once more, which takes as long as `time_history`; a limit state does not.
@@ -150,20 +266,20 @@ def ensemble(
     given, motion_items = named_motions(motions, faults)
     before = states_of_columns(initial, column_names, faults)
     full = scale_array(scales, len(column_names), given, faults)
-    check_jobs(jobs, faults)
     names: tuple[str, ...] = ()
     functions: dict[str, Measure] = {}
-    try:
+    with collected(faults):
         names, functions = checked_measures(measures)
-    except InputError as error:
-        faults.append(str(error))
     part = _checked_part(shard, store, faults)
-    check_client(client, faults)
+    with collected(faults):
+        if jobs is not None:
+            check_jobs(jobs)
+    with collected(faults):
+        if client is not None:
+            check_client(client)
     for name, value in (("progress", progress), ("allow_partial", allow_partial)):
-        try:
+        with collected(faults):
             _arguments.switch(value, name)
-        except InputError as error:
-            faults.append(str(error))
     raise_faults(faults)
     wanted = np.flatnonzero(~np.isnan(full).ravel())
     column, motion, _ = np.unravel_index(wanted, full.shape)
@@ -171,10 +287,10 @@ def ensemble(
         column_items,
         motion_items,
         settings,
-        functions,
         column.astype(np.int32),
         motion.astype(np.int32),
         full.ravel()[wanted],
+        functions,
         limit_states_among(names),
         before,
     )
@@ -184,12 +300,9 @@ def ensemble(
     kept = None
     if store is not None:
         own_names = column_names, [item.name for item in motion_items]
-        kept = Store(_arguments.path(store), plan, own_names, part, seeds)
+        kept = RunStore(_arguments.path(store), plan, own_names, part, seeds)
     own = _of_part(each, lanes, part)
-    workers = jobs or available_processors()
-    collected, resumed, asked = _carried_out(
-        plan, own, (each, lanes), kept, client or workers, progress
-    )
+    outcome, resumed, end = _carried_out(plan, own, (each, lanes), kept, client, jobs, progress)
     whole = Ensemble(
         columns=dict(zip(column_names, column_items, strict=True)),
         motions={item.name: item for item in motion_items},
@@ -200,14 +313,14 @@ def ensemble(
         column=plan.column,
         motion=plan.motion,
         scale=plan.scale,
-        status=np.array(STATUSES)[collected.fates],
-        measures=_named(names, collected, plan) | collected.extra,
-        errors=dict(sorted(collected.errors.items())),
+        status=np.array(STATUSES)[outcome.fates],
+        measures=_named(names, outcome, plan) | outcome.extra,
+        errors=dict(sorted(outcome.errors.items())),
         seconds=time.perf_counter() - begin,
-        interrupted=bool(asked),
+        interrupted=bool(end),
         resumed=resumed,
     )
-    if asked and not allow_partial:
+    if end and not allow_partial:
         raise Interrupted(_told(whole, store), whole)
     return whole
 
@@ -216,43 +329,106 @@ def _carried_out(
     plan: Plan,
     own: NDArray[np.int_],
     cost: tuple[Array, NDArray[np.int32]],
-    kept: Store | None,
-    workers: Any,
+    kept: RunStore | None,
+    client: Any,
+    jobs: int | None,
     progress: bool,
-) -> tuple[Collected, int, Asked]:
+) -> tuple[Outcome, int, EndRequest]:
     """Do the runs of this process that no store has.
 
-    `workers` is a number of threads or the client of a cluster. Return what was collected, how many
-    runs a store had, and whether the work was asked to end.
+    Return the outcome, how many runs a store had, and whether the work was asked to end.
     """
-    collected = Collected(plan.scale.size, plan.functions, len(plan.names))
-    asked = Asked()
-    resumed = 0
+    outcome, resumed, end = Outcome.none(plan), 0, EndRequest()
+    threads = jobs or available_processors()
     with ExitStack() as stack:
-        stack.enter_context(asked.listening(also_terminated=kept is not None))
+        stack.enter_context(end.listening(also_terminated=kept is not None))
         if kept is not None:
             stack.enter_context(kept.open())
-            there, found = kept.read()
-            if found is not None:
-                collected.put(there, found)
-            resumed = there.size
-        missing = own[collected.fates[own] == 0]
+            resumed = kept.read(outcome)
+        missing = own[outcome.fates[own] == 0]
         each, lanes = (values[missing] for values in cost)
-        threads = workers if isinstance(workers, int) else available_processors()
         pace = _Pace(each, lanes, threads)
+        show = stack.enter_context(progress_bar(progress, missing.size))
+        workers = _Workers(plan.only(missing), client, threads)
+        stack.enter_context(workers.executor)
 
-        def take(piece: Piece, result: TaskResult) -> None:
+        def take(piece: Piece, future: Future[Outcome]) -> None:
+            result = workers.result(piece, future)
             pace.learn(float(each[slice(*piece)].sum()), result)
             runs = missing[slice(*piece)]
-            collected.put(runs, result)
+            outcome.put(runs, result)
             if kept is not None:
                 kept.add(runs, result)
 
-        told = stack.enter_context(telling(progress, missing.size))
-        left = plan.only(missing)
-        do = Threads(left, workers) if isinstance(workers, int) else Cluster(left, workers)
-        work_through(do, cut(each, pace.longest), take, told, asked)
-    return collected, resumed, asked
+        def beat() -> None:
+            show(workers.done(), "")
+            if kept is not None:
+                kept.write_if_due()
+
+        work_through(
+            workers.submit,
+            cut(each, pace.longest),
+            take,
+            ahead=workers.ahead,
+            end=end,
+            beat=beat,
+            stop=workers.stop,
+        )
+    return outcome, resumed, end
+
+
+class _Workers:
+    """Threads, whose solver releases the interpreter's lock, or a cluster."""
+
+    executor: Executor
+
+    def __init__(self, plan: Plan, client: Any, threads: int) -> None:
+        self._plan = plan
+        self._done = 0
+        # Shared with the threads: the first number ends a task, the second counts its runs.
+        self._controls: list[NDArray[np.int32]] = []
+        self._cluster = None if client is None else Cluster(client)
+        if self._cluster is None:
+            self.executor = ThreadPoolExecutor(threads)
+            #: Tasks under way or next in line, so that no thread waits for one.
+            self.ahead = 2 * threads
+        else:
+            self.executor = self._cluster
+            self.ahead = 3 * self._cluster.workers
+
+    def submit(self, piece: Piece) -> Future[Outcome]:
+        """Give a task to them."""
+        if self._cluster is not None:
+            return self._cluster.submit(compute, self._plan.task(*piece))
+        control = np.zeros(2, dtype=np.int32)
+        self._controls.append(control)
+        return self.executor.submit(_computed, self._plan, piece, control)
+
+    def result(self, piece: Piece, future: Future[Outcome]) -> Outcome:
+        """Return what a task has come to."""
+        self._done += piece[1] - piece[0]
+        try:
+            return future.result()
+        except BrokenProcessPool as error:
+            text = f"{error} of this run; run it alone to see why"
+            return Outcome.none(self._plan.task(*piece), "failed", text)
+
+    def done(self) -> int:
+        """Return the number of runs that are done."""
+        if self._cluster is not None:
+            return self._done
+        return sum(int(control[1]) for control in self._controls)
+
+    def stop(self) -> None:
+        """Finish the runs under way, and start no others: every task ends with what it has."""
+        if self._cluster is not None:
+            self._cluster.cancel()
+        for control in self._controls:
+            control[0] = 1
+
+
+def _computed(plan: Plan, piece: Piece, control: NDArray[np.int32]) -> Outcome:
+    return compute(plan.task(*piece), control)
 
 
 def _longest(each: Array, lanes: NDArray[np.int32], workers: int) -> float:
@@ -272,7 +448,7 @@ class _Pace:
         # Until the first task is back nobody knows how busy the machine is; lanes take less.
         self._slower = 0.5 if 2 * lanes.sum() > lanes.size else 4.0
 
-    def learn(self, expected: float, result: TaskResult) -> None:
+    def learn(self, expected: float, result: Outcome) -> None:
         """Take what a task took in place of what was expected."""
         if result.fates.all() and expected > 0:
             self._slower = result.seconds / expected
@@ -324,11 +500,9 @@ def _plain(value: Any) -> Any:
 
 def _checked_part(shard: Any, store: Any, faults: list[str]) -> tuple[int, int]:
     """Return which part of how many this process does; without parts the first of one."""
-    try:
+    with collected(faults):
         if store is not None:
             _arguments.path(store, "store")
-    except InputError as error:
-        faults.append(str(error))
     if shard is None:
         return 1, 1
     try:
@@ -345,14 +519,7 @@ def _checked_part(shard: Any, store: Any, faults: list[str]) -> tuple[int, int]:
     return place, parts
 
 
-def available_processors() -> int:
-    """Return the number of processors that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
-def _named(names: tuple[str, ...], result: Collected, plan: Plan) -> dict[str, Array]:
+def _named(names: tuple[str, ...], result: Outcome, plan: Plan) -> dict[str, Array]:
     values = dict(zip(plan.names, result.values, strict=True))
     heights = np.array([column.height for column in plan.columns])[plan.column]
     values["peak_drift"] = np.abs(values["peak_displacement"]) / heights

@@ -1,14 +1,13 @@
-"""The journal of a batch: what was predicted is written as it comes, and need not be done again."""
+"""The store of predictions: what was predicted is kept, and need not be done again."""
 
 from __future__ import annotations
 
 import base64
 import dataclasses
 import hashlib
-import json
-import os
 import pickle
 from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
@@ -16,14 +15,14 @@ import numpy as np
 
 from rbsdem._arguments import Array
 from rbsdem._code import code_digest
-from rbsdem._files import whole_file
+from rbsdem.batch.store import JSON_LINES, Store, digest
 from rbsdem.curves.scores import compare
-from rbsdem.errors import InputError, RbsdemError
+from rbsdem.errors import RbsdemError
 from rbsdem.measured.prediction import Prediction
 from rbsdem.measured.specimen import Specimen
 from rbsdem.section.spread import Interval, Spread
 
-__all__ = ["Journal"]
+__all__ = ["PredictionStore"]
 
 _TEXTS = ("status", "error", "note")
 _TIMES = ("seconds_model", "seconds_analysis")
@@ -32,17 +31,17 @@ _INTERVALS = ("peak_force", "energy", "drift_at_loss")
 _SHARES = ("near_shear", "distance")
 
 
-class Journal:
-    """A file with a line for each predicted test.
+class PredictionStore:
+    """A folder with a line for each predicted test.
 
     A line is found again by a digest of the test, its history, the model with its version, the
     options, and the code of the installed package: after a change of any of these the test is
-    predicted anew. A line that was not written to its end is passed over.
+    predicted anew.
 
     Parameters
     ----------
-    path : path
-        The file; it is made with the first line.
+    folder : path
+        It is made if it is not there.
     tests : sequence of Specimen
         The tests of the batch.
     model : str
@@ -53,29 +52,26 @@ class Journal:
     Raises
     ------
     InputError
-        If the path is not that of an ordinary file.
+        If the folder holds other files, or is none.
     """
 
     def __init__(
-        self,
-        path: str | os.PathLike[str],
-        tests: Sequence[Specimen],
-        model: str,
-        options: Mapping[str, Any],
+        self, folder: Path, tests: Sequence[Specimen], model: str, options: Mapping[str, Any]
     ) -> None:
-        self.path = Path(path)
         self._tests = tests
         self._model = model
-        given = hashlib.sha256(
-            code_digest() + model.encode() + pickle.dumps(dict(options), 5)
-        ).digest()
-        self._keys = [_key(specimen, given) for specimen in tests]
-        if self.path.is_symlink() or (self.path.exists() and not self.path.is_file()):
-            raise InputError(f"journal: {self.path} is no ordinary file; give another path")
+        given = hashlib.sha256(code_digest() + model.encode() + pickle.dumps(dict(options), 5))
+        self._keys = [_key(specimen, given.digest()) for specimen in tests]
+        self._store = Store(folder, JSON_LINES, {"digests": {"contents": "predictions"}})
+        self.write_if_due = self._store.write_if_due
 
-    def finished(self) -> dict[int, Prediction]:
-        """Return the predictions that are in the journal, by the number of the test."""
-        known = {line["key"]: line for line in self._lines()}
+    def open(self) -> AbstractContextManager[None]:
+        """Keep other processes from the folder while the block lasts."""
+        return self._store.open()
+
+    def read(self) -> dict[int, Prediction]:
+        """Return the predictions that are in the store, by the number of the test."""
+        known = {line["key"]: line for lines in self._store.read() for line in lines}
         rows = {}
         for number, key in enumerate(self._keys):
             row = self._row(self._tests[number], known[key]) if key in known else None
@@ -83,16 +79,13 @@ class Journal:
                 rows[number] = row
         return rows
 
-    def add(self, number: int, row: Prediction) -> None:
-        """Write a prediction.
+    def forget(self) -> None:
+        """Remove the predictions of this batch; a folder without others goes too."""
+        own = set(self._keys)
+        self._store.remove(lambda line: line["key"] in own)
 
-        Parameters
-        ----------
-        number : int
-            Number of its test.
-        row : Prediction
-            The prediction.
-        """
+    def add(self, number: int, row: Prediction) -> None:
+        """Take the prediction of a test; it is written a few seconds later."""
         line: dict[str, Any] = {"name": row.specimen.name, "key": self._keys[number]}
         line |= {name: getattr(row, name) for name in (*_TEXTS, *_TIMES)}
         line["nrmse"] = row.nrmse
@@ -102,42 +95,7 @@ class Journal:
         line["limit_states"] = row.limit_states
         if row.band is not None:
             line["band"] = _band_line(row.band)
-        text = json.dumps(line) + "\n"
-        flags = os.O_RDWR | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
-        with os.fdopen(os.open(self.path, flags, 0o666), "r+b") as file:
-            # Behind a line that was broken off.
-            size = file.seek(0, os.SEEK_END)
-            if size:
-                file.seek(size - 1)
-                text = text if file.read(1) == b"\n" else f"\n{text}"
-            file.write(text.encode())
-
-    def forget(self) -> None:
-        """Take the tests of this batch out; a journal without lines is removed."""
-        if not self.path.is_file():
-            return
-        own = set(self._keys)
-        rest = [json.dumps(line) + "\n" for line in self._lines() if line["key"] not in own]
-        if not rest:
-            self.path.unlink()
-            return
-        with whole_file(self.path) as file:
-            file.write("".join(rest).encode())
-
-    def _lines(self) -> list[dict[str, Any]]:
-        try:
-            text = self.path.read_bytes()
-        except FileNotFoundError:
-            return []
-        found = []
-        for line in text.splitlines():
-            try:
-                entry = json.loads(line)
-                if isinstance(entry, dict) and isinstance(entry["key"], str):
-                    found.append(entry)
-            except (ValueError, KeyError):
-                continue
-        return found
+        self._store.add(line)
 
     def _row(self, specimen: Specimen, line: dict[str, Any]) -> Prediction | None:
         """Return the prediction of a line; None if there is something wrong with the line."""
@@ -198,8 +156,6 @@ def _band_of(line: dict[str, Any]) -> Spread:
 def _key(specimen: Specimen, given: bytes) -> str:
     """Return the digest of a test, its history and what it is predicted with."""
     values = dataclasses.asdict(dataclasses.replace(specimen, folder=None))
-    digest = hashlib.sha256(given + repr(values).encode("utf-8", "backslashreplace"))
+    text = repr(values).encode("utf-8", "backslashreplace")
     path = specimen.path
-    if path is not None:
-        digest.update(path.read_bytes())
-    return digest.hexdigest()
+    return digest(given, text, b"" if path is None else path.read_bytes())

@@ -1,0 +1,482 @@
+"""Prediction of tests from their properties: a loop and scores for each."""
+
+from __future__ import annotations
+
+import os
+import time
+import warnings
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Future
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, NamedTuple, TypeAlias, overload
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rbsdem import _arguments
+from rbsdem._arguments import Array
+from rbsdem.batch.executors import Processes, Serial, check_jobs, check_sent
+from rbsdem.batch.progress import progress_bar
+from rbsdem.batch.work import EndRequest, work_through
+from rbsdem.curves.scores import compare
+from rbsdem.errors import AccuracyWarning, InputError, RbsdemError, SolveError
+from rbsdem.measured.columns import check_options, checked_specimen
+from rbsdem.measured.columns import column as column_of
+from rbsdem.measured.nearest import Neighbour, nearest
+from rbsdem.measured.prediction import Prediction
+from rbsdem.measured.prediction_store import PredictionStore
+from rbsdem.measured.predictions import Predictions
+from rbsdem.measured.specimen import Specimen
+from rbsdem.measured.specimens import TABLE, read_specimens
+from rbsdem.model.column import Column
+from rbsdem.results.result import Result, cyclic
+from rbsdem.section.model import DEFAULT, model_name
+from rbsdem.section.parameters import parameters
+from rbsdem.section.scatter import SCATTER
+from rbsdem.section.spread import Spread, has_bands
+
+__all__ = ["PredictionOptions", "name_of", "predict", "predict_one"]
+
+#: Tests most like a column that stand beside its prediction.
+_NEIGHBOURS = 5
+
+Model: TypeAlias = str | Callable[[Specimen], Column]
+Near: TypeAlias = str | os.PathLike[str] | Iterable[Specimen | Prediction]
+
+
+@dataclass(frozen=True)
+class PredictionOptions:
+    """How tests are predicted, beside model and options of the column.
+
+    Attributes
+    ----------
+    bands : bool
+        With bands.
+    samples : int
+        Samples of a band.
+    displacement : tuple of float or None
+        Path of the top [m]; None for that of each test.
+    limit_states : bool
+        With the drifts at which limit states are reached.
+    """
+
+    bands: bool = False
+    samples: int = 16
+    displacement: tuple[float, ...] | None = None
+    limit_states: bool = False
+
+    def given(self, options: dict[str, Any]) -> dict[str, Any]:
+        """Return the options of a store: those of the model, and what differs from the usual."""
+        own = {
+            name: value for name, value in vars(self).items() if value != getattr(type(self), name)
+        }
+        return options | ({"how": own} if own else {})
+
+
+@overload
+def predict(specimens: Specimen, model: Model = DEFAULT, **options: Any) -> Prediction: ...
+@overload
+def predict(
+    specimens: Iterable[Specimen] | str | os.PathLike[str], model: Model = DEFAULT, **options: Any
+) -> Predictions: ...
+def predict(
+    specimens: Specimen | Iterable[Specimen] | str | os.PathLike[str],
+    model: Model = DEFAULT,
+    *,
+    bands: bool | None = None,
+    samples: int = 16,
+    displacement: ArrayLike | None = None,
+    near: Near | None = None,
+    jobs: int = 1,
+    progress: bool = False,
+    store: str | os.PathLike[str] | None = None,
+    limit_states: bool = False,
+    **options: Any,
+) -> Prediction | Predictions:
+    """Predict tests from their properties, and compare with what was measured.
+
+    Each column is driven through the measured displacements; its lateral force is compared with the
+    net horizontal force of the test.
+
+    Parameters
+    ----------
+    specimens : Specimen, iterable of Specimen, or path
+        One test or column; several, as from `rbsdem.peer.read_specimens`; or a folder, of which all
+        tests with a history are predicted.
+    model : str or callable, optional
+        A model of `rbsdem.peer.column`, or a function that makes a `Column` from a `Specimen`; with
+        `jobs` above 1 the function must be importable.
+    bands : bool, optional
+        With the 80 % band of each prediction, the intervals of its numbers, and the tests that are
+        most like it with their errors. By default for one specimen by the layered model. A band
+        takes the time of `samples` predictions more.
+    samples : int, optional
+        Samples of a band, as for `rbsdem.section.model.LayeredColumn.spread`.
+    displacement : array_like, shape (m,), optional
+        Path of the top [m], for columns that nobody tested; with bands. Without it, that of each
+        test.
+    near : path, iterable of Specimen or Prediction, optional
+        Where the tests that are most like a column are looked for; by default among those that are
+        predicted, and for one specimen in the folder of its table. Those that are not predicted yet
+        are predicted by the same model.
+    jobs : int, optional
+        Processes to use. Above 1 a script needs ``if __name__ == "__main__":``.
+    progress : bool, optional
+        Show a bar on stderr, if it is a terminal.
+    store : path, optional
+        A folder that keeps the predictions, written every few seconds. Predictions that are there
+        already, of the same tests by the same model, options and version of rbsdem, are not done
+        again, so that a batch that was ended in any way goes on from where it stopped. The model
+        must be given by name. The folder stays; remove it to predict everything anew.
+    limit_states : bool, optional
+        With the drifts at which limit states are reached, see `rbsdem.Result.limit_states`.
+    **options
+        Passed to `rbsdem.peer.column`, such as ``n=4``.
+
+    Returns
+    -------
+    Prediction or Predictions
+        A row for each test, in their order; the row itself for one specimen. A test that goes wrong
+        has a row with the text of the error. After a keyboard interrupt the rows are those that
+        were finished. Bands of several tests are without their samples.
+
+    Raises
+    ------
+    InputError
+        If the model or its version is not known or has no bands, if `jobs` is below 1, or if there
+        is a store for a model that is a function. A single specimen that cannot be predicted
+        raises the error itself.
+    """
+    check_jobs(jobs)
+    name = name_of(model, options)
+    single = isinstance(specimens, Specimen)
+    tests = _tests(specimens)
+    if not callable(model):
+        check_options(options)
+    how = PredictionOptions(
+        bands=_bands(bands, single or displacement is not None, model, options),
+        samples=samples,
+        displacement=None if displacement is None else tuple(_path(displacement)),
+        limit_states=_arguments.switch(limit_states, "limit_states"),
+    )
+    if displacement is not None and not how.bands:
+        raise InputError(
+            "displacement goes with bands of the layered model; for a loop alone take "
+            "rbsdem.cyclic(rbsdem.peer.column(specimen), displacement=...)"
+        )
+    if jobs > 1:
+        check_sent("model", (model, options), repr(model))
+    if isinstance(specimens, Specimen):
+        row = _alone(specimens, model, how, options)
+        return _with_nearest([row], model, options, _near(near, specimens))[0] if how.bands else row
+    begin = time.perf_counter()
+    kept = None
+    if store is not None:
+        if callable(model):
+            raise InputError(
+                f"store: the model {name} is a function, which may have changed; give a model by "
+                "name, or no store"
+            )
+        kept = PredictionStore(_arguments.path(store, "store"), tests, name, how.given(options))
+    rows: dict[int, Prediction] = {}
+    work = partial(_light, model=model, how=how, options=options)
+    with ExitStack() as stack:
+        if kept is not None:
+            stack.enter_context(kept.open())
+            rows = kept.read()
+        resumed = len(rows)
+        interrupted = _carried_out(tests, work, name_of(model, options), jobs, progress, rows, kept)
+    found = [rows[number] for number in sorted(rows)]
+    if how.bands:
+        found = _with_nearest(found, model, options, found if near is None else _near(near))
+    return Predictions(
+        found,
+        model=name,
+        seconds=time.perf_counter() - begin,
+        interrupted=interrupted,
+        resumed=resumed,
+    )
+
+
+def _carried_out(
+    tests: Sequence[Specimen],
+    work: Callable[[Specimen], Prediction],
+    name: str,
+    jobs: int,
+    progress: bool,
+    rows: dict[int, Prediction],
+    kept: PredictionStore | None,
+) -> bool:
+    """Predict the tests that have no row yet; return whether the user interrupted it."""
+    left = [number for number in range(len(tests)) if number not in rows]
+    lost: list[int] = []
+    last = ""
+
+    def put(number: int, row: Prediction, *, keep: bool = True) -> None:
+        nonlocal last
+        rows[number], last = row, row.specimen.name
+        if kept is not None and keep:
+            kept.add(number, row)
+
+    def take(number: int, future: Future[Prediction]) -> None:
+        try:
+            put(number, future.result())
+        except BrokenProcessPool:
+            lost.append(number)
+
+    def take_alone(number: int, future: Future[Prediction]) -> None:
+        try:
+            put(number, future.result())
+        except BrokenProcessPool:
+            error = "the process died; run this test alone (jobs = 1) to see why"
+            # It may live the next time.
+            put(number, Prediction(tests[number], name, "failed", error=error), keep=False)
+
+    end = EndRequest()
+    with ExitStack() as stack:
+        show = stack.enter_context(progress_bar(progress, len(tests), "tests"))
+
+        def beat() -> None:
+            show(len(rows), last)
+            if kept is not None:
+                kept.write_if_due()
+
+        def run(numbers: list[int], jobs: int, ahead: int, take: Callable[..., None]) -> None:
+            with Processes(jobs, __name__) if jobs else Serial() as executor:
+                work_through(
+                    lambda number: executor.submit(work, tests[number]),
+                    numbers,
+                    take,
+                    ahead=ahead,
+                    end=end,
+                    beat=beat,
+                    stop=lambda: None,
+                )
+
+        try:
+            if jobs == 1 or len(left) <= 1:
+                run(left, 0, 1, take)
+            else:
+                # Where one of them dies, its neighbours are done again, each by a process alone.
+                stack.enter_context(end.listening(also_terminated=False))
+                run(left, jobs, 2 * jobs, take)
+                run(sorted(lost), 1, 1, take_alone)
+        except KeyboardInterrupt:
+            return True
+    return bool(end)
+
+
+def _light(
+    specimen: Specimen, model: Model, how: PredictionOptions, options: dict[str, Any]
+) -> Prediction:
+    """Predict a test without the samples of its band, which are many times all else."""
+    row = predict_one(specimen, model, how=how, **options)
+    if row.band is None:
+        return row
+    return replace(row, band=replace(row.band, samples=row.band.samples[:0]))
+
+
+def _alone(
+    specimen: Specimen, model: Model, how: PredictionOptions, options: dict[str, Any]
+) -> Prediction:
+    """Predict one specimen; what cannot be predicted is an error, not a row."""
+    row = predict_one(specimen, model, how=how, **options)
+    if row.status == "no history":
+        raise InputError(f"{row.error}; or give its path as displacement=")
+    if row.status == "failed":
+        raise InputError(f"{specimen.name}: {row.error}")
+    if row.remarks:
+        warnings.warn(f"{specimen.name}: {'; '.join(row.remarks)}", AccuracyWarning, stacklevel=3)
+    return row
+
+
+def _tests(
+    specimens: Specimen | Iterable[Specimen] | str | os.PathLike[str],
+) -> Sequence[Specimen]:
+    """Return the tests that are asked for."""
+    if isinstance(specimens, Specimen):
+        return [specimens]
+    if isinstance(specimens, str | os.PathLike):
+        return read_specimens(specimens).with_history()
+    return [checked_specimen(specimen) for specimen in specimens]
+
+
+def _bands(given: bool | None, single: bool, model: Model, options: dict[str, Any]) -> bool:
+    """Return whether there are bands; raise `InputError` if they are asked for and not known."""
+    if callable(model) or model != "layered":
+        if given:
+            raise InputError("bands = True: there are bands for model = 'layered' alone")
+        return False
+    if given is None and not single:
+        return False
+    own = options.get("model_parameters")
+    version = (own or parameters(options.get("version"))).version
+    if given is None:
+        return version in SCATTER
+    if given:
+        has_bands(version)
+    return given
+
+
+def _path(displacement: ArrayLike) -> list[float]:
+    path = _arguments.finite_vector(displacement, "displacement")
+    if path.size < 2 or not np.any(np.diff(path)):
+        raise InputError("displacement: the path does not change; give one that does")
+    return path.tolist()
+
+
+def _near(near: Near | None, specimen: Specimen | None = None) -> Sequence[Specimen | Prediction]:
+    """Return the tests among which neighbours are looked for."""
+    if near is None:
+        folder = specimen.folder if specimen is not None else None
+        if folder is None or not (folder / TABLE).is_file():
+            return []
+        near = folder
+    if isinstance(near, str | os.PathLike):
+        return read_specimens(near).with_history()
+    return list(near)
+
+
+def _with_nearest(
+    rows: Sequence[Prediction],
+    model: Model,
+    options: dict[str, Any],
+    tests: Sequence[Specimen | Prediction],
+) -> list[Prediction]:
+    """Return predictions with the tests that are most like them, these predicted too."""
+    known: dict[int, Prediction] = {}
+    found = []
+    for row in rows:
+        if row.status in {"failed", "no history"}:
+            found.append(row)
+            continue
+        near: list[Neighbour] = []
+        for one in nearest(row.specimen, tests, max(len(tests), 1)):
+            if one.prediction is None and id(one.specimen) not in known:
+                known[id(one.specimen)] = predict_one(one.specimen, model, **options)
+            own = one.prediction or known[id(one.specimen)]
+            if own.comparison is None:  # its history cannot be read
+                continue
+            near.append(replace(one, prediction=replace(own, band=None, nearest=())))
+            if len(near) == _NEIGHBOURS:
+                break
+        found.append(replace(row, nearest=tuple(near)))
+    return found
+
+
+def predict_one(
+    specimen: Specimen,
+    model: Model = DEFAULT,
+    *,
+    how: PredictionOptions | None = None,
+    **options: Any,
+) -> Prediction:
+    """Predict one test; an error is reported in the row that is returned.
+
+    Parameters
+    ----------
+    specimen : Specimen
+        The test.
+    model : str or callable, optional
+        As for `predict`.
+    how : PredictionOptions, optional
+        Band and path.
+    **options
+        As for `predict`.
+
+    Returns
+    -------
+    Prediction
+        Its status, its scores and its times.
+    """
+    how = how or PredictionOptions()
+    name = name_of(model, options)
+    checked_specimen(specimen)
+    if not callable(model):
+        check_options(options)
+    test = None
+    try:
+        if how.displacement is None:
+            test = specimen.test()
+            # A test without a usable history is found before the work.
+            compare((test.displacement, test.force), test)
+    except RbsdemError as error:
+        return Prediction(specimen, name, "no history", error=str(error))
+    path = np.array(how.displacement) if test is None else test.displacement
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        done = _analyse(specimen, path, model, how, options)
+    status, error, comparison = done.status, done.error, None
+    if test is not None:
+        comparison = compare(done.result, test)
+        if status == "completed" and comparison.path_fraction < 1:
+            status, error = "stopped", f"the forces end at row {comparison.rows}"
+    return Prediction(
+        specimen,
+        name,
+        status,
+        error=error,
+        note="; ".join(dict.fromkeys(str(warning.message) for warning in caught)),
+        seconds_model=done.seconds[0],
+        seconds_analysis=done.seconds[1],
+        comparison=comparison,
+        band=done.band,
+        remarks=done.remarks,
+        limit_states=done.limit_states,
+    )
+
+
+class _Analysed(NamedTuple):
+    """What came of an analysis; without one the result is NaN."""
+
+    status: str
+    error: str
+    result: Any
+    seconds: tuple[float, float]
+    band: Spread | None
+    remarks: tuple[str, ...]
+    limit_states: dict[str, float] | None
+
+
+def _analyse(
+    specimen: Specimen, path: Array, model: Model, how: PredictionOptions, options: dict[str, Any]
+) -> _Analysed:
+    nothing = path, np.full(path.size, np.nan)
+    begin = built = end = time.perf_counter()
+    band: Spread | None = None
+    remarks: tuple[str, ...] = ()
+    try:
+        if callable(model):
+            column = model(specimen, **options)
+        else:
+            column = column_of(specimen, model, **options)
+        built = end = time.perf_counter()
+        remarks = getattr(column, "outside", ())
+        result = cyclic(column, displacement=path)
+        status, error = "completed", ""
+    except SolveError as stop:
+        known = stop.result is not None
+        status, error, result = "stopped" if known else "failed", str(stop), stop.result or nothing
+    except RbsdemError as fault:
+        status, error, result = "failed", str(fault), nothing
+    except Exception as fault:
+        # A fault in one model is a row of the table and does not end the others.
+        status, error, result = "failed", f"{type(fault).__name__}: {fault}", nothing
+    states = None
+    if how.limit_states and isinstance(result, Result):
+        states = {state.name: abs(state.drift) for state in result.limit_states()}
+    end = time.perf_counter()
+    if how.bands and status != "failed":
+        band = column.spread(path, samples=how.samples)
+    built = max(built, begin)
+    return _Analysed(status, error, result, (built - begin, end - built), band, remarks, states)
+
+
+def name_of(model: Model, options: dict[str, Any]) -> str:
+    """Return the name of the model, with the version of its parameters."""
+    if callable(model):
+        return getattr(model, "__name__", repr(model))
+    return model_name(model, options.get("version"), options.get("model_parameters"))
