@@ -83,8 +83,8 @@ def peer(
     gallery.html (all loops, to sort and filter), loops.png; with --bands also bands.csv
     (intervals, nearest tests) and bands.png, with --loops bands/ (the band along the path of each
     test); with --check only check.csv (indicators and doubts).
-    An interrupted batch leaves its finished tests in the folder unfinished; the same command with the
-    same --out resumes there.
+    An interrupted batch leaves its finished tests in the folder unfinished; the same command with
+    the same --out resumes there.
     Exit codes: 0 every test was analysed to its end, 1 some were not, 2 the input is wrong,
     130 interrupted by the keyboard (finished tests are reported).
     """
