@@ -19,9 +19,8 @@ module rbs_solve_time_finite_joint
    implicit none
    private
 
-   public :: turned_body, turn_body, body_at, joint_type, joint_change, joint_at, joint_forces
-   public :: joint_tangent, joint_rates
-   public :: local
+   public :: turned_body, turn_body, body_at, joint_type, joint_change, joint_at
+   public :: joint_rates, add_joint_forces, joint_tangent, local
 
    !> Coordinates that meet at a joint: x, y, th of the body below, axial force of the joint, x, y, th of the
    !> body above.
@@ -38,12 +37,16 @@ module rbs_solve_time_finite_joint
       real(wp) :: tb_rate(2) = [0.0_wp, -0.5_wp], eb_rate(2) = [0.5_wp, 0.0_wp]
    end type turned_body
 
-   !> A joint over a step.
+   !> A joint over a step. That of a held top is looked at from above: its lower body is the top, and its
+   !> deformations and forces have the other sign.
    type :: joint_type
+      !> Numbers of its bodies, 0 for the ground, and its sign
+      integer :: lower = 0, upper = 0
+      real(wp) :: sign = 1.0_wp
       !> Distances of the joint from the centroids of the bodies below and above [m]
       real(wp) :: below = 0.0_wp, above = 0.0_wp
-      !> D in the mean and at the end [m]
-      real(wp) :: mean(2) = 0.0_wp, finish(2) = 0.0_wp
+      !> D at the start of the step, in the mean and at the end [m]
+      real(wp) :: start(2) = 0.0_wp, mean(2) = 0.0_wp, finish(2) = 0.0_wp
    end type joint_type
 
 contains
@@ -93,84 +96,87 @@ contains
       body%eb_rate = body%t1
    end subroutine body_at
 
-   !> Changes of slip and opening over a step.
+   !> Changes of slip, rotation and opening over a step.
    pure subroutine joint_change(below, above, moved_below, moved_above, joint, change)
       !> The bodies over the step, and how their centroids have moved and turned (x, y, th)
       type(turned_body), intent(in) :: below, above
       real(wp), intent(in) :: moved_below(3), moved_above(3)
-      !> On entry with D at the start of the step in `mean`; on return complete
+      !> On return with D
       type(joint_type), intent(inout) :: joint
-      !> Slip and opening [m]
-      real(wp), intent(out) :: change(2)
+      real(wp), intent(out) :: change(3)
       real(wp) :: way(2)
 
       way = (moved_above(:2) - moved_below(:2)) - joint%above*above%tb*moved_above(3) &
             - joint%below*below%tb*moved_below(3)
-      joint%finish = joint%mean + way
-      joint%mean = joint%mean + 0.5_wp*way
-      change(1) = sum(below%tm*way) - sum(below%eb*joint%mean)*moved_below(3)
-      change(2) = sum(below%em*way) + sum(below%tb*joint%mean)*moved_below(3)
+      joint%finish = joint%start + way
+      joint%mean = joint%start + 0.5_wp*way
+      change = joint%sign*[sum(below%tm*way) - sum(below%eb*joint%mean)*moved_below(3), &
+                           moved_above(3) - moved_below(3), &
+                           sum(below%em*way) + sum(below%tb*joint%mean)*moved_below(3)]
    end subroutine joint_change
 
-   !> D of a joint at one state.
-   pure subroutine joint_at(below, slip, opening, joint)
+   !> D at one state, from slip, rotation and opening.
+   pure function joint_at(below, joint, deformation) result(d)
       type(turned_body), intent(in) :: below
-      real(wp), intent(in) :: slip, opening
-      type(joint_type), intent(inout) :: joint
+      type(joint_type), intent(in) :: joint
+      real(wp), intent(in) :: deformation(3)
+      real(wp) :: d(2)
 
-      joint%finish = slip*below%t1 + opening*below%e1
-      joint%mean = joint%finish
-   end subroutine joint_at
+      d = joint%sign*(deformation(1)*below%t1 + deformation(3)*below%e1)
+   end function joint_at
 
-   !> Velocities of slip and opening at one state.
-   pure subroutine joint_rates(below, above, rate_below, rate_above, joint, rates)
+   !> Velocities of slip, rotation and opening at one state.
+   pure function joint_rates(below, above, rate_below, rate_above, joint) result(rates)
       type(turned_body), intent(in) :: below, above
       !> Velocities of the bodies (x, y, th)
       real(wp), intent(in) :: rate_below(3), rate_above(3)
       type(joint_type), intent(in) :: joint
-      real(wp), intent(out) :: rates(2)
+      real(wp) :: rates(3)
       real(wp) :: rate(2)
 
       rate = (rate_above(:2) - rate_below(:2)) - (joint%above*rate_above(3))*above%t1 &
              - (joint%below*rate_below(3))*below%t1
-      rates(1) = sum(below%t1*rate) - sum(below%e1*joint%finish)*rate_below(3)
-      rates(2) = sum(below%e1*rate) + sum(below%t1*joint%finish)*rate_below(3)
-   end subroutine joint_rates
+      rates = joint%sign*[sum(below%t1*rate) - sum(below%e1*joint%finish)*rate_below(3), &
+                          rate_above(3) - rate_below(3), &
+                          sum(below%e1*rate) + sum(below%t1*joint%finish)*rate_below(3)]
+   end function joint_rates
 
-   !> Add what a joint takes from the bodies: its forces in their coordinates.
-   pure subroutine joint_forces(below, above, joint, f, on_below, on_above)
+   !> Add what a joint gives to the bodies: its forces in their coordinates.
+   pure subroutine add_joint_forces(below, above, joint, force, on_below, on_above)
       type(turned_body), intent(in) :: below, above
       type(joint_type), intent(in) :: joint
       !> Shear, moment and axial force (tension positive) [N, N m, N]
-      real(wp), intent(in) :: f(3)
+      real(wp), intent(in) :: force(3)
       !> x, y, th
       real(wp), intent(inout) :: on_below(3), on_above(3)
-      real(wp) :: p(2)
+      real(wp) :: p(2), f(3)
 
+      f = joint%sign*force
       p = f(1)*below%tm + f(3)*below%em
-      on_above(:2) = on_above(:2) + p
-      on_above(3) = on_above(3) + f(2) - joint%above*sum(above%tb*p)
-      on_below(:2) = on_below(:2) - p
-      on_below(3) = on_below(3) - f(2) - joint%below*sum(below%tb*p) - f(1)*sum(below%eb*joint%mean) &
-                    + f(3)*sum(below%tb*joint%mean)
-   end subroutine joint_forces
+      on_above(:2) = on_above(:2) - p
+      on_above(3) = on_above(3) - f(2) + joint%above*sum(above%tb*p)
+      on_below(:2) = on_below(:2) + p
+      on_below(3) = on_below(3) + f(2) + joint%below*sum(below%tb*p) + f(1)*sum(below%eb*joint%mean) &
+                    - f(3)*sum(below%tb*joint%mean)
+   end subroutine add_joint_forces
 
-   !> Derivatives of `joint_forces` by the state at the end of the step: rows of the bodies, and in the row of
-   !> the axial force the derivative of the opening.
-   pure subroutine joint_tangent(below, above, joint, half, f, k, closed, tangent)
+   !> Minus the derivatives of `add_joint_forces` by the state at the end of the step: rows of the bodies, and
+   !> in the row of the axial force the derivative of the opening.
+   pure subroutine joint_tangent(below, above, joint, half, forces, k, closed, tangent)
       type(turned_body), intent(in) :: below, above
       type(joint_type), intent(in) :: joint
       !> Share of the end of the step in the means: 1/2, or 1 at one state
       real(wp), intent(in) :: half
       !> Forces, and their derivatives by the deformations at the end of the step
-      real(wp), intent(in) :: f(3), k(3)
+      real(wp), intent(in) :: forces(3), k(3)
       !> Whether the joint does not open: its axial force is an unknown
       logical, intent(in) :: closed
       real(wp), intent(out) :: tangent(local, local)
       real(wp) :: way(2, local), force(2, local), shear(local), tension(local), moment(local), opening(local)
-      real(wp) :: p(2), arms(2)
+      real(wp) :: p(2), arms(2), f(3)
       integer :: i
 
+      f = joint%sign*forces
       way = 0.0_wp
       way(1, 1) = -1.0_wp
       way(2, 2) = -1.0_wp
@@ -211,6 +217,8 @@ contains
       tangent(3, 3) = tangent(3, 3) - joint%below*sum(below%tb_rate*p) &
                       + sum((f(3)*below%tb_rate - f(1)*below%eb_rate)*joint%mean)
       tangent(7, 7) = tangent(7, 7) - joint%above*sum(above%tb_rate*p)
+      tangent(4, :) = joint%sign*tangent(4, :)
+      tangent(:, 4) = joint%sign*tangent(:, 4)
    end subroutine joint_tangent
 
 end module rbs_solve_time_finite_joint

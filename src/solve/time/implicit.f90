@@ -79,11 +79,11 @@ contains
       type(implicit_stepper), intent(in) :: method
       type(finite_stepper) :: stepper
 
-      stepper%step%average = method%average
-      stepper%step%alpha_m = method%step%alpha_m
-      stepper%step%alpha_f = method%step%alpha_f
-      stepper%step%beta = method%step%beta
-      stepper%step%gamma = method%step%gamma
+      stepper%average = method%average
+      stepper%alpha_m = method%step%alpha_m
+      stepper%alpha_f = method%step%alpha_f
+      stepper%beta = method%step%beta
+      stepper%gamma = method%step%gamma
    end function with_finite_rotations
 
    !> Once, before the first step.

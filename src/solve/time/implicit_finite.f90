@@ -1,11 +1,27 @@
-!> The implicit methods with exact rotations: Newton's method for the equation of the step
-!> (`rbs_solve_time_finite_step`), a number of operations a step in proportion to n.
+!> Implicit steps with exact rotations, in absolute coordinates of the centroids (x, y, th): the mass is
+!> constant and diagonal, joints meet their neighbours only, and the tangent is a band, so that a step takes a
+!> number of operations in proportion to n. Joints that do not open have their axial force as an unknown, and
+!> that they do not open as its equation.
+!>
+!> Average acceleration with mean-value derivatives balances the energy exactly for a step of any length,
+!>
+!>     M 2/h^2 (dx - h v_0) + sum B' f = Q,   v_1 = 2 dx/h - v_0,   f = (work of the spring)/(its change)
+!>
+!> and the generalised-alpha method has the forces of both ends of the step (see
+!> `rbs_solve_time_implicit_balance`), with the axial forces among them (M. Arnold, O. Bruels, Multibody
+!> Syst. Dyn. 18 (2007) 185-203).
 module rbs_solve_time_implicit_finite
    use rbs_base_kinds, only: wp
+   use rbs_base_linalg, only: solve_general_band
    use rbs_base_stream, only: stream_type
-   use rbs_solve_time_finite_step, only: finite_step
+   use rbs_structure_column_finite, only: finite_chain_type
+   use rbs_solve_time_finite_joint, only: turned_body, turn_body, body_at, joint_type, joint_change, &
+                                          joint_at, joint_rates, add_joint_forces, joint_tangent, local
+   use rbs_loading_loads, only: lateral, horizontal, vertical, axial
+   use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_newton, only: newton_stepper, move_springs
    use rbs_solve_time_state, only: state_type
+   use rbs_structure_spring_place, only: shear, flexure, tension => axial
    implicit none
    private
 
@@ -13,11 +29,44 @@ module rbs_solve_time_implicit_finite
 
    !> Largest rotation in one correction [rad].
    real(wp), parameter :: most_turn = 1.0_wp
+   !> Below this share of the forces a change of a spring's force is round-off.
+   real(wp), parameter :: no_change = 1.0e-6_wp
+   !> A change below this share of a deformation has few digits in it.
+   real(wp), parameter :: no_digits = 1.0e-8_wp
 
    type, extends(newton_stepper) :: finite_stepper
-      type(finite_step) :: step
-      !> Correction of the bodies (3, n) and of the axial forces (n); these at the start of the step (n)
-      real(wp), allocatable, private :: dx(:, :), dn(:), tension(:)
+      !> Whether the forces are those of the mean-value derivatives; else the parameters of generalised-alpha
+      logical :: average = .true.
+      real(wp) :: alpha_m = 0.0_wp, alpha_f = 0.0_wp, beta = 0.25_wp, gamma = 0.5_wp
+      class(finite_chain_type), pointer, private :: column => null()
+      !> Unknowns of a body in the band, and diagonals of the band beside the main one
+      integer, private :: per = 3, beside = 6
+      !> Mass of the bodies, and the residual (3, n)
+      real(wp), allocatable, private :: mass(:, :), r(:, :)
+      !> What the bodies, the ground (0) among them, have moved in the step; velocities, forces and
+      !> accelerations at its start and its end (3, 0:n)
+      real(wp), allocatable, private :: moved(:, :), v0(:, :), v1(:, :), g0(:, :), g1(:, :), a0(:, :), &
+                                        a1(:, :)
+      !> Rotations at the start of the step, and as the forces see them (n)
+      real(wp), allocatable, private :: from(:), rotation(:)
+      !> The bodies over the step, and as the forces see them (0:n)
+      type(turned_body), allocatable, private :: turned(:), seen(:)
+      type(joint_type), allocatable, private :: joint(:)
+      !> Deformations at the end of the step and their change, and velocities of the joints (unknowns)
+      real(wp), allocatable, private :: q1(:), change(:), w1(:)
+      !> Forces of the joints, their derivatives and damping (unknowns)
+      real(wp), allocatable, private :: f(:), k(:), viscous(:)
+      !> Of joints that do not open: how far they have opened, axial forces, tension positive, and these at
+      !> the start of the step (n)
+      real(wp), allocatable, private :: gap(:), reaction(:), reaction0(:)
+      !> Derivative of the load on the top body by its rotation
+      real(wp), private :: load_rate(3) = 0.0_wp
+      !> Largest force, moment of the present trial and of all steps so far
+      real(wp), private :: scale(2) = 0.0_wp, largest(2) = 0.0_wp
+      !> Correction of the bodies (3, n) and of the axial forces (n)
+      real(wp), allocatable, private :: dx(:, :), dn(:)
+      real(wp), allocatable, private :: band(:, :), right(:, :)
+      integer, allocatable, private :: pivot(:)
       !> Work of the springs up to the step (unknowns)
       real(wp), allocatable, private :: work(:)
    contains
@@ -32,16 +81,56 @@ module rbs_solve_time_implicit_finite
 
 contains
 
+   !> Velocities and accelerations of the bodies at the start of the first step.
    subroutine prepare(self, state)
       class(finite_stepper), intent(inout) :: self
       type(state_type), intent(in) :: state
+      type(motion_result) :: now
+      integer :: i, m, n
 
+      select type (column => state%motion%structure)
+      class is (finite_chain_type)
+         self%column => column
+      end select
       self%most_iterations = 30
       self%searches_uphill = .false.
-      call self%step%start(state)
-      associate (n => self%step%column%n)
-         allocate (self%dx(3, n), self%dn(n), self%tension(n), self%work(size(state%q)), source=0.0_wp)
+      n = self%column%n
+      m = self%column%unknowns
+      self%per = merge(3, 4, self%column%opens)
+      self%beside = merge(5, 6, self%column%opens)
+      allocate (self%mass(3, n), self%r(3, n), self%dx(3, n), source=0.0_wp)
+      allocate (self%moved(3, 0:n), self%v0(3, 0:n), self%g0(3, 0:n), self%a0(3, 0:n), source=0.0_wp)
+      allocate (self%v1(3, 0:n), self%g1(3, 0:n), self%a1(3, 0:n), source=0.0_wp)
+      allocate (self%from(n), self%rotation(n), self%gap(n), self%reaction(n), self%reaction0(n), &
+                self%dn(n), source=0.0_wp)
+      allocate (self%q1(m), self%change(m), self%w1(m), self%f(m), self%k(m), self%viscous(m), &
+                self%work(m), source=0.0_wp)
+      allocate (self%turned(0:n), self%seen(0:n), self%joint(n))
+      allocate (self%band(3*self%beside + 1, self%per*n), self%right(self%per*n, 1), source=0.0_wp)
+      allocate (self%pivot(self%per*n), source=0)
+      associate (column => self%column, joint => self%joint)
+         self%mass(1, :) = column%mass
+         self%mass(2, :) = column%mass
+         self%mass(3, :) = column%inertia
+         do i = 1, n
+            joint(i)%lower = i - 1
+            joint(i)%upper = i
+            joint(i)%above = column%lower(i)
+            if (i > 1) joint(i)%below = column%upper(i - 1)
+         end do
+         if (column%held) joint(n) = joint_type(lower=n, upper=n - 1, sign=-1.0_wp, &
+                                                above=-column%upper(n - 1), below=0.0_wp)
+         call now%create(column)
+         call state%motion%acceleration(state%springs, state%q, state%v, state%load, now)
+         call column%accelerate(state%q, state%v, now%f, state%load, now%work, now%a)
+         if (.not. column%opens) self%reaction = now%work(:n)
+         call column%body_velocities(state%q, state%v, self%v0(:, 1:))
       end associate
+      self%v1 = self%v0
+      call see_bodies(self, state%q)
+      call find_forces_at(self, state, state%q, state%v, state%load, 1.0_wp, self%g0)
+      self%a0(:, 1:) = self%g0(:, 1:)/self%mass
+      self%largest = self%scale
    end subroutine prepare
 
    !> In a step the work of the springs is counted from its start: as the small difference of large numbers
@@ -57,42 +146,387 @@ contains
 
       marked = .false.
       self%work(:) = state%springs%work
-      self%tension(:) = self%step%tension
+      self%reaction0(:) = self%reaction
       state%springs%work_before(:) = self%work
       state%springs%work = 0.0_wp
       call state%motion%press(state%springs, load)
-      call self%step%place(state)
+      call start_step(self, state%q)
       call self%try(state, h, load, 0.0_wp, marked, size_now)
       call self%iterate(state, h, load, size_now, converged, marked)
-      busiest = maxloc(abs(self%step%change)*self%step%column%initial_stiffness, dim=1)
+      busiest = maxloc(abs(self%change)*self%column%initial_stiffness, dim=1)
       if (converged) then
-         call state%springs%carry_to(self%step%q1)
+         call state%springs%carry_to(self%q1)
          state%springs%work = state%springs%work + self%work
-         call self%step%finish(state, h, load)
+         call finish_step(self, state, h, load)
       else
          if (marked) call state%springs%restore()
          state%springs%work = self%work
-         self%step%tension(:) = self%tension
+         self%reaction(:) = self%reaction0
       end if
       state%springs%work_before(:) = 0.0_wp
       if (marked) call state%springs%forget_mark()
    end subroutine take_step
 
+   !> Rotations of the bodies, and where the joints are.
+   subroutine start_step(self, q)
+      type(finite_stepper), intent(inout) :: self
+      real(wp), intent(in), contiguous :: q(:)
+
+      call see_bodies(self, q)
+      self%from(:) = self%rotation
+      self%joint%start(1) = self%joint%finish(1)
+      self%joint%start(2) = self%joint%finish(2)
+      self%moved = 0.0_wp
+   end subroutine start_step
+
+   !> The bodies and joints at one state.
+   subroutine see_bodies(self, q)
+      type(finite_stepper), intent(inout) :: self
+      real(wp), intent(in), contiguous :: q(:)
+      integer :: i
+
+      call self%column%rotations(q, self%rotation)
+      do i = 1, size(self%rotation)
+         call body_at(self%rotation(i), self%seen(i))
+      end do
+      do i = 1, size(self%joint)
+         associate (joint => self%joint(i))
+            joint%finish = joint_at(self%seen(joint%lower), joint, of_joint(self, q, i, 0.0_wp))
+            joint%mean = joint%finish
+         end associate
+      end do
+   end subroutine see_bodies
+
+   !> Values of a joint, of slip, rotation and opening, from those of all springs.
+   pure function of_joint(self, x, i, opening) result(y)
+      type(finite_stepper), intent(in) :: self
+      !> (springs)
+      real(wp), intent(in), contiguous :: x(:)
+      integer, intent(in) :: i
+      !> The value where joints do not open
+      real(wp), intent(in) :: opening
+      real(wp) :: y(3)
+
+      associate (at => self%column%at)
+         y = [x(at(shear, i)), x(at(flexure, i)), opening]
+         if (self%column%opens) y(tension) = x(at(tension, i))
+      end associate
+   end function of_joint
+
+   !> Put values of a joint among those of all springs.
+   pure subroutine put_joint(self, y, i, x)
+      type(finite_stepper), intent(in) :: self
+      real(wp), intent(in) :: y(3)
+      integer, intent(in) :: i
+      real(wp), intent(inout), contiguous :: x(:)
+
+      associate (at => self%column%at)
+         x(at(shear, i)) = y(shear)
+         x(at(flexure, i)) = y(flexure)
+         if (self%column%opens) x(at(tension, i)) = y(tension)
+      end associate
+   end subroutine put_joint
+
+   subroutine try(self, state, h, load, share, marked, size_now)
+      class(finite_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      real(wp), intent(in) :: h, load(4), share
+      logical, intent(inout) :: marked
+      real(wp), intent(out) :: size_now
+      logical :: inside
+
+      size_now = huge(1.0_wp)
+      self%moved(:, 1:) = self%moved(:, 1:) + share*self%dx
+      self%reaction = self%reaction + share*self%dn
+      call find_changes(self)
+      self%q1(:) = state%q + self%change
+      call move_springs(state, self%q1, marked, inside)
+      if (inside) call find_residual(self, state, h, load, marked, size_now)
+   end subroutine try
+
+   !> Changes of the deformations that follow from what the bodies have moved.
+   subroutine find_changes(self)
+      type(finite_stepper), intent(inout) :: self
+      real(wp) :: change(3)
+      integer :: i
+
+      do i = 1, size(self%from)
+         call turn_body(self%from(i), self%moved(3, i), self%turned(i))
+      end do
+      do i = 1, size(self%joint)
+         associate (a => self%joint(i)%lower, b => self%joint(i)%upper)
+            call joint_change(self%turned(a), self%turned(b), self%moved(:, a), self%moved(:, b), &
+                              self%joint(i), change)
+         end associate
+         call put_joint(self, change, i, self%change)
+         self%gap(i) = change(tension)
+      end do
+   end subroutine find_changes
+
+   !> Residual of the step, and its size relative to the forces. The springs are at the end of the step, or
+   !> still at its start if their lines reach so far.
+   subroutine find_residual(self, state, h, load, there, relative)
+      type(finite_stepper), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      real(wp), intent(in) :: h, load(4)
+      !> Whether the springs are at the end of the step; their work is then counted from its start
+      logical, intent(in) :: there
+      real(wp), intent(out) :: relative
+
+      if (self%average) then
+         self%v1 = (2.0_wp/h)*self%moved - self%v0
+         self%a1 = (2.0_wp/h**2)*(self%moved - h*self%v0)
+         self%seen = self%turned
+         call find_mean_forces(self, state, h, there)
+         call find_balance(self, 0.5_wp*(state%load + load), self%g1)
+         self%r = self%g1(:, 1:) - self%mass*(self%a1(:, 1:) + (self%column%mass_damping/h)*self%moved(:, 1:))
+      else
+         self%a1 = (self%moved - h*self%v0 - (h**2*(0.5_wp - self%beta))*self%a0)/(self%beta*h**2)
+         self%v1 = self%v0 + h*((1.0_wp - self%gamma)*self%a0 + self%gamma*self%a1)
+         call see_end(self)
+         call find_forces_at(self, state, self%q1, self%w1, load, h, self%g1)
+         self%r = (1.0_wp - self%alpha_f)*self%g1(:, 1:) + self%alpha_f*self%g0(:, 1:) &
+                  - self%mass*((1.0_wp - self%alpha_m)*self%a1(:, 1:) + self%alpha_m*self%a0(:, 1:))
+      end if
+      self%scale(1) = max(self%scale(1), maxval(abs(self%mass(:2, :)*self%a1(:2, 1:))))
+      self%scale(2) = max(self%scale(2), maxval(abs(self%mass(3, :)*self%a1(3, 1:))))
+      relative = max(maxval(abs(self%r(:2, :)))/max(self%scale(1), self%largest(1), tiny(1.0_wp)), &
+                     maxval(abs(self%r(3, :)))/max(self%scale(2), self%largest(2), tiny(1.0_wp)))
+      if (.not. self%column%opens) relative = max(relative, maxval(abs(self%gap))/maxval(self%column%length))
+   end subroutine find_residual
+
+   !> Bodies and joints at the end of the step, and the velocities of the joints.
+   subroutine see_end(self)
+      type(finite_stepper), intent(inout) :: self
+      integer :: i
+
+      call see_bodies(self, self%q1)
+      do i = 1, size(self%joint)
+         associate (a => self%joint(i)%lower, b => self%joint(i)%upper)
+            call put_joint(self, joint_rates(self%seen(a), self%seen(b), self%v1(:, a), self%v1(:, b), &
+                                             self%joint(i)), i, self%w1)
+         end associate
+      end do
+   end subroutine see_end
+
+   !> Forces of the joints that do exactly the work of springs and damping, and their derivatives.
+   subroutine find_mean_forces(self, state, h, there)
+      type(finite_stepper), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      real(wp), intent(in) :: h
+      logical, intent(in) :: there
+      real(wp) :: finish, mean, moved
+      integer :: i
+
+      call find_damping(self, state)
+      associate (springs => state%springs)
+         do i = 1, size(self%f)
+            finish = springs%f0(i) + springs%k(i)*(self%q1(i) - springs%d0(i))
+            mean = springs%f0(i) + springs%k(i)*(0.5_wp*(self%q1(i) + state%q(i)) - springs%d0(i))
+            self%k(i) = 0.5_wp*springs%k(i)
+            ! A change that its deformation has no digits for is the one that the spring has made.
+            moved = self%change(i)
+            if (abs(moved) < no_digits*abs(state%q(i))) moved = self%q1(i) - state%q(i)
+            if (there .and. abs(moved) > 0.0_wp) then
+               mean = springs%work(i)/moved
+               if (abs(finish - mean) > no_change*(abs(finish) + abs(mean))) then
+                  self%k(i) = (finish - mean)/moved
+               end if
+            end if
+            self%f(i) = mean + self%viscous(i)*self%change(i)/h
+            self%k(i) = self%k(i) + self%viscous(i)/h
+         end do
+      end associate
+      if (allocated(state%motion%modal)) self%f = self%f + matmul(state%motion%modal, self%change)/h
+   end subroutine find_mean_forces
+
+   !> Damping of the joints on their present lines.
+   subroutine find_damping(self, state)
+      type(finite_stepper), intent(inout) :: self
+      type(state_type), intent(in) :: state
+
+      if (self%column%tangent_damping) then
+         self%viscous(:) = self%column%stiffness_damping*max(state%springs%k, 0.0_wp)
+      else if (state%motion%damped) then
+         self%viscous(:) = state%motion%joint_damping
+      end if
+   end subroutine find_damping
+
+   !> Forces on the bodies at one state.
+   subroutine find_forces_at(self, state, q, v, load, h, g)
+      type(finite_stepper), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      real(wp), intent(in), contiguous :: q(:), v(:)
+      !> Loads, and length of the step
+      real(wp), intent(in) :: load(4), h
+      real(wp), intent(out) :: g(:, 0:)
+
+      call find_damping(self, state)
+      associate (springs => state%springs)
+         self%f = springs%f0 + springs%k*(q - springs%d0) + self%viscous*v
+         self%k = springs%k + self%viscous*(self%gamma/(self%beta*h))
+      end associate
+      if (allocated(state%motion%modal)) self%f = self%f + matmul(state%motion%modal, v)
+      call find_balance(self, load, g)
+      if (self%column%mass_damping > 0.0_wp) then
+         g(:, 1:) = g(:, 1:) - self%column%mass_damping*self%mass*self%v1(:, 1:)
+      end if
+   end subroutine find_forces_at
+
+   !> Forces of loads and joints on the bodies, as these are seen.
+   subroutine find_balance(self, load, g)
+      type(finite_stepper), intent(inout) :: self
+      real(wp), intent(in) :: load(4)
+      real(wp), intent(out) :: g(:, 0:)
+      real(wp) :: f(3), reach(2)
+      integer :: i, n
+
+      n = self%column%n
+      g = 0.0_wp
+      reach = 0.0_wp
+      do i = 1, n
+         f = of_joint(self, self%f, i, self%reaction(i))
+         reach = max(reach, [max(abs(f(shear)), abs(f(tension))), abs(f(flexure))])
+         associate (a => self%joint(i)%lower, b => self%joint(i)%upper)
+            call add_joint_forces(self%seen(a), self%seen(b), self%joint(i), f, g(:, a), g(:, b))
+         end associate
+      end do
+      g(2, 1:) = g(2, 1:) - self%column%gravity*self%column%mass
+      call add_loads(self, self%seen(n), load, .true., g, self%load_rate)
+      if (self%column%held) then
+         ! What holds the top takes its moment.
+         g(3, n) = 0.0_wp
+         self%load_rate = 0.0_wp
+      end if
+      self%scale = max(reach, [1.0_wp, self%column%upper(n)]*(abs(load(lateral)) &
+                                                              + abs(self%column%axial_load)))
+   end subroutine find_balance
+
+   !> Add the inertia of the moving ground, and the loads at the top. The weight of a mass lumped there is in
+   !> the field of gravity, but belongs to the axial load: it is taken away again.
+   pure subroutine add_loads(self, top, load, constant, g, rate)
+      type(finite_stepper), intent(in) :: self
+      !> The top body
+      type(turned_body), intent(in) :: top
+      real(wp), intent(in) :: load(4)
+      !> Whether loads that have a potential count too
+      logical, intent(in) :: constant
+      real(wp), intent(inout) :: g(:, 0:)
+      !> Derivative of the load on the top body by its rotation
+      real(wp), intent(out) :: rate(3)
+      real(wp) :: force(2), turning(2), press
+
+      associate (column => self%column, n => self%column%n)
+         g(1, 1:) = g(1, 1:) - load(horizontal)*column%mass
+         g(2, 1:) = g(2, 1:) - load(vertical)*column%mass
+         press = load(axial)
+         if (constant .or. column%axial_follows) press = press + column%axial_load
+         force = 0.0_wp
+         turning = 0.0_wp
+         if (constant) force(2) = -(column%weight(n) - column%gravity*column%mass(n))
+         if (column%axial_follows) then
+            force = force - press*top%eb
+            turning = turning - press*top%eb_rate
+         else
+            force(2) = force(2) - press
+         end if
+         if (column%force_follows) then
+            force = force + load(lateral)*top%tb
+            turning = turning + load(lateral)*top%tb_rate
+         else
+            force(1) = force(1) + load(lateral)
+         end if
+         g(:, n) = g(:, n) + [force, column%upper(n)*sum(top%tb*force)]
+         rate = [turning, column%upper(n)*(sum(top%tb_rate*force) + sum(top%tb*turning))]
+      end associate
+   end subroutine add_loads
+
+   !> The correction that takes the residual away as far as the step is linear.
    subroutine correct(self, state, h, found)
       class(finite_stepper), intent(inout) :: self
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: h
       logical, intent(out) :: found
+      real(wp) :: damping, of_mass, share, per_force
+      integer :: i, j, l, n
 
-      found = .not. state%springs%stuck
-      if (found) call self%step%find_correction(h, self%dx, self%dn, found)
+      n = self%column%n
+      damping = merge(self%column%mass_damping, 0.0_wp, state%motion%damped)
+      share = 1.0_wp
+      if (self%average) then
+         of_mass = 2.0_wp/h**2 + damping/h
+      else
+         share = 1.0_wp - self%alpha_f
+         of_mass = (1.0_wp - self%alpha_m)/(self%beta*h**2) + share*damping*self%gamma/(self%beta*h)
+      end if
+      ! The axial forces in units that make both kinds of equations alike.
+      per_force = of_mass*maxval(self%column%mass)
+      self%band = 0.0_wp
+      do i = 1, n
+         call add_joint_tangent(self, i, share, per_force)
+      end do
+      associate (main => 2*self%beside + 1, last => self%per*n)
+         do i = 1, n
+            do j = 1, 3
+               l = self%per*i - 3 + j
+               self%band(main, l) = self%band(main, l) + of_mass*self%mass(j, i)
+               self%right(l, 1) = self%r(j, i)
+            end do
+            if (.not. self%column%opens) self%right(l - 3, 1) = -per_force*self%gap(i)
+         end do
+         do j = 1, 3
+            l = last - 3 + j
+            self%band(main + l - last, last) = self%band(main + l - last, last) - share*self%load_rate(j)
+         end do
+      end associate
+      call solve_general_band(self%band, self%beside, self%beside, self%right, found, self%pivot)
+      do i = 1, n
+         self%dx(:, i) = self%right(self%per*i - 2:self%per*i, 1)
+         if (.not. self%column%opens) self%dn(i) = per_force*self%right(self%per*i - 3, 1)
+      end do
       if (found) found = maxval(abs(self%dx(3, :))) < most_turn
    end subroutine correct
+
+   !> Add what a joint gives to the tangent.
+   subroutine add_joint_tangent(self, i, share, per_force)
+      type(finite_stepper), intent(inout) :: self
+      integer, intent(in) :: i
+      !> Of the forces at the end of the step in the residual; unit of the axial forces
+      real(wp), intent(in) :: share, per_force
+      real(wp) :: tangent(local, local)
+      integer :: at(local), j, l
+
+      associate (joint => self%joint(i), main => 2*self%beside + 1, per => self%per)
+         call joint_tangent(self%seen(joint%lower), self%seen(joint%upper), joint, &
+                            merge(0.5_wp, 1.0_wp, self%average), &
+                            of_joint(self, self%f, i, self%reaction(i)), &
+                            of_joint(self, self%k, i, 0.0_wp), .not. self%column%opens, tangent)
+         tangent = share*tangent
+         tangent(4, :) = tangent(4, :)*(per_force/share)
+         tangent(:, 4) = tangent(:, 4)*per_force
+         ! Places of the local coordinates; those of the ground, a held rotation, and axial forces of springs
+         ! have none.
+         at = 0
+         if (joint%lower > 0) at(1:3) = per*joint%lower + [-2, -1, 0]
+         if (.not. self%column%opens) at(4) = per*i - 3
+         if (joint%sign < 0.0_wp) at(3) = 0
+         if (joint%upper > 0) at(5:7) = per*joint%upper + [-2, -1, 0]
+         do j = 1, local
+            if (at(j) == 0) cycle
+            do l = 1, local
+               if (at(l) == 0) cycle
+               associate (place => self%band(main + at(l) - at(j), at(j)))
+                  place = place + tangent(l, j)
+               end associate
+            end do
+         end do
+      end associate
+   end subroutine add_joint_tangent
 
    real(wp) function work_of_residual(self) result(work)
       class(finite_stepper), intent(in) :: self
 
-      work = sum(self%step%r*self%dx)
+      work = sum(self%r*self%dx)
    end function work_of_residual
 
    !> Where the bodies turn, round-off is not told from the rest: the acceptable residual decides.
@@ -104,28 +538,46 @@ contains
       is_round_off = self%acceptable < 0.0_wp .and. state%lost .and. h < 0.0_wp
    end function is_round_off
 
-   subroutine try(self, state, h, load, share, marked, size_now)
-      class(finite_stepper), intent(inout) :: self
+   !> The end of the step becomes the state, the springs excepted.
+   subroutine finish_step(self, state, h, load)
+      type(finite_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4), share
-      logical, intent(inout) :: marked
-      real(wp), intent(out) :: size_now
-      logical :: inside
+      real(wp), intent(in) :: h, load(4)
 
-      size_now = huge(1.0_wp)
-      self%step%moved = self%step%moved + share*self%dx
-      self%step%tension = self%step%tension + share*self%dn
-      call self%step%go(state)
-      call move_springs(state, self%step%q1, marked, inside)
-      if (inside) call self%step%find_residual(state, h, load, marked, size_now)
-   end subroutine try
+      self%g0 = 0.0_wp
+      call add_loads(self, self%turned(self%column%n), 0.5_wp*(state%load + load), .false., self%g0, &
+                     self%load_rate)
+      state%of_loads = state%of_loads + sum(self%g0*self%moved)
+      if (state%motion%damped) then
+         state%of_damping = state%of_damping + sum(self%viscous*self%change**2)/h &
+                            + self%column%mass_damping*sum(self%mass*self%moved(:, 1:)**2)/h
+         if (allocated(state%motion%modal)) then
+            state%of_damping = state%of_damping + sum(self%change*matmul(state%motion%modal, self%change))/h
+         end if
+      end if
+      call see_end(self)
+      state%q(:) = self%q1
+      state%v(:) = self%w1
+      state%along_joints = 0.5_wp*sum(self%mass*self%v1(:, 1:)**2) &
+                           - self%column%kinetic_energy(state%q, state%v)
+      state%time = state%time + h
+      state%load = load
+      self%largest = max(self%largest, self%scale)
+      self%v0 = self%v1
+      self%a0 = self%a1
+      self%g0 = self%g1
+   end subroutine finish_step
 
    !> Save or restore what the bodies do at the start of a step.
    subroutine serialize(self, stream)
       class(finite_stepper), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
 
-      call self%step%serialize(stream)
+      call stream%item(self%v0)
+      call stream%item(self%a0)
+      call stream%item(self%g0)
+      call stream%item(self%reaction)
+      call stream%item(self%largest)
    end subroutine serialize
 
 end module rbs_solve_time_implicit_finite

@@ -37,6 +37,7 @@ module rbs_structure_column_finite
    contains
       procedure :: accelerations
       procedure :: accelerate
+      procedure :: body_velocities
       procedure :: speeds
       procedure :: power_of_loads
       procedure :: kinetic_energy
@@ -49,10 +50,8 @@ module rbs_structure_column_finite
 
    !> A body on the way up the chain.
    type :: moving_body
-      !> Absolute rotation [rad], its sine and cosine, and its rate [rad/s]
-      real(wp) :: rotation = 0.0_wp, s = 0.0_wp, c = 1.0_wp, spin = 0.0_wp
-      !> Places of bottom, centroid and top [m]
-      real(wp) :: bottom_place(2) = 0.0_wp, centroid_place(2) = 0.0_wp, top_place(2) = 0.0_wp
+      !> Absolute rotation [rad], its sine and cosine and those of the body below, and its rate [rad/s]
+      real(wp) :: rotation = 0.0_wp, s = 0.0_wp, c = 1.0_wp, s_below = 0.0_wp, c_below = 1.0_wp, spin = 0.0_wp
       !> Velocities of centroid and top [m/s]
       real(wp) :: centroid(2) = 0.0_wp, top(2) = 0.0_wp
    end type moving_body
@@ -338,14 +337,15 @@ contains
       end associate
    end subroutine add_last_reaction
 
-   !> Go up by one body: places and velocities of body i from those of body i - 1.
+   !> Go up by one body: rotation and velocities of body i from those of body i - 1.
    pure subroutine climb(column, q, v, i, body)
       class(finite_chain_type), intent(in) :: column
       real(wp), intent(in) :: q(column%n, column%kinds), v(column%n, column%kinds)
       integer, intent(in) :: i
       type(moving_body), intent(inout) :: body
-      real(wp) :: along_t, along_e, bottom(2), normal(2)
+      real(wp) :: along_t, along_e, bottom(2)
 
+      call turn(column, q, i, body)
       ! The joint of a held top moves along its directions, which are fixed.
       if (column%held .and. i == column%n) body%spin = 0.0_wp
       along_t = v(i, shear)
@@ -354,9 +354,8 @@ contains
          along_t = along_t + q(i, axial)*body%spin
          along_e = along_e + v(i, axial)
       end if
-      call place_body(column, q, i, body, normal)
-      bottom(1) = body%top(1) + along_t*normal(1) - along_e*normal(2)
-      bottom(2) = body%top(2) + along_t*normal(2) + along_e*normal(1)
+      bottom(1) = body%top(1) + along_t*body%c_below + along_e*body%s_below
+      bottom(2) = body%top(2) - along_t*body%s_below + along_e*body%c_below
       if (.not. (column%held .and. i == column%n)) body%spin = body%spin + v(i, flexure)
       along_t = column%lower(i)*body%spin
       body%centroid(1) = bottom(1) + along_t*body%c
@@ -366,29 +365,40 @@ contains
       body%top(2) = bottom(2) - along_t*body%s
    end subroutine climb
 
-   !> Rotation and places of body i from those of body i - 1.
-   pure subroutine place_body(column, q, i, body, normal)
+   !> Rotation of body i from that of body i - 1.
+   pure subroutine turn(column, q, i, body)
       class(finite_chain_type), intent(in) :: column
       real(wp), intent(in) :: q(column%n, column%kinds)
       integer, intent(in) :: i
       type(moving_body), intent(inout) :: body
-      !> Direction of the slip of its joint
-      real(wp), intent(out) :: normal(2)
 
       if (column%held .and. i == column%n) then
-         body%rotation = 0.0_wp
          body%s = 0.0_wp
          body%c = 1.0_wp
+      else
+         body%rotation = body%rotation + q(i, flexure)
       end if
-      normal = [body%c, -body%s]
-      body%bottom_place = body%top_place + q(i, shear)*normal
-      if (column%opens) body%bottom_place = body%bottom_place + q(i, axial)*[body%s, body%c]
-      if (.not. (column%held .and. i == column%n)) body%rotation = body%rotation + q(i, flexure)
+      body%s_below = body%s
+      body%c_below = body%c
+      if (column%held .and. i == column%n) return
       body%s = sin(body%rotation)
       body%c = cos(body%rotation)
-      body%centroid_place = body%bottom_place + column%lower(i)*[body%s, body%c]
-      body%top_place = body%bottom_place + column%length(i)*[body%s, body%c]
-   end subroutine place_body
+   end subroutine turn
+
+   !> Place of body i, whose rotation is known, from that of body i - 1: its bottom, and its top.
+   pure subroutine place(column, q, i, body, bottom, top)
+      class(finite_chain_type), intent(in) :: column
+      real(wp), intent(in) :: q(column%n, column%kinds)
+      integer, intent(in) :: i
+      type(moving_body), intent(in) :: body
+      real(wp), intent(out) :: bottom(2)
+      !> On entry that of body i - 1
+      real(wp), intent(inout) :: top(2)
+
+      bottom = top + q(i, shear)*[body%c_below, -body%s_below]
+      if (column%opens) bottom = bottom + q(i, axial)*[body%s_below, body%c_below]
+      top = bottom + column%length(i)*[body%s, body%c]
+   end subroutine place
 
    !> Kinetic energy relative to the ground [J].
    pure real(wp) function kinetic_energy(self, d, v) result(energy)
@@ -397,6 +407,11 @@ contains
       type(moving_body) :: body
       integer :: i
 
+      if (size(d) == 2) then
+         energy = 0.5_wp*(self%mass(1)*v(1)**2 + self%inertia_above(1)*v(2)**2) &
+                  + self%moment_above(1)*cos(d(2))*v(1)*v(2)
+         return
+      end if
       energy = 0.0_wp
       do i = 1, self%n
          call climb(self, d, v, i, body)
@@ -439,6 +454,20 @@ contains
       if (.not. self%axial_follows) energy = energy + self%axial_load*rise
    end function potential_energy
 
+   !> Velocities of the bodies: x and y of the centroids, rotation (3, n).
+   pure subroutine body_velocities(self, d, v, velocity)
+      class(finite_chain_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:)
+      real(wp), intent(out) :: velocity(:, :)
+      type(moving_body) :: body
+      integer :: i
+
+      do i = 1, self%n
+         call climb(self, d, v, i, body)
+         velocity(:, i) = [body%centroid, body%spin]
+      end do
+   end subroutine body_velocities
+
    pure subroutine speeds(self, d, v, speed)
       class(finite_chain_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:), v(:)
@@ -462,6 +491,14 @@ contains
       type(moving_body) :: body
       integer :: i
 
+      if (size(d) == 2 .and. .not. (self%axial_follows .or. self%force_follows)) then
+         associate (m => self%mass(1), moment => self%moment_above(1), l => self%length(1))
+            power = load(lateral)*v(1) - load(horizontal)*m*v(1) &
+                    + ((l*load(lateral) - moment*load(horizontal))*cos(d(2)) &
+                       + (l*load(top_axial) + moment*load(vertical))*sin(d(2)))*v(2)
+         end associate
+         return
+      end if
       power = 0.0_wp
       do i = 1, self%n
          call climb(self, d, v, i, body)
@@ -484,14 +521,16 @@ contains
       class(finite_chain_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:), v(:)
       type(moving_body) :: body
-      real(wp) :: foot(2), lever(2)
+      real(wp) :: foot(2), bottom(2), top(2), lever(2)
       integer :: i
 
       momentum = 0.0_wp
+      top = 0.0_wp
       do i = 1, self%n
          call climb(self, d, v, i, body)
-         if (i == 1) foot = body%bottom_place
-         lever = body%centroid_place - foot
+         call place(self, d, i, body, bottom, top)
+         if (i == 1) foot = bottom
+         lever = bottom + self%lower(i)*[body%s, body%c] - foot
          momentum = momentum + self%mass(i)*(body%centroid(1)*lever(2) - body%centroid(2)*lever(1)) &
                     + self%inertia(i)*body%spin
       end do
@@ -500,36 +539,39 @@ contains
    pure real(wp) function top_displacement(self, d) result(x)
       class(finite_chain_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:)
-      type(moving_body) :: body
+      real(wp) :: top(2)
 
       if (size(d) == 2) then
          x = d(1) + self%length(1)*sin(d(2))
       else
-         body = top_body(self, d)
-         x = body%top_place(1)
+         top = top_place(self, d)
+         x = top(1)
       end if
    end function top_displacement
 
    pure real(wp) function top_height(self, d) result(y)
       class(finite_chain_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:)
-      type(moving_body) :: body
+      real(wp) :: top(2)
 
-      body = top_body(self, d)
-      y = body%top_place(2)
+      top = top_place(self, d)
+      y = top(2)
    end function top_height
 
-   pure function top_body(self, d) result(body)
+   pure function top_place(self, d) result(top)
       class(finite_chain_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:)
+      real(wp) :: top(2)
       type(moving_body) :: body
-      real(wp) :: normal(2)
+      real(wp) :: bottom(2)
       integer :: i
 
+      top = 0.0_wp
       do i = 1, self%n
-         call place_body(self, d, i, body, normal)
+         call turn(self, d, i, body)
+         call place(self, d, i, body, bottom, top)
       end do
-   end function top_body
+   end function top_place
 
    pure real(wp) function top_acceleration(self, d, v, a) result(acceleration)
       class(finite_chain_type), intent(in) :: self
