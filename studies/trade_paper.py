@@ -23,7 +23,6 @@ from rbsdem import plot
 from rbsdem.methods.measure import trade
 from rbsdem.methods.outcome import Trade
 from rbsdem.methods.rows import Row, seconds_text
-from rbsdem.output.methods_figure import draw
 from rbsdem.peer import shipped_reversals
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -208,7 +207,7 @@ def picture(found: dict[str, Trade], path: Path) -> None:
         figure = Figure(figsize=(6.9, 6.2), layout="constrained")
         panels = figure.subplots(2, 2, sharex=True, sharey=True).ravel()
         for letter, ax, (key, one) in zip("abcd", panels, found.items(), strict=True):
-            draw(one, ax)
+            plot.methods(one, ax=ax)
             ax.get_legend().remove()
             ax.set_title(f"({letter}) {name(key)}", loc="left")
             ax.label_outer()

@@ -32,6 +32,6 @@ for effect in found.physics.effects:
     print(f"{changes}  {'matters' if effect.matters else '       '}  {effect.part}")
 
 if "--no-plot" not in sys.argv:
-    axes = found.plot()
+    axes = rbsdem.plot.methods(found)
     axes.figure.savefig("trade.png", dpi=150)
     print("wrote trade.png")

@@ -50,7 +50,7 @@ moment = pier.moment_curvature(2.5e6, curvature, confined=True)
 print("pier, kN m at 0, 10, ... 50 mrad/m:", *(f"{value / 1e3:.0f}" for value in moment))
 
 if "--no-plot" not in sys.argv:
-    rbsdem.plot.save(section.plot().figure, "section.png")
-    rbsdem.plot.save(springs.plot(), "springs.png")
-    rbsdem.plot.save(confined.plot().figure, "confined.png")
+    rbsdem.plot.save(rbsdem.plot.section(section).figure, "section.png")
+    rbsdem.plot.save(rbsdem.plot.section_springs(springs), "springs.png")
+    rbsdem.plot.save(rbsdem.plot.moment_curvature(confined).figure, "confined.png")
     print("wrote section.png, springs.png, confined.png")

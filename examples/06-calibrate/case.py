@@ -33,6 +33,6 @@ spring = fit.column.flexure
 print(f"\nyield moment {spring.k_c * spring.d_c + spring.k_y * (spring.d_y - spring.d_c):.4g} N m")
 
 if "--no-plot" not in sys.argv:
-    axes = fit.plot()
+    axes = rbsdem.plot.calibration(fit)
     rbsdem.plot.save(axes[0].figure, "calibrate.png")
     print("wrote calibrate.png")

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import rbsdem
-from rbsdem import fragility, motions
+from rbsdem import fragility, motions, plot
 
 case = rbsdem.read_case(Path(__file__).with_name("case.nml"))
 records = motions.synthetic(10)
@@ -28,6 +28,6 @@ for name, curve in curves.items():
     print(f"{name:10s} theta {curve.theta:5.2f} m/s2  beta {curve.beta:.2f}  {rate:.1e} a year")
 
 if "--no-plot" not in sys.argv:
-    found.plot().figure.savefig("ida.png", dpi=150)
-    fragility.draw_fragilities(curves).figure.savefig("fragility.png", dpi=150)
+    plot.ida(found).figure.savefig("ida.png", dpi=150)
+    plot.fragilities(curves).figure.savefig("fragility.png", dpi=150)
     print("wrote ida.png, fragility.png")

@@ -72,8 +72,8 @@ print(f"stripes: {curve.data.failures.tolist()} of {curve.data.number.tolist()} 
 print(f"theta {curve.theta:.1f} m/s2, beta {curve.beta:.2f}")
 
 if "--no-plot" not in sys.argv:
-    ax = alone.fragility().plot(label="median column, records only")
-    curve.plot(ax, color="#c0392b", label="uncertain columns")
+    ax = plot.fragility(alone.fragility(), label="median column, records only")
+    plot.fragility(curve, ax=ax, color="#c0392b", label="uncertain columns")
     with plot.style():
         ax.legend(loc="lower right")
         ax.set_title("")

@@ -8,7 +8,6 @@ from rbsdem.many.ida import IDA
 from rbsdem.many.measures import LIMIT_STATES, MEASURES, STATUSES
 from rbsdem.many.stripes import Stripes
 from rbsdem.many.uncertain import Sample, Uncertain, VarianceSplit, lognormal, variance_split
-from rbsdem.output.ensemble_figure import draw_fragilities
 
 __all__ = [
     "IDA",
@@ -26,7 +25,6 @@ __all__ = [
     "Stripes",
     "Uncertain",
     "VarianceSplit",
-    "draw_fragilities",
     "fit_fragility",
     "lognormal",
     "variance_split",

@@ -1,13 +1,33 @@
-"""Figures for publication, in mm, kN and s.
+"""Figures for publication, in mm, kN and s, and tables for the terminal in the same units.
 
-matplotlib is imported when a figure is asked for.
-Functions take SI and draw millimetres and kilonewtons. Without axes they make a figure in the house
-style, the dictionary `RC`; axes that are given keep the style of the caller.
+Each record has a function of the name of its kind: `plot.envelope(result.envelope())`. Functions
+take SI and draw millimetres and kilonewtons. Without axes they make a figure in the house style,
+the dictionary `RC`; axes that are given keep the style of the caller.
 """
 
-from rbsdem.output.loops import Panel, four_panels, loop, loops_over_test
+from rbsdem.output.loops import (
+    Panel,
+    calibration,
+    code_comparison,
+    comparison,
+    envelope,
+    four_panels,
+    limit_states,
+    loop,
+    loops_over_test,
+)
+from rbsdem.output.many import cloud, fragilities, fragility, ida, motion, spectrum, stripes
+from rbsdem.output.measured import band_sheet, contact_sheet, prediction, spread
+from rbsdem.output.methods import methods
 from rbsdem.output.response import energy, history, profile
-from rbsdem.output.state_figure import section_state
+from rbsdem.output.section import (
+    interaction,
+    moment_curvature,
+    section,
+    section_springs,
+    section_state,
+    shear_diagram,
+)
 from rbsdem.output.style import (
     MODEL_LINE,
     RC,
@@ -21,6 +41,7 @@ from rbsdem.output.style import (
     style,
     style_of,
 )
+from rbsdem.output.tables import table
 
 __all__ = [
     "MODEL_LINE",
@@ -30,16 +51,39 @@ __all__ = [
     "ZERO_LINE",
     "Panel",
     "axes_or_new",
+    "band_sheet",
+    "calibration",
+    "cloud",
+    "code_comparison",
+    "comparison",
+    "contact_sheet",
     "energy",
+    "envelope",
     "four_panels",
+    "fragilities",
+    "fragility",
     "history",
+    "ida",
+    "interaction",
+    "limit_states",
     "line_of",
     "loop",
     "loops_over_test",
+    "methods",
+    "moment_curvature",
+    "motion",
     "new_axes",
+    "prediction",
     "profile",
     "save",
+    "section",
+    "section_springs",
     "section_state",
+    "shear_diagram",
+    "spectrum",
+    "spread",
+    "stripes",
     "style",
     "style_of",
+    "table",
 ]

@@ -617,7 +617,7 @@ def test_report(fit):
 def test_table_fits_a_terminal(fit, capsys):
     from rich.console import Console  # noqa: PLC0415
 
-    Console(width=80).print(fit.table())
+    Console(width=80).print(rbsdem.plot.table(fit))
     printed = capsys.readouterr().out
     assert "…" not in printed
     assert "flexure.d_y" in printed
@@ -627,16 +627,16 @@ def test_plot(fit):
     high = (fit.before.displacement, 3 * fit.before.test_force)
     test = (fit.before.displacement, fit.before.test_force)
     fit = replace(fit, before=rbsdem.compare(high, test))
-    axes = fit.plot()
+    axes = rbsdem.plot.calibration(fit)
     assert len(axes) == 2
     assert axes[0].get_ylim()[1] > 3e-3 * np.max(test[1])
     assert axes[0].get_ylim() == axes[1].get_ylim()
     texts = [text.get_text() for ax in axes for text in ax.texts]
     assert f"(b) after: NRMSE {fit.nrmse:.3f}" in texts
-    again = fit.plot(axes)
+    again = rbsdem.plot.calibration(fit, axes=axes)
     assert again is axes
     with pytest.raises(InputError, match="1 axes; give two"):
-        fit.plot(axes[:1])
+        rbsdem.plot.calibration(fit, axes=axes[:1])
     mpl.pyplot.close("all")
 
 

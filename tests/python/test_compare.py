@@ -336,7 +336,7 @@ def test_figure_and_table(curves):
     rich = pytest.importorskip("rich.console")
     d, f, m = curves
     c = rbsdem.compare((d, m), (d, f), height=1.6)
-    ax = c.plot()
+    ax = rbsdem.plot.comparison(c)
     try:
         assert [line.get_label() for line in ax.get_lines()[:2]] == ["Test", "Model"]
         assert ax.get_lines()[1].get_ydata()[:5] == pytest.approx(m[:5] / 1e3)
@@ -344,5 +344,5 @@ def test_figure_and_table(curves):
     finally:
         mpl.pyplot.close(ax.figure)
     out = rich.Console(width=120, record=True, file=io.StringIO())
-    out.print(c.table())
+    out.print(rbsdem.plot.table(c))
     assert out.export_text().count("\n") >= len(c.test_cycles)

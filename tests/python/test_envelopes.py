@@ -181,7 +181,7 @@ def test_ec_8_refuses_an_end_far_behind_the_peak():
 
 
 def test_figure():
-    ax = WORKED.plot(method="asce_41")
+    ax = rbsdem.plot.envelope(WORKED, method="asce_41")
     corners = ax.get_lines()[1].get_xydata()
     assert corners[1] == pytest.approx([9.3827, 179.259], rel=1e-4)
     assert ax.get_xlabel() == "Top displacement (mm)"

@@ -10,7 +10,7 @@ from rbsdem import InputError, motions
 from rbsdem.many.hazard import Hazard
 from rbsdem.many.hunt import Hunt
 from rbsdem.many.uncertain import variance_split
-from rbsdem.output.ensemble_figure import draw_fragilities
+from rbsdem.plot import fragilities
 
 HEIGHT = 2.0
 SETTINGS = {"method": "newmark", "dt": 0.002}
@@ -316,7 +316,7 @@ def test_figures(hunted, column, records, tmp_path):
     pytest.importorskip("matplotlib")
     assert len(hunted.plot().get_lines()) >= 9
     curves = hunted.fragilities({"light": 0.01, "collapse": ("collapse", None)})
-    assert len(draw_fragilities(curves, level=0).get_lines()) == 4
+    assert len(fragilities(curves, level=0).get_lines()) == 4
     assert curves["light"].plot(color="red").get_lines()[0].get_color() == "red"
     levels = [2.0, 5.0]
     assert rbsdem.stripes(column, records, levels, **SETTINGS).plot().get_lines()

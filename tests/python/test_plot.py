@@ -35,8 +35,8 @@ def views():
         "loop": lambda **line: plot.loop(RESULT, **line),
         "drift": lambda **line: plot.loop(RESULT, height=HEIGHT, **line),
         "over": lambda **line: plot.loops_over_test(RESULT, TEST, height=HEIGHT, **line),
-        "comparison": lambda **line: rbsdem.compare(RESULT, TEST).plot(**line),
-        "calibration": lambda **line: fit.plot(**line)[1],
+        "comparison": lambda **line: plot.comparison(rbsdem.compare(RESULT, TEST), **line),
+        "calibration": lambda **line: plot.calibration(fit, **line)[1],
     }
 
 
@@ -123,11 +123,11 @@ def test_axes_of_the_caller_keep_their_letters(family):
 
 def test_trade_passes_keywords_on():
     found = rbsdem.trade(COLUMN, displacement=D[:40], budget=2.0)
-    ax = found.plot(lw=2.5)
+    ax = plot.methods(found, lw=2.5)
     assert {one.get_linewidth() for one in ax.get_lines() if one.get_marker() == "o"} == {2.5}
     figure, own = plt.subplots()
     before = {family for family, _ in fonts(figure)}
-    found.plot(ax=own)
+    plot.methods(found, ax=own)
     assert {family for family, _ in fonts(figure)} == before
     assert np.isfinite(own.get_ylim()).all()
 

@@ -26,6 +26,8 @@ from rbsdem.methods.path import reversals
 from rbsdem.methods.physics import split_bodies
 from rbsdem.methods.rows import seconds_text
 from rbsdem.methods.scene import make_scene
+from rbsdem.output.methods import report
+from rbsdem.output.tables import write_csv
 from rbsdem.results.accuracy import Answer, at_times, common_interval, errors_of
 
 LENGTH, MASS = 1.6, 614.4
@@ -573,7 +575,7 @@ def read(path: Path) -> list[dict[str, str]]:
 
 
 def test_csv_holds_the_table(shaken, tmp_path):
-    shaken.to_csv(tmp_path / "trade.csv")
+    write_csv(shaken.to_frame(), tmp_path / "trade.csv")
     rows = read(tmp_path / "trade.csv")
     assert len(rows) == len(shaken.rows)
     for written, row in zip(rows, shaken.rows, strict=True):
@@ -583,28 +585,29 @@ def test_csv_holds_the_table(shaken, tmp_path):
         if row.status == "completed":
             assert float(written["error"]) == pytest.approx(row.error, rel=1e-5)
             assert float(written["wall_time_s"]) == pytest.approx(row.seconds, rel=1e-5)
-    shaken.physics_to_csv(tmp_path / "physics.csv")
+    write_csv(shaken.physics.to_frame(), tmp_path / "physics.csv")
     rows = read(tmp_path / "physics.csv")
     assert [row["part"] for row in rows] == [effect.part for effect in shaken.physics.effects]
     assert not list(tmp_path.glob("*.partial"))
 
 
-def test_tables_and_figure(shaken):
+def test_tables_and_figure(shaken, capsys):
     console = pytest.importorskip("rich.console")
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     out = console.Console(record=True, width=140, file=io.StringIO())
-    out.print(shaken.table())
-    out.print(shaken.physics_table())
-    text = out.export_text()
+    report(shaken, "A case")
+    out.print(rbsdem.plot.table(shaken))
+    out.print(rbsdem.plot.table(shaken.physics))
+    text = out.export_text() + capsys.readouterr().out
     for word in ("rk4, located, pdelta", "tolerance = 1e-06", "refused", "To finer", "no top mass"):
         assert word in text
-    ax = shaken.plot()
+    ax = rbsdem.plot.methods(shaken)
     assert (ax.get_xscale(), ax.get_yscale()) == ("log", "log")
     front = next(line for line in ax.get_lines() if line.get_label() == "Pareto front")
     assert np.all(np.diff(front.get_xdata()) > 0)
     assert np.all(np.diff(front.get_ydata()) < 0)
-    assert shaken.plot(ax) is ax
+    assert rbsdem.plot.methods(shaken, ax=ax) is ax
     matplotlib.pyplot.close("all")
 
 

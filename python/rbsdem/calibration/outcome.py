@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+import math
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
 
-from rbsdem import _views
+import numpy as np
+
 from rbsdem._arguments import Array
 from rbsdem.curves.scores import Comparison
 from rbsdem.model.column import Column
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from rich.table import Table
+    import pandas as pd
 
 __all__ = ["Calibration", "Fitted"]
+
+_HEAD = ("", "Unit", "Start", "Low", "High", "Fitted", "Std. error", "Effect", "Rise", "At")
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,30 +110,66 @@ class Calibration:
     @property
     def report(self) -> str:
         """The fit as plain text."""
-        return _views.view(self, "report")
+        rows = [_HEAD, *(_cells(fitted) for fitted in self.parameters)]
+        widths = [max(len(row[i]) for row in rows) for i in range(len(_HEAD))]
+        lines = [
+            f"Fit to {self.after.name}",
+            *(
+                f"{name.replace('_', ' '):16s}{_score(self.before, name)} before"
+                f"{_score(self.after, name)} after"
+                for name in ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio")
+            ),
+            f"{self.status}: {self.evaluations} analyses in {self.seconds:.2f} s"
+            + (f", {self.failed} of them not to the end" if self.failed else ""),
+            "",
+        ]
+        for row in rows:
+            first = row[0].ljust(widths[0]) + "  " + row[1].ljust(widths[1])
+            rest = (cell.rjust(width) for cell, width in zip(row[2:], widths[2:], strict=True))
+            lines.append(f"{first}  {'  '.join(rest)}".rstrip())
+        lines += [
+            "",
+            "Effect: rms change of the force over the peak, if the parameter changes by 10 % (of",
+        ]
+        lines += [
+            "the distance between its bounds, if it may be 0). Rise: growth of the loss by that."
+        ]
+        if len(self.parameters) > 1:
+            lines += ["", "Correlation", *self._correlations()]
+        if self.warnings:
+            lines += ["", *(f"Warning: {line}" for line in self.warnings)]
+        return "\n".join(lines)
 
-    def table(self) -> Table:
-        """Return the parameters as a table of rich."""
-        return _views.view(self, "table")
+    def to_frame(self) -> pd.DataFrame:
+        """Return a DataFrame with a row for each parameter: the attributes of `Fitted`."""
+        import pandas  # noqa: PLC0415
 
-    def plot(self, axes: Sequence[Axes] | None = None, **line: Any) -> Sequence[Axes]:
-        """Draw the loops before and after the fit over the test.
+        frame = pandas.DataFrame([asdict(fitted) for fitted in self.parameters])
+        return frame.rename(columns={"unit": "unit_of_values"})
 
-        Parameters
-        ----------
-        axes : sequence of two matplotlib Axes, optional
-            Where to draw; by default a new figure is made.
-        **line
-            Properties of the model's line, as for ``Axes.plot``.
+    def _correlations(self) -> list[str]:
+        names = [fitted.name for fitted in self.parameters]
+        width = max(len(name) for name in names)
+        lines = []
+        for i, name in enumerate(names):
+            row = (f"{r:+.2f}" if np.isfinite(r) else "  -  " for r in self.correlation[i, : i + 1])
+            lines.append(f"{name.ljust(width)}  {'  '.join(row)}")
+        return lines
 
-        Returns
-        -------
-        sequence of two matplotlib Axes
-            Before and after.
 
-        Raises
-        ------
-        ImportError
-            If matplotlib is not installed.
-        """
-        return _views.view(self, "plot", axes, **line)
+def _score(scores: Comparison, name: str) -> str:
+    value = getattr(scores, name)
+    return f"{'-' if math.isnan(value) else f'{value:.4f}':>8}"
+
+
+def _cells(fitted: Fitted, digits: int = 4) -> tuple[str, ...]:
+    numbers = (fitted.start, fitted.low, fitted.high, fitted.value, fitted.standard_error)
+    return (
+        fitted.name,
+        fitted.unit or "-",
+        *(f"{number:.{digits}g}" for number in numbers[:4]),
+        "-" if math.isnan(numbers[4]) else f"{numbers[4]:.2g}",
+        f"{fitted.effect:.4f}",
+        "-" if math.isnan(fitted.rise) else f"{fitted.rise:+.4f}",
+        fitted.at_bound,
+    )

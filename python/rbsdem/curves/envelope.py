@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
-from rbsdem import _views
 from rbsdem._arguments import Array
 from rbsdem.curves.curve import Curve, columns, loop_pair
 from rbsdem.curves.idealise import Idealisation, Method, crossing, idealise
 from rbsdem.curves.strength import beyond
 from rbsdem.errors import InputError
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 __all__ = ["Envelope", "envelope"]
 
@@ -119,11 +115,6 @@ class Envelope:
             If the method is not known, or the envelope has no such lines.
         """
         return idealise(self.displacement, self.force, method, end)
-
-    def plot(self, ax: Axes | None = None, *, method: Method | None = None) -> Axes:
-        """Draw the envelope, and its idealisation if a method is given."""
-        axes: Axes = _views.view(self, "plot", ax, method)
-        return axes
 
     def __repr__(self) -> str:
         return (

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _arguments, _views
+from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.curves.curve import Curve, columns, pair
 from rbsdem.curves.cycles import HalfCycles, half_cycles, tip_rows
@@ -19,8 +19,7 @@ from rbsdem.curves.strength import strength_loss
 from rbsdem.errors import InputError
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from rich.table import Table
+    import pandas as pd
 
 __all__ = ["SCORES", "Comparison", "DisplacementMetrics", "compare", "displacement_metrics"]
 
@@ -35,6 +34,9 @@ SCORES = (
     "nrmse_reached",
 )
 """Names of the scores, in the order of tables."""
+
+#: What a half-cycle has in the table of a comparison, with the unit in the name.
+_CYCLE_COLUMNS = {"peak_force": "_N", "energy": "_J", "stiffness": "_N/m", "damping": ""}
 
 # The displacement of a row is that of the test; with exact rotations it is solved for.
 _SAME = 1e-6
@@ -184,26 +186,25 @@ class Comparison(_Ratios):
     def _tips(self) -> np.ndarray:
         return tip_rows(self.displacement, self.test_force)
 
-    def plot(self, ax: Axes | None = None, **line: Any) -> Axes:
-        """Draw the loop of the model over that of the test.
+    def to_frame(self) -> pd.DataFrame:
+        """Return a DataFrame with a row for each half-cycle, test and model side by side.
 
-        Parameters
-        ----------
-        ax : matplotlib Axes, optional
-            Where to draw; a new figure without it.
-        **line
-            Properties of the model's line, as for ``Axes.plot``.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            Millimetres and kilonewtons; drift ratios on top if the height is known.
+        What the model did not reach is NaN.
         """
-        return _views.view(self, "plot", ax, **line)
+        import pandas  # noqa: PLC0415
 
-    def table(self) -> Table:
-        """Return the half-cycles as a table of rich, test and model side by side: mm, kN, kJ."""
-        return _views.view(self, "table")
+        test, model = self.test_cycles, self.model_cycles
+        columns: dict[str, Any] = {
+            "cycle": [f"{1 + i // 2}{'ab'[i % 2]}" for i in range(len(test))],
+            "displacement_m": test.displacement,
+            "drift": test.displacement / self.height,
+        }
+        for name, unit in _CYCLE_COLUMNS.items():
+            reached = np.full(len(test), np.nan)
+            reached[: len(model)] = getattr(model, name)[: len(test)]
+            columns[f"test_{name}{unit}"] = getattr(test, name)
+            columns[f"model_{name}{unit}"] = reached
+        return pandas.DataFrame(columns)
 
     def __str__(self) -> str:
         parts = [f"{name} {value:.3f}" for name, value in self.scores.items()]

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from rbsdem import _views
 from rbsdem.methods.physics import Physics
 from rbsdem.methods.reference import Reference
 from rbsdem.methods.rows import Choice, Row, cheapest
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from rich.table import Table
+    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -55,37 +52,31 @@ class Trade:
         """
         return cheapest(self.rows, tolerance)
 
-    def table(self) -> Table:
-        """Return the settings as a table of rich, with the Pareto front marked."""
-        return _views.view(self, "table")
+    def to_frame(self) -> pd.DataFrame:
+        """Return a DataFrame with a row for each setting: its cost, its errors, the front."""
+        import pandas  # noqa: PLC0415
 
-    def physics_table(self) -> Table:
-        """Return the effects of the parts of the model as a table of rich."""
-        return _views.view(self, "physics_table")
-
-    def to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write the settings as csv."""
-        _views.view(self, "to_csv", path)
-
-    def physics_to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write the effects of the parts of the model as csv."""
-        _views.view(self, "physics_to_csv", path)
-
-    def plot(self, ax: Axes | None = None, **line: Any) -> Axes:
-        """Draw error against wall time, both logarithmic, the Pareto front marked.
-
-        Parameters
-        ----------
-        ax : matplotlib Axes, optional
-            Where to draw; a new figure without it.
-        **line
-            Properties of the lines, as for ``Axes.plot``.
-
-        Raises
-        ------
-        InputError
-            If there is nothing to draw.
-        ImportError
-            If matplotlib is not installed.
-        """
-        return _views.view(self, "plot", ax, **line)
+        rows = [
+            {
+                "method": row.setting.method,
+                "events": row.setting.events or "",
+                "kinematics": row.setting.kinematics,
+                "dt_s": row.setting.dt,
+                "tolerance": row.setting.tolerance,
+                "parts": row.setting.parts,
+                "wall_time_s": row.seconds,
+                "repeats": row.repeats,
+                "response_rms": row.response_rms,
+                "response_max": row.response_max,
+                "base_moment_rms": row.moment,
+                "energy": row.energy,
+                "peak": row.peak,
+                "error": row.error,
+                "move_to_finer": row.move,
+                "pareto": int(row.pareto),
+                "status": row.status,
+                "reason": row.reason,
+            }
+            for row in self.rows
+        ]
+        return pandas.DataFrame(rows).astype({"parts": "Int64"})

@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from rbsdem.errors import InputError
 from rbsdem.methods.answer import Run, Setting
@@ -19,12 +19,28 @@ from rbsdem.model.springs import Spring
 from rbsdem.results.accuracy import Answer, errors_of
 from rbsdem.solve.methods import IMPLICIT
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 #: Share of the rotary inertia that stays when it is taken off: a body without any has no equation
 #: of motion.
 LITTLE_INERTIA = 0.01
 
 #: Changes larger than this matter if the user gives no tolerance.
 USUAL_TOLERANCE = 0.01
+
+#: Columns of the table, and the attributes of `Effect` that they hold.
+_COLUMNS = {
+    "part": "part",
+    "peak": "peak",
+    "residual": "residual",
+    "peak_base_moment": "moment",
+    "energy": "energy",
+    "response_rms": "history",
+    "wall_time_ratio": "time_ratio",
+    "status": "status",
+    "reason": "reason",
+}
 
 #: Cost of twice the bodies: twice the work of a step, and a stable step of less than half.
 TWICE_THE_BODIES = 6
@@ -97,6 +113,19 @@ class Physics:
     setting: str
     resolution: float
     tolerance: float
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return a DataFrame with a row for each part of the model."""
+        import pandas  # noqa: PLC0415
+
+        rows = [
+            [
+                *(getattr(effect, name) for name in _COLUMNS.values()),
+                {True: "yes", False: "no", None: ""}[effect.matters],
+            ]
+            for effect in self.effects
+        ]
+        return pandas.DataFrame(rows, columns=[*_COLUMNS, "matters"])
 
 
 class Variant(NamedTuple):

@@ -1,4 +1,4 @@
-"""Force-displacement loops: mm and kN, the model over the test."""
+"""Force-displacement loops: mm and kN, the model over the test, and what is told of them."""
 
 from __future__ import annotations
 
@@ -10,8 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
-from rbsdem._optional import need_matplotlib
+from rbsdem._arguments import Array
+from rbsdem.calibration.outcome import Calibration
+from rbsdem.checks.code_comparison import CodeComparison
+from rbsdem.checks.limit_states import LimitStates
 from rbsdem.curves.curve import Curve, loop_pair
+from rbsdem.curves.envelope import Envelope
+from rbsdem.curves.idealise import Method
+from rbsdem.curves.scores import Comparison
 from rbsdem.errors import InputError
 from rbsdem.model.response import Response
 from rbsdem.output.style import (
@@ -22,6 +28,7 @@ from rbsdem.output.style import (
     axes_or_new,
     keep_letters,
     line_of,
+    new_axes,
     style,
 )
 
@@ -29,9 +36,37 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["Panel", "four_panels", "loop", "loops_over_test"]
+__all__ = [
+    "Panel",
+    "calibration",
+    "code_comparison",
+    "comparison",
+    "envelope",
+    "four_panels",
+    "limit_states",
+    "loop",
+    "loops_over_test",
+]
 
 FIGURE_SIZE = (6.9, 6.0)
+
+_MARKERS = "os^Dv<>phX*P8"
+
+#: Lines of the backbones, told apart in print without colour.
+_BACKBONES: dict[str, dict[str, Any]] = {
+    "ASCE 41": {"linestyle": "-", "marker": "s"},
+    "EC 8-3": {"linestyle": (0, (5, 1.5)), "marker": "o"},
+    "Elwood": {"linestyle": (0, (1.2, 1.2)), "marker": "^"},
+    "Haselton": {"linestyle": (0, (5, 1.2, 1, 1.2)), "marker": "D"},
+}
+#: Drifts of damage: row of the table, column of the table, label, fill.
+_DAMAGE = (
+    ("spalling", "model", "spalling, model", "white"),
+    ("spalling", "Berry", "spalling, Berry, Eberhard", "black"),
+    ("bar_buckling", "model", "bar buckling, model", "white"),
+    ("bar_buckling", "Berry", "bar buckling, Berry, Eberhard", "black"),
+    ("bar_buckling", "Goodnight", "bar buckling, Goodnight et al.", "0.6"),
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -192,7 +227,6 @@ def four_panels(
     """
     if not 1 <= len(panels) <= 4:
         raise InputError(f"four_panels: {len(panels)} panels; give one to four")
-    need_matplotlib()
     from matplotlib.figure import Figure  # noqa: PLC0415
 
     rows = 1 if len(panels) <= 2 else 2
@@ -228,6 +262,214 @@ def four_panels(
         # Ticks and layout take their style when they are first drawn.
         figure.draw_without_rendering()
     return figure
+
+
+def envelope(envelope: Envelope, *, method: Method | None = None, ax: Axes | None = None) -> Axes:
+    """Draw an envelope, and its idealisation dashed if a method is given.
+
+    Parameters
+    ----------
+    envelope : Envelope
+        The envelope.
+    method : str, optional
+        As for `Envelope.idealise`.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+    """
+    with axes_or_new(ax) as drawn:
+        x, y = envelope.displacement * 1e3, envelope.force * 1e-3
+        drawn.plot(x, y, **MODEL_LINE)
+        if method is not None:
+            lines = envelope.idealise(method)
+            corners = np.array([0.0, lines.yield_displacement, lines.end_displacement])
+            drawn.plot(corners * 1e3, lines.force(corners) * 1e-3, **TEST_LINE, label=lines.source)
+            drawn.plot(
+                lines.yield_displacement * 1e3,
+                lines.yield_force * 1e-3,
+                **{**TEST_POINTS, "color": "black"},
+            )
+            drawn.legend(loc="lower right")
+        drawn.set_xlim(left=0.0, auto=True)
+        drawn.set_ylim(bottom=0.0, auto=True)
+        drawn.set_xlabel("Top displacement (mm)")
+        drawn.set_ylabel("Lateral force (kN)")
+    return drawn
+
+
+def limit_states(states: LimitStates, *, ax: Axes | None = None) -> Axes:
+    """Draw the loop thin and gray, and a marker for each limit state.
+
+    Parameters
+    ----------
+    states : LimitStates
+        What `Result.limit_states` returns.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+    """
+    result = states.result
+    with axes_or_new(ax, (4.6, 3.4)) as drawn:
+        loop(result, height=result.column.height, ax=drawn, color="0.55", linewidth=0.6)
+        for state, marker in zip(states, _MARKERS, strict=False):
+            drawn.plot(
+                1e3 * state.displacement,
+                1e-3 * state.force,
+                linestyle="none",
+                marker=marker,
+                markersize=5.0,
+                markerfacecolor="white",
+                markeredgecolor="black",
+                markeredgewidth=0.9,
+                zorder=5,
+                label=state.name.replace("_", " "),
+            )
+        if len(states):
+            drawn.legend(loc="upper left", fontsize=6.5, handletextpad=0.2, borderaxespad=0.3)
+    return drawn
+
+
+def comparison(comparison: Comparison, *, ax: Axes | None = None, **line: Any) -> Axes:
+    """Draw the loop of the model over that of the test.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        What `rbsdem.compare` returns.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+    **line
+        Properties of the model's line, as for ``Axes.plot``.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+    """
+    return loops_over_test(
+        comparison.model_curve,
+        (comparison.displacement, comparison.test_force),
+        title=f"{comparison.name}\nNRMSE {comparison.nrmse:.3f}",
+        height=comparison.height if comparison.height > 0 else None,
+        ax=ax,
+        **line,
+    )
+
+
+def calibration(
+    fit: Calibration, *, axes: Sequence[Axes] | None = None, **line: Any
+) -> Sequence[Axes]:
+    """Draw the loops before and after a calibration over the test, to the same scale.
+
+    Parameters
+    ----------
+    fit : Calibration
+        What `rbsdem.calibrate` returns.
+    axes : sequence of 2 matplotlib Axes, optional
+        Where to draw; a new figure without it.
+    **line
+        Properties of the model's line, as for ``Axes.plot``.
+
+    Returns
+    -------
+    sequence of matplotlib.axes.Axes
+        Before and after.
+    """
+    if axes is None:
+        axes = new_axes(1, 2, (6.9, 3.2))
+    if len(axes) != 2:
+        raise InputError(f"calibration: plot: {len(axes)} axes; give two, for before and after")
+    for ax, name, scores in zip(axes, "ab", (fit.before, fit.after), strict=True):
+        when = "before" if name == "a" else "after"
+        loops_over_test(
+            (scores.displacement, scores.model_force),
+            (scores.displacement, scores.test_force),
+            title=f"({name}) {when}: NRMSE {scores.nrmse:.3f}",
+            height=scores.height if scores.height > 0 else None,
+            ax=ax,
+            **line,
+        )
+    highest = max(ax.get_ylim()[1] for ax in axes)
+    for ax in axes:
+        ax.set_ylim(-highest, highest)
+    return axes
+
+
+def code_comparison(found: CodeComparison, *, ax: Axes | None = None) -> Axes:
+    """Draw the loop, the test if there is one, the backbones, and drifts of damage.
+
+    Parameters
+    ----------
+    found : CodeComparison
+        What `CodeValues.compare` returns.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+    """
+    result = found.result
+    height = result.column.height
+    with axes_or_new(ax, (6.2, 3.4)) as drawn:
+        if found.test is not None:
+            d, f = found.test
+            drawn.plot(100 * d / height, 1e-3 * f, **{**TEST_LINE, "label": "test"})
+        drift, force = 100 * result.drift, 1e-3 * result.loop_force
+        drawn.plot(drift, force, color="0.6", linewidth=0.6, zorder=2.5, label="model")
+        for line in found.backbones:
+            drawn.plot(
+                *_above_zero(100 * line.drift, 1e-3 * line.force(found.span, found.leaning)),
+                color="black",
+                linewidth=1.0,
+                markersize=3.2,
+                markerfacecolor="white",
+                zorder=4,
+                label=line.name,
+                **_BACKBONES[line.name],
+            )
+        for row, source, label, fill in _DAMAGE:
+            if source in found[row]:
+                drawn.plot(
+                    100 * found[row][source],
+                    0.0,
+                    linestyle="none",
+                    marker="v" if row == "spalling" else "P",
+                    markersize=6.0,
+                    markeredgecolor="black",
+                    markerfacecolor=fill,
+                    markeredgewidth=0.8,
+                    zorder=5,
+                    label=label,
+                )
+        drawn.axhline(0.0, **ZERO_LINE)
+        drawn.axvline(0.0, **ZERO_LINE)
+        drawn.margins(x=0.03, y=0.06)
+        drawn.set_xlabel("Drift ratio (%)")
+        drawn.set_ylabel("Base shear (kN)" if result.dynamic else "Lateral force (kN)")
+        drawn.tick_params(right=True, top=True)
+        drawn.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=7.5, handlelength=3.0)
+    return drawn
+
+
+def _above_zero(drift: Array, force: Array) -> tuple[Array, Array]:
+    """Return a backbone up to where second-order moments have used up its strength."""
+    below = np.flatnonzero(force < 0)
+    if below.size == 0:
+        return drift, force
+    end = int(below[0])
+    share = force[end - 1] / (force[end - 1] - force[end])
+    last = drift[end - 1] + share * (drift[end] - drift[end - 1])
+    return np.append(drift[:end], last), np.append(force[:end], 0.0)
 
 
 def _curve(curve: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

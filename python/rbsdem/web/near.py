@@ -14,7 +14,7 @@ from rbsdem.measured.predict import predict_one
 from rbsdem.measured.prediction import Prediction
 from rbsdem.measured.specimen import Specimen
 from rbsdem.measured.specimens import read_specimens
-from rbsdem.output.cards import card
+from rbsdem.web.gallery import card
 
 __all__ = ["Near", "specimen_of"]
 

@@ -1,4 +1,4 @@
-"""A trade as a figure: error against wall time."""
+"""A study of methods as a figure, error against wall time, and as a report on the terminal."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rbsdem import plot
 from rbsdem._files import write_figure
-from rbsdem._views import view_of
 from rbsdem.errors import InputError
 from rbsdem.methods.ladder import LEVELS
 from rbsdem.methods.outcome import Trade
+from rbsdem.output.style import axes_or_new, line_of, style
+from rbsdem.output.tables import console, plain, table
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.axes import Axes
 
     from rbsdem.methods.rows import Row
@@ -42,14 +43,33 @@ DASHES = ("-", (0, (4, 1.5)), (0, (1, 1.5)))
 TOP = 10.0
 
 
-@view_of(Trade, "plot")
-def draw(trade: Trade, ax: Axes | None = None, **line: Any) -> Axes:
-    """Draw error against wall time."""
+def methods(trade: Trade, *, ax: Axes | None = None, **line: Any) -> Axes:
+    """Draw error against wall time, both logarithmic, with the Pareto front.
+
+    Parameters
+    ----------
+    trade : Trade
+        What `rbsdem.compare_methods` returns.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+    **line
+        Properties of the lines, as for ``Axes.plot``.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    InputError
+        If there is nothing to draw.
+    """
     done = [row for row in trade.rows if math.isfinite(row.error)]
     if not done or trade.reference is None:
         raise InputError("trade: there is no setting with an error to draw; see notes")
     floor = max(trade.reference.resolution, 1e-16)
-    with plot.axes_or_new(ax, (5.2, 3.6)) as drawn:
+    with axes_or_new(ax, (5.2, 3.6)) as drawn:
         front = sorted((row for row in done if row.pareto), key=lambda row: row.seconds)
         drawn.plot(
             *_points(front, floor),
@@ -82,7 +102,7 @@ def draw(trade: Trade, ax: Axes | None = None, **line: Any) -> Axes:
                 "markeredgewidth": 0.7,
                 "zorder": 3,
             }
-            drawn.plot(*_points(rows, floor), **plot.line_of({**default, **mark}, line))
+            drawn.plot(*_points(rows, floor), **line_of({**default, **mark}, line))
         _dress(drawn, trade, floor)
     return drawn
 
@@ -133,13 +153,96 @@ def _dress(ax: Axes, trade: Trade, floor: float) -> None:
 def save(trade: Trade, path: Path, title: str) -> Path | None:
     """Write the figure; return None if there is nothing to draw, or nothing to draw it with."""
     try:
-        ax = draw(trade)
+        ax = methods(trade)
     except (ImportError, InputError):
         return None
     import matplotlib.pyplot as plt  # noqa: PLC0415
 
-    with plot.style():
+    with style():
         ax.set_title(title, loc="left")
         write_figure(ax.figure.savefig, path, dpi=200)
     plt.close(ax.figure)
     return path
+
+
+def _reasons(rows: Sequence[Row]) -> list[str]:
+    """Return lines on the settings without an answer, one for each reason."""
+    found: dict[str, list[Row]] = {}
+    for row in rows:
+        if row.status not in ("completed", "collapsed"):
+            found.setdefault(f"{row.status}: {row.reason}", []).append(row)
+    return [f"{', '.join(str(row.setting) for row in same)} {why}" for why, same in found.items()]
+
+
+def report(trade: Trade, title: str) -> None:
+    """Print the whole trade."""
+    out = console(132)
+
+    def say(text: str = "") -> None:
+        out.print(text, markup=False, soft_wrap=not out.is_terminal)
+
+    out.print(plain(title, style="bold"))
+    say()
+    reference = trade.reference
+    if reference is not None:
+        say(f"Reference: {reference.first}, against {reference.second}.")
+        say(
+            f"They agree to {reference.digits:.1f} digits in {trade.response}, "
+            f"{reference.moment_digits:.1f} in base moment, {reference.energy_digits:.1f} in "
+            f"energy and {reference.peak_digits:.1f} in peak."
+        )
+        if reference.note:
+            say(f"Note: {reference.note}.")
+    say()
+    out.print(table(_settings(trade), styles=_styles(trade)))
+    say("\n* on the Pareto front. Errors are relative to the reference's peaks; Error is the")
+    say("largest of the four before it; To finer: what the next finer setting changes.")
+    for reason in _reasons(trade.rows):
+        say(f"  {reason}")
+    if trade.choice is not None:
+        say(f"\n{str(trade.choice).capitalize()}.")
+    if trade.physics is not None:
+        physics = trade.physics
+        say("\nWhat each part of the model changes, the others as given:\n")
+        out.print(table(physics.to_frame().drop(columns=["response_rms", "status", "reason"])))
+        say(f"\nSolved by {physics.setting}, error {physics.resolution:.1e}. What changes peak,")
+        say(f"base moment, energy or residual by more than {physics.tolerance:g} matters.")
+        for effect in physics.effects:
+            if effect.matters is None:
+                say(f"  {effect.part} {effect.status}: {effect.reason}")
+    for note in trade.notes:
+        say(f"Note: {note}.")
+    say(f"\nDone in {trade.seconds:.1f} s of {trade.budget:g} s.")
+
+
+def _settings(trade: Trade) -> pd.DataFrame:
+    """Return the settings as they are printed."""
+    import pandas  # noqa: PLC0415
+
+    rows = []
+    for row in trade.rows:
+        value = row.setting.value
+        if row.setting.method == "auto" and row.reason:
+            value = f"chose {row.reason.split(':')[0]}"
+        given = " (as given)" if row.setting.own else ""
+        rows.append(
+            {
+                " ": "*" if row.pareto else "",
+                "Method": f"{row.setting.name}, {row.setting.kinematics}{given}",
+                "Setting": value,
+                "time": row.seconds,
+                trade.response.capitalize(): row.response_rms,
+                "Moment": row.moment,
+                "Energy": row.energy,
+                "Peak": row.peak,
+                "Error": row.error,
+                "To finer": row.move,
+                "Status": "" if row.status in ("completed", "collapsed") else row.status,
+            }
+        )
+    return pandas.DataFrame(rows)
+
+
+def _styles(trade: Trade) -> list[str | None]:
+    chosen = None if trade.choice is None else trade.choice.row
+    return ["bold" if chosen is not None and row == chosen else None for row in trade.rows]

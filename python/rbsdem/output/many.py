@@ -1,4 +1,4 @@
-"""Figures of incremental dynamic analyses, stripes, clouds and fragility curves."""
+"""Figures of ground motions, and of analyses of many runs: IDA, stripes, clouds, fragility."""
 
 from __future__ import annotations
 
@@ -8,17 +8,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rbsdem._views import view_of
 from rbsdem.errors import InputError
 from rbsdem.many.cloud import Cloud
 from rbsdem.many.fragility import Capacities, Counts, Fragility
 from rbsdem.many.ida import IDA
 from rbsdem.many.runs import Runs
 from rbsdem.many.stripes import Stripes
+from rbsdem.motions.motion import GroundMotion
+from rbsdem.motions.spectrum import Spectrum
 from rbsdem.output.style import MODEL_LINE, axes_or_new, line_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+__all__ = ["cloud", "fragilities", "fragility", "ida", "motion", "spectrum", "stripes"]
 
 _RECORD: dict[str, Any] = {"color": "0.72", "linewidth": 0.5}
 _POINT: dict[str, Any] = {"color": "0.35", "marker": ".", "linestyle": "none", "markersize": 4}
@@ -28,18 +31,17 @@ _STYLES = ("--", "-", "--")
 _COLOURS = ("#1f77b4", "#2ca02c", "#e67e22", "#c0392b", "#6c3483", "#000000")
 
 
-@view_of(IDA, "plot")
-def draw_ida(found: IDA, ax: Axes | None = None, edp: str = "peak_drift", **line: Any) -> Axes:
+def ida(found: IDA, *, edp: str = "peak_drift", ax: Axes | None = None, **line: Any) -> Axes:
     """Draw the curve of every record, its collapse, and the 16, 50 and 84 % fractiles.
 
     Parameters
     ----------
     found : IDA
         The analysis.
-    ax : matplotlib Axes, optional
-        Axes to draw on; by default new ones.
     edp : str, optional
         Measure of the response.
+    ax : matplotlib Axes, optional
+        Axes to draw on; by default new ones.
     **line
         Keywords of the lines of the fractiles.
     """
@@ -69,11 +71,22 @@ def draw_ida(found: IDA, ax: Axes | None = None, edp: str = "peak_drift", **line
     return drawn
 
 
-@view_of(Stripes, "plot")
-def draw_stripes(
-    found: Stripes, ax: Axes | None = None, edp: str = "peak_drift", **line: Any
+def stripes(
+    found: Stripes, *, edp: str = "peak_drift", ax: Axes | None = None, **line: Any
 ) -> Axes:
-    """Draw the response of every run over its level; collapses stand at the right edge."""
+    """Draw the response of every run over its level; collapses stand at the right edge.
+
+    Parameters
+    ----------
+    found : Stripes
+        The analysis.
+    edp : str, optional
+        Measure of the response.
+    ax : matplotlib Axes, optional
+        Axes to draw on; by default new ones.
+    **line
+        Keywords of the points.
+    """
     with axes_or_new(ax, (4.2, 3.2)) as drawn:
         _points(drawn, found.runs, edp, line)
         if ax is None:
@@ -81,9 +94,20 @@ def draw_stripes(
     return drawn
 
 
-@view_of(Cloud, "plot")
-def draw_cloud(found: Cloud, ax: Axes | None = None, edp: str = "peak_drift", **line: Any) -> Axes:
-    """Draw the runs in logarithmic scales, and the line through those without collapse."""
+def cloud(found: Cloud, *, edp: str = "peak_drift", ax: Axes | None = None, **line: Any) -> Axes:
+    """Draw the runs in logarithmic scales, and the line through those without collapse.
+
+    Parameters
+    ----------
+    found : Cloud
+        The analysis.
+    edp : str, optional
+        Measure of the response.
+    ax : matplotlib Axes, optional
+        Axes to draw on; by default new ones.
+    **line
+        Keywords of the lines.
+    """
     percent = 100.0 if edp.endswith("drift") else 1.0
     with axes_or_new(ax, (4.2, 3.2)) as drawn:
         _points(drawn, found.runs, edp, {})
@@ -99,20 +123,17 @@ def draw_cloud(found: Cloud, ax: Axes | None = None, edp: str = "peak_drift", **
     return drawn
 
 
-@view_of(Fragility, "plot")
-def draw_fragility(
-    found: Fragility, ax: Axes | None = None, level: float = 0.9, **line: Any
-) -> Axes:
+def fragility(found: Fragility, *, level: float = 0.9, ax: Axes | None = None, **line: Any) -> Axes:
     """Draw the curve, its confidence band and the data that it was fitted to.
 
     Parameters
     ----------
     found : Fragility
         The curve.
-    ax : matplotlib Axes, optional
-        Axes to draw on; by default new ones.
     level : float, optional
         Confidence of the band; 0 draws none.
+    ax : matplotlib Axes, optional
+        Axes to draw on; by default new ones.
     **line
         Keywords of the curve.
     """
@@ -136,8 +157,8 @@ def draw_fragility(
     return drawn
 
 
-def draw_fragilities(
-    found: Mapping[str, Fragility], ax: Axes | None = None, level: float = 0.9
+def fragilities(
+    found: Mapping[str, Fragility], *, level: float = 0.9, ax: Axes | None = None
 ) -> Axes:
     """Draw the curves of several limit states in one figure.
 
@@ -145,16 +166,16 @@ def draw_fragilities(
     ----------
     found : mapping of Fragility
         The curves by name.
-    ax : matplotlib Axes, optional
-        Axes to draw on; by default new ones.
     level : float, optional
         Confidence of the bands; 0 draws none.
+    ax : matplotlib Axes, optional
+        Axes to draw on; by default new ones.
     """
     with axes_or_new(ax, (4.2, 3.2)) as drawn:
-        for number, (name, one) in enumerate(found.items()):
-            label = f"{name}: θ = {one.theta:.3g}, β = {one.beta:.2f}"
+        for number, (name, curve) in enumerate(found.items()):
+            label = f"{name}: θ = {curve.theta:.3g}, β = {curve.beta:.2f}"
             colour = _COLOURS[number % len(_COLOURS)]
-            draw_fragility(one, drawn, level, label=label, color=colour)
+            fragility(curve, level=level, ax=drawn, label=label, color=colour)
         if ax is None and found:
             drawn.set(xlabel=next(iter(found.values())).intensity_name, ylabel="Probability")
             drawn.set_ylim(0, 1.02)
@@ -187,3 +208,43 @@ def _points(ax: Axes, runs: Runs, edp: str, line: dict[str, Any]) -> None:
 def _label_response(ax: Axes, edp: str, runs: Runs) -> None:
     name = edp.replace("_", " ").capitalize()
     ax.set(xlabel=f"{name} (%)" if edp.endswith("drift") else name, ylabel=runs.measure.label)
+
+
+def motion(motion: GroundMotion, *, ax: Axes | None = None, **line: Any) -> Axes:
+    """Draw the acceleration over time.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The motion.
+    ax : matplotlib Axes, optional
+        Axes to draw on; by default new ones.
+    **line
+        Keywords of the line.
+    """
+    with axes_or_new(ax, (6.0, 2.2)) as drawn:
+        default = {**MODEL_LINE, "linewidth": 0.7, "label": motion.name}
+        drawn.plot(motion.time, motion.acceleration, **line_of(default, line))
+        if ax is None:
+            drawn.set(xlabel="Time (s)", ylabel="Acceleration (m/s²)", title=motion.name)
+    return drawn
+
+
+def spectrum(spectrum: Spectrum, *, ax: Axes | None = None, **line: Any) -> Axes:
+    """Draw the pseudo-acceleration over the period.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+        The spectrum.
+    ax : matplotlib Axes, optional
+        Axes to draw on; by default new ones with logarithmic scales.
+    **line
+        Keywords of the line.
+    """
+    with axes_or_new(ax) as drawn:
+        drawn.plot(spectrum.period, spectrum.pseudo_acceleration, **line_of(MODEL_LINE, line))
+        if ax is None:
+            drawn.set(xlabel="Period (s)", ylabel="Pseudo-acceleration (m/s²)")
+            drawn.set(xscale="log", yscale="log", title=f"Damping {100 * spectrum.damping:g} %")
+    return drawn

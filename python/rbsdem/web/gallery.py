@@ -1,17 +1,22 @@
-"""A predicted test as the pages show it: its loop, the prediction over it, its scores."""
+"""Predicted tests on one page of html, made of the parts of `rbsdem explore`."""
 
 from __future__ import annotations
 
 import math
+import os
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from rbsdem._arguments import Array
+from rbsdem._files import whole_file
 from rbsdem.measured.pictures import Picture
 from rbsdem.measured.prediction import Prediction
+from rbsdem.measured.predictions import Group, Predictions
+from rbsdem.web.parts import GALLERY, one_file
 
-__all__ = ["SCORES", "card"]
+__all__ = ["SCORES", "card", "finite", "gallery"]
 
 #: Scores of a card, with their digits.
 SCORES = {
@@ -64,3 +69,49 @@ def _thousandths(line: Array) -> list[int]:
     """Return x, y, x, y, ... of a line in its box."""
     found: list[int] = np.rint(1e3 * line).astype(np.int64).ravel().tolist()
     return found
+
+
+def gallery(predictions: Predictions, path: str | os.PathLike[str]) -> Path:
+    """Write one page of html with all loops, to sort and to filter.
+
+    Parameters
+    ----------
+    predictions : Predictions
+        The tests.
+    path : path
+        File to write.
+
+    Returns
+    -------
+    Path
+        The file. It stands alone: styles, script and figures are in it.
+    """
+    path = Path(path)
+    title = f"Loops of {len(predictions)} tests, model {predictions.model}"
+    data = {
+        "title": title,
+        "digits": SCORES,
+        "groups": [_group(group) for group in predictions.summary()],
+        "tests": [
+            card(row, drawn) for row, drawn in zip(predictions, predictions.pictures, strict=True)
+        ],
+    }
+    page = one_file(title, data, GALLERY)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with whole_file(path) as file:
+        file.write(page.encode("utf-8"))
+    return path
+
+
+def _group(group: Group) -> dict[str, object]:
+    quartiles = {name: group.quartiles[name] for name in SCORES}
+    return {
+        "name": group.name,
+        "tests": group.tests,
+        "stopped": group.stopped,
+        "failed": group.failed,
+        "scores": {
+            name: [finite(value, digits) for value in (q.median, q.lower, q.upper)]
+            for (name, q), digits in zip(quartiles.items(), SCORES.values(), strict=True)
+        },
+    }

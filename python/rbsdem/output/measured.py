@@ -1,0 +1,242 @@
+"""Figures of predicted tests: bands along the path, sheets with a cell for each test."""
+
+from __future__ import annotations
+
+import math
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rbsdem._files import write_figure
+from rbsdem.measured.nearest import properties
+from rbsdem.measured.prediction import Prediction
+from rbsdem.measured.predictions import Predictions
+from rbsdem.measured.specimen import Specimen
+from rbsdem.output.style import (
+    MODEL_LINE,
+    TEST_LINE,
+    ZERO_LINE,
+    axes_or_new,
+    line_of,
+    style,
+)
+from rbsdem.section.spread import Spread
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["band_sheet", "contact_sheet", "prediction", "spread"]
+
+_MEDIAN_LINE = {"color": "0.45", "linestyle": ":", "linewidth": 0.8, "zorder": 2}
+
+#: Sheets of bands: most cells beside each other, and their size [inches].
+_BAND_COLUMNS = 8
+_BAND_CELL = 2.4, 1.0
+
+#: The same of sheets of loops; reach of a loop in its cell.
+_COLUMNS = 14
+_CELL = 1.15, 1.05
+_REACH = np.array((0.46, 0.38))
+
+
+def spread(found: Spread, *, test: Any = None, ax: Axes | None = None, **line: Any) -> Axes:
+    """Draw band, prediction and median along the path of displacement, and a test over them.
+
+    Parameters
+    ----------
+    found : Spread
+        The prediction with its band.
+    test : optional
+        A measured test with the same rows.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+    **line
+        Properties of the prediction's line.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+    """
+    path = 1e3 * np.concatenate(([0.0], np.cumsum(np.abs(np.diff(found.displacement)))))
+    measured = None if test is None else found.rows_of(test)
+    with axes_or_new(ax, (6.0, 2.8)) as drawn:
+        drawn.fill_between(
+            path, found.lower / 1e3, found.upper / 1e3, color="0.86", lw=0, label="80 % band"
+        )
+        model = line_of({**MODEL_LINE, "label": "Prediction"}, line)
+        drawn.plot(path, found.force / 1e3, **model)
+        drawn.plot(path, found.median / 1e3, **_MEDIAN_LINE, label="Median of the samples")
+        if measured is not None:
+            drawn.plot(path, measured / 1e3, **{**TEST_LINE, "label": "Test"})
+        drawn.set_xlabel("Path of displacement (mm)")
+        drawn.set_ylabel("Force (kN)")
+        drawn.margins(x=0.01)
+        # Above the axes: the band fills them.
+        drawn.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
+        return drawn
+
+
+def prediction(row: Prediction) -> Figure:
+    """Draw loop and band of a prediction, and the test if there is one.
+
+    Parameters
+    ----------
+    row : Prediction
+        The prediction.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The loop, and the band along the path.
+    """
+    from matplotlib.figure import Figure  # noqa: PLC0415
+
+    with style():
+        figure = Figure(figsize=(8.6, 3.4), layout="constrained")
+        left, right = figure.subplots(1, 2, width_ratios=(1.0, 1.7))
+        test = row.comparison
+        if row.band is not None:
+            d, force = row.band.displacement, row.band.force
+        elif test is not None:
+            d, force = test.displacement, test.model_force
+        else:
+            raise ValueError(f"{row.specimen.name}: there is nothing to draw")
+        left.axhline(0.0, **ZERO_LINE)
+        left.axvline(0.0, **ZERO_LINE)
+        if test is not None:
+            left.plot(1e3 * test.displacement, 1e-3 * test.test_force, **TEST_LINE)
+        left.plot(1e3 * d, 1e-3 * force, **MODEL_LINE)
+        left.set(xlabel="Displacement (mm)", ylabel="Force (kN)")
+        if row.band is not None:
+            measured = None if test is None else test.test_force
+            spread(row.band, test=measured, ax=right)
+        else:
+            right.set_axis_off()
+        numbers = properties(row.specimen)
+        figure.suptitle(
+            f"{row.specimen.name}: axial load ratio {numbers['axial_load_ratio']:.2f}, "
+            f"span over depth {numbers['span_depth_ratio']:.2f}, "
+            f"concrete {1e-6 * numbers['concrete_strength']:.0f} MPa",
+            fontsize="medium",
+        )
+    return figure
+
+
+def band_sheet(predictions: Predictions, path: str | os.PathLike[str]) -> Path:
+    """Write one picture with the bands of all tests along their paths, each in its own scale.
+
+    Parameters
+    ----------
+    predictions : Predictions
+        The tests.
+    path : path
+        File to write, by its ending as PNG, PDF or SVG.
+
+    Returns
+    -------
+    Path
+        The file.
+    """
+    path = Path(path)
+    from matplotlib.collections import LineCollection, PolyCollection  # noqa: PLC0415
+    from matplotlib.figure import Figure  # noqa: PLC0415
+
+    rows = [row for row in predictions if row.band is not None]
+    columns = max(1, min(_BAND_COLUMNS, math.ceil(math.sqrt(0.5 * len(rows)))))
+    lines = max(1, math.ceil(len(rows) / columns))
+    with style():
+        figure = Figure(figsize=(_BAND_CELL[0] * columns, _BAND_CELL[1] * lines))
+        ax = figure.add_axes((0, 0, 1, 1))
+        ax.set(xlim=(0, columns), ylim=(-lines, 0))
+        ax.set_axis_off()
+        bands, models, tests = [], [], []
+        for i, row in enumerate(rows):
+            found = row.band
+            assert found is not None
+            measured = None if row.comparison is None else row.comparison.test_force
+            curves = [found.lower, found.upper, found.force]
+            curves += [] if measured is None else [measured]
+            most = max(float(np.max(np.abs(curve))) for curve in curves) or 1.0
+            way = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(found.displacement)))))
+            x = i % columns + 0.02 + 0.96 * way / way[-1]
+            low, high, model, *test = (
+                np.column_stack((x, -(i // columns) - 0.56 + 0.38 * curve / most))
+                for curve in curves
+            )
+            bands.append(np.concatenate((low, high[::-1])))
+            models.append(model)
+            tests += test
+            share = "" if measured is None else f", {row.points_within:.2f} within"
+            label = f"{row.specimen.name[:42]}{share}"
+            ax.text(x[0], -(i // columns) - 0.15, label, fontsize=5.0, va="bottom")
+        ax.add_collection(PolyCollection(bands, facecolors="0.86", edgecolors="none"))
+        ax.add_collection(LineCollection(tests, colors="0.45", linewidths=0.4))
+        ax.add_collection(LineCollection(models, colors="#c2410c", linewidths=0.4))
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_figure(figure.savefig, path, dpi=160)
+    return path
+
+
+def contact_sheet(predictions: Predictions, path: str | os.PathLike[str]) -> Path:
+    """Write one picture with all loops, each in a cell of its own scale.
+
+    One pair of axes and two collections of lines for all cells: a pair for each would take seconds.
+
+    Parameters
+    ----------
+    predictions : Predictions
+        The tests.
+    path : path
+        File to write, by its ending as PNG, PDF or SVG.
+
+    Returns
+    -------
+    Path
+        The file.
+    """
+    path = Path(path)
+    from matplotlib.collections import LineCollection  # noqa: PLC0415
+    from matplotlib.figure import Figure  # noqa: PLC0415
+
+    rows = [
+        (row, drawn)
+        for row, drawn in zip(predictions, predictions.pictures, strict=True)
+        if drawn is not None
+    ]
+    columns = max(1, min(_COLUMNS, math.ceil(math.sqrt(1.5 * len(rows)))))
+    lines = max(1, math.ceil(len(rows) / columns))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with style():
+        figure = Figure(figsize=(_CELL[0] * columns, _CELL[1] * lines))
+        ax = figure.add_axes((0, 0, 1, 1))
+        ax.set(xlim=(0, columns), ylim=(-lines, 0))
+        ax.set_axis_off()
+        zeros, tests, models = [], [], []
+        for i, (row, drawn) in enumerate(rows):
+            x, y = i % columns + 0.5, -(i // columns) - 0.56
+            zeros += [[(x - 0.46, y), (x + 0.46, y)], [(x, y - 0.38), (x, y + 0.38)]]
+            tests.append(_REACH * drawn.test + (x, y))
+            if len(drawn.model) > 1:
+                models.append(_REACH * drawn.model + (x, y))
+            ax.text(x - 0.47, y + 0.4, _short(row.specimen), fontsize=4.6, va="bottom")
+            ax.text(x + 0.47, y - 0.41, f"{row.nrmse:.3f}", fontsize=5.0, ha="right", va="bottom")
+        ax.add_collection(LineCollection(zeros, colors="0.8", linewidths=0.3))
+        ax.add_collection(LineCollection(tests, colors="0.6", linewidths=0.5))
+        ax.add_collection(LineCollection(models, colors="#c2410c", linewidths=0.4))
+        # Of many thin lines a png hardly gets smaller by trying hard.
+        fast = {"pil_kwargs": {"compress_level": 3}} if path.suffix.lower() == ".png" else {}
+        write_figure(figure.savefig, path, dpi=200, **fast)
+    return path
+
+
+def _short(specimen: Specimen) -> str:
+    """Return a name that fits into a cell: series and what the test is called in it."""
+    label = specimen.name
+    if specimen.year and specimen.year in label:
+        label = label.split(specimen.year, 1)[1].strip(" ,")
+        label = f"{specimen.series}, {label}"
+    return label if len(label) <= 27 else f"{label[:26]}…"

@@ -1,0 +1,519 @@
+"""Figures of a section: its drawing, its diagrams and springs, the state of its layers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rbsdem._arguments import Array
+from rbsdem.checks.criteria import buckling_strain
+from rbsdem.errors import InputError
+from rbsdem.model.response import Response
+from rbsdem.model.section import Section
+from rbsdem.output.style import (
+    MODEL_LINE,
+    TEST_LINE,
+    TEST_POINTS,
+    ZERO_LINE,
+    axes_or_new,
+    line_of,
+    new_axes,
+    style,
+    style_of,
+)
+from rbsdem.section.diagram import Diagram, Events
+from rbsdem.section.interaction import Code, InteractionDiagram
+from rbsdem.section.model import LayeredColumn
+from rbsdem.section.shear_diagram import ShearDiagram
+from rbsdem.section.shear_spring import ShearSpring
+from rbsdem.section.spring_fit import SectionSprings
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = [
+    "interaction",
+    "moment_curvature",
+    "section",
+    "section_springs",
+    "section_state",
+    "shear_diagram",
+]
+
+EVENT_MARKS: dict[str, dict[str, Any]] = {
+    "cracking": {"marker": "o", "markerfacecolor": "white"},
+    "yielding": {"marker": "s", "markerfacecolor": "white"},
+    "peak": {"marker": "^", "markerfacecolor": "black"},
+    "ultimate": {"marker": "D", "markerfacecolor": "black"},
+}
+"""Markers of the events."""
+
+_OUTLINE = {"facecolor": "0.93", "edgecolor": "black", "linewidth": 0.8}
+_TIE = {"facecolor": "0.35", "linewidth": 0.0}
+_INSIDE = {"facecolor": "0.93", "linewidth": 0.0}
+_BAR = {"facecolor": "black", "edgecolor": "black", "linewidth": 0.0}
+
+_NAMES = {
+    "aci318": "ACI 318-19, nominal",
+    "ec2": "EN 1992-1-1, nominal",
+    "joint": "joint of the model",
+    None: "own laws of the section",
+}
+
+#: States of concrete from the largest elongation to the largest compression, and their fills.
+_FIBRES: dict[str, dict[str, Any]] = {
+    "open": {"facecolor": "white"},
+    "compressed": {"facecolor": "0.85"},
+    "past its peak": {"facecolor": "0.62"},
+    "spalled, crushed": {"facecolor": "0.35"},
+}
+_BARS: dict[str, dict[str, Any]] = {
+    "elastic": {"facecolor": "white"},
+    "yields": {"facecolor": "0.55"},
+    "beyond buckling strain": {"facecolor": "black"},
+}
+
+
+def moment_curvature(diagram: Diagram, *, ax: Axes | None = None, **line: Any) -> Axes:
+    """Draw moment against curvature with its events, in kN m and mrad/m.
+
+    Parameters
+    ----------
+    diagram : Diagram
+        What `Section.diagram` returns.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+    **line
+        Properties of the line, as for ``Axes.plot``.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+    """
+    with axes_or_new(ax, (3.5, 2.8)) as drawn:
+        drawn.plot(1e3 * diagram.curvature, diagram.moment / 1e3, **line_of(MODEL_LINE, line))
+        _draw_events(diagram.events, float(diagram.curvature[-1]), drawn)
+        _dress(drawn)
+        drawn.set_ylim(bottom=min(0.0, float(np.min(diagram.moment)) / 1e3))
+    return drawn
+
+
+def _draw_events(
+    events: Events, furthest: float, ax: Axes, names: Iterable[str] = tuple(EVENT_MARKS)
+) -> None:
+    for name in names:
+        point = getattr(events, name)
+        if point is not None and point.curvature <= furthest:
+            ax.plot(
+                1e3 * point.curvature,
+                point.moment / 1e3,
+                linestyle="none",
+                color="black",
+                markersize=4.5,
+                markeredgewidth=0.8,
+                zorder=5,
+                label=name.capitalize(),
+                **EVENT_MARKS[name],
+            )
+
+
+def _dress(ax: Axes) -> None:
+    ax.set_xlim(left=0.0)
+    ax.set_ylim(bottom=0.0)
+    ax.set_xlabel("Curvature (mrad/m)")
+    ax.set_ylabel("Moment (kN m)")
+    ax.tick_params(right=True, top=True)
+    ax.legend(loc="lower right", handletextpad=0.3)
+
+
+def section_springs(springs: SectionSprings) -> Figure:
+    """Draw the diagrams of a section and the lines of the springs (figure 2 of the paper).
+
+    Parameters
+    ----------
+    springs : SectionSprings
+        What `Section.springs` returns.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Shear force against shear strain, where there is a shear diagram, and moment against
+        curvature; `rbsdem.plot.save` writes it.
+    """
+    from matplotlib.figure import Figure  # noqa: PLC0415
+
+    drawing, events = springs.section, springs.events
+    with style():
+        panels = 1 if springs.shear_fit is None else 2
+        figure = Figure(figsize=(3.5 * panels, 2.9), layout="constrained")
+        axes = figure.subplots(1, panels, squeeze=False)[0]
+        if springs.shear_fit is not None:
+            found = drawing.shear_diagram(
+                springs.length,
+                springs.axial_load,
+                furthest=events.ultimate.curvature,
+                confined=springs.confined,
+            )
+            shear_diagram(found, spring=springs.shear_fit, ax=axes[0])
+        ax = axes[-1]
+        load, last = springs.axial_load, 1.1 * events.ultimate.curvature
+        points = (events.cracking, events.yielding, events.ultimate)
+        line = np.array([(0.0, 0.0)] + [(1e3 * p.curvature, p.moment / 1e3) for p in points])
+        ax.plot(*line.T, **TEST_LINE, label="Spring")
+        curvature = last * np.linspace(0.0, 1.0, 150) ** 2
+        for tension, look, label in (
+            ("ts", {**MODEL_LINE, "color": "0.6"}, "Tension stiffening"),
+            ("bare", MODEL_LINE, "No stiffening"),
+        ):
+            moment = drawing.moment_curvature(load, curvature, tension, springs.confined)
+            ax.plot(1e3 * curvature, moment / 1e3, **look, label=label)
+        _draw_events(events, last, ax, ("cracking", "yielding", "ultimate"))
+        _dress(ax)
+    return figure
+
+
+def section(section: Section, *, ax: Axes | None = None) -> Axes:
+    """Draw outline, ties and bars of a section to scale, in mm, the tension face below.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+    """
+    from matplotlib.patches import Circle, Polygon  # noqa: PLC0415
+
+    with axes_or_new(ax, (2.6, 2.8)) as drawn:
+        w, h = 1e3 * section.width, 1e3 * section.depth
+        drawn.add_patch(Polygon(1e3 * section.outline(), **_OUTLINE))
+        if section.ties is not None:
+            _draw_ties(section, section.ties.diameter, drawn)
+        if section.hollow:
+            _draw_void(section, drawn)
+        for x, y, diameter in section.place_bars(_single_bars(section)):
+            drawn.add_patch(Circle((1e3 * x, -1e3 * y), 0.5e3 * diameter, zorder=3, **_BAR))
+        reach_x, reach_y = 0.54 * w, 0.54 * h
+        drawn.set_xlim(-reach_x, reach_x)
+        drawn.set_ylim(-reach_y, reach_y)
+        drawn.set_aspect("equal")
+        drawn.set_xticks([-0.5 * w, 0.0, 0.5 * w])
+        drawn.set_yticks(
+            [-0.5 * h, 0.0, 0.5 * h], [f"{0.5 * h:g}", "0", f"\N{MINUS SIGN}{0.5 * h:g}"]
+        )
+        drawn.set_xlabel("Width (mm)")
+        drawn.set_ylabel("$y$ (mm), tension below")
+        for spine in drawn.spines.values():
+            spine.set_visible(False)
+    return drawn
+
+
+def _draw_ties(section: Section, thickness: float, ax: Axes) -> None:
+    """Draw hoop and inner legs as bands of their true thickness [m]."""
+    from matplotlib.patches import Polygon  # noqa: PLC0415
+
+    bend = 0.5 * (section.bar_diameter or 0.0)
+    for inset, look in ((0.0, _TIE), (thickness, _INSIDE)):
+        line = section.hoop_line(inset, bend + thickness - inset)
+        ax.add_patch(Polygon(1e3 * line, zorder=2, **look))
+    for leg in section.inner_legs():
+        ax.add_patch(Polygon(1e3 * leg, zorder=2, **_TIE))
+
+
+def _draw_void(section: Section, ax: Axes) -> None:
+    """Draw the void with the hoop around it."""
+    from matplotlib.patches import Polygon  # noqa: PLC0415
+
+    if section.ties is not None:
+        for inset, look in ((section.ties.diameter, _TIE), (0.0, _INSIDE)):
+            around = section.void(section.cover + inset)
+            ax.add_patch(Polygon(1e3 * around, zorder=2.2, **look))
+    empty = {**_OUTLINE, "facecolor": "white"}
+    ax.add_patch(Polygon(1e3 * section.void(), zorder=2.4, **empty))
+
+
+def _single_bars(section: Section) -> list[tuple[float, float]]:
+    """Return y and diameter of every bar [m]; an entry of `bars` may be a row of several."""
+    bars = []
+    for y, area, _ in section.bars:
+        single = 0.25 * math.pi * (section.bar_diameter or 0.0) ** 2
+        count = max(1, round(area / single)) if single > 0.0 else 1
+        bars += [(y, 2.0 * math.sqrt(area / count / math.pi))] * count
+    return bars
+
+
+def shear_diagram(
+    diagram: ShearDiagram,
+    *,
+    spring: ShearSpring | None = None,
+    ax: Axes | None = None,
+    **line: Any,
+) -> Axes:
+    """Draw shear force against shear strain with its knee, in kN and mm/m.
+
+    Parameters
+    ----------
+    diagram : ShearDiagram
+        What `Section.shear_diagram` returns.
+    spring : ShearSpring, optional
+        Draw the lines of this spring as well.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+    **line
+        Properties of the diagram's line, as for ``Axes.plot``.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+    """
+    with axes_or_new(ax, (3.5, 2.8)) as drawn:
+        strain = 1e3 * np.concatenate([[0.0], diagram.strain])
+        force = np.concatenate([[0.0], diagram.force]) / 1e3
+        drawn.plot(strain, force, **line_of({**MODEL_LINE, "label": "Section"}, line))
+        marks = {"yielding": diagram.knee, "ultimate": diagram.end}
+        if spring is not None:
+            marks = {"yielding": spring.knee, "ultimate": spring.end}
+            points = [(0.0, 0.0)] + [(p.strain, p.force) for p in (spring.knee, spring.end)]
+            x, y = np.array(points).T
+            drawn.plot(1e3 * x, y / 1e3, **TEST_LINE, label="Spring")
+            # A strength far above the diagram would only flatten it.
+            if spring.strength < 1.3e3 * force.max():
+                drawn.axhline(spring.strength / 1e3, color="0.75", linewidth=0.6, label="$V_n$")
+        for name, label in (("yielding", "Knee"), ("ultimate", "End")):
+            point = marks[name]
+            if point is not None:
+                drawn.plot(
+                    1e3 * point.strain,
+                    point.force / 1e3,
+                    linestyle="none",
+                    color="black",
+                    markersize=4.5,
+                    markeredgewidth=0.8,
+                    zorder=5,
+                    label=label,
+                    **EVENT_MARKS[name],
+                )
+        drawn.set_xlim(0.0, 1.08 * strain.max())
+        drawn.set_ylim(bottom=0.0)
+        drawn.set_xlabel("Shear strain (mm/m)")
+        drawn.set_ylabel("Shear force (kN)")
+        drawn.tick_params(right=True, top=True)
+        drawn.legend(loc="lower right", handletextpad=0.5)
+    return drawn
+
+
+def interaction(
+    diagram: InteractionDiagram,
+    *,
+    demand: ArrayLike | None = None,
+    design: bool = True,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw axial load over moment, in kN and kN m.
+
+    Parameters
+    ----------
+    diagram : InteractionDiagram
+        What `Section.interaction` returns.
+    demand : array_like, shape (p, 2), optional
+        Axial loads [N] and moments [N m] to mark.
+    design : bool, optional
+        Whether to draw the design strength of a code too.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+    """
+    marks = None if demand is None else np.atleast_2d(np.asarray(demand, dtype=np.float64))
+    if marks is not None and marks.shape[1] != 2:
+        raise InputError(
+            f"demand has shape {marks.shape}; give a row for each demand: axial load [N], "
+            "moment [N m]"
+        )
+    with axes_or_new(ax, (3.5, 3.4)) as drawn:
+        name = _NAMES[diagram.code]
+        drawn.plot(diagram.moment / 1e3, diagram.axial_load / 1e3, **MODEL_LINE, label=name)
+        if design and diagram.code in get_args(Code):
+            drawn.plot(
+                diagram.design_moment / 1e3,
+                diagram.design_axial_load / 1e3,
+                **{**TEST_LINE, "color": "black"},
+                label=name.replace("nominal", "design"),
+            )
+        if marks is not None:
+            drawn.plot(np.abs(marks[:, 1]) / 1e3, marks[:, 0] / 1e3, **TEST_POINTS, label="demand")
+        drawn.axhline(0.0, **ZERO_LINE)
+        drawn.set_xlim(left=0.0, auto=True)
+        drawn.set_xlabel("Moment (kN m)")
+        drawn.set_ylabel("Axial load (kN), compression positive")
+        drawn.tick_params(right=True, top=True)
+        drawn.legend(loc="upper right", fontsize=7.5)
+    return drawn
+
+
+def section_state(
+    result: Response, time: float, *, axes: Sequence[Axes] | None = None
+) -> list[Axes]:
+    """Draw the hinge's section with its layers by state, and the strains over its depth.
+
+    Parameters
+    ----------
+    result : Result
+        Of a column that was made from a section, with its openings (``openings=True``).
+    time : float
+        The moment [s], or point of a static path; the nearest row is drawn.
+    axes : sequence of 2 matplotlib Axes, optional
+        Where to draw; a new figure without it.
+
+    Returns
+    -------
+    list of matplotlib.axes.Axes
+        For the section and the strains.
+
+    Raises
+    ------
+    InputError
+        If the column was not made from a section, the openings were not kept, or the moment is
+        outside of the rows.
+    """
+    column = result.column
+    if not isinstance(column, LayeredColumn) or column.recipe is None:
+        raise InputError(
+            "section_state: the column was not made from a section; Section.column makes one"
+        )
+    section = column.recipe.section
+    strains = result.strains(1)
+    if not result.time[0] <= time <= result.time[-1]:
+        raise InputError(
+            f"time = {time:g} is outside of the rows, which hold {result.time[0]:g} to "
+            f"{result.time[-1]:g}"
+        )
+    row = int(np.argmin(np.abs(result.time - time)))
+    if axes is None:
+        axes = new_axes(1, 2, (5.2, 2.8))
+    elif len(axes) != 2:
+        raise InputError(f"axes has {len(axes)} of them; give two, for the section and its strains")
+    value = strains.value[row]
+    concrete = strains.part != "bar"
+    with style_of(axes[0]):
+        buckles = buckling_strain(section, column)
+        _draw_layers(section, (strains.position, strains.part, value), buckles, axes[0])
+        axes[1].plot(100 * value[concrete], 1e3 * strains.position[concrete], **MODEL_LINE)
+        axes[1].plot(
+            100 * value[~concrete],
+            1e3 * strains.position[~concrete],
+            linestyle="none",
+            marker="o",
+            markersize=3.5,
+            markerfacecolor="white",
+            markeredgecolor="black",
+        )
+        axes[1].axvline(0.0, **ZERO_LINE)
+        axes[1].set_ylim(axes[0].get_ylim())
+        axes[1].set_xlabel("Strain (%), elongation positive")
+        axes[1].set_ylabel("$y$ (mm)")
+        axes[1].tick_params(right=True, top=True)
+        drift = 100 * result.displacement[row] / column.height
+        axes[0].set_title(f"drift {drift:.2f} %", fontsize=8)
+    return list(axes)
+
+
+def _draw_layers(
+    section: Section, layers: tuple[Array, Array, Array], buckles: float, ax: Axes
+) -> None:
+    """Draw bands of concrete and bars; core inside, cover around it, within the outline."""
+    from matplotlib.lines import Line2D  # noqa: PLC0415
+    from matplotlib.patches import Circle, Patch, Polygon  # noqa: PLC0415
+
+    places, parts, values = layers
+    core = section.confinement
+    cover = section.concrete_law["eps0"], section.concrete.eps_spall
+    marks = {"cover": cover, "core": (core.eps_cc, core.eps_cu) if core else cover}
+    half = 0.5e3 * section.depth
+    clip = Polygon(1e3 * section.outline(), facecolor="none", edgecolor="black", lw=0.8, zorder=3)
+    ax.add_patch(clip)
+    wide = 1e3 * section.width
+    inner = wide - 2e3 * float(section.side_cover or 0.0)
+    for part, span in (("cover", wide), ("core", inner)):
+        chosen = np.flatnonzero(parts == part)
+        chosen = chosen[np.argsort(places[chosen])]
+        ys = 1e3 * places[chosen]
+        if ys.size == 0:
+            continue
+        between = 0.5 * (ys[1:] + ys[:-1])
+        ends = (
+            (-half, half)
+            if part == "cover"
+            else (
+                -half + 1e3 * section.cover,
+                half - 1e3 * section.cover,
+            )
+        )
+        edges = np.concatenate(([ends[0]], between, [ends[1]]))
+        for low, high, strain in zip(edges[:-1], edges[1:], values[chosen], strict=True):
+            state = _of_concrete(-strain, *marks[part])
+            corners = [(-span / 2, low), (span / 2, low), (span / 2, high), (-span / 2, high)]
+            band = Polygon(corners, zorder=1 if part == "cover" else 2, lw=0, **_FIBRES[state])
+            ax.add_patch(band)
+            band.set_clip_path(clip)
+    bars = np.flatnonzero(parts == "bar")
+    levels, strains = places[bars], values[bars]
+    singles = [(y, section.bar_diameter or 0.0) for y, _, _ in section.bars]
+    for x, y, diameter in section.place_bars(singles):
+        strain = strains[np.argmin(np.abs(levels - y))]
+        near = min(abs(bar[0] - y) for bar in section.bars)
+        steels = [steel for at, _, steel in section.bars if abs(at - y) <= near]
+        yields = min(steel.fy / steel.es for steel in steels)
+        state = "elastic" if abs(strain) < yields else "yields"
+        if strain > buckles:
+            state = "beyond buckling strain"
+        ax.add_patch(
+            Circle(
+                (1e3 * x, 1e3 * y),
+                0.5e3 * diameter,
+                zorder=4,
+                ec="black",
+                lw=0.6,
+                **_BARS[state],
+            )
+        )
+    ax.set_xlim(-0.54 * wide, 0.54 * wide)
+    ax.set_ylim(-1.08 * half, 1.08 * half)
+    ax.set_aspect("equal")
+    ax.set_xlabel("Width (mm)")
+    ax.set_ylabel("$y$ (mm)")
+    ax.legend(
+        handles=[Patch(ec="black", lw=0.5, label=name, **fill) for name, fill in _FIBRES.items()]
+        + [
+            Line2D([], [], marker="o", ls="", mec="black", mfc=fill["facecolor"], label=name)
+            for name, fill in _BARS.items()
+        ],
+        loc="upper center",
+        bbox_to_anchor=(0.5, -0.22),
+        ncols=2,
+        fontsize=6.5,
+        handlelength=1.0,
+    )
+
+
+def _of_concrete(compression: float, peak: float, spall: float) -> str:
+    if compression <= 0:
+        return "open"
+    if compression < peak:
+        return "compressed"
+    return "past its peak" if compression < spall else "spalled, crushed"

@@ -1,0 +1,196 @@
+"""Tables: a frame as csv, as Parquet, and on the terminal in the units of paper.
+
+Every record of many rows has a `to_frame`, in SI; what is written or printed of it comes from that
+frame, here.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Protocol
+
+from rbsdem import _core, _files
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+__all__ = ["HasFrame", "console", "plain", "table", "write_csv", "write_parquet"]
+
+#: Units of SI: factor to the unit on paper, and that unit.
+_PAPER = {
+    "N": (1e-3, "kN"),
+    "J": (1e-3, "kJ"),
+    "m": (1e3, "mm"),
+    "N m": (1e-3, "kN m"),
+    "Nm": (1e-3, "kN m"),
+    "N/m": (1e-6, "kN/mm"),
+    "Pa": (1e-6, "MPa"),
+    "rad": (1e2, "%"),
+    "drift": (1e2, "%"),
+}
+
+#: Widest column of text; what is longer is cut off.
+_WIDEST = 60
+
+
+class HasFrame(Protocol):
+    """A record with a table."""
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return a DataFrame in SI."""
+
+
+def write_csv(frame: pd.DataFrame, path: str | os.PathLike[str]) -> None:
+    """Write a frame as csv with six digits, whole or not at all.
+
+    Parameters
+    ----------
+    frame : DataFrame
+        The table; its index is left out.
+    path : path
+        File to write. Texts that a spreadsheet would take for a formula get an apostrophe in front;
+        numbers that are not finite are blanks.
+    """
+    _files.write_csv(path, [list(frame.columns), *frame.itertuples(index=False, name=None)])
+
+
+def write_parquet(frame: pd.DataFrame, path: str | os.PathLike[str]) -> None:
+    """Write a frame as Parquet, whole or not at all; needs pyarrow.
+
+    Parameters
+    ----------
+    frame : DataFrame
+        The table; its index is left out.
+    path : path
+        File to write.
+    """
+    with _files.whole_file(path) as file:
+        frame.to_parquet(file, index=False)
+
+
+def table(
+    record: HasFrame | pd.DataFrame,
+    *,
+    styles: Sequence[str | None] | None = None,
+    caption: str | None = None,
+) -> Table:
+    """Return a table for the terminal: mm, kN, kJ and per cent, three digits.
+
+    The unit of a number is at the end of its column's name (``peak_force_N``), or in the column
+    "unit" of its row. What has no name of this kind is printed as it is.
+
+    Parameters
+    ----------
+    record : record with ``to_frame``, or DataFrame
+        What to print. An index that has a name becomes the first column.
+    styles : sequence of str or None, optional
+        Style of each row, as `rich` names them.
+    caption : str, optional
+        Text below the table.
+
+    Returns
+    -------
+    rich.table.Table
+        For ``rich.print``.
+    """
+    import rich.box  # noqa: PLC0415
+    from pandas.api.types import is_numeric_dtype  # noqa: PLC0415
+    from rich.table import Table  # noqa: PLC0415
+
+    frame = record.to_frame() if hasattr(record, "to_frame") else record
+    if frame.index.name is not None:
+        frame = frame.reset_index()
+    units = [str(unit) for unit in frame["unit"]] if "unit" in frame else None
+    made = Table(box=rich.box.SIMPLE_HEAD, padding=(0, 1), show_edge=False, caption=caption)
+    cells: list[list[Text]] = []
+    for name in frame.columns:
+        heading, factor = _heading(str(name))
+        values = list(frame[name])
+        if name == "unit":
+            values = [_PAPER.get(unit, (1.0, unit))[1] for unit in values]
+        numbers = is_numeric_dtype(frame[name]) and frame[name].dtype != bool
+        made.add_column(
+            heading,
+            justify="right" if numbers else "left",
+            no_wrap=True,
+            overflow="ellipsis",
+            max_width=None if numbers else _WIDEST,
+        )
+        if numbers:
+            factors = (
+                [_PAPER.get(u, (1.0, u))[0] for u in units] if units else [factor] * len(frame)
+            )
+            values = [_figure(value, by) for value, by in zip(values, factors, strict=True)]
+        cells.append([plain(_word(value)) for value in values])
+    for at, row in enumerate(zip(*cells, strict=True)):
+        made.add_row(*row, style=styles[at] if styles else None)
+    return made
+
+
+def console(width: int) -> Console:
+    """Return the console of rich on standard output.
+
+    Parameters
+    ----------
+    width : int
+        Letters of a line where standard output is no terminal.
+    """
+    from rich.console import Console  # noqa: PLC0415
+
+    class Terminal(Console):
+        """A console whose reader may leave: what called it decides what that means."""
+
+        def on_broken_pipe(self) -> None:
+            raise BrokenPipeError
+
+    out = Terminal(highlight=False)
+    return out if out.is_terminal else Terminal(highlight=False, width=width)
+
+
+def plain(text: str, **style: Any) -> Text:
+    """Return a text of rich that has no markup, for words that come from outside.
+
+    Parameters
+    ----------
+    text : str
+        The words; what cannot be printed, such as the codes that steer a terminal, becomes "?".
+    **style
+        Of `rich.text.Text`.
+    """
+    from rich.text import Text  # noqa: PLC0415
+
+    return Text("".join(c if c.isprintable() else "?" for c in text), **style)
+
+
+def _heading(name: str) -> tuple[str, float]:
+    """Return the heading of a column and the factor of its numbers."""
+    stem, _, unit = name.rpartition("_")
+    if not (stem and unit in _PAPER):
+        stem, unit = name, _core.units().get(name, "")
+        if "drift" in name.split("_"):
+            unit = "drift"
+    words = stem.replace("_", " ")
+    words = words[:1].upper() + words[1:]
+    factor, on_paper = _PAPER.get(unit, (1.0, unit))
+    return (f"{words}\n{on_paper}" if on_paper else words), factor
+
+
+def _figure(value: float, factor: float) -> str:
+    if isinstance(value, int):
+        return str(value)
+    value = factor * float(value)
+    if math.isnan(value):
+        return "-"
+    if math.isinf(value):
+        return "∞"
+    return f"{value:.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.3g}"
+
+
+def _word(value: object) -> str:
+    lines = "" if value is None else str(value)
+    return lines.splitlines()[0] if lines else ""
