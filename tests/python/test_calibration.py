@@ -614,13 +614,10 @@ def test_report(fit):
     assert max(map(len, text.splitlines())) <= 110
 
 
-def test_table_fits_a_terminal(fit, capsys):
-    from rich.console import Console  # noqa: PLC0415
-
-    Console(width=80).print(rbsdem.plot.table(fit))
-    printed = capsys.readouterr().out
-    assert "…" not in printed
-    assert "flexure.d_y" in printed
+def test_table(fit):
+    frame = fit.to_frame()
+    assert list(frame["name"]) == list(fit.values)
+    assert list(frame["value"]) == list(fit.values.values())
 
 
 def test_plot(fit):
