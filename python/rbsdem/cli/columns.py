@@ -27,11 +27,13 @@ from rbsdem.many.ida import IDA
 from rbsdem.many.ida import ida as run_ida
 from rbsdem.many.runs import NAMES
 from rbsdem.methods.measure import trade as compare_methods
+from rbsdem.methods.physics import Physics
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.read import read_motion, read_motions
 from rbsdem.motions.synthetic import synthetic
-from rbsdem.output import methods_figure, methods_table
-from rbsdem.output.ensemble_figure import draw_fragilities
+from rbsdem.output import many as ensemble_figures
+from rbsdem.output import methods as methods_output
+from rbsdem.output import tables
 from rbsdem.results.case import Case, read_case
 from rbsdem.web.near import Near
 from rbsdem.web.report import write_report
@@ -89,13 +91,14 @@ def trade(
     folder = output or case.with_name(f"{case.stem}-trade")
     folder.mkdir(parents=True, exist_ok=True)
     written = [folder / "trade.csv", folder / "physics.csv"]
-    study.to_csv(written[0])
-    study.physics_to_csv(written[1])
-    figure = methods_figure.save(study, folder / "trade.png", model.title)
+    tables.write_csv(study.to_frame(), written[0])
+    physics = study.physics or Physics((), "", math.nan, math.nan)
+    tables.write_csv(physics.to_frame(), written[1])
+    figure = methods_output.save(study, folder / "trade.png", model.title)
     if figure is not None:
         written.append(figure)
     if not quiet:
-        methods_table.report(study, model.title or case.stem)
+        methods_output.report(study, model.title or case.stem)
         if figure is None:
             print("no figure: there is no reference")
         _tell_files(written)
@@ -439,7 +442,10 @@ def _write(
     if parquet:
         written.append(folder / "ida.parquet")
         analysis.runs.to_parquet(written[-1])
-    figures = {"ida.png": analysis.plot(), "fragility.png": draw_fragilities(dict(curves))}
+    figures = {
+        "ida.png": ensemble_figures.ida(analysis),
+        "fragility.png": ensemble_figures.fragilities(dict(curves)),
+    }
     for name, ax in figures.items():
         written.append(folder / name)
         write_figure(ax.figure.savefig, written[-1], dpi=150)

@@ -224,20 +224,21 @@ def _settings(trade: Trade) -> pd.DataFrame:
         value = row.setting.value
         if row.setting.method == "auto" and row.reason:
             value = f"chose {row.reason.split(':')[0]}"
+        if row.status not in ("completed", "collapsed"):
+            value += f": {row.status}"
         given = " (as given)" if row.setting.own else ""
         rows.append(
             {
                 " ": "*" if row.pareto else "",
                 "Method": f"{row.setting.name}, {row.setting.kinematics}{given}",
                 "Setting": value,
-                "time": row.seconds,
+                "Time, s": row.seconds,
                 trade.response.capitalize(): row.response_rms,
                 "Moment": row.moment,
                 "Energy": row.energy,
                 "Peak": row.peak,
                 "Error": row.error,
                 "To finer": row.move,
-                "Status": "" if row.status in ("completed", "collapsed") else row.status,
             }
         )
     return pandas.DataFrame(rows)

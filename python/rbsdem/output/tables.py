@@ -11,7 +11,7 @@ import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
-from rbsdem import _core, _files
+from rbsdem import _files
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -171,9 +171,7 @@ def _heading(name: str) -> tuple[str, float]:
     """Return the heading of a column and the factor of its numbers."""
     stem, _, unit = name.rpartition("_")
     if not (stem and unit in _PAPER):
-        stem, unit = name, _core.units().get(name, "")
-        if "drift" in name.split("_"):
-            unit = "drift"
+        stem, unit = name, "drift" if "drift" in name.split("_") else ""
     words = stem.replace("_", " ")
     words = words[:1].upper() + words[1:]
     factor, on_paper = _PAPER.get(unit, (1.0, unit))
@@ -181,11 +179,13 @@ def _heading(name: str) -> tuple[str, float]:
 
 
 def _figure(value: float, factor: float) -> str:
+    import pandas  # noqa: PLC0415
+
+    if pandas.isna(value):
+        return "-"
     if isinstance(value, int):
         return str(value)
-    value = factor * float(value)
-    if math.isnan(value):
-        return "-"
+    value *= factor
     if math.isinf(value):
         return "∞"
     return f"{value:.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.3g}"
