@@ -18,7 +18,7 @@ __all__ = [
 #: How a message begins that tells of a value: "cover = ...", "layout: number = ...", after the
 #: place of the value in a file, if it came from one.
 _FIELD = re.compile(
-    r"(?:.* line \d+: )?(?:(\w+)(?:\(\d+\))?: )?([a-z]\w*)(?:\(\d+\))?"
+    r"(?:.* line \d+: )?(?:([\w ]+?)(?:\(\d+\))?: )?([a-z]\w*)(?:\(\d+\))?"
     r"(?: = |: value \d| is missing)"
 )
 

@@ -19,9 +19,8 @@ import pytest
 import rbsdem
 from rbsdem.cli import main
 from rbsdem.cli.columns import start_of
-from rbsdem.web import texts
-from rbsdem.web.compute import shown_rows
-from rbsdem.web.near import Near
+from rbsdem.web import exports
+from rbsdem.web.answers import NearestTests, shown_rows
 from rbsdem.web.parts import GALLERY, MODULES, parts
 from rbsdem.web.report import report_data, write_report
 from rbsdem.web.server import MOST_STATE, ExploreServer
@@ -302,7 +301,7 @@ def test_an_error_that_is_no_input_error_is_a_defect_and_says_so(post, monkeypat
     (answer,) = post("sections", state=state(), code="aci318")["columns"]
     assert "A defect of rbsdem, not of the input (ZeroDivisionError" in answer["codes"]["fault"]
     assert answer["code"]["moment"]  # the other panels stand
-    monkeypatch.setattr("rbsdem.web.compute.cyclic", broken)
+    monkeypatch.setattr("rbsdem.results.case.cyclic", broken)
     (answer,) = post("loops", state=state(section_width=0.41))["columns"]
     assert "force" not in answer
     assert "A defect of rbsdem" in answer["faults"][0]["text"]
@@ -402,9 +401,10 @@ def test_a_case_in_the_page_names_no_file(post, case_text):
         "drive = 'displacement', FILE\n = 'x.csv'",
         "drive = 'displacement', file ! a remark\n = 'x.csv'",
         "drive = 'displacement', amplitudes = 0.01, unit = 'm\n' file = 'x.csv'",
+        "drive = 'displacement', amplitudes = 0.01 /\n&analysis initial = '/etc/passwd'",
     ):
         (fault,) = post("open", text=case_text(loading=loading))["faults"]
-        assert re.search(r"line \d+: (file = names a file|a text is not closed)", fault["text"])
+        assert re.search(r"line \d+: (\w+ = names a file|a text is not closed)", fault["text"])
     assert "state" in post("open", text=case_text(case="title = 'my file'") + "! file = 'x'\n")
     (fault,) = post("open", text="&column height = 1 /")["faults"]
     assert "rbsdem-" not in fault["text"]  # no path of this machine
@@ -484,7 +484,7 @@ def test_modules_of_a_page_can_stand_in_one_file(page, modules):
 
 
 def test_nearest_tests(peer_folder):
-    near = Near(peer_folder, number=2)
+    near = NearestTests(peer_folder, number=2)
     found = near.of(state())["columns"][0]["tests"]
     # The column of the page is test No 1 of Soesianawati and others.
     assert "Soesianawati" in found[0]["name"]
@@ -496,6 +496,6 @@ def test_nearest_tests(peer_folder):
 
 
 def test_texts_that_are_no_drawings():
-    assert texts.drawing_in("! rbsdem explore: {\n") is None
-    assert texts.drawing_in("! rbsdem explore: [1]\n") is None
-    assert texts.drawing_in("&case /\n") is None
+    assert exports.drawing_in("! rbsdem explore: {\n") is None
+    assert exports.drawing_in("! rbsdem explore: [1]\n") is None
+    assert exports.drawing_in("&case /\n") is None

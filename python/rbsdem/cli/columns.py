@@ -35,11 +35,11 @@ from rbsdem.output import many as ensemble_figures
 from rbsdem.output import methods as methods_output
 from rbsdem.output import tables
 from rbsdem.results.case import Case, read_case
-from rbsdem.web.near import Near
+from rbsdem.web.answers import NearestTests
+from rbsdem.web.exports import drawing_in, opened
 from rbsdem.web.report import write_report
-from rbsdem.web.server import ExploreServer, opened
+from rbsdem.web.server import ExploreServer
 from rbsdem.web.state import DEFAULT
-from rbsdem.web.texts import drawing_in
 
 #: Collapse drift of an IDA if the case has none.
 _DRIFT = 0.1
@@ -508,7 +508,7 @@ def explore(case: Path | None, no_browser: bool, port: int, tests: Path | None) 
     Exit codes: 0 ended, 2 the input is wrong.
     """
     start = DEFAULT if case is None else start_of(case)
-    server = ExploreServer(port, start, None if tests is None else Near(tests))
+    server = ExploreServer(port, start, None if tests is None else NearestTests(tests))
     print(server.address, flush=True)
     if not no_browser:
         # Some browsers come back only when they are closed.
@@ -538,7 +538,7 @@ def report(case: Path, output: Path | None, title: str | None, tests: Path | Non
     Exit codes: 0 written, 1 the file cannot be written, 2 the input is wrong.
     """
     start = start_of(case)
-    near = None if tests is None else Near(tests)
+    near = None if tests is None else NearestTests(tests)
     title = title or start["title"] or case.stem
     _tell_files([write_report(output or case.with_suffix(".html"), start, title, near)])
     return 0

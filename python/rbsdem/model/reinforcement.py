@@ -134,7 +134,8 @@ class Layout:
         if face < 2 or side < 0 or side % 2:
             raise InputError(
                 f"layout: {face} bars on each face leave {side} of {self.number} for the two "
-                f"sides; face must be 2 or more, and an even number must be left"
+                f"sides; face must be 2 or more, and an even number must be left",
+                "layout.face",
             )
         edge = self._edge(depth, inset)
         corner = (_area(self.diameter), self.steel)
@@ -160,7 +161,8 @@ class Layout:
         if not edge > 0.0:
             raise InputError(
                 f"section: cover and hoops of {inset:g} m and bars of {self.diameter:g} m leave no "
-                f"core in a section of {depth:g} m"
+                f"core in a section of {depth:g} m",
+                "section.cover",
             )
         return edge
 

@@ -94,7 +94,8 @@ def protocol(
             if one_side.size == 0:
                 raise InputError("protocol: negative_amplitudes must not be empty")
     if counts.size == 0 or steps.size == 0:
-        raise InputError("protocol: amplitudes and cycles must not be empty")
+        empty = "amplitudes" if steps.size == 0 else "cycles"
+        raise InputError("protocol: amplitudes and cycles must not be empty", f"protocol.{empty}")
     return _core.protocol(
         steps,
         one_side,

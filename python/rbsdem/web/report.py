@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 from rbsdem import _core
 from rbsdem._files import whole_file
 from rbsdem.errors import InputError
-from rbsdem.web import texts
-from rbsdem.web.compute import Answers
-from rbsdem.web.near import Near
+from rbsdem.web.answers import Answers, NearestTests
 from rbsdem.web.parts import one_file
 
 __all__ = ["report_data", "write_report"]
@@ -21,7 +19,9 @@ __all__ = ["report_data", "write_report"]
 _MOST_TEXT = 400_000
 
 
-def report_data(state: Mapping[str, Any], title: str, near: Near | None = None) -> dict[str, Any]:
+def report_data(
+    state: Mapping[str, Any], title: str, near: NearestTests | None = None
+) -> dict[str, Any]:
     """Return the answers to a state as a report holds them.
 
     Parameters
@@ -30,7 +30,7 @@ def report_data(state: Mapping[str, Any], title: str, near: Near | None = None) 
         Columns and loading.
     title : str
         Title of the report.
-    near : Near, optional
+    near : NearestTests, optional
         Tests to compare with.
 
     Raises
@@ -38,33 +38,32 @@ def report_data(state: Mapping[str, Any], title: str, near: Near | None = None) 
     InputError
         With a line for everything that is wrong with a column or the loading.
     """
-    answers = Answers()
-    columns, loading = state["columns"], state["loading"]
-    loops = answers.loops(state)
+    answers, asked = Answers(near), {"state": state}
+
+    def ask(answer: Callable[..., dict[str, Any]], **more: Any) -> Any:
+        return answer(asked | more, lambda: None)["columns"]
+
+    loops = ask(answers.loops)
     faults = [fault["text"] for loop in loops for fault in loop["faults"]]
     if faults:
         raise InputError("\n".join(dict.fromkeys(faults)))
     data: dict[str, Any] = {
         "title": title,
         "version": _core.version(),
-        "state": {"columns": columns, "loading": loading},
+        "state": {"columns": state["columns"], "loading": state["loading"]},
         "loops": [{**loop, "seconds": 0} for loop in loops],
-        "sections": {code: answers.sections(state, code) for code in ("aci318", "ec2")},
-        "bands": [answers.band(given, loading) for given in columns],
-        "scales": None,
-        "own": answers.own_interaction(state),
+        "sections": {code: ask(answers.sections, code=code) for code in ("aci318", "ec2")},
+        "bands": ask(answers.bands),
+        "scales": ask(answers.scales) if any(loop.get("dynamic") for loop in loops) else None,
+        "own": ask(answers.own),
         "near": None if near is None else near.of(state),
+        "exports": {},
     }
-    if any(loop.get("dynamic") for loop in loops):
-        data["scales"] = [answers.scaled(given, loading, lambda _: None) for given in columns]
-    found = answers.solved(columns[0], loading)
-    data["exports"] = {}
-    if found.result is not None:
-        for form in ("namelist", "python"):
-            text = texts.exported(form, found, columns[0], state)
-            # A long history would be most of the report; the case that it is made from has it.
-            if len(text) < _MOST_TEXT:
-                data["exports"][form] = {"text": text, "name": "column"}
+    for form in ("namelist", "python"):
+        text = answers.export(asked | {"form": form}, lambda: None)["text"]
+        # A long history would be most of the report; the case that it is made from has it.
+        if len(text) < _MOST_TEXT:
+            data["exports"][form] = {"text": text, "name": "column"}
     return data
 
 
@@ -72,7 +71,7 @@ def write_report(
     path: str | os.PathLike[str],
     state: Mapping[str, Any],
     title: str,
-    near: Near | None = None,
+    near: NearestTests | None = None,
 ) -> Path:
     """Write a report of a state of the page, whole or not at all.
 

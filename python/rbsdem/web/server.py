@@ -4,41 +4,32 @@ It listens on 127.0.0.1. Every path begins with a random token; without it there
 request whose Host or Origin is another one is refused, so that a page of another site gets no
 answer even if it guesses the port. No request names a file: the page and its parts are read once
 from the package, and what a user opens comes as text. One answer is computed at a time; of the
-requests of a tab for the same thing the newest is answered, those before it are told so.
+requests of a tab for the same thing the newest is answered, and older ones are told so.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
 import secrets
-import tempfile
 import threading
-import warnings
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from pathlib import Path
 from typing import Any, ClassVar
 from urllib.parse import urlsplit
 
-from rbsdem._files import whole_file
-from rbsdem.errors import InputError, RbsdemError
-from rbsdem.motions.read import read_motion
-from rbsdem.web import texts
-from rbsdem.web.compute import Answers
-from rbsdem.web.diagrams import defect
-from rbsdem.web.near import Near
+from rbsdem.errors import InputError
+from rbsdem.web.answers import LANES, ONCE, Answers, NearestTests, defect
 from rbsdem.web.parts import TYPES, parts
-from rbsdem.web.state import MOST_VALUES
+from rbsdem.web.state import RefusedError
 
-__all__ = ["ExploreServer", "RefusedError"]
+__all__ = ["ExploreServer", "SupersededError"]
 
 #: Largest request [bytes]: a state, and the text of a file.
 MOST_STATE, MOST_TEXT = 1_000_000, 8_000_000
-#: Columns side by side, tabs that are known, records that are kept, requests at once.
-_COLUMNS, _TABS, _RECORDS, _AT_ONCE = 2, 64, 16, 32
+#: Tabs that are known, requests at once.
+_TABS, _AT_ONCE = 64, 32
 #: Time in which a request must have come [s].
 _PATIENCE = 20.0
 
@@ -48,15 +39,7 @@ _POLICY = (
 )
 
 
-class RefusedError(Exception):
-    """A request that is not answered: status and a text for who wrote the client."""
-
-    def __init__(self, status: int, text: str) -> None:
-        super().__init__(text)
-        self.status = status
-
-
-class OvertakenError(Exception):
+class SupersededError(Exception):
     """A newer request of the same tab for the same thing has come."""
 
 
@@ -69,7 +52,7 @@ class ExploreServer(ThreadingHTTPServer):
         0 takes a free one.
     start : mapping, optional
         The state that the page begins with, in place of its own.
-    near : Near, optional
+    near : NearestTests, optional
         Tests to compare with.
 
     Raises
@@ -82,9 +65,11 @@ class ExploreServer(ThreadingHTTPServer):
     allow_reuse_address = False
 
     def __init__(
-        self, port: int = 0, start: Mapping[str, Any] | None = None, near: Near | None = None
+        self,
+        port: int = 0,
+        start: Mapping[str, Any] | None = None,
+        near: NearestTests | None = None,
     ) -> None:
-        self.near = near
         if not 0 <= port <= 65535:
             raise InputError(f"--port {port}: a port is a number from 1 to 65535")
         try:
@@ -96,7 +81,7 @@ class ExploreServer(ThreadingHTTPServer):
             ) from None
         self.token = secrets.token_urlsafe(24)
         self.start = start
-        self.answers = Answers()
+        self.answers = Answers(near)
         self.parts = parts()
         self.computing = threading.Lock()
         self.room = threading.BoundedSemaphore(_AT_ONCE)
@@ -127,7 +112,7 @@ class ExploreServer(ThreadingHTTPServer):
         def check() -> None:
             with self._newest_lock:
                 if self._newest.get(key, number) > number:
-                    raise OvertakenError
+                    raise SupersededError
 
         return check
 
@@ -140,172 +125,28 @@ class ExploreServer(ThreadingHTTPServer):
         ------
         RefusedError
             If the request is none of the page's.
-        OvertakenError
+        SupersededError
             If a newer one of the tab is here.
         """
         tab, number = asked.get("tab"), asked.get("number")
         if not isinstance(tab, str) or len(tab) > 64 or type(number) is not int:
             raise RefusedError(400, "tab must be a short text and number a whole number")
-        check = (lambda: None) if lane in _ONCE else self.announce(tab, lane, number)
+        check = None if lane in ONCE else self.announce(tab, lane, number)
+
+        def pause() -> None:
+            # Another answer is computed first: a loop is waited for, a band is not.
+            self.computing.release()
+            try:
+                threading.Event().wait(0.001)
+            finally:
+                self.computing.acquire()
+            if check is not None:
+                check()
+
         with self.computing:
-            check()
-            return {"number": number, **LANES[lane](self, asked, check)}
-
-    def _loops(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
-        return {"columns": self.answers.loops(_state(asked))}
-
-    def _sections(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
-        code = asked.get("code", "aci318")
-        if code not in ("aci318", "ec2"):
-            raise RefusedError(400, "code must be aci318 or ec2")
-        return {"columns": self.answers.sections(_state(asked), code)}
-
-    def _own(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
-        return {"columns": self.answers.own_interaction(_state(asked))}
-
-    def _bands(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
-        state = _state(asked)
-        found = []
-        for given in state["columns"]:
-            self._let_others(check)
-            found.append(self.answers.band(given, state["loading"]))
-        return {"columns": found}
-
-    def _scales(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
-        state = _state(asked)
-        return {
-            "columns": [
-                self.answers.scaled(given, state["loading"], lambda _: self._let_others(check))
-                for given in state["columns"]
-            ]
-        }
-
-    def _nearest(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
-        if self.near is None:
-            return {"none": "rbsdem explore --tests FOLDER shows the tests that are most like it"}
-        return self.near.of(_state(asked), lambda: self._let_others(check))
-
-    def _export(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
-        state, form, which = _state(asked), asked.get("form"), asked.get("column", 0)
-        if type(which) is not int or not 0 <= which < len(state["columns"]):
-            raise RefusedError(400, "column must be the number of a column")
-        given = state["columns"][which]
-        found = self.answers.solved(given, state["loading"])
-        if found.result is None:
-            return {"faults": found.faults}
-        if form not in ("namelist", "python", "csv"):
-            raise RefusedError(400, "form must be namelist, python or csv")
-        return {"text": texts.exported(form, found, given, state), "name": f"column_{'ab'[which]}"}
-
-    def _open(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
-        return opened(asked.get("text"))
-
-    def _record(self, asked: Mapping[str, Any], check: Callable[[], None]) -> dict[str, Any]:
-        text, name = asked.get("text"), asked.get("name")
-        units, dt = asked.get("units"), asked.get("dt")
-        if not isinstance(text, str) or not isinstance(name, str):
-            raise RefusedError(400, "name and text must be texts")
-        # Only the ending of the name is used, for the format.
-        ending = ".at2" if name.lower().endswith(".at2") else ".csv"
-        try:
-            with tempfile.TemporaryDirectory(prefix="rbsdem-") as folder:
-                path = Path(folder) / f"record{ending}"
-                with whole_file(path) as file:
-                    file.write(text.encode("utf-8"))
-                try:
-                    motion = read_motion(path, units, dt)
-                except InputError as error:
-                    raise InputError(str(error).replace(str(path), name[:80])) from None
-            if motion.acceleration.size > MOST_VALUES:
-                raise InputError(
-                    f"{name[:80]}: {motion.acceleration.size} values are too many here; at most "
-                    f"{MOST_VALUES}: cut the record or take larger steps"
-                )
-        except RbsdemError as error:
-            return {"faults": [{"field": "loading.record", "text": str(error)}]}
-        digest = hashlib.sha256(motion.acceleration.tobytes() + repr(motion.dt).encode())
-        key = digest.hexdigest()[:16]
-        records = self.answers.records
-        records[key] = motion
-        while len(records) > _RECORDS:
-            records.pop(next(iter(records)))
-        return {"id": key, "name": name[:80], "pga": motion.pga, "length": motion.length}
-
-    def _let_others(self, check: Callable[[], None]) -> None:
-        """Let another answer be computed first; a loop is waited for, a band is not."""
-        self.computing.release()
-        try:
-            threading.Event().wait(0.001)
-        finally:
-            self.computing.acquire()
-        check()
-
-
-Lane = Callable[[ExploreServer, Mapping[str, Any], Callable[[], None]], dict[str, Any]]
-
-#: What can be asked, by the last part of the path.
-LANES: dict[str, Lane] = {
-    "loops": ExploreServer._loops,
-    "sections": ExploreServer._sections,
-    "own": ExploreServer._own,
-    "bands": ExploreServer._bands,
-    "scales": ExploreServer._scales,
-    "nearest": ExploreServer._nearest,
-    "export": ExploreServer._export,
-    "open": ExploreServer._open,
-    "record": ExploreServer._record,
-}
-
-#: What is asked for once: a newer question takes nothing from it.
-_ONCE = ("export", "open", "record")
-
-
-def opened(text: object) -> dict[str, Any]:
-    """Return the state of the text of a case file, from its drawing or as the case that it is."""
-    try:
-        with warnings.catch_warnings():
-            # What there is to say of it stands beside its loop.
-            warnings.simplefilter("ignore")
-            case = texts.case_of_text(text)
-    except InputError as error:
-        return {"faults": [{"field": "case", "text": str(error)}]}
-    assert isinstance(text, str)
-    drawing = texts.drawing_in(text)
-    if drawing is not None:
-        try:
-            state = _state({"state": drawing})
-        except RefusedError:
-            state = None
-        if state is not None and _is_of(case, state):
-            return {"state": state}
-    note = (
-        "the file was changed after it was drawn: it is shown as it is, without its drawing"
-        if drawing is not None
-        else ""
-    )
-    column = {"name": "A", "case": text}
-    return {"state": {"columns": [column], "loading": {"kind": "own"}}, "note": note}
-
-
-def _is_of(case: Any, state: Mapping[str, Any]) -> bool:
-    """Return whether a case is what a drawing makes."""
-    found = Answers().solved(state["columns"][0], state["loading"])
-    if found.result is None:
-        return False
-    return bool(texts.case_of_result(found.result, case.title).to_namelist() == case.to_namelist())
-
-
-def _state(asked: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the state of a request, which has columns and a loading; the rest is checked later."""
-    state = asked.get("state")
-    if not isinstance(state, dict):
-        raise RefusedError(400, "state must be an object")
-    columns, loading = state.get("columns"), state.get("loading")
-    if not isinstance(columns, list) or not 1 <= len(columns) <= _COLUMNS:
-        raise RefusedError(400, "state: columns must be a list of one or two")
-    if not all(isinstance(column, dict) for column in columns) or not isinstance(loading, dict):
-        raise RefusedError(400, "state: each column and the loading must be objects")
-    return {"columns": columns, "loading": loading}
+            if check is not None:
+                check()
+            return {"number": number, **LANES[lane](self.answers, asked, pause)}
 
 
 class _Handler(BaseHTTPRequestHandler):
@@ -345,8 +186,8 @@ class _Handler(BaseHTTPRequestHandler):
             work(self._allowed())
         except RefusedError as error:
             self._refuse(error.status, str(error))
-        except OvertakenError:
-            self._send(409, b'{"overtaken": true}', "application/json")
+        except SupersededError:
+            self._send(409, b'{"superseded": true}', "application/json")
         except (ConnectionError, TimeoutError):
             self.close_connection = True  # nobody waits for the answer
         except Exception as error:  # one of the program, which must not end the server
@@ -355,7 +196,7 @@ class _Handler(BaseHTTPRequestHandler):
             self.server.room.release()
 
     def _allowed(self) -> str:
-        """Return the path behind the token; refuse who does not know it or comes from elsewhere."""
+        """Check token, Host and Origin; return the rest of the path."""
         names = {f"{host}:{self.server.port}" for host in ("127.0.0.1", "localhost")}
         host = self.headers.get_all("Host") or []
         if len(host) != 1 or host[0].lower() not in names:
@@ -374,7 +215,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _get(self, path: str) -> None:
         if path == "start":
-            begin = {"state": self.server.start, "tests": self.server.near is not None}
+            begin = {"state": self.server.start, "tests": self.server.answers.near is not None}
             self._send(200, json.dumps(begin).encode(), "application/json")
             return
         name = path or "index.html"

@@ -6,39 +6,30 @@ same loop. Its first lines are comments with the drawing, from which the page co
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import re
 import tempfile
-from collections.abc import Mapping
+import warnings
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from rbsdem import _arguments
 from rbsdem._files import whole_file
 from rbsdem.errors import InputError
 from rbsdem.results.case import Case, read_case
 from rbsdem.results.result import Result
-from rbsdem.web.state import ENDS, SIZES
+from rbsdem.web.state import ENDS, SHAPES, Faults, RefusedError, drawn_case, state_of
 
-if TYPE_CHECKING:
-    from rbsdem.web.compute import Answered
-
-__all__ = [
-    "case_of_result",
-    "case_of_text",
-    "csv_of",
-    "drawing_in",
-    "exported",
-    "namelist",
-    "python",
-]
+__all__ = ["case_of_text", "drawing_in", "exported", "opened", "text_file"]
 
 _MARK = "! rbsdem explore: "
 #: Letters of the drawing on a line of its comment.
 _LINE = 90
 
 
-def namelist(case: Case, drawing: Mapping[str, Any] | None) -> str:
+def _namelist(case: Case, drawing: Mapping[str, Any] | None) -> str:
     """Return a case file, with a drawing in comments in front of it.
 
     Parameters
@@ -69,6 +60,19 @@ def drawing_in(text: str) -> dict[str, Any] | None:
     return found if isinstance(found, dict) else None
 
 
+@contextmanager
+def text_file(text: str, name: str, shown: str) -> Iterator[Path]:
+    """Put a text into a file for a reader; errors have another name for it."""
+    with tempfile.TemporaryDirectory(prefix="rbsdem-") as folder:
+        path = Path(folder) / name
+        with whole_file(path) as file:
+            file.write(text.encode("utf-8"))
+        try:
+            yield path
+        except InputError as error:
+            raise InputError(str(error).replace(str(path), shown)) from None
+
+
 def case_of_text(text: object) -> Case:
     """Read the text of a case file that names no other file.
 
@@ -80,20 +84,35 @@ def case_of_text(text: object) -> Case:
     if not isinstance(text, str):
         raise InputError("case: give the text of a case file")
     _refuse_files(text)
-    with tempfile.TemporaryDirectory(prefix="rbsdem-") as folder:
-        path = Path(folder) / "case.nml"
-        with whole_file(path) as file:
-            file.write(text.encode("utf-8"))
-        try:
-            return read_case(path)
-        except InputError as error:
-            raise InputError(
-                str(error).replace(f"{path}: ", "").replace(str(path), "case")
-            ) from None
+    with text_file(text, "case.nml", "case") as path:
+        return read_case(path)
+
+
+def opened(text: object) -> dict[str, Any]:
+    """Return the state of the text of a case file, from its drawing or as the case that it is."""
+    try:
+        with warnings.catch_warnings():
+            # What there is to say of it stands beside its loop.
+            warnings.simplefilter("ignore")
+            case = case_of_text(text)
+    except InputError as error:
+        return {"faults": [{"field": "case", "text": str(error)}]}
+    drawing, note = drawing_in(str(text)), ""
+    if drawing is not None:
+        with suppress(RefusedError):
+            state = state_of({"state": drawing})
+            drawn, _, _ = drawn_case(state["columns"][0], state["loading"], {}, Faults())
+            if drawn is not None:
+                drawn = dataclasses.replace(drawn, title=case.title)
+                if drawn.to_namelist() == case.to_namelist():
+                    return {"state": state}
+        note = "the file was changed after it was drawn: it is shown as it is, without its drawing"
+    column = {"name": "A", "case": text}
+    return {"state": {"columns": [column], "loading": {"kind": "own"}}, "note": note}
 
 
 def _refuse_files(text: str) -> None:
-    """Refuse the key `file` outside of texts and comments, which end with their line."""
+    """Refuse keys that name files, outside of texts and comments, which end with their line."""
     for number, line in enumerate(text.splitlines(), 1):
         bare, quote = [], ""
         for letter in line:
@@ -107,81 +126,50 @@ def _refuse_files(text: str) -> None:
                 bare.append(letter)
         if quote:
             raise InputError(f"line {number}: a text is not closed; put {quote} at its end")
-        if re.search(r"\bfile\b", "".join(bare), re.IGNORECASE):
+        key = re.search(r"\b(file|initial|state)\b", "".join(bare), re.IGNORECASE)
+        if key:
             raise InputError(
-                f"line {number}: file = names a file, which a page does not read; start "
-                "rbsdem explore CASE.nml, which puts the history into the case"
+                f"line {number}: {key[0].lower()} = names a file, which a page does not read; "
+                "start rbsdem explore CASE.nml, which puts histories into the case"
             )
 
 
-def case_of_result(result: Result, title: str) -> Case:
-    """Return the case of a result, as `read_case` would."""
-    call = dict(result.call)
-    loads = {
-        name: call.pop(name, None)
-        for name in (
-            "displacement",
-            "force",
-            "ground_acceleration",
-            "vertical_acceleration",
-            "axial_load",
-        )
-    }
-    time = call.pop("time", None)
-    method = call.pop("method", "auto") if result.dynamic else "static"
-    first = next(values for values in loads.values() if values is not None)
-    if time is None:
-        time = _arguments.vector(range(len(first)), "time")
-    return Case(
-        title=title,
-        column=result.column,
-        method=method,
-        time=time,
-        **{name: None if v is None else _arguments.vector(v, name) for name, v in loads.items()},
-        settings={name: value for name, value in call.items() if value is not None},
-    )
-
-
-def csv_of(result: Result) -> str:
-    """Return the rows of a result as the executable writes them."""
-    with tempfile.TemporaryDirectory(prefix="rbsdem-") as folder:
-        rows = Path(folder) / "rows.csv"
-        result.to_csv(rows)
-        return rows.read_text(encoding="utf-8")
-
-
-def exported(form: str, found: Answered, given: Mapping[str, Any], state: Mapping[str, Any]) -> str:
+def exported(
+    form: str,
+    case: Case,
+    result: Result,
+    given: Mapping[str, Any],
+    loading: Mapping[str, Any],
+) -> str:
     """Return a column that was solved as "namelist", "python" or "csv".
 
     Parameters
     ----------
     form : str
         Which.
-    found : Answered
-        The column with its result.
-    given, state : mapping
-        Column and state that it was made from.
+    case, result
+        The column as a case, and its result.
+    given, loading : mapping
+        Column and loading of the state that it was made from.
     """
-    assert found.result is not None
     if form == "csv":
-        return csv_of(found.result)
-    loading = state["loading"]
+        with tempfile.TemporaryDirectory(prefix="rbsdem-") as folder:
+            rows = Path(folder) / "rows.csv"
+            result.to_csv(rows)
+            return rows.read_text(encoding="utf-8")
+    if form == "python" and "case" not in given:
+        return _python(given, loading)
     if form == "python":
-        if found.case is None:
-            return python(given, loading)
         return (
             'import rbsdem\n\ncase = rbsdem.read_case("case.nml")\n'
             "result = case.run()\nprint(result)\n"
         )
-    if found.case is not None:
-        return namelist(found.case, None)
-    case = case_of_result(found.result, str(given.get("name", ""))[:80])
     # A record that was opened is in the case itself, not in its drawing.
-    known = loading.get("kind") != "record"
-    return namelist(case, {"columns": [given], "loading": loading} if known else None)
+    known = "case" not in given and loading.get("kind") != "record"
+    return _namelist(case, {"columns": [given], "loading": loading} if known else None)
 
 
-def python(given: Mapping[str, Any], loading: Mapping[str, Any]) -> str:
+def _python(given: Mapping[str, Any], loading: Mapping[str, Any]) -> str:
     """Return a program that computes the loop of a drawn column.
 
     Parameters
@@ -191,11 +179,11 @@ def python(given: Mapping[str, Any], loading: Mapping[str, Any]) -> str:
     """
     shape = given["section"]["shape"]
     round_ = "circle" in shape
-    kind = "".join(part.capitalize() for part in shape.replace("circle", "circular").split("_"))
-    kind = kind.replace("Rectangle", "Rectangular") + "Section"
+    made, names = SHAPES[shape]
+    kind = made.__name__
     hoops = "Spiral" if round_ else "Ties"
     bars, ties, frame = given["bars"], given["ties"], given["column"]
-    sizes = [f"{name}={given['section'][name]!r}" for name in SIZES[shape]]
+    sizes = [f"{name}={given['section'][name]!r}" for name in names]
     half = ENDS[frame.get("ends", "cantilever")]
     moved = loading["kind"] in ("synthetic", "record")
     lines = [

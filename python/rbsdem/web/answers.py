@@ -1,0 +1,630 @@
+"""What the page shows of a state: loops with limit states, diagrams, code values, bands, tests.
+
+Answers are what JSON holds, in SI, with six digits. The functions are those that everybody calls;
+columns and results that were just made are kept, as several answers stand on them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import time
+import traceback
+import warnings
+from collections import OrderedDict
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rbsdem import _arguments
+from rbsdem._arguments import Array
+from rbsdem.errors import InputError, RbsdemError, SolveError
+from rbsdem.measured.nearest import nearest
+from rbsdem.measured.pictures import picture
+from rbsdem.measured.predict import predict_one
+from rbsdem.measured.prediction import Prediction
+from rbsdem.measured.specimen import Specimen
+from rbsdem.measured.specimens import read_specimens
+from rbsdem.model.section import Section
+from rbsdem.motions.motion import GroundMotion
+from rbsdem.motions.read import read_motion
+from rbsdem.results.case import Case
+from rbsdem.results.result import Result
+from rbsdem.section.interaction import InteractionDiagram
+from rbsdem.section.model import LayeredColumn
+from rbsdem.web import exports
+from rbsdem.web.gallery import card
+from rbsdem.web.state import (
+    MOST_VALUES,
+    Drawn,
+    Faults,
+    RefusedError,
+    drawn_case,
+    key_of,
+    section_of,
+    state_of,
+)
+
+__all__ = ["LANES", "ONCE", "Answers", "NearestTests", "defect", "to_json"]
+
+#: Results that are kept: those of two columns, before and after a few undos; records that are kept.
+_KEPT, _RECORDS = 12, 16
+#: Rows of a response in an answer; a figure shows no more.
+_ROWS = 8000
+#: Points of an interaction diagram that takes long.
+_POINTS = 24
+#: Factors of a motion for which the peak drift is shown.
+_SCALES = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0)
+
+Asked = Mapping[str, Any]
+Pause = Callable[[], None]
+
+
+@dataclass(frozen=True)
+class Answered:
+    """A column with its result.
+
+    Attributes
+    ----------
+    result : Result or None
+        The response; None if the input is wrong.
+    drawn : Drawn or None
+        The drawn column; None for a case that has no drawing.
+    case : Case or None
+        Column and loading.
+    faults : list
+        Messages with their fields.
+    notes : list of str
+        What the program remarks.
+    stopped : str
+        Why the analysis ended early.
+    seconds : float
+        Time for column, path and limit states.
+    """
+
+    result: Result | None = None
+    drawn: Drawn | None = None
+    case: Case | None = None
+    faults: list[dict[str, str]] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    stopped: str = ""
+    seconds: float = 0.0
+
+
+class Answers:
+    """Answers to requests of the page; one of them is computed at a time.
+
+    Each method takes a request, a mapping with the state, and a function that it calls between
+    parts that take long.
+
+    Parameters
+    ----------
+    near : NearestTests, optional
+        Tests to compare with.
+    """
+
+    def __init__(self, near: NearestTests | None = None) -> None:
+        self.near = near
+        self.records: dict[str, GroundMotion] = {}
+        self._kept: OrderedDict[str, Answered] = OrderedDict()
+
+    # ---- loops ----------------------------------------------------------------------------------
+
+    def solved(self, given: Asked, loading: Asked) -> Answered:
+        """Return a column of the state with its response."""
+        key = key_of([given, loading])
+        if key in self._kept:
+            self._kept.move_to_end(key)
+            return self._kept[key]
+        begun = time.perf_counter()
+        try:
+            answered = self._solve(given, loading)
+        except Exception as error:
+            answered = Answered(faults=[{"field": "", "text": defect(error)}])
+        answered = replace(answered, seconds=time.perf_counter() - begun)
+        # What was refused may be right later: a record may be opened meanwhile.
+        if answered.result is not None:
+            self._kept[key] = answered
+            while len(self._kept) > _KEPT:
+                self._kept.popitem(last=False)
+        return answered
+
+    def _solve(self, given: Asked, loading: Asked) -> Answered:
+        faults, drawn, case = Faults(), None, None
+        notes: list[str] = []
+        if "case" in given:
+            with warnings.catch_warnings(record=True) as told:
+                warnings.simplefilter("always")
+                try:
+                    case = exports.case_of_text(given["case"])
+                except RbsdemError as error:
+                    faults.add("case", str(error))
+            notes = [str(one.message) for one in told]
+            if case is not None and isinstance(case.column, LayeredColumn) and case.column.recipe:
+                recipe = case.column.recipe
+                drawn = Drawn(case.column, recipe.section, recipe.height, 1.0)
+        else:
+            case, drawn, notes = drawn_case(given, loading, self.records, faults)
+        if case is None:
+            return Answered(faults=faults.listed, notes=notes)
+        stopped = ""
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            try:
+                # The strains of a layered hinge follow from its openings.
+                result = case.run(openings=True)
+            except RbsdemError as error:
+                if not isinstance(error, SolveError) or error.result is None:
+                    faults.add("case" if "case" in given else "loading.kind", str(error))
+                    return Answered(faults=faults.listed, notes=notes)
+                result, stopped = error.result, str(error)
+        notes = [*notes, *dict.fromkeys(str(one.message) for one in told)]
+        return Answered(result, drawn, case, notes=notes, stopped=stopped)
+
+    def _columns(self, asked: Asked) -> list[tuple[Asked, Answered]]:
+        """Return each column of the state with its response."""
+        state = state_of(asked)
+        return [(given, self.solved(given, state["loading"])) for given in state["columns"]]
+
+    def loops(self, asked: Asked, pause: Pause) -> dict[str, Any]:
+        """Return the loop of each column with its limit states and the figure of its section."""
+        state, columns = state_of(asked), []
+        for given in state["columns"]:
+            begun = time.perf_counter()
+            found = self.solved(given, state["loading"])
+            answer: dict[str, Any] = {"faults": found.faults, "notes": found.notes}
+            if found.drawn is not None:
+                answer["figure"] = _figure(found.drawn.section)
+                answer["model"] = found.drawn.column.model
+            elif "case" not in given:
+                # The section may be drawn although the column is refused.
+                section = section_of(given, Faults())
+                answer["figure"] = None if section is None else _figure(section)
+            if found.result is not None:
+                factor = 1.0 if found.drawn is None else found.drawn.factor
+                answer |= to_json(found.result, factor) | {"stopped": found.stopped}
+                answer["title"] = found.case.title if found.case and "case" in given else ""
+            answer["seconds"] = round(max(found.seconds, time.perf_counter() - begun), 4)
+            columns.append(answer)
+        return {"columns": columns}
+
+    # ---- the section ----------------------------------------------------------------------------
+
+    def sections(self, asked: Asked, pause: Pause) -> dict[str, Any]:
+        """Return moment-curvature, interaction and code values of each drawn column."""
+        code = asked.get("code", "aci318")
+        if code not in ("aci318", "ec2"):
+            raise RefusedError(400, "code must be aci318 or ec2")
+
+        def answer(drawn: Drawn) -> dict[str, Any]:
+            section, load = drawn.section, drawn.column.axial_load
+            return {
+                "curvature": [_tried(_curvature, section, load, c) for c in (False, True)],
+                "code": _tried(_interaction, section, code),
+                "codes": _tried(_codes, section, drawn.span, load),
+                "axial_load": number(load),
+            }
+
+        drawn = (found.drawn for _, found in self._columns(asked))
+        return {"columns": [{} if one is None else answer(one) for one in drawn]}
+
+    def own(self, asked: Asked, pause: Pause) -> dict[str, Any]:
+        """Return the interaction diagrams by own laws, of section and joint, which take long."""
+        columns = []
+        for _, found in self._columns(asked):
+            answer = {}
+            if found.drawn is not None:
+                column = found.drawn.column
+                answer["section"] = _tried(_interaction, found.drawn.section, None)
+                if isinstance(column, LayeredColumn):
+                    answer["joint"] = _tried(
+                        lambda of: _curve(of.interaction(points=_POINTS)), column
+                    )
+            columns.append(answer)
+        return {"columns": columns}
+
+    # ---- uncertainty ----------------------------------------------------------------------------
+
+    def bands(self, asked: Asked, pause: Pause) -> dict[str, Any]:
+        """Return for each path the band that holds 80 % of the points of left-out tests."""
+        columns = []
+        for _, found in self._columns(asked):
+            pause()
+            columns.append(_band(found))
+        return {"columns": columns}
+
+    def scales(self, asked: Asked, pause: Pause) -> dict[str, Any]:
+        """Return the peak drift under a motion by its scale, times that of the state."""
+        loading = state_of(asked)["loading"]
+        columns: list[dict[str, Any]] = []
+        for given, found in self._columns(asked):
+            if found.drawn is None or found.result is None or not found.result.dynamic:
+                columns.append({"none": "scales are for a motion of the ground"})
+                continue
+            now = _arguments.number(loading.get("scale", 1.0), "scale")
+            rows = []
+            for scale in _SCALES:
+                result = self._solve(given, {**loading, "scale": scale * now}).result
+                if result is not None:
+                    peak = float(np.max(np.abs(result.drift), initial=0.0))
+                    status = result.summary["status"]
+                    rows.append({"scale": scale * now, "drift": number(peak), "status": status})
+                pause()
+            columns.append({"scales": rows})
+        return {"columns": columns}
+
+    def nearest(self, asked: Asked, pause: Pause) -> dict[str, Any]:
+        """Return the tests that are most like each column."""
+        if self.near is None:
+            return {"none": "rbsdem explore --tests FOLDER shows the tests that are most like it"}
+        return self.near.of(state_of(asked), pause)
+
+    # ---- texts ----------------------------------------------------------------------------------
+
+    def export(self, asked: Asked, pause: Pause) -> dict[str, Any]:
+        """Return a column as a case file, Python or csv."""
+        state, form, which = state_of(asked), asked.get("form"), asked.get("column", 0)
+        if type(which) is not int or not 0 <= which < len(state["columns"]):
+            raise RefusedError(400, "column must be the number of a column")
+        if form not in ("namelist", "python", "csv"):
+            raise RefusedError(400, "form must be namelist, python or csv")
+        given, loading = state["columns"][which], state["loading"]
+        found = self.solved(given, loading)
+        if found.result is None or found.case is None:
+            return {"faults": found.faults}
+        text = exports.exported(form, found.case, found.result, given, loading)
+        return {"text": text, "name": f"column_{'ab'[which]}"}
+
+    def open(self, asked: Asked, pause: Pause) -> dict[str, Any]:
+        """Return the state of the text of a case file."""
+        return exports.opened(asked.get("text"))
+
+    def record(self, asked: Asked, pause: Pause) -> dict[str, Any]:
+        """Keep the record of a text; return the name by which a loading asks for it."""
+        text, name = asked.get("text"), asked.get("name")
+        if not isinstance(text, str) or not isinstance(name, str):
+            raise RefusedError(400, "name and text must be texts")
+        shown = name[:80]
+        # Only the ending of the name is used, for the format.
+        file = "record.at2" if name.lower().endswith(".at2") else "record.csv"
+        try:
+            with exports.text_file(text, file, shown) as path:
+                motion = read_motion(path, asked.get("units"), asked.get("dt"))
+            if motion.acceleration.size > MOST_VALUES:
+                raise InputError(
+                    f"{shown}: {motion.acceleration.size} values are too many here; at most "
+                    f"{MOST_VALUES}: cut the record or take larger steps"
+                )
+        except RbsdemError as error:
+            return {"faults": [{"field": "loading.record", "text": str(error)}]}
+        digest = hashlib.sha256(motion.acceleration.tobytes() + repr(motion.dt).encode())
+        key = digest.hexdigest()[:16]
+        self.records[key] = motion
+        while len(self.records) > _RECORDS:
+            self.records.pop(next(iter(self.records)))
+        return {"id": key, "name": shown, "pga": motion.pga, "length": motion.length}
+
+
+#: What can be asked, by the last part of the path.
+LANES: dict[str, Callable[[Answers, Asked, Pause], dict[str, Any]]] = {
+    "loops": Answers.loops,
+    "sections": Answers.sections,
+    "own": Answers.own,
+    "bands": Answers.bands,
+    "scales": Answers.scales,
+    "nearest": Answers.nearest,
+    "export": Answers.export,
+    "open": Answers.open,
+    "record": Answers.record,
+}
+
+#: What is asked for once: a newer question takes nothing from it.
+ONCE = ("export", "open", "record")
+
+
+# ---- a response as JSON -------------------------------------------------------------------------
+
+
+def to_json(result: Result, factor: float = 1.0) -> dict[str, Any]:
+    """Return a response as the page draws it.
+
+    Parameters
+    ----------
+    result : Result
+        The response.
+    factor : float, optional
+        Displacement between the ends of the column over that of the column that was computed.
+    """
+    force = result.base_shear if result.dynamic else result.force
+    rows = shown_rows(result.displacement, force)
+    height = result.column.height
+    spring = result.energy["spring"]
+    answer: dict[str, Any] = {
+        "displacement": numbers(factor * result.displacement[rows]),
+        "force": numbers(force[rows]),
+        "height": factor * height,
+        "status": result.summary["status"],
+        "method": result.summary["method"],
+        "dynamic": result.dynamic,
+        "states": [
+            {
+                "name": state.name,
+                "displacement": number(factor * state.displacement),
+                "force": number(state.force),
+                "drift": number(state.drift),
+                "threshold": number(state.threshold),
+                "source": state.source,
+            }
+            for state in result.limit_states()
+        ],
+        "figures": {
+            "peak_force": _peak(force),
+            "peak_moment": _peak(result.base_moment),
+            "peak_drift": _peak(result.drift),
+            "drift_at_loss": None
+            if result.dynamic
+            else number(abs(result.strength_loss()) / height),
+            "residual_drift": number(result.residual_drift),
+            "energy": number(factor * float(spring[-1])) if spring.size else None,
+        },
+    }
+    if result.dynamic:
+        answer["time"] = numbers(result.time[rows])
+    return answer
+
+
+def _peak(values: Array) -> float | None:
+    return number(float(np.max(np.abs(values), initial=0.0)))
+
+
+def shown_rows(displacement: Array, force: Array, most: int = _ROWS) -> NDArray[np.intp]:
+    """Return the rows of a response that a figure needs: all, or the extremes of equal parts."""
+    size = displacement.size
+    if size <= most:
+        return np.arange(size)
+    kept = [0, size - 1]
+    for part in np.array_split(np.arange(size), most // 4):
+        for values in (displacement[part], force[part]):
+            kept += [int(part[np.argmin(values)]), int(part[np.argmax(values)])]
+    return np.unique(kept)
+
+
+def _band(found: Answered) -> dict[str, Any]:
+    drawn, result = found.drawn, found.result
+    if drawn is None or result is None or result.dynamic:
+        return {"none": "a band is for a drawn column on a path"}
+    column = drawn.column
+    if not isinstance(column, LayeredColumn):
+        return {"none": "a band is for the layered model"}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            spread = column.spread(result.displacement)
+        except InputError as error:
+            return {"none": str(error)}
+    return {
+        "lower": numbers(spread.lower),
+        "upper": numbers(spread.upper),
+        "samples": len(spread.samples),
+        "peak_force": _interval(spread.peak_force),
+        "drift_at_loss": _interval(spread.drift_at_loss),
+        "energy": _interval(spread.energy, drawn.factor),
+    }
+
+
+def _interval(interval: Any, factor: float = 1.0) -> list[float | None]:
+    return [number(factor * getattr(interval, end)) for end in ("lower", "value", "upper")]
+
+
+# ---- a section as JSON --------------------------------------------------------------------------
+
+
+def defect(error: Exception) -> str:
+    """Return what is said of an error that is no `InputError`; its traceback is printed."""
+    traceback.print_exception(error)
+    return (
+        f"A defect of rbsdem, not of the input ({type(error).__name__}: {error}). Please report it "
+        "with the input; the terminal has more."
+    )
+
+
+def _tried(make: Callable[..., Any], *given: Any) -> Any:
+    """Return what a function makes, or the text of its error."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            return make(*given)
+        except RbsdemError as error:
+            return {"fault": str(error)}
+        except Exception as error:
+            # One panel says so; the others still stand.
+            return {"fault": defect(error)}
+
+
+def _figure(section: Section) -> dict[str, Any]:
+    """Return the lines of a section as the program has them, y upward in tension."""
+    figure: dict[str, Any] = {
+        "outline": _points(section.outline()),
+        "void": _points(section.void()),
+        "bars": [
+            [number(x), number(y), number(d)]
+            for x, y, d in section.place_bars(
+                [(y, 2.0 * math.sqrt(area / math.pi)) for y, area, _ in section.bars]
+            )
+        ],
+        "hoops": [],
+        "legs": [],
+    }
+    ties = section.ties
+    if ties is not None:
+        bend = 0.5 * float(section.bar_diameter or 0.0)
+        figure["hoops"] = [
+            _points(section.hoop_line(inset, bend + ties.diameter - inset))
+            for inset in (0.0, ties.diameter)
+        ]
+        if section.hollow:
+            figure["hoops"] += [
+                _points(section.void(section.cover + inset)) for inset in (ties.diameter, 0.0)
+            ]
+        figure["legs"] = [_points(leg) for leg in section.inner_legs()]
+    return figure
+
+
+def _curvature(section: Section, load: float, confined: bool) -> dict[str, Any]:
+    options: dict[str, Any] = {"ultimate": "mander"} if confined else {}
+    diagram = section.diagram(load, confined=confined, **options)
+    events = {
+        name: [number(point.curvature), number(point.moment)]
+        for name in ("cracking", "yielding", "peak", "ultimate")
+        if (point := getattr(diagram.events, name)) is not None
+    }
+    return {
+        "curvature": numbers(diagram.curvature),
+        "moment": numbers(diagram.moment),
+        "events": events,
+    }
+
+
+def _interaction(section: Section, code: str | None) -> dict[str, Any]:
+    points = _POINTS if code is None else 60
+    diagram = section.interaction(code, points=points)  # type: ignore[arg-type]
+    found = _curve(diagram) | {"code": code}
+    if code is not None:
+        found["design_axial_load"] = numbers(diagram.design_axial_load)
+        found["design_moment"] = numbers(diagram.design_moment)
+    return found
+
+
+def _curve(diagram: InteractionDiagram) -> dict[str, Any]:
+    return {"axial_load": numbers(diagram.axial_load), "moment": numbers(diagram.moment)}
+
+
+def _codes(section: Section, span: float, load: float) -> list[dict[str, Any]]:
+    return [
+        {
+            "name": value.name,
+            "meaning": value.meaning,
+            "value": number(value.value),
+            "unit": value.unit,
+            "source": value.source,
+            "confirmed": value.confirmed,
+        }
+        for value in section.code_values(span, load)
+    ]
+
+
+def numbers(values: Array) -> list[float | None]:
+    """Return an array for JSON with six digits; None where it is not finite."""
+    return [number(value) for value in np.asarray(values, dtype=np.float64).tolist()]
+
+
+def number(value: float) -> float | None:
+    """Return a number for JSON, as `numbers`."""
+    return float(f"{value:.6g}") if math.isfinite(value) else None
+
+
+def _points(line: Array) -> list[list[float | None]]:
+    return [numbers(point) for point in np.asarray(line)]
+
+
+# ---- measured tests ------------------------------------------------------------------------------
+
+
+class NearestTests:
+    """The tests of a folder; those that are shown are predicted, and kept.
+
+    Parameters
+    ----------
+    folder : path
+        With the table and the histories, as of `rbsdem peer`.
+    number : int, optional
+        How many tests an answer has.
+
+    Raises
+    ------
+    InputError
+        If the folder has no table, or no history.
+    """
+
+    def __init__(self, folder: Path, number: int = 4) -> None:
+        self._tests = read_specimens(folder).with_history()
+        if not self._tests:
+            raise InputError(f"{folder} has no history of any test of its table")
+        self._number = number
+        self._found: dict[str, Prediction] = {}
+
+    def of(self, state: Mapping[str, Any], pause: Pause = lambda: None) -> dict[str, Any]:
+        """Return the nearest tests of each column; `pause` is called between predictions."""
+        columns: list[dict[str, Any]] = []
+        for given in state["columns"]:
+            specimen = None if "case" in given else _specimen_of(given)
+            if specimen is None:
+                columns.append({"none": "the folder has no tests of such columns"})
+                continue
+            try:
+                near = nearest(specimen, self._tests, self._number)
+            except (RbsdemError, ValueError) as error:
+                columns.append({"none": str(error)})
+                continue
+            rows = []
+            for one in near:
+                pause()
+                row = self._predicted(one.specimen)
+                drawn = None if row.comparison is None else picture(row.comparison)
+                rows.append(card(row, drawn) | {"distance": round(one.distance, 3)})
+            columns.append({"tests": rows})
+        return {"columns": columns, "tests": len(self._tests)}
+
+    def _predicted(self, test: Specimen) -> Prediction:
+        if test.name not in self._found:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                self._found[test.name] = predict_one(test)
+        return self._found[test.name]
+
+
+def _specimen_of(given: Mapping[str, Any]) -> Specimen | None:
+    """Return a drawn column as a specimen to compare; None for shapes that were not tested."""
+    try:
+        section, bars, ties, frame = (given[name] for name in ("section", "bars", "ties", "column"))
+        half = 0.5 if frame.get("ends") == "double" else 1.0
+        common = {
+            "name": "drawn",
+            "length": half * frame["height"],
+            "concrete_strength": given["concrete"]["fc"],
+            "axial_load": frame["axial_load"],
+            "longitudinal_number": bars["number"],
+            "corner_diameter": bars["diameter"],
+            "corner_yield_stress": bars["fy"],
+            "transverse_diameter": ties["diameter"],
+            "transverse_spacing": ties["spacing"],
+            "transverse_yield_stress": ties["fy"],
+        }
+        if section["shape"] == "circle":
+            return Specimen(
+                section="circular",
+                width=section["diameter"],
+                depth=section["diameter"],
+                cover=section["cover"] + 0.5 * ties["diameter"],
+                **common,
+            )
+        if section["shape"] != "rectangle":
+            return None
+        face = bars.get("face") or bars["number"] // 4 + 1
+        return Specimen(
+            section="rectangular",
+            width=section["width"],
+            depth=section["depth"],
+            cover=section["cover"],
+            intermediate_diameter=bars["diameter"],
+            intermediate_perpendicular=face - 2,
+            intermediate_parallel=(bars["number"] - 2 * face) // 2,
+            shear_legs=float(ties.get("legs") or 2.0),
+            **common,
+        )
+    except (KeyError, TypeError, ValueError):
+        return None
