@@ -84,7 +84,10 @@ def test_figures_and_limit_states_do_not_depend_on_the_rows(analysis, kinematics
         assert abs(usual.summary["peak_displacement"]) >= np.abs(rows.displacement).max()
         # Of a static path the force itself, which the lowest spring has up to round-off.
         assert abs(usual.summary["peak_base_shear"]) >= (1 - 1e-12) * np.abs(rows.base_shear).max()
-        assert usual.summary["energy_residual"] <= np.abs(rows.energy["residual"]).max()
+        # A static path is looked at where its lines end, between the rows too.
+        round_off = 1e-14 * usual.summary["input_energy"] * (analysis == "static")
+        largest = np.abs(rows.energy["residual"]).max() + round_off
+        assert usual.summary["energy_residual"] <= largest
 
 
 @pytest.mark.parametrize("settings", [{"method": "rk45"}, {"method": "rk4", "events": "located"}])
