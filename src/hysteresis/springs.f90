@@ -63,8 +63,6 @@ module rbs_hysteresis_springs
       !> Where they vary (count): axial load that the joint is to reach, axial load of the present plane
       !> [N], and its centre of stiffness e = -dM/dN [m]
       real(wp), allocatable :: press_to(:), press_at(:), centre(:)
-      !> Deformations that the springs go to, a work array (count)
-      real(wp), allocatable, private :: ahead(:)
    contains
       procedure, private :: create_from_rules, create_from_records
       generic :: create => create_from_rules, create_from_records
@@ -580,19 +578,40 @@ contains
    end function distance
 
    !> Springs go at constant rates from given deformations, each on its own line and not beyond its end.
-   pure subroutine go_along(self, q, rate, way)
+   pure subroutine go_along(self, q, rate, way, slack, near)
       class(spring_array), intent(inout) :: self
       !> Deformations of the first springs, rates of these and more; in units of the rates
       real(wp), intent(in), contiguous :: q(:), rate(:)
       real(wp), intent(in) :: way
+      !> Springs that come closer than this to an end of their line, in shares of the end, are near it
+      real(wp), intent(in) :: slack
+      !> Whether any is near an end, or on a one-way line
+      logical, intent(out) :: near
 
-      if (.not. allocated(self%ahead)) allocate (self%ahead(self%count))
-      associate (m => size(q))
-         self%ahead(:m) = min(max(q + rate(:m)*way, self%first(:m)), self%last(:m))
-      end associate
-      call advance_all(size(q), self%ahead, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, &
-                       self%work, self%first, self%last)
+      call advance_along(size(q), q, rate, way, slack, self%d0, self%f0, self%k, self%unload_on_reversal, &
+                         self%d, self%work, self%first, self%last, near)
    end subroutine go_along
+
+   pure subroutine advance_along(n, q, rate, way, slack, d0, f0, k, unload_on_reversal, d, work, first, last, &
+                                 near)
+      integer, intent(in) :: n, unload_on_reversal(n)
+      real(wp), intent(in) :: q(n), rate(n), way, slack, d0(n), f0(n), k(n)
+      real(wp), intent(inout) :: d(n), work(n), first(n), last(n)
+      logical, intent(out) :: near
+      real(wp) :: ahead, to
+      integer :: i
+
+      near = .false.
+      do i = 1, n
+         ahead = q(i) + rate(i)*way
+         to = min(max(ahead, first(i)), last(i))
+         work(i) = work(i) + (f0(i) + k(i)*(0.5_wp*(to + d(i)) - d0(i)))*(to - d(i))
+         d(i) = to
+         if (unload_on_reversal(i) > 0) first(i) = to
+         if (unload_on_reversal(i) < 0) last(i) = to
+         near = near .or. last(i) - ahead <= slack*abs(last(i)) .or. ahead - first(i) <= slack*abs(first(i))
+      end do
+   end subroutine advance_along
 
    !> The plane that a layered joint is on.
    subroutine read_plane(self, i)

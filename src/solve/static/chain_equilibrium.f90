@@ -216,8 +216,8 @@ contains
             end if
          end associate
       else
-         call follow_diagonal(self%arm, self%initial, springs%k(:self%moving), self%residual, gap, rate, &
-                              self%force_rate, self%correction, self%force_correction, found)
+         call follow_diagonal(self%moving, self%arm, self%initial, springs%k, self%residual, gap, rate, &
+                              self%force_rate, self%correction, self%force_correction, self%g, found)
       end if
       if (.not. by_force .or. .not. found) return
       self%force_rate = 1.0_wp
@@ -332,24 +332,27 @@ contains
    !> displacement. They share the force, and their motions add up. The force is that of the most flexible
    !> joint p and what takes the others to it, F' = -r_p/a_p + F'': with F' itself, its motion
    !> (r_p + a_p F')/k_p would be a difference of round-off over next to nothing.
-   pure subroutine follow_diagonal(arm, initial, k, r, gap, rate, force_rate, correction, force_correction, &
-                                   regular)
+   pure subroutine follow_diagonal(m, arm, initial, k, r, gap, rate, force_rate, correction, &
+                                   force_correction, flexible, regular)
+      integer, intent(in) :: m
       !> Arms of the force and initial stiffness of the joints (m)
-      real(wp), intent(in) :: arm(:), initial(:)
+      real(wp), intent(in) :: arm(m), initial(m)
       !> Stiffness of the springs, residual (m), and what is missing from the displacement [m]
-      real(wp), intent(in) :: k(:), r(:), gap
+      real(wp), intent(in) :: k(m), r(m), gap
       !> Change of the deformations per metre, and what takes the residuals away (m)
-      real(wp), intent(out), contiguous :: rate(:), correction(:)
+      real(wp), intent(out) :: rate(m), correction(m)
       !> Change of the force [N/m], and of the force with the correction [N]
       real(wp), intent(out) :: force_rate, force_correction
+      !> Flexibilities, 0 where there is no stiffness (m)
+      real(wp), intent(out) :: flexible(m)
       !> Whether there is a unique solution
       logical, intent(out) :: regular
-      real(wp) :: flexible(size(arm)), flexibility
+      real(wp) :: flexibility
       integer :: i, p
 
       regular = .true.
       p = 1
-      do i = 1, size(arm)
+      do i = 1, m
          flexible(i) = 0.0_wp
          if (abs(k(i)) > no_stiffness*initial(i)) then
             flexible(i) = arm(i)**2/k(i)
@@ -369,7 +372,11 @@ contains
       else
          regular = .true.
          force_rate = 0.0_wp
-         call follow_mechanism(arm, initial, flexible, rate)
+         ! Joints without stiffness take all the motion. Several share it as they would with a hardening in
+         ! proportion to their initial stiffness, however small.
+         rate = 0.0_wp
+         where (.not. abs(flexible) > 0.0_wp) rate = arm/initial
+         rate = rate/sum(arm*rate)
       end if
       force_correction = -r(p)/arm(p)
       correction = flexible/arm*(r/arm + force_correction)
@@ -378,19 +385,6 @@ contains
          force_correction = force_correction + force_rate*missing
       end associate
    end subroutine follow_diagonal
-
-   !> Joints without stiffness take all the motion. Several share it as they would with a hardening in
-   !> proportion to their initial stiffness, however small.
-   pure subroutine follow_mechanism(arm, initial, flexible, rate)
-      real(wp), intent(in) :: arm(:), initial(:)
-      !> Flexibility, 0 where there is no stiffness
-      real(wp), intent(in) :: flexible(:)
-      real(wp), intent(out) :: rate(:)
-
-      rate = 0.0_wp
-      where (.not. abs(flexible) > 0.0_wp) rate = arm/initial
-      rate = rate/sum(arm*rate)
-   end subroutine follow_mechanism
 
    !> Save or restore the rates, and the last solution of few bodies.
    subroutine serialize(self, stream)

@@ -38,6 +38,9 @@ module rbs_solve_static_row_check
       real(wp), private :: at_begin = 0.0_wp
       !> Force and work of the springs if they had their initial stiffness, the largest so far [N, J]
       real(wp), private :: stiff_force = 0.0_wp, stiff_work = 0.0_wp
+      !> What a force of each spring is at the top: moments count by the height; those of axial springs not
+      !> at all (springs)
+      real(wp), allocatable, private :: share(:)
    contains
       procedure :: begin
       procedure :: look
@@ -49,31 +52,24 @@ contains
       class(row_check), intent(out) :: self
       class(structure_type), intent(in) :: structure
       real(wp), intent(in) :: missing_work
-      real(wp) :: d, reach
+      real(wp) :: d
       integer :: i
 
       self%at_begin = missing_work
       self%largest_place = no_digits*structure%total_height
       self%largest_force = no_digits*maxval(abs(structure%spring%axial_load))
-      do i = 1, size(structure%place)
-         if (structure%place(i)%kind == axial) cycle
-         reach = reach_of(structure, i)
-         d = no_way*structure%total_height/reach
-         self%stiff_force = max(self%stiff_force, structure%initial_stiffness(i)*d/reach)
+      allocate (self%share(size(structure%place)))
+      do i = 1, size(self%share)
+         self%share(i) = merge(1.0_wp/structure%total_height, 1.0_wp, structure%place(i)%kind == flexure)
+         if (structure%place(i)%kind == axial) self%share(i) = 0.0_wp
+         d = no_way*structure%total_height*self%share(i)
+         self%stiff_force = max(self%stiff_force, structure%initial_stiffness(i)*d*self%share(i))
          self%stiff_work = self%stiff_work + structure%initial_stiffness(i)*d**2
       end do
       if (structure%kinematics /= finite) return
       self%place = of_place_on_curve
       self%work = of_work_on_curve
    end subroutine begin
-
-   !> Length over which the force of a spring is one at the top [m]: moments count over the height.
-   pure real(wp) function reach_of(structure, i) result(reach)
-      class(structure_type), intent(in) :: structure
-      integer, intent(in) :: i
-
-      reach = merge(structure%total_height, 1.0_wp, structure%place(i)%kind == flexure)
-   end function reach_of
 
    !> Look at a point.
    subroutine look(self, structure, springs, displacement, force, unbalance, energy, on_ends, fault)
@@ -89,21 +85,12 @@ contains
       logical, intent(in) :: on_ends
       !> What is wrong, for a message; not allocated if nothing is
       character(len=:), allocatable, intent(out) :: fault
-      real(wp) :: place, reach, term, stiff_work, there, missing
-      integer :: i
+      real(wp) :: place, force_there, stiff_force, stiff_work, there, missing
 
-      place = 0.0_wp
-      stiff_work = 0.0_wp
-      self%largest_force = max(self%largest_force, abs(force))
-      do i = 1, springs%count
-         if (structure%place(i)%kind == axial) cycle
-         reach = reach_of(structure, i)
-         place = place + abs(structure%arm(i)*springs%d(i))
-         self%largest_force = max(self%largest_force, abs(springs%force(i))/reach)
-         term = structure%initial_stiffness(i)*abs(springs%d(i))
-         self%stiff_force = max(self%stiff_force, term/reach)
-         stiff_work = stiff_work + term*abs(springs%d(i))
-      end do
+      call measure(springs%count, springs%d, springs%d0, springs%f0, springs%k, structure%initial_stiffness, &
+                   structure%arm, self%share, place, force_there, stiff_force, stiff_work)
+      self%largest_force = max(self%largest_force, abs(force), force_there)
+      self%stiff_force = max(self%stiff_force, stiff_force)
       self%stiff_work = max(self%stiff_work, stiff_work)
       self%largest_place = max(self%largest_place, place)
       self%largest_work = max(self%largest_work, abs(energy%input), abs(energy%spring), abs(energy%axial))
@@ -118,5 +105,29 @@ contains
          fault = to_text(missing)//' J of its work are missing'
       end if
    end subroutine look
+
+   !> Ways and forces of the springs, present and by their initial stiffness.
+   pure subroutine measure(n, d, d0, f0, k, initial, arm, share, place, force, stiff_force, stiff_work)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: d(n), d0(n), f0(n), k(n), initial(n), arm(n), share(n)
+      !> Sum of the ways on which they move the top, largest force, and the same by initial stiffness with the
+      !> sum of the works
+      real(wp), intent(out) :: place, force, stiff_force, stiff_work
+      real(wp) :: term
+      integer :: i
+
+      place = 0.0_wp
+      force = 0.0_wp
+      stiff_force = 0.0_wp
+      stiff_work = 0.0_wp
+      do i = 1, n
+         if (.not. share(i) > 0.0_wp) cycle
+         place = place + abs(arm(i)*d(i))
+         force = max(force, abs(f0(i) + k(i)*(d(i) - d0(i)))*share(i))
+         term = initial(i)*abs(d(i))
+         stiff_force = max(stiff_force, term*share(i))
+         stiff_work = stiff_work + term*abs(d(i))
+      end do
+   end subroutine measure
 
 end module rbs_solve_static_row_check

@@ -16,7 +16,8 @@ module rbs_solve_static_straight
 
    public :: trace_straight
 
-   !> Farther from its ends than this, relative to them, a spring need not be asked whether it is on one.
+   !> Farther from the ends of their lines than this, relative to them, springs need not be asked whether they
+   !> are on one.
    real(wp), parameter :: nearly = 2.0_wp*on_the_end
 
    !> The state of a path and the line it is on.
@@ -144,15 +145,13 @@ contains
       real(wp), intent(in) :: control
       real(wp) :: change, force, displacement, d
       integer :: i
+      logical :: near
 
       change = control - self%start
       associate (springs => self%springs)
-         call springs%go_along(self%q, self%rate, abs(change))
-         do i = 1, self%moving
+         call springs%go_along(self%q, self%rate, abs(change), nearly, near)
+         do i = 1, merge(self%moving, 0, near)
             d = self%q(i) + self%rate(i)*abs(change)
-            ! Most springs are far from the ends of their lines.
-            if (springs%last(i) - d > nearly*abs(springs%last(i)) .and. &
-                d - springs%first(i) > nearly*abs(springs%first(i))) cycle
             if (is_on_end(springs, i, d, self%rate(i))) then
                call springs%arrive(i, merge(1, -1, self%rate(i) > 0.0_wp))
                self%direction = 0
