@@ -592,8 +592,8 @@ contains
                          self%d, self%work, self%first, self%last, near)
    end subroutine go_along
 
-   pure subroutine advance_along(n, q, rate, way, slack, d0, f0, k, unload_on_reversal, d, work, first, last, &
-                                 near)
+   pure subroutine advance_along(n, q, rate, way, slack, d0, f0, k, unload_on_reversal, d, work, first, &
+                                 last, near)
       integer, intent(in) :: n, unload_on_reversal(n)
       real(wp), intent(in) :: q(n), rate(n), way, slack, d0(n), f0(n), k(n)
       real(wp), intent(inout) :: d(n), work(n), first(n), last(n)
