@@ -10,13 +10,13 @@ import warnings
 import webbrowser
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
 
 from rbsdem._files import write_csv, write_figure
-from rbsdem._optional import console, need_parquet, need_rich, plain
+from rbsdem._optional import need_parquet
 from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
 from rbsdem.errors import InputError, RepairWarning
 from rbsdem.many.ensemble import Ensemble
@@ -40,6 +40,9 @@ from rbsdem.web.exports import drawing_in, opened
 from rbsdem.web.report import write_report
 from rbsdem.web.server import ExploreServer
 from rbsdem.web.state import DEFAULT
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 #: Collapse drift of an IDA if the case has none.
 _DRIFT = 0.1
@@ -331,9 +334,16 @@ def ida(
         **_ida_settings(model, **method),
     )
     curves, notes = _curves(analysis, limits, spreads)
-    written = [] if out is None else _write(analysis, curves, out, parquet)
+    frame, more = _fragilities(curves, site)
+    written = [] if out is None else _write(analysis, curves, frame, out, parquet)
     if not quiet:
-        _report(analysis, curves, notes, site)
+        terminal = tables.console(120)
+        label, size = analysis.runs.measure.label, analysis.lower.size
+        told = f"{label}: {size} records, {len(analysis.runs)} runs, {analysis.seconds:.3g} s"
+        terminal.print(tables.plain(told))
+        terminal.print(tables.table(frame))
+        for note in [*notes, *more]:
+            terminal.print(tables.plain(note))
         _tell_files(written)
     return 0
 
@@ -428,17 +438,50 @@ def _curves(
     return curves, notes
 
 
+def _fragilities(
+    curves: Mapping[str, Fragility], hazard: Hazard | None
+) -> tuple[pd.DataFrame, list[str]]:
+    """Return the curves as a frame, and why some have no band."""
+    import pandas as pd  # noqa: PLC0415
+
+    rows, notes = [], []
+    for name, curve in curves.items():
+        errors = np.sqrt(curve.covariance.diagonal())
+        row = {
+            "limit_state": name,
+            "theta_m/s2": curve.theta,
+            "beta": curve.beta,
+            "se_theta_m/s2": errors[0],
+            "se_beta": math.nan if curve.stated else errors[1],
+            "records": curve.data.size,
+        }
+        try:
+            low, high = curve.band([curve.theta])
+            row |= {"band_low": float(low[0]), "band_high": float(high[0])}
+        except InputError as error:
+            notes.append(str(error))
+        if hazard is not None:
+            row["per_year"] = curve.mean_annual_frequency(hazard)
+        rows.append(row)
+    return pd.DataFrame(rows), notes
+
+
 def _write(
-    analysis: IDA, curves: Mapping[str, Fragility], folder: Path, parquet: bool
+    analysis: IDA,
+    curves: Mapping[str, Fragility],
+    frame: pd.DataFrame,
+    folder: Path,
+    parquet: bool,
 ) -> list[Path]:
+    import pandas as pd  # noqa: PLC0415
+
     written = [folder / "ida.csv", folder / "fractiles.csv", folder / "fragility.csv"]
     analysis.runs.to_csv(written[0])
     level, fractiles = analysis.fractiles()
-    head = ("intensity_m/s2", "peak_drift_16", "peak_drift_50", "peak_drift_84")
-    write_csv(written[1], [head, *np.vstack([level, fractiles]).T.tolist()])
-    names = ("limit_state", "theta_m/s2", "beta", "se_theta_m/s2", "se_beta", "records")
-    rows = [(name, f.theta, f.beta, *_errors(f), f.data.size) for name, f in curves.items()]
-    write_csv(written[2], [names, *rows])
+    names = [f"peak_drift_{share}" for share in (16, 50, 84)]
+    values = {"intensity_m/s2": level, **dict(zip(names, fractiles, strict=True))}
+    tables.write_csv(pd.DataFrame(values), written[1])
+    tables.write_csv(frame, written[2])
     if parquet:
         written.append(folder / "ida.parquet")
         analysis.runs.to_parquet(written[-1])
@@ -450,43 +493,6 @@ def _write(
         written.append(folder / name)
         write_figure(ax.figure.savefig, written[-1], dpi=150)
     return written
-
-
-def _errors(curve: Fragility) -> list[float]:
-    """Return the standard errors of median and dispersion."""
-    return [float(variance) ** 0.5 for variance in curve.covariance.diagonal()]
-
-
-def _report(
-    analysis: IDA, curves: Mapping[str, Fragility], notes: list[str], hazard: Hazard | None
-) -> None:
-    rich = need_rich()
-    table = rich.table.Table(box=rich.box.SIMPLE_HEAD, padding=(0, 1), show_edge=False)
-    heads = ["Limit state", "θ (m/s²)", "±", "β", "±", "90 % band at θ", "Records"]
-    for number, head in enumerate([*heads, "1/a"] if hazard else heads):
-        table.add_column(head, justify="right" if number else "left", no_wrap=True)
-    for name, curve in curves.items():
-        errors = _errors(curve)
-        cells = [f"{curve.theta:.3g}", f"{errors[0]:.2g}", f"{curve.beta:.2f}"]
-        cells += ["stated" if curve.stated else f"{errors[1]:.2f}"]
-        try:
-            low, high = curve.band([curve.theta])
-            cells.append(f"{float(low[0]):.2f} to {float(high[0]):.2f}")
-        except InputError as error:
-            cells.append("-")
-            notes = [*notes, str(error)]
-        cells.append(str(curve.data.size))
-        if hazard:
-            cells.append(f"{curve.mean_annual_frequency(hazard):.2e}")
-        table.add_row(plain(name), *cells)
-    out = console(100)
-    label, size = analysis.runs.measure.label, analysis.lower.size
-    out.print(
-        plain(f"{label}: {size} records, {len(analysis.runs)} runs, {analysis.seconds:.3g} s")
-    )
-    out.print(table)
-    for note in notes:
-        out.print(plain(note))
 
 
 # ---- the page -----------------------------------------------------------------------------------
