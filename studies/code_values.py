@@ -56,9 +56,9 @@ def main() -> None:
     for prediction in found:
         if prediction.comparison is None:
             continue
-        drawing = peer.draw(prediction.specimen)
         specimen = prediction.specimen
-        values = drawing.section().code_values(specimen.length, specimen.axial_load)
+        section = peer.draw(specimen).section
+        values = section.code_values(specimen.length, specimen.axial_load)
         tests.append((prediction, values))
     head = "tests | measured/calculated | sigma_ln | within 25 % (about the median) |"
     for kind in CLASSES:

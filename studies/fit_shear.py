@@ -55,7 +55,7 @@ class Case:
     def __init__(self, specimen: peer.Specimen) -> None:
         self.specimen, self.target = specimen, Target(specimen.test())
         self.column = peer.column(specimen)
-        self.section = draw(specimen).section()
+        self.section = draw(specimen).section
         foot = self.column.shear[0]
         self.stiffness = foot.f_c / foot.d_c * specimen.length
         force = self.force(rbsdem.Elastic(foot.f_c / foot.d_c))

@@ -5,15 +5,14 @@ The histories belong to the database and are no part of rbsdem; a user gets them
 points come with rbsdem.
 """
 
-from rbsdem.measured.bands import band
 from rbsdem.measured.columns import column
 from rbsdem.measured.doubts import Checked, Doubt, check
-from rbsdem.measured.drawing import Drawing, DrawnBar, draw
+from rbsdem.measured.drawing import DrawnSpecimen, draw
 from rbsdem.measured.file import PeerTest, read_peer
 from rbsdem.measured.indicators import Indicators, indicators
 from rbsdem.measured.laboratory import read_test
 from rbsdem.measured.measured import PDELTA_CODES, MeasuredTest, net_force
-from rbsdem.measured.nearest import Neighbour, nearest, properties
+from rbsdem.measured.nearest import Neighbour, nearest
 from rbsdem.measured.predict import predict, predict_one
 from rbsdem.measured.prediction import Prediction
 from rbsdem.measured.predictions import Group, Predictions, Quartiles
@@ -27,6 +26,7 @@ from rbsdem.measured.shipped import (
 )
 from rbsdem.measured.specimen import Observed, Specimen
 from rbsdem.measured.specimens import Specimens, read_specimens
+from rbsdem.section.remote import likeness
 
 __all__ = [
     "FOLDER_VARIABLE",
@@ -34,8 +34,7 @@ __all__ = [
     "PDELTA_CODES",
     "Checked",
     "Doubt",
-    "Drawing",
-    "DrawnBar",
+    "DrawnSpecimen",
     "Group",
     "Indicators",
     "MeasuredTest",
@@ -48,18 +47,17 @@ __all__ = [
     "Reversals",
     "Specimen",
     "Specimens",
-    "band",
     "check",
     "column",
     "draw",
     "find_history",
     "indicators",
+    "likeness",
     "measured_loops",
     "nearest",
     "net_force",
     "predict",
     "predict_one",
-    "properties",
     "read_peer",
     "read_specimens",
     "read_test",

@@ -79,7 +79,7 @@ def test_elastic_stiffness_of_the_layered_model_in_closed_form(n):
 def test_more_bodies_in_the_papers_model_add_the_flexibility_above_the_hinge(n):
     bare = replace(SPECIMEN, axial_load=0.0)
     one, column = peer.column(bare, "paper"), peer.column(bare, "paper", n=n)
-    springs = peer.draw(bare).section().springs(bare.length, 0.0, yield_rule="first")
+    springs = peer.draw(bare).section.springs(bare.length, 0.0, yield_rule="first")
     bending = springs.flexure.k_c * springs.hinge_length
     above = (bare.length - springs.hinge_length) ** 3 / (3 * bending)
     expected = 1 / stiffness_at_first(one, 0.0) + above

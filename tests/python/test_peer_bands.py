@@ -57,13 +57,13 @@ def cells(path: Path) -> Iterator[dict[str, str]]:
 def test_one_test(table: peer.Specimens) -> None:
     """Band, intervals and the tests of the folder of its table; the nearest in axial load first."""
     row = peer.predict(table["T1"], samples=8)
-    band = peer.band(table["T1"], samples=8)
+    path = table["T1"].test().displacement
+    band = peer.column(table["T1"]).spread(path, samples=8)
     for name in ("force", "median", "lower", "upper", "samples"):
         np.testing.assert_array_equal(getattr(row.band, name), getattr(band, name))
     assert [one.specimen.name for one in row.nearest] == ["T2", "T3", "T4"]
     # 400 kN of f'c A = 7440 kN; 0.15 counts as 1.
     assert row.nearest[0].distance == pytest.approx(400 / 7440 / 0.15)
-    assert row.nearest[0].properties["axial_load_ratio"] == pytest.approx(800 / 7440)
     assert row.nearest[0].prediction.score("peak_ratio") == pytest.approx(1 / 1.05)
     assert row.comparison.peak_ratio == pytest.approx(1 / 1.05)
     # 5 % are within the band of nominally equal specimens.
@@ -111,10 +111,14 @@ def test_a_history_that_cannot_be_read_is_no_neighbour(folder: Path, tmp_path: P
 def test_what_cannot_be_drawn_is_no_neighbour(table: peer.Specimens) -> None:
     tests = [replace(table["T2"], longitudinal_number=0), table["T3"], table["T6"]]
     twice = replace(table["T4"], duplicate_of=3)
-    assert [one.specimen.name for one in peer.nearest(table["T1"], [*tests, twice])] == ["T3"]
-    assert peer.nearest(replace(table["T1"], section="circular"), tests) == ()
+    first = table["T1"]
+    column = peer.draw(first).section, first.length, first.axial_load
+    found = peer.nearest(*column, [first, *tests, twice], but=first)
+    assert [one.specimen.name for one in found] == ["T3"]
+    assert [one.distance for one in peer.nearest(*column, [first])] == [0.0]
+    assert peer.nearest(*column, tests, but=replace(first, section="circular")) == ()
     with pytest.raises(InputError, match="n = 0"):
-        peer.nearest(table["T1"], tests, n=0)
+        peer.nearest(*column, tests, n=0)
 
 
 def test_folder_goes_on_with_the_same_bits(folder: Path, tmp_path: Path) -> None:

@@ -63,7 +63,7 @@ def made(
         pdelta_code=label,
         **(given | changes),  # type: ignore[arg-type]
     )
-    section = peer.draw(specimen).section()
+    section = peer.draw(specimen).section
     peak = section.diagram(load).events.peak
     assert peak is not None
     gross = 3 * section.concrete_law["ec"] * section.width * section.depth**3 / 12 / LENGTH**3

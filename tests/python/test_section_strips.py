@@ -42,12 +42,8 @@ DISC = math.pi / 4 * 0.44**2
 
 
 def cut(specimen: peer.Specimen, number: int) -> Strips:
-    drawing = peer.draw(specimen)
-    return drawing.section().cut(
-        number,
-        restrained=drawing.restrained,
-        round_core=drawing.shape == "square with spiral",
-    )
+    drawn = peer.draw(specimen)
+    return drawn.section.cut(number, restrained=drawn.restrained, round_core=drawn.round_core)
 
 
 def total(strips: tuple[Strip, ...], power: int = 0) -> float:
@@ -135,7 +131,7 @@ def test_a_column_with_a_spiral(specimen):
     d = 0.03 * np.sin(np.linspace(0, 4 * np.pi, 161))
     force = rbsdem.cyclic(column, displacement=d).force
     assert rbsdem.cyclic(column, displacement=-d).force == pytest.approx(-force, abs=1.0)
-    section = peer.draw(specimen).section()
+    section = peer.draw(specimen).section
     curvature = np.linspace(0, 0.1, 60)[1:]
     moment = section.moment_curvature(specimen.axial_load, curvature, tension="zero")
     rotation = curvature * 0.2

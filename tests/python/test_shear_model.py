@@ -44,7 +44,7 @@ STIFFNESS = 7e8
 
 
 def section(specimen: peer.Specimen) -> rbsdem.model.section.Section:
-    return peer.draw(specimen).section()
+    return peer.draw(specimen).section
 
 
 def spring(specimen: peer.Specimen, **numbers: float) -> rbsdem.Pinching:

@@ -59,15 +59,15 @@ def column(specimen: Specimen, model: Model = DEFAULT, **options: Any) -> Column
     checked_specimen(specimen)
     check_options(options)
     tested = _tested(specimen, options.pop("ends", "equivalent"), options.get("footing"))
-    drawing = draw(specimen)
+    drawn = draw(specimen)
     if model == "layered":
         options = {
-            "restrained": drawing.restrained,
-            "round_core": drawing.shape == "square with spiral",
+            "restrained": drawn.restrained,
+            "round_core": drawn.round_core,
             **options,
         }
     halves = 2 if tested and specimen.config == "DC" else 1
-    return drawing.section().column(
+    return drawn.section.column(
         halves * specimen.length,
         axial_load=specimen.axial_load,
         mass=halves * specimen.mass,

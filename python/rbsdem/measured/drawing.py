@@ -1,6 +1,6 @@
 """The section of a specimen, as it would be drawn.
 
-What the table does not report is filled in by rules, each named in `Drawing.assumed`:
+What the table does not report is filled in by rules, each named in `DrawnSpecimen.assumed`:
 
 - bars of a face stand at equal distances between the corner bars; if the faces do not add up to the
   number of bars, the areas of the intermediate bars make up for it (bundled bars);
@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeAlias
 
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.measured.specimen import Specimen
@@ -28,7 +28,7 @@ from rbsdem.model.rectangular import RectangularSection
 from rbsdem.model.reinforcement import Spiral, Ties
 from rbsdem.model.section import Section
 
-__all__ = ["DEFAULT_YIELD_STRESS", "ULTIMATE_OVER_YIELD", "Drawing", "DrawnBar", "draw"]
+__all__ = ["DEFAULT_YIELD_STRESS", "ULTIMATE_OVER_YIELD", "DrawnSpecimen", "draw"]
 
 ULTIMATE_OVER_YIELD = 1.5
 """Ultimate over yield stress where it is not reported."""
@@ -39,120 +39,32 @@ DEFAULT_YIELD_STRESS = 420e6
 _COVER_SHARE = 0.05
 
 
-@dataclass(frozen=True, slots=True)
-class DrawnBar:
-    """A longitudinal bar, or several at the same depth.
+#: A longitudinal bar, or several at the same depth: depth from the middle in the direction of
+#: loading [m], area [m2], and yield and ultimate stress [Pa].
+_Bar: TypeAlias = tuple[float, float, tuple[float, float]]
+
+
+@dataclass(frozen=True)
+class DrawnSpecimen:
+    """The section of a specimen, and what the table says of its bars besides.
 
     Attributes
     ----------
-    y : float
-        From mid-depth, in the direction of loading [m].
-    area : float
-        [m2].
-    yield_stress, ultimate_stress : float
-        [Pa].
-    """
-
-    y: float
-    area: float
-    yield_stress: float
-    ultimate_stress: float
-
-
-@dataclass(frozen=True, slots=True)
-class Drawing:
-    """A section with all that an analysis needs, in SI units.
-
-    Attributes
-    ----------
-    shape : str
-        "rectangular", "circular", or "square with spiral".
-    width, depth : float
-        Depth in the direction of loading; both the diameter of a circle [m].
-    concrete_strength : float
-        Cylinder strength [Pa].
-    bars : tuple of DrawnBar
-        Longitudinal bars.
-    bar_diameter : float
-        Of the corner bars, which stand for all in bond and buckling [m].
-    cover, side_cover : float
-        Clear, to the outer edge of the transverse bars, along and across the direction of loading
-        [m].
-    tie_diameter, tie_spacing : float
-        Of the transverse bars [m]; 0 if there are none.
-    tie_yield_stress, tie_ultimate_stress : float
-        Of the transverse bars [Pa].
-    legs, side_legs : float
-        Transverse bars that cross the section along and across the direction of loading. The table
-        has only the former; the latter is taken as the same.
+    section : rbsdem.model.section.Section
+        Laws by the strengths. The table has the legs of hoops in the direction of loading only;
+        those across are taken as the same. A square section with a spiral has it as hoops.
     restrained : int
         Longitudinal bars that are held in a corner or by a tie, of those around the perimeter.
+    round_core : bool
+        Whether a rectangular section has a spiral.
     assumed : tuple of str
         What the table did not report.
     """
 
-    shape: str
-    width: float
-    depth: float
-    concrete_strength: float
-    bars: tuple[DrawnBar, ...]
-    bar_diameter: float
-    cover: float
-    side_cover: float
-    tie_diameter: float
-    tie_spacing: float
-    tie_yield_stress: float
-    tie_ultimate_stress: float
-    legs: float
-    side_legs: float
+    section: Section
     restrained: int
+    round_core: bool
     assumed: tuple[str, ...] = ()
-
-    def section(self, **changes: Any) -> Section:
-        """Return the section for analysis.
-
-        Parameters
-        ----------
-        **changes
-            Other arguments of `rbsdem.RectangularSection` or `rbsdem.CircularSection`, as
-            ``concrete=...`` or ``strips=...``.
-
-        Returns
-        -------
-        rbsdem.model.section.Section
-            Laws by the strengths; of a square section with a spiral, the spiral as hoops of two
-            legs.
-
-        Raises
-        ------
-        InputError
-            If the section is refused.
-        """
-        stresses = {(bar.yield_stress, bar.ultimate_stress) for bar in self.bars}
-        steels = {pair: _steel(*pair) for pair in stresses}
-        given: dict[str, Any] = {
-            "concrete": Concrete(self.concrete_strength),
-            "bars": [
-                (bar.y, bar.area, steels[bar.yield_stress, bar.ultimate_stress])
-                for bar in self.bars
-            ],
-            "cover": self.cover,
-            "bar_diameter": self.bar_diameter,
-        }
-        tie = self.tie_diameter, self.tie_spacing
-        tie_steel = _steel(self.tie_yield_stress, self.tie_ultimate_stress)
-        if self.shape == "circular":
-            given["spiral"] = Spiral(*tie, tie_steel) if tie[0] else None
-            return CircularSection(self.depth, **{**given, **changes})
-        legs = {"legs": self.legs, "legs_across": self.side_legs}
-        given["ties"] = Ties(*tie, tie_steel, **legs) if tie[0] else None
-        given["side_cover"] = self.side_cover
-        return RectangularSection(self.width, self.depth, **{**given, **changes})
-
-    @property
-    def steel_area(self) -> float:
-        """Area of all longitudinal bars [m2]."""
-        return sum(bar.area for bar in self.bars)
 
 
 @dataclass
@@ -187,7 +99,7 @@ class _Sheet:
         warnings.warn(f"{self.specimen.name}: {what}", AccuracyWarning, stacklevel=4)
 
 
-def draw(specimen: Specimen) -> Drawing:
+def draw(specimen: Specimen) -> DrawnSpecimen:
     """Draw the section of a specimen.
 
     Parameters
@@ -197,14 +109,14 @@ def draw(specimen: Specimen) -> Drawing:
 
     Returns
     -------
-    Drawing
-        Bars, ties and cover; what was assumed.
+    DrawnSpecimen
+        The section, and what was assumed.
 
     Raises
     ------
     InputError
         If the shape is not known, a value is not plausible in SI units, the numbers of bars
-        contradict each other, or the bars have no diameter or do not fit.
+        contradict each other, the bars have no diameter or do not fit, or the section is refused.
 
     Warns
     -----
@@ -215,13 +127,9 @@ def draw(specimen: Specimen) -> Drawing:
     _check(specimen)
     _check_bars(specimen)
     sheet = _Sheet(specimen)
-    shape = {
-        "rectangular": "rectangular",
-        "circular": "circular",
-        "octagonal": "circular",
-        "square(spiral table)": "square with spiral",
-    }.get(specimen.section)
-    if shape is None:
+    round_core = specimen.section == "square(spiral table)"
+    circular = specimen.section in ("circular", "octagonal")
+    if not (circular or round_core or specimen.section == "rectangular"):
         raise InputError(
             f"{specimen.name}: section = {specimen.section!r} is not known; there are rectangular, "
             "circular, octagonal and square(spiral table)"
@@ -231,39 +139,45 @@ def draw(specimen: Specimen) -> Drawing:
         sheet.assumed.append("no transverse bars: no diameter or spacing")
     cover = sheet.known("cover", _COVER_SHARE * specimen.depth, "0.05 of the depth")
     side_cover = specimen.cover_perpendicular or cover
-    if shape != "rectangular":
+    if circular or round_core:
         # For a spiral the table gives the cover to its centre.
         cover = side_cover = max(cover - (tie or 0.0) / 2, 0.0)
     diameter = specimen.corner_diameter or specimen.intermediate_diameter
     if diameter is None:
         raise InputError(f"{specimen.name}: no diameter of the longitudinal bars; it is needed")
     corner, intermediate = _steels(sheet)
-    if shape == "rectangular":
-        bars = _rectangle(sheet, cover + (tie or 0.0), diameter, corner, intermediate)
-    else:
+    if circular or round_core:
         bars = _round(specimen, cover + (tie or 0.0), diameter, corner)
-    tie_yield = corner[0]
+    else:
+        bars = _rectangle(sheet, cover + (tie or 0.0), diameter, corner, intermediate)
+    steels = {stresses: _steel(*stresses) for _, _, stresses in bars}
+    given: dict[str, Any] = {
+        "concrete": Concrete(specimen.concrete_strength),
+        "bars": [(y, area, steels[stresses]) for y, area, stresses in bars],
+        "cover": cover,
+        "bar_diameter": diameter,
+    }
+    hoops: dict[str, Any] = {}
     if tie:
-        tie_yield = sheet.guessed("transverse_yield_stress", corner[0], "that of longitudinal bars")
-    legs = specimen.shear_legs if specimen.shear_legs and tie else 2.0 if tie else 0.0
-    return Drawing(
-        shape=shape,
-        width=specimen.width,
-        depth=specimen.depth,
-        concrete_strength=specimen.concrete_strength,
-        bars=tuple(bars),
-        bar_diameter=diameter,
-        cover=cover,
-        side_cover=side_cover,
-        tie_diameter=tie or 0.0,
-        tie_spacing=(specimen.transverse_spacing or 0.0) if tie else 0.0,
-        tie_yield_stress=tie_yield,
-        tie_ultimate_stress=specimen.transverse_ultimate_stress or ULTIMATE_OVER_YIELD * tie_yield,
-        legs=legs,
-        side_legs=legs,
-        restrained=_restrained(specimen),
-        assumed=tuple(sheet.assumed),
-    )
+        hoop_yield = sheet.guessed(
+            "transverse_yield_stress", corner[0], "that of longitudinal bars"
+        )
+        ultimate = specimen.transverse_ultimate_stress or ULTIMATE_OVER_YIELD * hoop_yield
+        hoops = {
+            "diameter": tie,
+            "spacing": specimen.transverse_spacing,
+            "steel": _steel(hoop_yield, ultimate),
+        }
+    section: Section
+    if circular:
+        spiral = Spiral(**hoops) if hoops else None
+        section = CircularSection(specimen.depth, **given, spiral=spiral)
+    else:
+        legs = specimen.shear_legs or 2.0
+        ties = Ties(**hoops, legs=legs, legs_across=legs) if hoops else None
+        size = specimen.width, specimen.depth
+        section = RectangularSection(*size, **given, ties=ties, side_cover=side_cover)
+    return DrawnSpecimen(section, _restrained(specimen), round_core, tuple(sheet.assumed))
 
 
 def _check_bars(specimen: Specimen) -> None:
@@ -337,9 +251,11 @@ def _check(specimen: Specimen) -> None:
 
 def _steel(yield_stress: float, ultimate_stress: float) -> Steel:
     """Return a steel; a very strong one has no plateau."""
-    plain = Steel.__dataclass_fields__
-    es, hardening = plain["es"].default, plain["eps_sh"].default
-    return Steel(yield_stress, ultimate_stress, eps_sh=max(hardening, 1.001 * yield_stress / es))
+    return Steel(
+        yield_stress,
+        ultimate_stress,
+        eps_sh=max(Steel.eps_sh, 1.001 * yield_stress / Steel.es),
+    )
 
 
 def _steels(sheet: _Sheet) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -361,7 +277,7 @@ def _rectangle(
     diameter: float,
     corner: tuple[float, float],
     intermediate: tuple[float, float],
-) -> list[DrawnBar]:
+) -> list[_Bar]:
     specimen = sheet.specimen
     across, along = specimen.intermediate_perpendicular, specimen.intermediate_parallel
     if across is None or along is None:
@@ -386,17 +302,17 @@ def _rectangle(
             f"{to_bars * 1e3:g} mm do not fit into a depth of {specimen.depth * 1e3:g} mm"
         )
     corner_area = math.pi / 4 * diameter**2
-    bars = [DrawnBar(y, 2 * corner_area, *corner) for y in (-y_corner, y_corner)]
+    bars = [(y, 2 * corner_area, corner) for y in (-y_corner, y_corner)]
     if across:
-        bars += [DrawnBar(y, across * area, *intermediate) for y in (-y_inner, y_inner)]
+        bars += [(y, across * area, intermediate) for y in (-y_inner, y_inner)]
     step = 2 * y_corner / (along + 1)
-    bars += [DrawnBar(-y_corner + (i + 1) * step, 2 * area, *intermediate) for i in range(along)]
-    return sorted(bars, key=lambda bar: bar.y)
+    bars += [(-y_corner + (i + 1) * step, 2 * area, intermediate) for i in range(along)]
+    return sorted(bars, key=lambda bar: bar[0])
 
 
 def _round(
     specimen: Specimen, to_bars: float, diameter: float, steel: tuple[float, float]
-) -> list[DrawnBar]:
+) -> list[_Bar]:
     radius = specimen.depth / 2 - to_bars - diameter / 2
     if radius <= 0:
         raise InputError(
@@ -408,7 +324,7 @@ def _round(
     ys = [radius * math.cos(2 * math.pi * i / n) for i in range(n)]
     if n % 2:
         ys, area = [*ys, *(-y for y in ys)], area / 2
-    return sorted((DrawnBar(y, area, *steel) for y in ys), key=lambda bar: bar.y)
+    return sorted((y, area, steel) for y in ys)
 
 
 def _restrained(specimen: Specimen) -> int:

@@ -161,7 +161,7 @@ def _mean(values: list[float]) -> float:
 def _strength(specimen: Specimen, test: MeasuredTest) -> float:
     """Return the largest base moment over the strength of the section, both sides alike."""
     try:
-        section = draw(specimen).section()
+        section = draw(specimen).section
         peak = section.diagram(specimen.axial_load).events.peak
     except RbsdemError:
         return math.nan
@@ -177,7 +177,7 @@ def _stiffness(specimen: Specimen, test: MeasuredTest) -> float:
     d, f = float(test.displacement[row]), float(test.force[row])
     if not d * f > 0:
         return math.nan
-    section = draw(specimen).section()
+    section = draw(specimen).section
     gross = 3 * section.concrete_law["ec"] * section.cut(2).inertia / specimen.length**3
     return f / d / gross
 

@@ -14,20 +14,15 @@ from rbsdem.measured.columns import checked_specimen
 from rbsdem.measured.drawing import draw
 from rbsdem.measured.prediction import Prediction
 from rbsdem.measured.specimen import Specimen
+from rbsdem.model.circular import CircularSection
+from rbsdem.model.section import Section
+from rbsdem.section.remote import place_of
 
-__all__ = ["Neighbour", "nearest", "properties"]
+__all__ = ["Neighbour", "nearest"]
 
-#: Differences that count as 1: of the axial load ratio, and of the logarithms of the others.
-_SCALES = {
-    "axial_load_ratio": 0.15,
-    "span_depth_ratio": 0.4,
-    "concrete_strength": 0.35,
-    "bar_ratio": 0.4,
-    "tie_ratio": 0.6,
-}
-
-#: Below this a ratio of bars or ties is none.
-_NONE = 1e-3
+#: Differences that count as 1: of the axial load ratio, and of the logarithms of the shear span
+#: over the depth, the concrete strength, and the mechanical ratios of bars and ties.
+_SCALES = (0.15, 0.4, 0.35, 0.4, 0.6)
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,76 +44,47 @@ class Neighbour:
     distance: float
     prediction: Prediction | None = None
 
-    @property
-    def properties(self) -> dict[str, float]:
-        """What the distance is taken from; see `rbsdem.peer.properties`."""
-        return properties(self.specimen)
-
-
-def properties(specimen: Specimen) -> dict[str, float]:
-    """Return the properties by which tests are compared.
-
-    Parameters
-    ----------
-    specimen : Specimen
-        The test, or a column that nobody tested.
-
-    Returns
-    -------
-    dict of str to float
-        ``axial_load_ratio``, ``span_depth_ratio``, ``concrete_strength`` [Pa], and the mechanical
-        ratios of the longitudinal bars, ``bar_ratio`` = A_s f_y/(A_g f'c), and of the ties in the
-        direction of loading, ``tie_ratio`` = A_v f_yt/(b s f'c).
-
-    Raises
-    ------
-    InputError
-        If its section cannot be drawn.
-    """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AccuracyWarning)
-        drawing = draw(checked_specimen(specimen))
-    steel = sum(bar.area * bar.yield_stress for bar in drawing.bars)
-    ties = 0.0
-    if drawing.tie_spacing > 0:
-        area = drawing.legs * math.pi / 4 * drawing.tie_diameter**2
-        ties = area * drawing.tie_yield_stress / (drawing.tie_spacing * specimen.width)
-    return {
-        "axial_load_ratio": specimen.axial_load_ratio,
-        "span_depth_ratio": specimen.span_depth_ratio,
-        "concrete_strength": specimen.concrete_strength,
-        "bar_ratio": steel / (specimen.gross_area * specimen.concrete_strength),
-        "tie_ratio": ties / specimen.concrete_strength,
-    }
-
 
 def nearest(
-    specimen: Specimen, tests: Iterable[Prediction | Specimen], n: int = 5
+    section: Section,
+    height: float,
+    axial_load: float,
+    tests: Iterable[Prediction | Specimen],
+    n: int = 5,
+    *,
+    but: Specimen | None = None,
 ) -> tuple[Neighbour, ...]:
     """Return the tests that are most like a column, the nearest first.
 
-    They differ least in axial load ratio, shear span over depth, concrete strength, mechanical
-    ratio of the bars and of the ties; rectangular and round sections are not compared.
+    They differ least in the properties of `likeness`; rectangular and round sections, of which
+    those with a spiral are, are not compared.
 
     Parameters
     ----------
-    specimen : Specimen
-        The column; a test among those found is not its own neighbour, nor is another row of the
-        table with its history.
+    section : Section
+        Of the column; that of a test is ``peer.draw(specimen).section``.
+    height : float
+        From the base to the lateral load [m].
+    axial_load : float
+        Compression positive [N].
     tests : iterable of Prediction or Specimen
         Predicted tests of a folder, as from `rbsdem.peer.predict`, or the tests alone. What has no
         history, or a section that cannot be drawn, is passed over.
     n : int, optional
         How many.
+    but : Specimen, optional
+        The column itself, if it is a test: it is not its own neighbour, nor is another row of the
+        table with its history.
 
     Raises
     ------
     InputError
-        If the section of the column cannot be drawn, or `n` is below 1.
+        If `n` is below 1.
     """
     if _arguments.whole(n, "n") < 1:
         raise InputError(f"nearest: n = {n} must be 1 or more")
-    place = _place(specimen)
+    place = place_of(section, height, axial_load)
+    is_round = isinstance(section, CircularSection) if but is None else _is_round(but)
     found = []
     for one in tests:
         row = one if isinstance(one, Prediction) else None
@@ -126,15 +92,16 @@ def nearest(
         if (row is None and other.path is None) or (row is not None and row.comparison is None):
             continue
         # A row with the history of another one is an error of the database.
-        if other.duplicate_of is not None or _same(specimen, other):
+        if other.duplicate_of is not None or (but is not None and _same(but, other)):
             continue
-        if _round(specimen) != _round(other):
+        if is_round != _is_round(other):
             continue
         try:
             there = _place(other)
         except InputError:
             continue
-        found.append(Neighbour(other, math.dist(place, there), row))
+        ways = [(a - b) / scale for a, b, scale in zip(place, there, _SCALES, strict=True)]
+        found.append(Neighbour(other, math.hypot(*ways), row))
     return tuple(sorted(found, key=lambda one: one.distance)[:n])
 
 
@@ -147,15 +114,13 @@ def _same(one: Specimen, other: Specimen) -> bool:
     return one.duplicate_of is not None and one.duplicate_of == other.peer_id
 
 
-def _round(specimen: Specimen) -> bool:
+def _is_round(specimen: Specimen) -> bool:
     return specimen.section != "rectangular"
 
 
 @lru_cache(maxsize=4096)
 def _place(specimen: Specimen) -> tuple[float, ...]:
-    """Return a column as a point: each number over what counts as 1."""
-    found = []
-    for name, value in properties(specimen).items():
-        number = value if name == "axial_load_ratio" else math.log(max(value, _NONE))
-        found.append(number / _SCALES[name])
-    return tuple(found)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        section = draw(specimen).section
+    return place_of(section, specimen.length, specimen.axial_load)

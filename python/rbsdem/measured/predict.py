@@ -25,6 +25,7 @@ from rbsdem.curves.scores import compare
 from rbsdem.errors import AccuracyWarning, InputError, RbsdemError, SolveError
 from rbsdem.measured.columns import check_options, checked_specimen
 from rbsdem.measured.columns import column as column_of
+from rbsdem.measured.drawing import draw
 from rbsdem.measured.nearest import Neighbour, nearest
 from rbsdem.measured.prediction import Prediction
 from rbsdem.measured.prediction_store import PredictionStore
@@ -354,7 +355,12 @@ def _with_nearest(
             found.append(row)
             continue
         near: list[Neighbour] = []
-        for one in nearest(row.specimen, tests, max(len(tests), 1)):
+        s = row.specimen
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", AccuracyWarning)
+            section = draw(s).section
+        number = max(len(tests), 1)
+        for one in nearest(section, s.length, s.axial_load, tests, number, but=s):
             if one.prediction is None and id(one.specimen) not in known:
                 known[id(one.specimen)] = predict_one(one.specimen, model, **options)
             own = one.prediction or known[id(one.specimen)]

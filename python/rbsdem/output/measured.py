@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rbsdem._files import write_figure
-from rbsdem.measured.nearest import properties
 from rbsdem.measured.prediction import Prediction
 from rbsdem.measured.predictions import Predictions
 from rbsdem.measured.specimen import Specimen
@@ -116,11 +115,11 @@ def prediction(row: Prediction) -> Figure:
             spread(row.band, test=measured, ax=right)
         else:
             right.set_axis_off()
-        numbers = properties(row.specimen)
+        s = row.specimen
         figure.suptitle(
-            f"{row.specimen.name}: axial load ratio {numbers['axial_load_ratio']:.2f}, "
-            f"span over depth {numbers['span_depth_ratio']:.2f}, "
-            f"concrete {1e-6 * numbers['concrete_strength']:.0f} MPa",
+            f"{s.name}: axial load ratio {s.axial_load_ratio:.2f}, "
+            f"span over depth {s.span_depth_ratio:.2f}, "
+            f"concrete {1e-6 * s.concrete_strength:.0f} MPa",
             fontsize="medium",
         )
     return figure

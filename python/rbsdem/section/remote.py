@@ -30,26 +30,44 @@ PROPERTIES = (
 _NONE = 1e-3
 
 
-def place_of(section: Section, height: float, axial_load: float) -> tuple[float, ...]:
-    """Return the properties of a column, in the order of `PROPERTIES`.
+def likeness(section: Section, height: float, axial_load: float) -> dict[str, float]:
+    """Return the properties by which columns are compared.
 
     Parameters
     ----------
     section : Section
-        Its section.
+        Of the column.
     height : float
         From the base to the lateral load [m].
     axial_load : float
         Compression positive [N].
+
+    Returns
+    -------
+    dict of str to float
+        ``axial_load_ratio``, ``span_depth_ratio``, ``concrete_strength`` [Pa], and the mechanical
+        ratios of the longitudinal bars, ``bar_ratio`` = A_s f_y/(A_g f'c), and of the ties in the
+        direction of loading, ``tie_ratio`` = A_v f_yt/(b s f'c).
     """
     strength, sizes = section.concrete.fc, shear_sizes(section)
     bars = sum(area * steel.fy for _, area, steel in section.bars)
-    ties = sizes.tie_ratio * sizes.tie_yield / strength
+    return {
+        "axial_load_ratio": axial_load / (section.gross_area * strength),
+        "span_depth_ratio": height / section.depth,
+        "concrete_strength": strength,
+        "bar_ratio": bars / (section.gross_area * strength),
+        "tie_ratio": sizes.tie_ratio * sizes.tie_yield / strength,
+    }
+
+
+def place_of(section: Section, height: float, axial_load: float) -> tuple[float, ...]:
+    """Return the properties of a column, in the order of `PROPERTIES`."""
+    axial, span, strength, bars, ties = likeness(section, height, axial_load).values()
     return (
-        axial_load / (section.gross_area * strength),
-        math.log(height / section.depth),
+        axial,
+        math.log(span),
         math.log(strength / 30e6),
-        math.log(max(bars / (section.gross_area * strength), _NONE)),
+        math.log(max(bars, _NONE)),
         math.log(max(ties, _NONE)),
     )
 

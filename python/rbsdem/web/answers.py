@@ -43,6 +43,7 @@ from rbsdem.web.state import (
     Drawn,
     Faults,
     RefusedError,
+    column_of,
     drawn_case,
     key_of,
     section_of,
@@ -561,12 +562,15 @@ class NearestTests:
         """Return the nearest tests of each column; `pause` is called between predictions."""
         columns: list[dict[str, Any]] = []
         for given in state["columns"]:
-            specimen = None if "case" in given else _specimen_of(given)
-            if specimen is None:
+            drawn = None if "case" in given else column_of(given, Faults())[0]
+            if drawn is None or drawn.section.hollow:
                 columns.append({"none": "the folder has no tests of such columns"})
                 continue
             try:
-                near = nearest(specimen, self._tests, self._number)
+                column = drawn.column
+                near = nearest(
+                    drawn.section, drawn.span, column.axial_load, self._tests, self._number
+                )
             except (RbsdemError, ValueError) as error:
                 columns.append({"none": str(error)})
                 continue
@@ -574,8 +578,8 @@ class NearestTests:
             for one in near:
                 pause()
                 row = self._predicted(one.specimen)
-                drawn = None if row.comparison is None else picture(row.comparison)
-                rows.append(card(row, drawn) | {"distance": round(one.distance, 3)})
+                lines = None if row.comparison is None else picture(row.comparison)
+                rows.append(card(row, lines) | {"distance": round(one.distance, 3)})
             columns.append({"tests": rows})
         return {"columns": columns, "tests": len(self._tests)}
 
@@ -585,46 +589,3 @@ class NearestTests:
                 warnings.simplefilter("ignore")
                 self._found[test.name] = predict_one(test)
         return self._found[test.name]
-
-
-def _specimen_of(given: Mapping[str, Any]) -> Specimen | None:
-    """Return a drawn column as a specimen to compare; None for shapes that were not tested."""
-    try:
-        section, bars, ties, frame = (given[name] for name in ("section", "bars", "ties", "column"))
-        half = 0.5 if frame.get("ends") == "double" else 1.0
-        common = {
-            "name": "drawn",
-            "length": half * frame["height"],
-            "concrete_strength": given["concrete"]["fc"],
-            "axial_load": frame["axial_load"],
-            "longitudinal_number": bars["number"],
-            "corner_diameter": bars["diameter"],
-            "corner_yield_stress": bars["fy"],
-            "transverse_diameter": ties["diameter"],
-            "transverse_spacing": ties["spacing"],
-            "transverse_yield_stress": ties["fy"],
-        }
-        if section["shape"] == "circle":
-            return Specimen(
-                section="circular",
-                width=section["diameter"],
-                depth=section["diameter"],
-                cover=section["cover"] + 0.5 * ties["diameter"],
-                **common,
-            )
-        if section["shape"] != "rectangle":
-            return None
-        face = bars.get("face") or bars["number"] // 4 + 1
-        return Specimen(
-            section="rectangular",
-            width=section["width"],
-            depth=section["depth"],
-            cover=section["cover"],
-            intermediate_diameter=bars["diameter"],
-            intermediate_perpendicular=face - 2,
-            intermediate_parallel=(bars["number"] - 2 * face) // 2,
-            shear_legs=float(ties.get("legs") or 2.0),
-            **common,
-        )
-    except (KeyError, TypeError, ValueError):
-        return None

@@ -181,7 +181,7 @@ def drawn_case(
     faults : Faults
         What is wrong is added here; then there is no case.
     """
-    drawn, notes = _column_of(given, faults)
+    drawn, notes = column_of(given, faults)
     load = _loading_of(loading, records, faults)
     if drawn is not None and isinstance(load, GroundMotion):
         drawn = _in_motion(drawn, given, faults)
@@ -199,7 +199,7 @@ def drawn_case(
     return case, drawn, notes
 
 
-def _column_of(given: Mapping[str, Any], faults: Faults) -> tuple[Drawn | None, list[str]]:
+def column_of(given: Mapping[str, Any], faults: Faults) -> tuple[Drawn | None, list[str]]:
     """Make a column, with the notes of the program."""
     section = section_of(given, faults)
     frame = _group(given, "column")
