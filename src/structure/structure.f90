@@ -124,6 +124,7 @@ module rbs_structure_structure
       procedure :: axial_force
       procedure :: check_loads
       procedure :: check_initial
+      procedure :: largest_turn
       procedure :: spring_of
       procedure :: add_ground
       procedure :: work_of
@@ -316,6 +317,16 @@ contains
 
       x = inner_product(size(d), self%arm, d)
    end function top_displacement
+
+   !> Largest rotation of a body in deformations, or in a change of them, in size [rad].
+   pure real(wp) function largest_turn(self, d) result(largest)
+      class(structure_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+      real(wp) :: rotation(self%n)
+
+      call self%rotations(d, rotation)
+      largest = maxval(abs(rotation))
+   end function largest_turn
 
    !> Acceleration of the top along x, relative to the ground [m/s2].
    pure real(wp) function top_acceleration(self, d, v, a) result(acceleration)

@@ -1,13 +1,13 @@
-!> The curve of a column between two points of its path: values and rates at both ends, a cubic between.
+!> The curve of a structure between two points of its path: values and rates at both ends, a cubic between.
 module rbs_solve_static_curve
    use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
-   use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_interaction_joints, only: least_forward_rate, nearest_layer
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_static_curved_equilibrium, only: path_point
    use rbs_solve_static_path, only: on_the_end
-   use rbs_structure_spring_place, only: flexure
+   use rbs_structure_spring_place, only: shear, flexure
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
@@ -49,59 +49,59 @@ module rbs_solve_static_curve
 
 contains
 
-   subroutine set(self, column, near, far)
+   subroutine set(self, structure, near, far)
       class(curve_type), intent(inout) :: self
-      class(column_type), intent(in) :: column
+      class(structure_type), intent(in) :: structure
       type(path_point), intent(in) :: near, far
 
-      if (.not. allocated(self%turns)) self%turns = column%place%kind == flexure
+      if (.not. allocated(self%turns)) self%turns = structure%place%kind == flexure
       self%length = far%t - near%t
       self%near = near
       self%far = far
       ! Well above what `clean` takes for round-off, so that a motion found to have turned counts as turned.
-      self%least(1) = 30.0_wp*noise*max(motion_of(column, near), motion_of(column, far))
-      self%least(2) = self%least(1)/column%joint_height(column%n + 1)
+      self%least(1) = 30.0_wp*noise*max(motion_of(structure, near), motion_of(structure, far))
+      self%least(2) = self%least(1)/structure%total_height
    end subroutine set
 
    !> How fast the joints move the top, by which round-off of their rates is measured.
-   pure real(wp) function motion_of(column, point) result(motion)
-      class(column_type), intent(in) :: column
+   pure real(wp) function motion_of(structure, point) result(motion)
+      class(structure_type), intent(in) :: structure
       type(path_point), intent(in) :: point
 
       motion = abs(point%displacement_rate)
       ! Under an axial load that varies the top may keep still, but for round-off.
-      if (abs(point%axial_rate) > 0.0_wp) motion = max(motion, sum(abs(column%arm*point%rate)), least_motion)
+      if (abs(point%axial_rate) > 0.0_wp) motion = max(motion, sum(abs(structure%arm*point%rate)), least_motion)
    end function motion_of
 
    !> Set rates that are round-off to zero.
-   pure function clean(column, point) result(rate)
-      class(column_type), intent(in) :: column
+   pure function clean(structure, point) result(rate)
+      class(structure_type), intent(in) :: structure
       type(path_point), intent(in) :: point
-      real(wp) :: rate(column%unknowns)
+      real(wp) :: rate(size(point%rate))
       real(wp) :: least(2)
       integer :: i
 
-      least(1) = noise*motion_of(column, point)
-      least(2) = least(1)/column%joint_height(column%n + 1)
-      do i = 1, column%unknowns
+      least(1) = noise*motion_of(structure, point)
+      least(2) = least(1)/structure%total_height
+      do i = 1, size(rate)
          rate(i) = merge(point%rate(i), 0.0_wp, abs(point%rate(i)) > least(merge(2, 1, &
-              column%place(i)%kind == flexure)))
+              structure%place(i)%kind == flexure)))
       end do
    end function clean
 
    !> Whether the stride has been small enough for its tangents to tell what lies between.
-   pure logical function is_gentle(self, column)
+   pure logical function is_gentle(self, structure)
       class(curve_type), intent(in) :: self
-      class(column_type), intent(in) :: column
+      class(structure_type), intent(in) :: structure
       real(wp) :: change(size(self%near%q)), turn, step
 
-      associate (n => column%n, height => column%joint_height(column%n + 1))
+      associate (slips => structure%place%kind == shear, height => structure%total_height)
          change = self%far%q - self%near%q
-         turn = column%largest_turn(change)
-         step = max(turn, maxval(abs(change(:n)))/height)
+         turn = structure%largest_turn(change)
+         step = max(turn, maxval(abs(change), mask=slips)/height)
          change = change - self%length*self%near%rate
          is_gentle = turn <= 2.0_wp*most_turn .and. &
-                     max(column%largest_turn(change), maxval(abs(change(:n)))/height) &
+                     max(structure%largest_turn(change), maxval(abs(change), mask=slips)/height) &
                      <= most_bend*step + round_off
       end associate
    end function is_gentle

@@ -14,7 +14,7 @@ module rbs_solve_static_curved
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: put_on_plane
-   use rbs_structure_column_column, only: column_type, finite
+   use rbs_structure_column_column, only: column_type
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_curve, only: clean, most_turn
    use rbs_solve_static_path, only: static_path, describe_state, name_spring, is_on_end, on_the_end, &
@@ -22,6 +22,7 @@ module rbs_solve_static_curved
    use rbs_solve_static_resume, only: begin_path, end_path
    use rbs_solve_static_stride, only: stride_type, no_progress, round_off
    use rbs_solve_task, only: task_type
+   use rbs_structure_structure, only: finite
    implicit none
    private
 
@@ -81,7 +82,8 @@ contains
       allocate (path%stride%here%q(m), path%stride%here%rate(m), path%stride%there%q(m), &
                 path%stride%there%rate(m), source=0.0_wp)
       path%structure => column
-      path%steady => path%stride%equilibrium%steady
+      path%steady => column
+      if (varies) path%steady => path%stride%equilibrium%steady
       call begin_path(path, by_force, m, varies, task%before, error)
       if (allocated(error)) return
       if (.not. task%resumes()) then
@@ -148,7 +150,7 @@ contains
 
       call self%stride%equilibrium%solve(self%springs, self%stride%here, found)
       if (.not. found) return
-      self%rate = direction*clean(self%stride%equilibrium%steady, self%stride%here)
+      self%rate = direction*clean(self%structure, self%stride%here)
       if (self%stride%equilibrium%varies) self%stride%here%rate = self%rate
       self%axial_rate = self%stride%here%axial_rate
    end subroutine solve_line
@@ -164,7 +166,7 @@ contains
 
       self%stride%direction = self%direction
       way = abs(self%goal - self%stride%here%t)
-      turn = self%stride%equilibrium%steady%largest_turn(self%stride%here%rate)
+      turn = self%structure%largest_turn(self%stride%here%rate)
       length = min(way, self%next_length)
       if (turn*length > most_turn) length = most_turn/turn
       shortest = no_stride*max(abs(self%stride%here%t), length)
@@ -207,13 +209,13 @@ contains
       associate (way => abs(self%stride%there%t - self%stride%here%t))
          near = (self%stride%spring > 0 .or. .not. abs(self%goal - limit) > 0.0_wp) .and. &
                 way <= close_by*self%extent .and. &
-                way*self%stride%equilibrium%steady%largest_turn(self%stride%here%rate) <= close_by
+                way*self%structure%largest_turn(self%stride%here%rate) <= close_by
       end associate
       done = near
       if (.not. near) call self%stride%find_point(self%springs, limit, .true., done)
       if (done) call set_curve(self)
       if (done .and. .not. near) then
-         done = self%stride%curve%is_gentle(self%stride%equilibrium%steady)
+         done = self%stride%curve%is_gentle(self%structure)
          if (done) turns = self%stride%curve%least_rate(self%springs, self%stride%there) < 0.0_wp
          if (turns) then
             call self%stride%find_turn(self%springs, done)
@@ -234,7 +236,7 @@ contains
    subroutine set_curve(self)
       class(curved_path), intent(inout) :: self
 
-      call self%stride%curve%set(self%stride%equilibrium%steady, self%stride%here, self%stride%there)
+      call self%stride%curve%set(self%structure, self%stride%here, self%stride%there)
    end subroutine set_curve
 
    !> Go to the point that was found.
@@ -278,7 +280,7 @@ contains
          call put_springs(self)
          ! A motion may have turned by less than the search resolves.
          if (turns .or. spring > 0 .or. &
-             any(self%springs%unload_on_reversal*self%direction*clean(self%stride%equilibrium%steady, &
+             any(self%springs%unload_on_reversal*self%direction*clean(self%structure, &
                                                                       there) < 0.0_wp)) self%direction = 0
       end associate
       self%force = self%stride%there%force

@@ -1,13 +1,19 @@
-!> Equilibrium on a curved path, the springs on their present lines, and how it goes on.
+!> Equilibrium of a column on a curved path, the springs on their present lines, and how it goes on.
 !>
 !> What is driven, c, and the axial load at the top are linear in the parameter t of the path,
 !>
 !>     c = c_0 + c' t,   N = N_0 + N' t + r F
 !>
-!> with r F as in an exterior column of a frame; where N is constant, t is c. In absolute rotations joint by
-!> joint (see `rbs_structure_column_dead_loads`), with the loads less the forces of the springs R(z, F, N) and
-!> their derivatives K = -dR/dz, a = dR/dF, p = dR/dN, rates and corrections follow from one band with a
-!> border,
+!> with r F as in an exterior column of a frame; where N is constant, t is c. The dead loads have the potential
+!>
+!>     A = sum P_i l_i cos th_i + sum Q_i (-u_i sin th_{i-1} + w_i cos th_{i-1}) - F x_T
+!>     x_T = sum l_i sin th_i + u_i cos th_{i-1} + w_i sin th_{i-1}
+!>
+!> or, with the other kinematics, to second order without what the lateral force does on rotated bodies and
+!> the axial loads on openings of rotated joints; th_0 = 0. In absolute rotations joints meet only their
+!> neighbours: unknowns z stand joint by joint, slip, opening if there is one, absolute rotation. With the
+!> loads less the forces of the springs R(z, F, N) and their derivatives K = -dR/dz, a = dR/dF, p = dR/dN,
+!> rates and corrections follow from one band with a border,
 !>
 !>     [K    -(a + r p)] [dz]   [p N'         R             ]
 !>     [a'    0        ] [dF] = [c'    |      what c misses ]
@@ -16,9 +22,9 @@
 module rbs_solve_static_curved_equilibrium
    use rbs_base_band_matrix, only: band_matrix
    use rbs_base_kinds, only: wp
-   use rbs_structure_column_column, only: column_type, small
-   use rbs_structure_column_dead_loads, only: per_joint, dead_loads, add_springs, to_joints
+   use rbs_structure_column_column, only: column_type, small, finite
    use rbs_hysteresis_springs, only: spring_array
+   use rbs_structure_spring_place, only: shear, flexure, opening => axial
    implicit none
    private
 
@@ -48,8 +54,8 @@ module rbs_solve_static_curved_equilibrium
       logical :: by_force = .false., varies = .false.
       !> What is driven and the axial load at t = 0, and their rates
       real(wp) :: driven(2) = [0.0_wp, 1.0_wp], load(2) = 0.0_wp, ratio = 0.0_wp
-      !> The column under its constant axial loads alone, which where the load at the top varies is the
-      !> weight, and under a unit at the top
+      class(column_type), pointer :: column => null()
+      !> Where the load at the top varies, the column under its weight alone, and weightless under a unit
       class(column_type), allocatable :: steady, unit
       !> Weight above the joints that layered joints feel (unknowns) [N]
       real(wp), allocatable :: above(:)
@@ -58,8 +64,11 @@ module rbs_solve_static_curved_equilibrium
       !> What takes the residual away: of the deformations (unknowns), and of the force [N]
       real(wp), allocatable :: correction(:)
       real(wp) :: force_correction = 0.0_wp
-      !> The column under the present loads, and its tangent
-      type(column_type), private :: column
+      !> Unknowns of a joint: also the number of diagonals beside the main one
+      integer, private :: per = 2
+      !> Axial forces on rotations of bodies, slips and openings (n, 3): constant ones, per unit of the load at
+      !> the top, present ones
+      real(wp), allocatable, private :: constant(:, :), per_load(:, :), axial(:, :)
       type(band_matrix), private :: tangent
       !> R, a, p and its part without springs, right-hand sides and solutions, joint by joint; forces of
       !> springs
@@ -78,56 +87,47 @@ contains
    subroutine create(self, column, by_force, varies)
       class(curved_equilibrium), intent(out) :: self
       !> Under the axial load with which the path begins
-      class(column_type), intent(in) :: column
+      class(column_type), intent(in), target :: column
       logical, intent(in) :: by_force, varies
-      real(wp), allocatable :: band(:, :)
+      real(wp) :: stiffness(column%unknowns)
       integer :: m
 
       m = column%unknowns
-      self%column = column
-      self%steady = column
+      self%column => column
       self%by_force = by_force
       self%varies = varies
+      self%per = column%kinds
       allocate (self%right(m, 2), self%change(m, 2), self%residual(m), self%arm(m), self%pushed(m), &
                 self%lift(m), self%correction(m), self%f(m), self%above(m), source=0.0_wp)
-      if (varies) call take_load_off(self)
+      call list_axial_forces(column, self%constant)
+      if (varies) then
+         ! What is left when the load is taken off would depend on it by round-off, and a path that is cut
+         ! begins under another load.
+         self%ratio = column%axial_force_ratio
+         allocate (self%steady, self%unit, source=column)
+         call self%steady%put_under(0.0_wp)
+         self%unit%weight = 0.0_wp
+         call self%unit%put_under(1.0_wp)
+         call list_axial_forces(self%steady, self%constant)
+         call list_axial_forces(self%unit, self%per_load)
+         self%above(column%at(flexure, :)) = self%steady%compression
+      end if
+      self%axial = self%constant
       ! The initial stiffness on the diagonal of the tangent, joint by joint.
-      allocate (band(per_joint(column) + 1, m), source=0.0_wp)
-      call add_springs(column, self%f, column%initial_stiffness, self%residual, band)
-      call self%tangent%create(m, per_joint(column), band(1, :))
+      call self%tangent%create(m, self%per)
+      call add_springs(self, column%initial_stiffness)
+      stiffness = self%tangent%band(1, :)
+      call self%tangent%create(m, self%per, stiffness)
    end subroutine create
 
-   !> The axial load at the top apart from the weight, which is taken from the bodies: what is left when the
-   !> load is taken off would depend on it by round-off, and a path that is cut begins under another load.
-   subroutine take_load_off(self)
-      type(curved_equilibrium), intent(inout) :: self
-      real(wp) :: second_order
-      integer :: i
+   subroutine list_axial_forces(column, axial)
+      class(column_type), intent(in) :: column
+      real(wp), allocatable, intent(out) :: axial(:, :)
 
-      self%ratio = self%column%axial_force_ratio
-      self%unit = self%steady
-      second_order = merge(0.0_wp, 1.0_wp, self%column%kinematics == small)
-      associate (unit => self%unit, steady => self%steady, n => self%column%n)
-         unit%axial_load = 1.0_wp
-         unit%weight = 0.0_wp
-         unit%axially_loaded = unit%kinematics /= small
-         unit%axial_joint = unit%axial_lever
-         unit%axial_body = second_order*unit%axial_lever
-         unit%axial_slip = unit%axial_body
-         steady%axial_load = 0.0_wp
-         steady%axial_joint(n) = steady%weight(n)
-         do i = n - 1, 1, -1
-            steady%axial_joint(i) = steady%axial_joint(i + 1) + steady%weight(i)
-         end do
-         self%above(n + 1:2*n) = steady%axial_joint
-         steady%axial_body = second_order*(steady%axial_joint - 0.5_wp*steady%weight)
-         steady%axial_slip = second_order*steady%axial_joint
-         if (steady%held) then
-            unit%axial_slip(n) = 0.0_wp
-            steady%axial_slip(n) = 0.0_wp
-         end if
-      end associate
-   end subroutine take_load_off
+      allocate (axial(column%n, 3), source=0.0_wp)
+      if (column%kinematics /= small) axial(:, :2) = reshape([column%axial_body, column%axial_slip], [column%n, 2])
+      axial(:, 3) = column%axial_joint
+   end subroutine list_axial_forces
 
    !> Residual and tangent at a point, and its displacement.
    subroutine assemble(self, springs, point)
@@ -140,30 +140,134 @@ contains
       self%f = springs%f0 + springs%k*(point%q - springs%d0)
       if (self%varies) then
          point%axial_load = self%load(1) + self%load(2)*point%t + self%ratio*point%force
-         self%column%axial_body = self%steady%axial_body + point%axial_load*self%unit%axial_body
-         self%column%axial_joint = self%steady%axial_joint + point%axial_load*self%unit%axial_joint
-         self%column%axial_slip = self%steady%axial_slip + point%axial_load*self%unit%axial_slip
-         call dead_loads(self%unit, point%q, 0.0_wp, self%lift, self%arm, self%tangent%band, &
-                         point%displacement)
+         self%axial = self%constant + point%axial_load*self%per_load
+         call find_loads(self, self%per_load, point%q, 0.0_wp, self%lift, point%displacement)
          self%pushed = self%lift
          if (springs%pressed) then
             self%f(:) = self%f - springs%centre*(point%axial_load + self%above - springs%press_at)
             do j = 1, size(springs%layered)
-               i = self%column%place(springs%layered(j))%index*per_joint(self%column)
+               i = self%column%place(springs%layered(j))%index*self%per
                self%pushed(i) = self%pushed(i) + springs%centre(springs%layered(j))
-               i = i - per_joint(self%column)
+               i = i - self%per
                if (i > 0) self%pushed(i) = self%pushed(i) - springs%centre(springs%layered(j))
             end do
          end if
       end if
-      call dead_loads(self%column, point%q, point%force, self%residual, self%arm, self%tangent%band, &
-                      point%displacement)
-      call add_springs(self%column, self%f, springs%k, self%residual, self%tangent%band)
+      call find_loads(self, self%axial, point%q, point%force, self%residual, point%displacement)
+      call add_springs(self, springs%k)
       if (.not. self%column%held) return
       self%residual(m) = 0.0_wp
       self%pushed(m) = 0.0_wp
       call self%tangent%hold(m, self%tangent%stiffness(m))
    end subroutine assemble
+
+   !> Generalised loads -dA/dz, arms dx_T/dz and stiffness d2A/dz2 under axial forces.
+   subroutine find_loads(self, axial, q, force, load, top)
+      class(curved_equilibrium), intent(inout) :: self
+      !> See `constant`; deformations of the joints (n, per)
+      real(wp), intent(in) :: axial(self%column%n, 3), q(self%column%n, self%per)
+      !> Lateral force [N]
+      real(wp), intent(in) :: force
+      !> Joint by joint [N, N, N m]
+      real(wp), intent(out), contiguous :: load(:)
+      !> Displacement of the top [m]
+      real(wp), intent(out) :: top
+      real(wp) :: rotation, s, c, across, along, opened, exact
+      integer :: i, j, n
+
+      n = self%column%n
+      exact = merge(1.0_wp, 0.0_wp, self%column%kinematics == finite)
+      top = 0.0_wp
+      rotation = 0.0_wp
+      s = 0.0_wp
+      c = 1.0_wp
+      opened = 0.0_wp
+      associate (arm => self%arm, band => self%tangent%band, length => self%column%length)
+         band = 0.0_wp
+         do i = 1, n
+            if (i == n .and. self%column%held) then
+               ! What is held does not turn, and its joint moves along its directions.
+               s = 0.0_wp
+               c = 1.0_wp
+            end if
+            ! Forces of the loads above, across and along the body below the joint.
+            across = force*c + axial(i, 2)*s
+            along = exact*force*s - axial(i, 2)*c
+            j = self%per*(i - 1)
+            load(j + 1) = across
+            arm(j + 1) = c
+            if (self%per == 3) then
+               opened = q(i, opening)
+               load(j + 2) = exact*force*s - axial(i, 3)*c
+               arm(j + 2) = exact*s
+            end if
+            top = top + q(i, shear)*c + exact*opened*s
+            if (j > 0 .and. .not. (i == n .and. self%column%held)) then
+               load(j) = load(j) - q(i, shear)*along + exact*opened*across
+               arm(j) = arm(j) - exact*(q(i, shear)*s - opened*c)
+               band(1, j) = band(1, j) + exact*(q(i, shear)*across + opened*along)
+               band(2, j) = along
+               if (self%per == 3) band(3, j) = -exact*across
+            end if
+            rotation = rotation + q(i, flexure)
+            if (exact > 0.0_wp) then
+               s = sin(rotation)
+               c = cos(rotation)
+            else
+               s = rotation
+            end if
+            j = self%per*i
+            load(j) = length(i)*(force*c + axial(i, 1)*s)
+            arm(j) = length(i)*c
+            band(1, j) = length(i)*(exact*force*s - axial(i, 1)*c)
+            top = top + length(i)*s
+         end do
+      end associate
+   end subroutine find_loads
+
+   !> Take the forces of the springs from the loads and add their stiffness.
+   subroutine add_springs(self, k)
+      class(curved_equilibrium), intent(inout) :: self
+      !> Stiffness of the springs (n, per)
+      real(wp), intent(in) :: k(self%column%n, self%per)
+      integer :: i, j, per
+
+      per = self%per
+      associate (load => self%residual, band => self%tangent%band, f => self%f, at => self%column%at)
+         do i = 1, self%column%n
+            j = per*(i - 1)
+            load(j + 1) = load(j + 1) - f(at(shear, i))
+            band(1, j + 1) = band(1, j + 1) + k(i, shear)
+            if (per == 3) then
+               load(j + 2) = load(j + 2) - f(at(opening, i))
+               band(1, j + 2) = band(1, j + 2) + k(i, opening)
+            end if
+            load(j + per) = load(j + per) - f(at(flexure, i))
+            band(1, j + per) = band(1, j + per) + k(i, flexure)
+            if (j == 0) cycle
+            load(j) = load(j) + f(at(flexure, i))
+            band(1, j) = band(1, j) + k(i, flexure)
+            band(per + 1, j) = band(per + 1, j) - k(i, flexure)
+         end do
+      end associate
+   end subroutine add_springs
+
+   !> Changes of the deformations of the joints from those of the unknowns joint by joint.
+   pure subroutine to_joints(n, per, z, q)
+      integer, intent(in) :: n, per
+      real(wp), intent(in) :: z(per, n)
+      real(wp), intent(out) :: q(n, per)
+      real(wp) :: below
+      integer :: i
+
+      below = 0.0_wp
+      do i = 1, n
+         q(i, shear) = z(1, i)
+         q(i, flexure) = z(per, i) - below
+         below = z(per, i)
+         if (per == 3) q(i, opening) = z(2, i)
+      end do
+   end subroutine to_joints
 
    !> Rates at a point, and what takes its residual away; under a driven force it must be stable.
    subroutine solve(self, springs, point, found)
@@ -175,7 +279,7 @@ contains
       integer :: n, per
 
       n = self%column%n
-      per = per_joint(self%column)
+      per = self%per
       missing = self%driven(1) + self%driven(2)*point%t
       if (self%by_force) point%force = missing
       call assemble(self, springs, point)
@@ -207,10 +311,10 @@ contains
       self%force_correction = y(2)
       point%axial_rate = self%load(2) + self%ratio*y(1)
       point%lift_rate = -dot_product(self%lift, self%change(:, 1))
-      call to_joints(self%column, per, self%change(:, 1), point%rate)
-      call to_joints(self%column, per, self%change(:, 2), self%correction)
+      call to_joints(n, per, self%change(:, 1), point%rate)
+      call to_joints(n, per, self%change(:, 2), self%correction)
       found = maxval(abs(self%change(per::per, 2))) < most_change .and. &
-              maxval(abs(self%correction(:n))) < most_change*self%column%joint_height(n + 1)
+              maxval(abs(self%correction(:n))) < most_change*self%column%total_height
    end subroutine solve
 
    !> Largest change of slips, relative rotations and openings, in shares of the largest of their kind.
@@ -252,13 +356,11 @@ contains
       type(spring_array), intent(in) :: springs
       type(path_point), intent(inout) :: point
       real(wp) :: displacement
-      integer :: per
 
-      per = per_joint(self%column)
       displacement = point%displacement
       call assemble(self, springs, point)
       point%displacement = displacement
-      self%residual(per::per) = self%residual(per::per)/self%column%joint_height(self%column%n + 1)
+      self%residual(self%per::self%per) = self%residual(self%per::self%per)/self%column%total_height
       unbalance = maxval(abs(self%residual))
    end function unbalance
 

@@ -48,7 +48,7 @@ contains
             ! From the state of another analysis the load goes to its first value.
             varies = varies .or. task%resumes() .or. any(abs(load - load(1)) > same_load*maxval(abs(load)))
             allocate (other, source=column)
-            call put_under(other, load(1))
+            call other%put_under(load(1))
             loaded => other
          end if
       end if
@@ -87,30 +87,6 @@ contains
                       ' times the critical load of the uncracked column, which buckles by itself; '// &
                       'reduce axial_load, stiffen the springs, or drive it by displacement'
    end subroutine explain_buckling
-
-   !> Put a column under another constant axial load at its top.
-   pure subroutine put_under(column, load)
-      class(column_type), intent(inout) :: column
-      real(wp), intent(in) :: load
-      real(wp) :: more
-      integer :: i
-
-      more = load - column%axial_load
-      if (.not. abs(more) > 0.0_wp) return
-      associate (n => column%n)
-         column%axial_load = load
-         column%axial_body = column%axial_body + more*column%axial_lever
-         column%axial_joint = column%axial_joint + more*column%axial_lever
-         column%axial_slip = column%axial_joint
-         if (column%held) column%axial_slip(n) = 0.0_wp
-         column%compression = column%compression + more
-         do i = n + 1, column%unknowns
-            column%spring(i)%axial_load = column%compression(column%place(i)%index)
-         end do
-         column%axially_loaded = column%kinematics /= small .and. &
-                                 (abs(load) > 0.0_wp .or. column%gravity > 0.0_wp)
-      end associate
-   end subroutine put_under
 
    !> One axial load for each target.
    subroutine check_axial_load(column, axial_load, targets, error)

@@ -4,11 +4,11 @@
 !> the end of the stride.
 module rbs_solve_static_stride
    use rbs_base_kinds, only: wp
-   use rbs_structure_column_column, only: finite
    use rbs_hysteresis_interaction_joints, only: nearest_layer, moment_on_plane
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_line_search, only: false_position
    use rbs_solve_static_curve, only: curve_type, clean, same_rate
+   use rbs_structure_structure, only: finite
    use rbs_solve_static_curved_equilibrium, only: curved_equilibrium, path_point
    implicit none
    private
@@ -129,7 +129,7 @@ contains
          do i = 1, most_iterations
             call equilibrium%solve(springs, there, regular)
             if (.not. regular) return
-            if (equilibrium%varies) there%rate = clean(self%equilibrium%steady, there)
+            if (equilibrium%varies) there%rate = clean(equilibrium%column, there)
             change = equilibrium%correction
             there%q = there%q + change
             there%force = there%force + equilibrium%force_correction
@@ -144,7 +144,7 @@ contains
          if (.not. found) return
          if (self%equilibrium%by_force) then
             there%force = equilibrium%driven(1) + equilibrium%driven(2)*there%t
-            there%displacement = self%equilibrium%steady%top_displacement(there%q)
+            there%displacement = self%equilibrium%column%top_displacement(there%q)
          else
             there%displacement = equilibrium%driven(1) + equilibrium%driven(2)*there%t
          end if
@@ -222,7 +222,7 @@ contains
          turnover = sum(abs(change*f)) + sum(abs(works))
          missing = works(1) - works(2) - works(3) - sum(change*f) - (weight(2) - weight(1))
          done = .not. strict .or. abs(missing) <= &
-                most_missing(merge(1, 2, self%equilibrium%steady%kinematics == finite)) &
+                most_missing(merge(1, 2, self%equilibrium%column%kinematics == finite)) &
                 *max(largest, turnover) &
                 + round_off*(abs(there%axial_load)*maxval(abs(lift)) + maxval(abs(weight)))
       end associate

@@ -108,10 +108,35 @@ module rbs_structure_column_column
       procedure :: check_initial
       procedure :: channels
       procedure :: fill_row
-      procedure, non_overridable :: largest_turn
+      procedure, non_overridable :: put_under
    end type column_type
 
 contains
+
+   !> Put the column under a constant axial load at its top and the weight of its bodies.
+   pure subroutine put_under(self, load)
+      class(column_type), intent(inout) :: self
+      real(wp), intent(in) :: load
+      real(wp) :: above(self%n + 1), dead
+      integer :: i
+
+      dead = merge(0.0_wp, load*self%axial_lever, self%axial_follows)
+      above(self%n + 1) = 0.0_wp
+      do i = self%n, 1, -1
+         above(i) = above(i + 1) + self%weight(i)
+      end do
+      self%axial_load = load
+      self%axial_body = dead + (0.5_wp*self%weight + above(2:))
+      self%axial_joint = dead + above(:self%n)
+      self%axial_slip = self%axial_joint
+      if (self%held) self%axial_slip(self%n) = 0.0_wp
+      self%compression = load + above(:self%n)
+      self%axially_loaded = self%kinematics /= small .and. (abs(dead) > 0.0_wp .or. self%gravity > 0.0_wp)
+      ! Layered joints and axial springs carry the axial load of load and weight above them.
+      do i = self%n + 1, self%unknowns
+         self%spring(i)%axial_load = self%compression(self%place(i)%index)
+      end do
+   end subroutine put_under
 
    !> Changes of the deformations of the joints from those of the bodies.
    subroutine spring_rates(self, dx, dd)
@@ -488,20 +513,5 @@ contains
          row(at + n + i) = rest_of(springs, self%at(flexure, i))
       end do
    end subroutine fill_row
-
-   !> Largest absolute rotation of a body in deformations, or in a change of them, in size [rad].
-   pure real(wp) function largest_turn(self, change) result(largest)
-      class(column_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: change(:)
-      real(wp) :: rotation
-      integer :: i
-
-      largest = 0.0_wp
-      rotation = 0.0_wp
-      do i = self%n + 1, 2*self%n
-         rotation = rotation + change(i)
-         largest = max(largest, abs(rotation))
-      end do
-   end function largest_turn
 
 end module rbs_structure_column_column

@@ -74,11 +74,17 @@ contains
       column%force_follows = spec%force_follows
 
       call set_heights(column)
-      call set_weights(column, spec)
+      if (spec%self_weight) column%gravity = spec%gravity
+      column%weight = column%gravity*column%mass
       call set_bodies(column, spec, first, last)
       call set_mass_sums(column)
       call set_lifted_masses(column)
       call set_springs(column, spec)
+      column%axial_force_ratio = spec%axial_force_ratio
+      if (is_given(spec%axial_height)) column%axial_lever = spec%axial_height/spec%height
+      call column%put_under(spec%axial_load)
+      call make_rules(column%spring, column%rules)
+      column%initial_stiffness = column%rules%initial_stiffness()
       call set_unknowns(column)
    end subroutine new_column
 
@@ -101,34 +107,6 @@ contains
          column%arm(n + i) = column%arm(n + i + 1) + column%length(i)
       end do
    end subroutine set_heights
-
-   !> Axial forces of load and weight of the bodies.
-   subroutine set_weights(column, spec)
-      type(column_type), intent(inout) :: column
-      type(column_record), intent(in) :: spec
-      real(wp) :: above(column%n + 1)
-      real(wp) :: dead
-      integer :: i, n
-
-      n = column%n
-      column%axial_load = spec%axial_load
-      column%axial_force_ratio = spec%axial_force_ratio
-      if (is_given(spec%axial_height)) column%axial_lever = spec%axial_height/spec%height
-      dead = merge(0.0_wp, column%axial_load*column%axial_lever, column%axial_follows)
-      if (spec%self_weight) column%gravity = spec%gravity
-      above(n + 1) = 0.0_wp
-      do i = n, 1, -1
-         above(i) = above(i + 1) + column%mass(i)
-      end do
-      column%weight = column%gravity*column%mass
-      column%axial_body = dead + column%gravity*(column%mass/2.0_wp + above(2:))
-      column%axial_joint = dead + column%gravity*above(:n)
-      column%axial_slip = column%axial_joint
-      if (column%held) column%axial_slip(n) = 0.0_wp
-      column%compression = column%axial_load + column%gravity*above(:n)
-      column%axially_loaded = column%kinematics /= small .and. &
-                              (abs(dead) > 0.0_wp .or. column%gravity > 0.0_wp)
-   end subroutine set_weights
 
    !> Centroids and rotary inertias, the lumped mass included.
    subroutine set_bodies(column, spec, first, last)
@@ -219,12 +197,6 @@ contains
          column%spring(2*n + i) = spec%axial_spring(min(i, size(spec%axial_spring)))
          column%place(2*n + i) = spring_place(axial, 1, joint, index=i)
       end do
-      ! Layered joints and axial springs carry the axial load of load and weight above them.
-      do i = n + 1, column%unknowns
-         column%spring(i)%axial_load = column%compression(column%place(i)%index)
-      end do
-      call make_rules(column%spring, column%rules)
-      column%initial_stiffness = column%rules%initial_stiffness()
    end subroutine set_springs
 
    !> The coordinates of the bodies, in which the mass is diagonal; see `rbs_structure_column_chain`.
