@@ -5,9 +5,9 @@ module test_band
    use dense, only: solve_eigen
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_structure_column_axial, only: geometric_stiffness, critical_factor
+   use rbs_structure_column_sturm, only: critical_factor
    use rbs_structure_column_column, only: column_type
-   use rbs_structure_column_mass, only: symmetric_mass
+   use rbs_structure_column_chain_matrices, only: symmetric_mass, geometric_stiffness
    use rbs_structure_column_column_record, only: column_record
    use samples, only: set_value, chain, elastic, made, random_type
    implicit none

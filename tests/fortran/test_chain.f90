@@ -8,7 +8,7 @@ module test_chain
    use rbs_base_text, only: to_text
    use rbs_structure_column_chain, only: body_forces
    use rbs_structure_column_column, only: column_type
-   use rbs_structure_column_mass, only: symmetric_mass
+   use rbs_structure_column_chain_matrices, only: symmetric_mass
    use rbs_loading_signal, only: signal_type
    use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
    use rbs_solve_modal_modes, only: modes_type, find_modes

@@ -5,9 +5,10 @@ module test_column
    use rbs_base_error, only: error_type, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_structure_column_axial, only: geometric_stiffness, geometric_forces, critical_factor, check_stable
+   use rbs_structure_column_sturm, only: critical_factor, check_stable
+   use rbs_structure_column_chain, only: geometric_forces
    use rbs_structure_column_column, only: column_type, small, pdelta, finite
-   use rbs_structure_column_mass, only: symmetric_mass, paper_mass
+   use rbs_structure_column_chain_matrices, only: symmetric_mass, paper_mass, geometric_stiffness
    use rbs_structure_column_column_record, only: column_record
    use rbs_structure_spring_place, only: spring_name
    use samples, only: value_of, chain, column_1, elastic, made, random_type, k_c, s_k, mass_1, height_1
@@ -300,7 +301,8 @@ contains
          q(i) = random%uniform(-0.1_wp, 0.1_wp)
       end do
       call geometric_stiffness(column, stiffness)
-      call geometric_forces(column, q, g)
+      call geometric_forces(column%n, column%length, [column%axial_body, column%axial_slip], &
+                               q, g)
       call check_close(error, g, matmul(stiffness, q), 1.0e-12_wp, 0.0_wp, 'force')
       call check_close(error, column%potential_energy(q), 0.5_wp*dot_product(q, g), 1.0e-13_wp, 0.0_wp, &
                        'energy is half of q K_G q')

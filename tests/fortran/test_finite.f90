@@ -6,10 +6,10 @@ module test_finite
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_structure_column_axial, only: geometric_forces
+   use rbs_structure_column_chain, only: geometric_forces
    use rbs_structure_column_column, only: column_type
    use rbs_structure_column_finite, only: finite_chain_type
-   use rbs_structure_column_mass, only: symmetric_mass
+   use rbs_structure_column_chain_matrices, only: symmetric_mass
    use rbs_structure_column_column_record, only: column_record
    use exact, only: point, variant, state, sample, variant_of, random_state, place, dense_mass, &
                     dense_acceleration
@@ -392,7 +392,8 @@ contains
          now = state(share*one%q, share*one%v, share*one%f, share*one%load)
          call symmetric_mass(column, mass)
          g = 0.0_wp
-         call geometric_forces(column, now%q, g)
+         call geometric_forces(column%n, column%length, [column%axial_body, column%axial_slip], &
+                               now%q, g)
          right(:, 1) = column%arm*now%load(1) - column%ground_arm*now%load(2) - now%f - g
          call solve_general(mass, right, regular)
          g = accelerated(column, now) - (right(:, 1) - column%mass_damping*now%v)
@@ -422,7 +423,8 @@ contains
          now = state(share*one%q, share*one%v, share*one%f, share*one%load)
          call symmetric_mass(column, mass)
          g = 0.0_wp
-         call geometric_forces(column, now%q, g)
+         call geometric_forces(column%n, column%length, [column%axial_body, column%axial_slip], &
+                               now%q, g)
          right(:, 1) = column%arm*now%load(1) - column%ground_arm*now%load(2) - now%f - g
          now%f(2*n + 1:) = now%f(2*n + 1:) - column%axial_joint
          call solve_general(mass, right, regular)

@@ -4,9 +4,9 @@ module test_modal
    use rbs_base_constants, only: pi
    use rbs_base_error, only: error_type, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_structure_column_axial, only: critical_factor, geometric_stiffness
+   use rbs_structure_column_sturm, only: critical_factor
    use rbs_structure_column_column, only: column_type
-   use rbs_structure_column_mass, only: symmetric_mass
+   use rbs_structure_column_chain_matrices, only: symmetric_mass, geometric_stiffness
    use rbs_solve_modal_modes, only: modes_type, find_modes, frequency_bounds, stability_limit
    use rbs_structure_column_column_record, only: column_record, most_dense
    use samples, only: set_value, value_of, bilinear, chain, column_1, elastic, made, random_type, k_c, &

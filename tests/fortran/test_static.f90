@@ -7,7 +7,8 @@ module test_static
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_structure_column_axial, only: geometric_stiffness, geometric_forces
+   use rbs_structure_column_chain, only: geometric_forces
+   use rbs_structure_column_chain_matrices, only: geometric_stiffness
    use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_output_channels, only: new_channels
@@ -311,7 +312,8 @@ contains
       call check_passed(error, outcome, 'static path')
       if (allocated(error)) return
       do i = 1, size(x)
-         call geometric_forces(column, rows(row_joints:row_joints + 2*n - 1, i), g)
+         call geometric_forces(column%n, column%length, [column%axial_body, column%axial_slip], &
+                               rows(row_joints:row_joints + 2*n - 1, i), g)
          call check_close(error, rows(row_joints + 2*n:, i), column%arm*rows(row_force, i) - g, 1.0e-10_wp, &
                           1.0e-4_wp, 'equilibrium')
       end do
@@ -762,7 +764,8 @@ contains
       call check_passed(error, outcome, 'static path')
       if (allocated(error)) return
       do i = 1, size(x)
-         call geometric_forces(column, rows(row_joints:row_joints + 2*n - 1, i), g)
+         call geometric_forces(column%n, column%length, [column%axial_body, column%axial_slip], &
+                               rows(row_joints:row_joints + 2*n - 1, i), g)
          call check_close(error, rows(row_joints + 2*n:, i), column%arm*rows(row_force, i) - g, 1.0e-9_wp, &
                           1.0e-4_wp, 'equilibrium')
       end do

@@ -8,9 +8,8 @@ module rbs_solve_modal_matrices
    use rbs_base_kinds, only: wp
    use rbs_base_linalg, only: solve_dense
    use rbs_base_text, only: to_text
-   use rbs_structure_column_axial, only: geometric_stiffness
    use rbs_structure_column_column, only: column_type
-   use rbs_structure_column_mass, only: symmetric_mass, paper_mass
+   use rbs_structure_column_chain_matrices, only: symmetric_mass, paper_mass, geometric_stiffness
    use rbs_solve_modal_modes, only: modes_type, find_modes, most_numbers
    use rbs_structure_spring_place, only: flexure
    use rbs_structure_structure, only: structure_type

@@ -4,11 +4,10 @@ module rbs_solve_modal_modes
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_structure_column_axial, only: critical_factor, check_stable
    use rbs_structure_column_column, only: column_type
-   use rbs_structure_column_ends, only: check_inertia_of_ends
    use rbs_structure_column_column_record, only: most_dense
-   use rbs_structure_column_sturm, only: lateral_chain, opening_chain
+   use rbs_structure_column_sturm, only: lateral_chain, opening_chain, critical_factor, check_stable, &
+                                         check_inertia_of_ends
    use rbs_solve_modal_mode_search, only: mode_search
    use rbs_structure_spring_place, only: shear, flexure, axial
    use rbs_structure_structure, only: structure_type, signals

@@ -15,7 +15,7 @@ module rbs_solve_static_chain_equilibrium
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_few_bodies, only: few_bodies, most_unknowns
-   use rbs_structure_column_chain, only: second_order_forces
+   use rbs_structure_column_chain, only: second_order_forces, geometric_forces
    use rbs_structure_column_column, only: column_type
    implicit none
    private
@@ -135,23 +135,16 @@ contains
       real(wp), intent(in) :: force
       !> Residual (2 n)
       real(wp), intent(out), contiguous :: r(:)
-      real(wp) :: above
       integer :: i
 
       do i = 1, self%moving
          r(i) = self%arm(i)*force - f(i)
       end do
       if (.not. self%coupled) return
-      associate (n => self%n)
-         self%g(:n) = 0.0_wp
-         call second_order_forces(n, self%length, self%axial, q, self%g, 1, self%g(n + 1:))
-         above = 0.0_wp
-         do i = n, 1, -1
-            above = above + self%g(n + i)
-            r(i) = r(i) - self%g(i)
-            r(n + i) = r(n + i) + above
-         end do
-      end associate
+      call geometric_forces(self%n, self%length, self%axial, q, self%g)
+      do i = 1, self%moving
+         r(i) = r(i) - self%g(i)
+      end do
    end subroutine find_residual
 
    !> The residual where the springs are, and the largest of it: moments over the height.

@@ -70,7 +70,9 @@ contains
 
       motion = abs(point%displacement_rate)
       ! Under an axial load that varies the top may keep still, but for round-off.
-      if (abs(point%axial_rate) > 0.0_wp) motion = max(motion, sum(abs(structure%arm*point%rate)), least_motion)
+      if (abs(point%axial_rate) > 0.0_wp) then
+         motion = max(motion, sum(abs(structure%arm*point%rate)), least_motion)
+      end if
    end function motion_of
 
    !> Set rates that are round-off to zero.

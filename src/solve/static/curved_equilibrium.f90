@@ -4,7 +4,8 @@
 !>
 !>     c = c_0 + c' t,   N = N_0 + N' t + r F
 !>
-!> with r F as in an exterior column of a frame; where N is constant, t is c. The dead loads have the potential
+!> with r F as in an exterior column of a frame; where N is constant, t is c. The dead loads have the
+!> potential
 !>
 !>     A = sum P_i l_i cos th_i + sum Q_i (-u_i sin th_{i-1} + w_i cos th_{i-1}) - F x_T
 !>     x_T = sum l_i sin th_i + u_i cos th_{i-1} + w_i sin th_{i-1}
@@ -66,8 +67,8 @@ module rbs_solve_static_curved_equilibrium
       real(wp) :: force_correction = 0.0_wp
       !> Unknowns of a joint: also the number of diagonals beside the main one
       integer, private :: per = 2
-      !> Axial forces on rotations of bodies, slips and openings (n, 3): constant ones, per unit of the load at
-      !> the top, present ones
+      !> Axial forces on rotations of bodies, slips and openings (n, 3): constant ones, per unit of the load
+      !> at the top, present ones
       real(wp), allocatable, private :: constant(:, :), per_load(:, :), axial(:, :)
       type(band_matrix), private :: tangent
       !> R, a, p and its part without springs, right-hand sides and solutions, joint by joint; forces of
@@ -125,8 +126,10 @@ contains
       real(wp), allocatable, intent(out) :: axial(:, :)
 
       allocate (axial(column%n, 3), source=0.0_wp)
-      if (column%kinematics /= small) axial(:, :2) = reshape([column%axial_body, column%axial_slip], [column%n, 2])
       axial(:, 3) = column%axial_joint
+      if (column%kinematics == small) return
+      axial(:, 1) = column%axial_body
+      axial(:, 2) = column%axial_slip
    end subroutine list_axial_forces
 
    !> Residual and tangent at a point, and its displacement.

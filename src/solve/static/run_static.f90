@@ -3,7 +3,7 @@ module rbs_solve_static_run_static
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_structure_column_axial, only: critical_factor
+   use rbs_structure_column_sturm, only: critical_factor
    use rbs_structure_column_column, only: column_type, small, finite
    use rbs_solve_check_values, only: check_values
    use rbs_solve_static_chain_equilibrium, only: chain_equilibrium

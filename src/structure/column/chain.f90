@@ -17,8 +17,8 @@ module rbs_structure_column_chain
    implicit none
    private
 
-   public :: deformations, displacements, body_forces, second_order_forces, chain_accelerations
-   public :: add_joint_stiffness, add_axial_stiffness
+   public :: deformations, displacements, body_forces, second_order_forces, geometric_forces
+   public :: chain_accelerations, add_joint_stiffness, add_axial_stiffness
 
 contains
 
@@ -160,6 +160,22 @@ contains
       shear(n) = shear(n) - axial(2*n)*rotation
       moment(step*n) = axial(n)*length(n)*(rotation + d(2*n))
    end subroutine second_order_forces
+
+   !> Geometric stiffness times deformations: the same forces on slips and relative rotations of the joints.
+   pure subroutine geometric_forces(n, length, axial, d, g)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: length(n), axial(2*n), d(2*n)
+      !> (2 n) [N, N m]
+      real(wp), intent(out) :: g(2*n)
+      integer :: i
+
+      g(:n) = 0.0_wp
+      call second_order_forces(n, length, axial, d, g, 1, g(n + 1:))
+      g(2*n) = -g(2*n)
+      do i = 2*n - 1, n + 1, -1
+         g(i) = g(i + 1) - g(i)
+      end do
+   end subroutine geometric_forces
 
    !> Add B' diag(k) B of the springs.
    pure subroutine add_joint_stiffness(n, kinds, lower, upper, k, band)

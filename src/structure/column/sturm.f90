@@ -13,12 +13,14 @@
 !>
 !> Openings, which nothing couples to slips and rotations, are a chain of their own that does not rotate.
 module rbs_structure_column_sturm
+   use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
    use rbs_structure_column_column, only: column_type
    implicit none
    private
 
-   public :: sturm_chain, lateral_chain, opening_chain
+   public :: sturm_chain, lateral_chain, opening_chain, critical_factor, check_stable, check_inertia_of_ends
 
    type :: sturm_chain
       !> Number of bodies, and of modes
@@ -259,5 +261,92 @@ contains
          total = total + turned/self%mass(2, i)
       end do
    end function sum_of_squares
+
+   !> The number by which all axial forces must be multiplied to make the uncracked column lose its
+   !> stiffness; `huge` if no multiple does. Tension too can buckle a column of several bodies, by slip
+   !> against rotation.
+   !>
+   !> The multiples that the column carries are an interval from zero, so it is bisected; whether it carries
+   !> one is asked in O(n) operations, and to the last digit.
+   subroutine critical_factor(column, factor)
+      type(column_type), intent(in) :: column
+      real(wp), intent(out) :: factor
+      !> Beyond 2**200 times the scale of the problem nothing buckles.
+      integer, parameter :: most_doublings = 200
+      type(sturm_chain) :: chain
+      real(wp) :: scale, below, between
+      integer :: i
+
+      factor = huge(1.0_wp)
+      if (.not. column%axially_loaded) return
+      chain = lateral_chain(column, .true.)
+      scale = max(maxval(abs(chain%turning)/chain%k(2, :)), &
+                  maxval(abs(chain%sliding(2:))/sqrt(chain%k(1, 2:))/sqrt(chain%k(2, :column%n - 1))))
+      if (.not. scale > 0.0_wp) return
+      below = 1.0_wp
+      if (carries(below)) then
+         do i = 1, most_doublings
+            if (.not. carries(2.0_wp*below)) exit
+            below = 2.0_wp*below
+         end do
+         if (i > most_doublings) return
+      else
+         do i = 1, most_doublings
+            below = 0.5_wp*below
+            if (carries(below)) exit
+         end do
+      end if
+      between = below
+      do i = 1, digits(1.0_wp)
+         between = 0.5_wp*between
+         if (carries(below + between)) below = below + between
+      end do
+      factor = below/scale
+
+   contains
+
+      logical function carries(multiple)
+         real(wp), intent(in) :: multiple
+
+         carries = chain%factor(0.0_wp, multiple/scale) == 0
+      end function carries
+
+   end subroutine critical_factor
+
+   !> Refuse an axial load that the unloaded column cannot carry.
+   subroutine check_stable(column, error)
+      type(column_type), intent(in) :: column
+      type(error_type), allocatable, intent(out) :: error
+      type(sturm_chain) :: chain
+      real(wp) :: factor
+
+      if (.not. column%axially_loaded) return
+      chain = lateral_chain(column, .true.)
+      if (chain%factor(0.0_wp) == 0) return
+      call critical_factor(column, factor)
+      call fatal_error(error, bad_input, 'column: the axial load of '// &
+                       to_text(column%axial_joint(1))//' N at the base is beyond the critical load of '// &
+                       to_text(factor*column%axial_joint(1))//' N; the column buckles by itself. '// &
+                       'Reduce axial_load or stiffen the springs')
+   end subroutine check_stable
+
+   !> Refuse ends without inertia: no equation of motion would hold them.
+   subroutine check_inertia_of_ends(column, error)
+      type(column_type), intent(in) :: column
+      type(error_type), allocatable, intent(out) :: error
+
+      if (column%footing) then
+         if (.not. (column%mass(1) > 0.0_wp .and. column%inertia(1) > 0.0_wp)) then
+            call fatal_error(error, bad_input, 'column: footing_mass = '//to_text(column%mass(1))// &
+                             ' kg and footing_inertia = '//to_text(column%inertia(1))// &
+                             ' kg m2 must be above zero in a dynamic analysis; give those of the footing '// &
+                             '(only a static path takes a footing without inertia)')
+            return
+         end if
+      end if
+      if (.not. column%held .or. column%mass(column%n) > 0.0_wp) return
+      call fatal_error(error, bad_input, "column: with top = 'fixed' a dynamic analysis needs top_mass, "// &
+                       'the mass that moves with the top without turning; give one above zero')
+   end subroutine check_inertia_of_ends
 
 end module rbs_structure_column_sturm

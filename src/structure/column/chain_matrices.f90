@@ -1,12 +1,14 @@
-!> Mass matrix of the chain for small rotations, in two views of the same equations.
-module rbs_structure_column_mass
+!> Dense matrices of the chain for small rotations: its mass, in two views of the same equations, and its
+!> geometric stiffness.
+module rbs_structure_column_chain_matrices
    use rbs_base_kinds, only: wp
+   use rbs_structure_column_chain, only: geometric_forces
    use rbs_structure_column_column, only: column_type
    use rbs_structure_spring_place, only: shear, flexure, axial
    implicit none
    private
 
-   public :: symmetric_mass, paper_mass
+   public :: symmetric_mass, paper_mass, geometric_stiffness
 
 contains
 
@@ -72,4 +74,25 @@ contains
       end do
    end subroutine paper_mass
 
-end module rbs_structure_column_mass
+   !> Second derivatives of the potential of the axial forces, to second order, in (slip, relative rotation [,
+   !> opening]).
+   subroutine geometric_stiffness(column, stiffness)
+      class(column_type), intent(in) :: column
+      !> Matrix (2 n or unknowns, as many) [N/m, N, N m]
+      real(wp), intent(out) :: stiffness(:, :)
+      real(wp) :: unit(2*column%n), g(2*column%n)
+      integer :: j, m
+
+      m = 2*column%n
+      stiffness = 0.0_wp
+      unit = 0.0_wp
+      do j = 1, m
+         unit(j) = 1.0_wp
+         call geometric_forces(column%n, column%length, [column%axial_body, column%axial_slip], unit, g)
+         ! No negative zeros
+         stiffness(:m, j) = g + 0.0_wp
+         unit(j) = 0.0_wp
+      end do
+   end subroutine geometric_stiffness
+
+end module rbs_structure_column_chain_matrices
