@@ -169,7 +169,7 @@ def test_metadata_names_licence_python_and_command():
 
 
 def test_import_is_quick_and_loads_no_plotting():
-    """Matplotlib, rich and scipy are optional: importing rbsdem must not need them."""
+    """matplotlib, rich, scipy and pandas are loaded when they are used, not by `import rbsdem`."""
     code = (
         "import sys; sys.modules.update(matplotlib=None, scipy=None, rich=None, pandas=None)\n"
         "import rbsdem\n"
@@ -440,7 +440,7 @@ except ImportError as error:
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True
     )
-    assert f'{package}, which is not installed: pip install "rbsdem[{extra}]"' in done.stdout
+    assert f'{package} is not installed: pip install "rbsdem[{extra}]"' in done.stdout
     project = (ROOT / "pyproject.toml").read_text()
     assert re.search(rf'^{extra} = \["{package}>=', project, re.M)
     assert f".[{extra}]" in (ROOT / "README.md").read_text()

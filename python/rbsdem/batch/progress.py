@@ -6,8 +6,6 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from rbsdem._optional import need_rich
-
 
 @contextmanager
 def progress_bar(
@@ -25,7 +23,7 @@ def progress_bar(
     if not wanted or not sys.stderr.isatty():
         yield lambda done, text: None
         return
-    rich = need_rich()
+    import rich.progress  # noqa: PLC0415
     from rich.console import Console  # noqa: PLC0415
 
     bar = rich.progress.Progress(

@@ -19,8 +19,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from rbsdem._extras import extra
 from rbsdem._files import whole_file
-from rbsdem._optional import need_parquet
 from rbsdem.errors import InputError
 
 try:
@@ -71,7 +71,7 @@ class Format:
 
 
 def _parquet_bytes(tables: Sequence[Any]) -> bytes:
-    parquet = need_parquet()
+    parquet = extra("pyarrow.parquet")
     import pyarrow as pa  # noqa: PLC0415
 
     file = io.BytesIO()
@@ -80,7 +80,7 @@ def _parquet_bytes(tables: Sequence[Any]) -> bytes:
 
 
 def _parquet_table(data: bytes) -> Any:
-    return need_parquet().read_table(io.BytesIO(data))
+    return extra("pyarrow.parquet").read_table(io.BytesIO(data))
 
 
 #: Tables of pyarrow, of one kind.

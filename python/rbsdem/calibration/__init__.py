@@ -1,7 +1,7 @@
 """Fit parameters of a column to a measured loop, and report how well the test determines them.
 
 The parameters are paths into the column, such as ``flexure.k_y``, or those that a column made from
-a recipe offers. Needs scipy (``pip install "rbsdem[calibrate]"``).
+a recipe offers.
 """
 
 from rbsdem.calibration.fit import calibrate, free_names, undetermined

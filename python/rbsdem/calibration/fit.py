@@ -25,7 +25,7 @@ from rbsdem.calibration.misfit import LOSSES, Misfit, Target, forces
 from rbsdem.calibration.names import Parameters, free_parameters
 from rbsdem.calibration.outcome import Calibration, Fitted
 from rbsdem.calibration.progress import telling
-from rbsdem.calibration.search import Search, need_scipy
+from rbsdem.calibration.search import Search
 from rbsdem.curves.scores import Comparison, compare
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import Column
@@ -149,8 +149,6 @@ def calibrate(
     InputError
         For wrong input (unknown or repeated names, bounds that exclude the start), and for a
         parameter that changes no force of the test anywhere between its bounds.
-    ImportError
-        If scipy is not installed, or progress is asked for without rich.
 
     Warns
     -----
@@ -162,7 +160,6 @@ def calibrate(
     target = Target(test)
     parameters = Parameters(column)
     chosen = free_parameters(parameters, free, bounds)
-    need_scipy()
     progress = _arguments.switch(progress, "calibrate: progress")
     showing = telling(evaluations) if progress else nullcontext(lambda done, best: None)
     # Warnings about the many columns of the search do not help the user.

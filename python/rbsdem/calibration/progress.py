@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from rbsdem._optional import need_rich
-
 
 @contextmanager
 def telling(evaluations: int) -> Iterator[Callable[[int, float], None]]:
     """Show on stderr the number of finished analyses and the best error so far."""
-    rich = need_rich()
+    import rich.progress  # noqa: PLC0415
     from rich.console import Console  # noqa: PLC0415
 
     bar = rich.progress.Progress(

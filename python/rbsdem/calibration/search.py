@@ -11,7 +11,6 @@ one, until that no longer helps. docs/calibration.md has the measurements behind
 from __future__ import annotations
 
 import time
-from typing import Any
 
 import numpy as np
 
@@ -188,14 +187,3 @@ class Search:
 def refused(vector: Array) -> bool:
     """Return whether a vector stands for a column that is refused."""
     return bool(vector[0] == REFUSED and vector[-1] == REFUSED)
-
-
-def need_scipy() -> Any:
-    """Return scipy.optimize, or raise `ImportError` with the installation command."""
-    try:
-        import scipy.optimize  # noqa: PLC0415
-    except ImportError as error:
-        raise ImportError(
-            'calibration needs scipy, which is not installed: pip install "rbsdem[calibrate]"'
-        ) from error
-    return scipy.optimize

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 import click
 import numpy as np
 
+from rbsdem._extras import extra
 from rbsdem._files import write_csv, write_figure
-from rbsdem._optional import need_parquet
 from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
 from rbsdem.errors import InputError, RepairWarning
 from rbsdem.many.ensemble import Ensemble
@@ -199,7 +199,7 @@ def ensemble(
     Exit codes: 0 every run was completed or collapsed, 1 some failed, 2 the input is wrong,
     130 interrupted by the keyboard (finished runs are kept).
     """
-    need_parquet()
+    extra("pyarrow.parquet")
     model = read_case(case)
     if model.method == "static":
         raise InputError(
@@ -313,7 +313,7 @@ def ida(
     """
     # What is missing or wrong is reported before the work.
     if parquet:
-        need_parquet()
+        extra("pyarrow.parquet")
         if out is None:
             raise InputError("--parquet writes a file; give its folder with --out DIR")
     model = read_case(case)

@@ -15,7 +15,6 @@ import numpy as np
 
 from rbsdem._arguments import Array
 from rbsdem._files import write_figure
-from rbsdem._optional import console
 from rbsdem.cli import FILE, FOLDER, INTERRUPTED, Command, Values, quiet, tell
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.measured.doubts import Checked
@@ -27,6 +26,7 @@ from rbsdem.measured.predictions import Predictions
 from rbsdem.measured.records import loop_names
 from rbsdem.measured.specimen import Specimen
 from rbsdem.measured.specimens import Specimens, read_specimens
+from rbsdem.output.tables import console
 from rbsdem.section.model import DEFAULT, MODELS, model_name
 from rbsdem.solve.protocol import protocol
 

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments, _views
 from rbsdem._arguments import Array
-from rbsdem._optional import need_scipy
 from rbsdem.errors import InputError
 from rbsdem.many.fragile import Fragile
 from rbsdem.many.fragility import Fragility
@@ -78,7 +77,8 @@ class CloudData:
 
     def curve(self, parts: tuple[PowerLaw | None, Logistic | None], log_intensity: Array) -> Array:
         """Return P(C) + (1 - P(C)) P(EDP > limit | no C) (Jalayer et al. 2017)."""
-        special = need_scipy("special")
+        from scipy import special  # noqa: PLC0415
+
         line, logistic = parts
         lost = np.zeros_like(log_intensity)
         if logistic is not None:
@@ -317,7 +317,9 @@ def _theta_beta(
     u = np.linspace(middle - _REACH, middle + _REACH, _GRID)
     p = data.curve(parts, u)
     # 15.87 and 84.13 %, so that a lognormal curve has its own spread.
-    ends = need_scipy("special").ndtr(np.array([-1.0, 0.0, 1.0]))
+    from scipy.special import ndtr  # noqa: PLC0415
+
+    ends = ndtr(np.array([-1.0, 0.0, 1.0]))
     if not (p[0] < ends[0] and p[-1] > ends[2]) or (np.diff(p) < -1e-12).any():
         return np.nan, np.nan
     low, mid, high = np.interp(ends, p, u)

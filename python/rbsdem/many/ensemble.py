@@ -119,13 +119,7 @@ class Ensemble:
 
     @property
     def table(self) -> pd.DataFrame:
-        """A row for each run: column, motion, scale, status, the measures, error.
-
-        Raises
-        ------
-        ImportError
-            If pandas is not installed.
-        """
+        """A row for each run: column, motion, scale, status, the measures, error."""
         return _views.view(self, "table")
 
     def history(self, run: int) -> Result:

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments, _views
 from rbsdem._arguments import Array
-from rbsdem._optional import need_scipy
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.many.hazard import Hazard
 from rbsdem.many.lognormal import Bounds, bounds_of_counts, fit_bounds, fit_points
@@ -161,7 +160,8 @@ class Fragility:
 
     def probability(self, intensity: ArrayLike) -> Array:
         """Return the probability of the limit state at intensities."""
-        special = need_scipy("special")
+        from scipy import special  # noqa: PLC0415
+
         with np.errstate(divide="ignore"):
             z = (
                 np.log(_arguments.vector(intensity, "intensity", shape="any") / self.theta)
@@ -222,7 +222,8 @@ class Fragility:
         """
         if not 0 < _arguments.number(level, "level") < 1:
             raise InputError(f"band: level = {level} must be above 0 and below 1")
-        special = need_scipy("special")
+        from scipy import special  # noqa: PLC0415
+
         theta, beta = self.samples(n, seed)
         with np.errstate(divide="ignore"):
             u = np.log(_arguments.vector(intensity, "intensity", shape="1 or m"))

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
-from rbsdem._optional import need_scipy
 from rbsdem.errors import AccuracyWarning, InputError
 
 #: A frequency of which more than this part comes from beyond the given points is warned of.
@@ -92,7 +91,8 @@ class Hazard:
                 f"hazard: mu = {mu:g}, beta = {beta:g}: the capacity needs a finite mu, and a beta "
                 "above 0"
             )
-        special = need_scipy("special")
+        from scipy import special  # noqa: PLC0415
+
         x, y = np.log(self.intensity), np.log(self.frequency)
         slope = np.diff(y) / np.diff(x)
 

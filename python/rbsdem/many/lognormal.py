@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rbsdem._arguments import Array
-from rbsdem._optional import need_scipy
 
 _MOST_STEPS = 100
 #: Gain of the logarithm of the likelihood that a step still promises where the search ends.
@@ -201,7 +200,6 @@ class _Terms:
     """The logarithm of the likelihood of bounds, a function of a and b, and its derivatives."""
 
     def __init__(self, low: Array, high: Array, weight: Array) -> None:
-        self._special = need_scipy("special")
         self._weight = weight
         self._exact = high - low <= _NARROW
         self._open = np.isfinite(low), np.isfinite(high)
@@ -250,6 +248,8 @@ class _Terms:
 
     def _mass(self, a: Array, b: Array) -> tuple[Array, Array, Array]:
         """Return ln(Phi(v) - Phi(u)) with v and u, the ends in z."""
+        from scipy.special import log_ndtr  # noqa: PLC0415
+
         ends = [
             np.where(known, a[..., None] + b[..., None] * end, sign * np.inf)
             for known, end, sign in zip(self._open, (self._low, self._high), (-1, 1), strict=True)
@@ -259,7 +259,7 @@ class _Terms:
         first = np.where(flip, -ends[1], ends[0])
         second = np.where(flip, -ends[0], ends[1])
         with np.errstate(invalid="ignore", divide="ignore"):
-            top, bottom = self._special.log_ndtr(second), self._special.log_ndtr(first)
+            top, bottom = log_ndtr(second), log_ndtr(first)
             mass = top + np.log1p(-np.exp(np.minimum(bottom - top, 0.0)))
         finite = (np.where(known, end, 0.0) for known, end in zip(self._open, ends, strict=True))
         u, v = finite

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rbsdem._arguments import Array
-from rbsdem._optional import need_scipy
 
 _MOST_STEPS = 100
 _CLOSE = 1e-10
@@ -44,7 +43,8 @@ class Logistic:
 
     def probability(self, log_intensity: Array) -> Array:
         """Return the probability at logarithms of the intensity."""
-        special = need_scipy("special")
+        from scipy import special  # noqa: PLC0415
+
         return np.asarray(special.expit(self.c0 + self.c1 * log_intensity))
 
 
@@ -69,7 +69,8 @@ def fit_logistic(x: Array, happened: NDArray[np.bool_]) -> Logistic:
     The penalty of Firth (1993) takes off the first bias, and gives an answer where no intensity has
     both outcomes.
     """
-    special = need_scipy("special")
+    from scipy import special  # noqa: PLC0415
+
     middle, spread = x.mean(), max(float(x.std()), 1e-12)
     design = np.column_stack([np.ones_like(x), (x - middle) / spread])
     y = happened.astype(float)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from rbsdem import _core
 from rbsdem._code import code_digest
-from rbsdem._optional import need_parquet
+from rbsdem._extras import extra
 from rbsdem.batch.store import PARQUET, Store, digest
 from rbsdem.errors import InputError
 from rbsdem.many.measures import STATUSES, Measure
@@ -56,7 +56,7 @@ class RunStore:
         part: tuple[int, int],
         seeds: Any = None,
     ) -> None:
-        need_parquet()
+        extra("pyarrow.parquet")
         self._plan = plan
         self._names = names
         self._columns = [_column_key(plan, i) for i in range(len(plan.columns))]

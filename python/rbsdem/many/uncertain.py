@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
-from rbsdem._optional import need_scipy
 from rbsdem.errors import InputError
 from rbsdem.many.inputs import raise_faults
 from rbsdem.model.column import Column, without_notes
@@ -32,7 +31,9 @@ def lognormal(median: float, beta: float) -> Any:
     middle, spread = _arguments.number(median, "median"), _arguments.number(beta, "beta")
     if not (middle > 0 and spread > 0):
         raise InputError(f"lognormal: median = {middle:g} and beta = {spread:g} must be above 0")
-    return need_scipy("stats").lognorm(spread, scale=middle)
+    from scipy.stats import lognorm as frozen  # noqa: PLC0415
+
+    return frozen(spread, scale=middle)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -139,7 +140,9 @@ class Uncertain:
             raise InputError(f"uncertain: n = {n} must be from 1 to {_MOST}")
         size = len(self.variables)
         random = np.random.default_rng(start)
-        qmc, special = need_scipy("stats.qmc"), need_scipy("special")
+        from scipy import special  # noqa: PLC0415
+        from scipy.stats import qmc  # noqa: PLC0415
+
         _arguments.choice(method, "method", ("sobol", "lhs", "random"))
         if method == "sobol":
             if number & (number - 1):

@@ -14,7 +14,6 @@ import numpy as np
 
 from rbsdem import _views
 from rbsdem._files import whole_file, write_csv
-from rbsdem._optional import need_pandas
 from rbsdem.errors import InputError
 from rbsdem.measured.pictures import Picture, picture
 from rbsdem.measured.prediction import Prediction
@@ -208,7 +207,9 @@ class Predictions(Sequence[Prediction]):
 
     def to_pandas(self) -> Any:
         """Return `records` as a DataFrame; needs pandas."""
-        return need_pandas().DataFrame(self.records())
+        import pandas as pd  # noqa: PLC0415
+
+        return pd.DataFrame(self.records())
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Write `records` as csv, whole or not at all.

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any, overload
 
 from rbsdem import _arguments
-from rbsdem._optional import need_pandas
 from rbsdem.errors import InputError
 from rbsdem.measured.specimen import Observed, Specimen
 
@@ -226,7 +225,9 @@ class Specimens(Sequence[Specimen]):
     def to_pandas(self) -> Any:
         """Return a DataFrame, a row for each test; needs pandas."""
         rows = [asdict(row) for row in self._rows]
-        return need_pandas().DataFrame([{**row, **row.pop("observed")} for row in rows])
+        import pandas as pd  # noqa: PLC0415
+
+        return pd.DataFrame([{**row, **row.pop("observed")} for row in rows])
 
     def _named(self, key: str) -> Specimen:
         for row in self._rows:

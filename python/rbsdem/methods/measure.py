@@ -108,8 +108,6 @@ def trade(
         For bad input, also where no setting can solve the case.
     SolveError
         If every setting fails.
-    ImportError
-        If progress is asked for without rich.
     """
     _check(tolerance, budget, digits, repeats)
     wanted = checked_methods(methods)

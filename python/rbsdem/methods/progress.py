@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from rbsdem._optional import need_rich
 from rbsdem.methods.ladder import Budget
 
 
@@ -15,7 +14,7 @@ def telling(clock: Budget) -> Iterator[Callable[[str], None]]:
 
     Drawn between runs only, so that no thread disturbs what is timed.
     """
-    rich = need_rich()
+    import rich.progress  # noqa: PLC0415
     from rich.console import Console  # noqa: PLC0415
 
     bar = rich.progress.Progress(

@@ -125,8 +125,6 @@ def loop(
     ------
     InputError
         If displacements and forces differ in length or are empty.
-    ImportError
-        If matplotlib is not installed.
 
     Examples
     --------
@@ -183,8 +181,6 @@ def loops_over_test(
     ------
     InputError
         If displacements and forces differ in length or are empty.
-    ImportError
-        If matplotlib is not installed.
     """
     measured = _curve(test, "the test")
     computed = _curve(model, "the model")
@@ -222,8 +218,6 @@ def four_panels(
     InputError
         If there are no panels or more than four, or if displacements and forces of one differ in
         length or are empty.
-    ImportError
-        If matplotlib is not installed.
     """
     if not 1 <= len(panels) <= 4:
         raise InputError(f"four_panels: {len(panels)} panels; give one to four")

@@ -74,8 +74,6 @@ def history(
     ------
     InputError
         If `over` is none of these.
-    ImportError
-        If matplotlib is not installed.
     """
     _arguments.instance(result, "history: result", Response)
     _arguments.choice(over, "over", _OVER)
@@ -105,11 +103,6 @@ def energy(result: Response, *, ax: Axes | None = None) -> Axes:
     -------
     matplotlib.axes.Axes
         The axes, energies in kJ. "springs" is stored and dissipated.
-
-    Raises
-    ------
-    ImportError
-        If matplotlib is not installed.
     """
     with axes_or_new(ax, (5.2, 2.8)) as drawn:
         names = [name for name in ENERGIES if name != "residual" and np.any(result.energy[name])]
@@ -154,8 +147,6 @@ def profile(
     ------
     InputError
         If a moment is outside of the rows, or there are more than six.
-    ImportError
-        If matplotlib is not installed.
     """
     if time is None:
         moments = np.array([result.time[np.argmax(np.abs(result.displacement))]])

@@ -15,7 +15,6 @@ from weakref import WeakSet
 
 from rbsdem import _arguments
 from rbsdem._files import write_figure
-from rbsdem._optional import need_matplotlib
 from rbsdem.errors import InputError
 
 if TYPE_CHECKING:
@@ -87,7 +86,6 @@ DPI = 300
 @contextmanager
 def style() -> Iterator[None]:
     """Use the house style `RC` inside a ``with`` block only."""
-    need_matplotlib()
     import matplotlib as mpl  # noqa: PLC0415
 
     with mpl.rc_context(RC):
@@ -109,7 +107,6 @@ def new_axes(rows: int, columns: int, size: tuple[float, float]) -> list[Axes]:
     list of matplotlib Axes
         Row by row. What is drawn on them later has the house style, too.
     """
-    need_matplotlib()
     import matplotlib.pyplot as plt  # noqa: PLC0415
 
     with style():

@@ -12,8 +12,8 @@ import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
+from rbsdem._extras import extra
 from rbsdem._files import whole_file
-from rbsdem._optional import need_xarray
 from rbsdem.errors import InputError
 from rbsdem.model.response import STATE_HEAD, Response, last_state
 
@@ -66,7 +66,7 @@ def to_xarray(result: Response) -> Any:
         name: ((along, "joint")[: values.ndim], values, units[name])
         for name, values in arrays.items()
     }
-    return need_xarray().Dataset(
+    return extra("xarray").Dataset(
         variables,
         {
             along: (along, time, units[along]),
@@ -116,7 +116,7 @@ def save(result: Response, path: str | os.PathLike[str]) -> None:
         with whole_file(path) as file:
             np.savez_compressed(file, about=np.array(json.dumps(about)), **arrays)
         return
-    xarray = need_xarray()
+    xarray = extra("xarray")
     variables = {
         # Slashes part groups in netCDF.
         name.replace("/", ":"): ([f"{name}_{axis}" for axis in range(values.ndim)], values)

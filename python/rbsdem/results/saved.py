@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from rbsdem import _core
+from rbsdem._extras import extra
 from rbsdem._files import whole_file
-from rbsdem._optional import need_xarray
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column, without_notes
 from rbsdem.results.case import Case, read_case
@@ -86,7 +86,7 @@ def _read_npz(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, A
 
 
 def _read_netcdf(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, Any]]:
-    with need_xarray().open_dataset(path, engine="scipy", mask_and_scale=False) as dataset:
+    with extra("xarray").open_dataset(path, engine="scipy", mask_and_scale=False) as dataset:
         arrays = {
             str(name).replace(":", "/"): np.array(variable.values, dtype=np.float64)
             for name, variable in dataset.variables.items()
