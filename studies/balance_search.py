@@ -22,6 +22,17 @@ import numpy as np
 from static_search import targets
 
 import rbsdem
+from rbsdem.springs import (
+    Bilinear,
+    Compression,
+    ConcreteSpring,
+    Elastic,
+    Layered,
+    PeakOriented,
+    Pinching,
+    SteelSpring,
+    Takeda,
+)
 
 Generator = np.random.Generator
 
@@ -51,12 +62,12 @@ def spring(rng: Generator, force: float, yielding: float) -> rbsdem.Spring:
     loss = {"f_res": top * float(rng.choice([0.0, 0.3])), "lambda_s": float(rng.choice([0, 100]))}
     match rng.integers(7):
         case 0:
-            return rbsdem.Elastic(k)
+            return Elastic(k)
         case 1:
-            return rbsdem.Bilinear(k, yielding, post)
+            return Bilinear(k, yielding, post)
         case 2:
             k_y = k * rng.uniform(0.3, 1.0)
-            return rbsdem.Takeda(
+            return Takeda(
                 k_c=k * rng.uniform(1.05, 3.0),
                 d_c=crack,
                 k_y=k_y,
@@ -67,9 +78,9 @@ def spring(rng: Generator, force: float, yielding: float) -> rbsdem.Spring:
                 inner=str(rng.choice(["kc", "kr", "one"])),
             )
         case 3:
-            return rbsdem.PeakOriented(*falls, **loss)
+            return PeakOriented(*falls, **loss)
         case 4:
-            return rbsdem.Pinching(*falls, **loss, kappa_f=0.3, kappa_d=0.5)
+            return Pinching(*falls, **loss, kappa_f=0.3, kappa_d=0.5)
         case _:
             more = {}
             if rng.random() < 0.6:
@@ -77,32 +88,32 @@ def spring(rng: Generator, force: float, yielding: float) -> rbsdem.Spring:
                 post = max(post, 1e-3 * k)
             hardening = float(rng.choice([0.0, 0.1]))
             endurance = float(rng.choice([0.0, 1e3]))
-            return rbsdem.SteelSpring(
+            return SteelSpring(
                 k, force, post, isotropic_hardening=hardening, endurance=endurance, **more
             )
 
 
-def rocking(rng: Generator, load: float) -> rbsdem.Layered:
+def rocking(rng: Generator, load: float) -> Layered:
     """Return a joint of contacts alone, or of contacts and bars."""
     k = 10 ** rng.uniform(7.5, 9.5)
     half = rng.uniform(0.1, 0.3)
     count = int(rng.integers(2, 8))
-    layers = [(y, rbsdem.Compression(k)) for y in np.linspace(-half, half, count)]
+    layers = [(y, Compression(k)) for y in np.linspace(-half, half, count)]
     if rng.random() < 0.4:
         bar = spring(rng, max(load, 1e5) * rng.uniform(0.1, 1), 10 ** rng.uniform(-4, -2.5))
         if bar.rule in ("elastic", "bilinear", "steel"):
             layers += [(y, bar) for y in (-0.7 * half, 0.7 * half)[: rng.integers(1, 3)]]
-    return rbsdem.Layered(layers)
+    return Layered(layers)
 
 
-def layered_joint(rng: np.random.Generator) -> rbsdem.Layered:
+def layered_joint(rng: np.random.Generator) -> Layered:
     """Return a joint 0.4 m deep with bars, and strips of one kind."""
     strips = int(rng.integers(2, 13))
     places = 0.4 * ((np.arange(strips) + 0.5) / strips - 0.5)
     share = 1 / strips
     kind = rng.choice(["concrete", "contact", "bilinear"])
     if kind == "concrete":
-        strip: rbsdem.Spring = rbsdem.ConcreteSpring(
+        strip: rbsdem.Spring = ConcreteSpring(
             k=1.6e10 * share,
             f_peak=4.8e6 * share,
             d_peak=6e-4,
@@ -113,14 +124,14 @@ def layered_joint(rng: np.random.Generator) -> rbsdem.Layered:
             wear=rng.uniform(0, 0.05),
         )
     elif kind == "contact":
-        strip = rbsdem.Compression(1.6e10 * share)
+        strip = Compression(1.6e10 * share)
     else:
-        strip = rbsdem.Bilinear(k=1.6e10 * share, d_y=rng.uniform(1e-4, 6e-4), k_post=1e8 * share)
+        strip = Bilinear(k=1.6e10 * share, d_y=rng.uniform(1e-4, 6e-4), k_post=1e8 * share)
     if rng.random() < 0.5:
-        bar: rbsdem.Spring = rbsdem.SteelSpring(8e8, 7.2e5, rng.choice([0.0, 8e6]), r0=8)
+        bar: rbsdem.Spring = SteelSpring(8e8, 7.2e5, rng.choice([0.0, 8e6]), r0=8)
     else:
-        bar = rbsdem.Bilinear(k=8e8, d_y=9e-4, k_post=rng.choice([0.0, 8e6]))
-    return rbsdem.Layered([*((y, strip) for y in places), (-0.16, bar), (0.16, bar)])
+        bar = Bilinear(k=8e8, d_y=9e-4, k_post=rng.choice([0.0, 8e6]))
+    return Layered([*((y, strip) for y in places), (-0.16, bar), (0.16, bar)])
 
 
 def problem(rng: Generator) -> tuple[rbsdem.Column, dict[str, list[float]]]:

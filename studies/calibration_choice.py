@@ -55,7 +55,7 @@ _cases: list[tuple[Any, Target]] = []
 
 def begin(folder: str, model_version: str | None, choice: slice) -> None:
     """Load the tests."""
-    warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
+    warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
     tests = peer.read_specimens(folder).where(section="rectangular", failure_mode="Flexure")
     options = {} if model_version is None else {"version": model_version}
     for specimen in [test for test in tests if test.path][choice]:

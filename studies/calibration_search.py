@@ -83,8 +83,8 @@ SEARCHES = {
 
 def main() -> None:
     """Run all searches and print what they found."""
-    warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
-    columns = rbsdem.paper_columns("pdelta")
+    warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
+    columns = rbsdem.peer.paper_columns("pdelta")
     measured, drawn = {}, {}
     random = np.random.default_rng(0)
     for key, column in columns.items():

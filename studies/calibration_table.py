@@ -28,6 +28,7 @@ import rbsdem
 from rbsdem.calibration import undetermined
 from rbsdem.errors import AccuracyWarning, RbsdemError
 from rbsdem.peer import Specimen, read_specimens
+from rbsdem.springs import Elastic, Takeda
 
 TAKEDA = ("k_c", "k_y", "d_y", "k_u", "b0", "b1")
 SCORES = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio")
@@ -118,8 +119,8 @@ def lumped(specimen: Specimen) -> rbsdem.Column:
     return rbsdem.Column(
         height=specimen.length,
         mass=specimen.mass,
-        shear=rbsdem.Elastic(k=100 * k_c / specimen.length**2),
-        flexure=rbsdem.Takeda(
+        shear=Elastic(k=100 * k_c / specimen.length**2),
+        flexure=Takeda(
             k_c=k_c,
             d_c=0.2 * moment / k_c,
             k_y=0.4 * k_c,

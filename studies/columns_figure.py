@@ -39,9 +39,9 @@ def main() -> None:
     given = parser.parse_args()
     job = main_job()
     drawn, paper = {}, {}
-    for key, column in rbsdem.paper_columns().items():
+    for key, column in rbsdem.peer.paper_columns().items():
         drive = job.read(key, given.folder)
-        drawn[key], _ = job.from_drawing(drive, rbsdem.paper_sections()[key])
+        drawn[key], _ = job.from_drawing(drive, rbsdem.peer.paper_sections()[key])
         paper[key], _ = job.by_force(drive, column, job.ROW_TIME)
     with style():
         job.both_models(drawn, paper).savefig(ROOT / "docs" / "columns.png", dpi=130)

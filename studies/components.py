@@ -49,7 +49,7 @@ def layered(n: int) -> Model:
 
 
 MODELS: dict[str, Model] = {
-    "table 3, one component": lambda key, specimen: rbsdem.paper_columns("pdelta")[key],
+    "table 3, one component": lambda key, specimen: rbsdem.peer.paper_columns("pdelta")[key],
     **{f"paper's springs, N = {n}": shared(n) for n in (1, 2, 4, 8)},
     **{f"layered, N = {n}": layered(n) for n in (2, 4, 8)},
 }
@@ -132,7 +132,7 @@ def main() -> None:
     parser.add_argument("folder")
     parser.add_argument("--figure", action="store_true")
     given = parser.parse_args()
-    warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
+    warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
     specimens = tests(given.folder)
     print("| model | secant stiffness | peak force | nrmse | ", end="")
     print("drift at loss | never lost | reach | beyond |")

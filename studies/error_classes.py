@@ -27,6 +27,7 @@ import rbsdem
 from rbsdem.methods.scene import Setting as Way
 from rbsdem.methods.scene import make_scene
 from rbsdem.results.accuracy import Answer, errors_of
+from rbsdem.springs import Elastic, PeakOriented, Pinching
 
 ROOT = Path(__file__).resolve().parents[1]
 MOTION = ROOT / "examples" / "03-ground-motion" / "ground.csv"
@@ -49,23 +50,23 @@ CAPPED |= {"d_c": 3.2e-4, "f_c": 8e4, "b0": 0.3}
 
 def columns() -> Iterator[tuple[str, rbsdem.Column]]:
     """Yield names and columns, each with a storey."""
-    for key, column in rbsdem.paper_columns("pdelta").items():
+    for key, column in rbsdem.peer.paper_columns("pdelta").items():
         storey = column.axial_load / GRAVITY
         yield key, dataclasses.replace(column, top_mass=storey)
-    paper = rbsdem.paper_columns("pdelta", top_mass=75.9e3)["soesianawati_1"]
+    paper = rbsdem.peer.paper_columns("pdelta", top_mass=75.9e3)["soesianawati_1"]
     hinges = {
-        "elastic": rbsdem.Elastic(2.5e8),
-        "softening": rbsdem.PeakOriented(**CAPPED, lambda_s=150.0),
-        "pinching": rbsdem.Pinching(**CAPPED, kappa_f=0.3, kappa_d=0.4),
+        "elastic": Elastic(2.5e8),
+        "softening": PeakOriented(**CAPPED, lambda_s=150.0),
+        "pinching": Pinching(**CAPPED, kappa_f=0.3, kappa_d=0.4),
     }
     for name, hinge in hinges.items():
         yield name, dataclasses.replace(paper, flexure=hinge)
     yield "damped", dataclasses.replace(paper, damping=rbsdem.Damping(stiffness=5e-4))
-    section = rbsdem.paper_sections()["soesianawati_1"].section
+    section = rbsdem.peer.paper_sections()["soesianawati_1"].section
     layered = section.column(1.6, axial_load=744e3)
     yield "layered", dataclasses.replace(layered, top_mass=75.9e3)
     for n in (2, 6):
-        flexure = [paper.flexure, *[rbsdem.Elastic(2.5e8 * n)] * (n - 1)]
+        flexure = [paper.flexure, *[Elastic(2.5e8 * n)] * (n - 1)]
         shear = paper.shear.split(n)
         yield f"chain {n}", dataclasses.replace(paper, n=n, shear=shear, flexure=flexure)
 
@@ -136,7 +137,7 @@ def errors(kinematics: str) -> None:
 
 def costs() -> None:
     """Print the wall time of a step, for one body and the slope with the number of bodies."""
-    paper = rbsdem.paper_columns("pdelta", top_mass=75.9e3)["soesianawati_1"]
+    paper = rbsdem.peer.paper_columns("pdelta", top_mass=75.9e3)["soesianawati_1"]
     time = np.linspace(0.0, 2.0, 201)
     print("| method | kinematics | one body, ns a step | each further body, ns |")
     print("| --- | --- | ---: | ---: |")
@@ -147,7 +148,7 @@ def costs() -> None:
                 continue
             spent = {}
             for n in (1, 50):
-                flexure = [paper.flexure, *[rbsdem.Elastic(2.5e8 * n)] * (n - 1)]
+                flexure = [paper.flexure, *[Elastic(2.5e8 * n)] * (n - 1)]
                 column = dataclasses.replace(
                     paper, n=n, kinematics=kinematics, flexure=flexure, shear=paper.shear.split(n)
                 )
@@ -167,7 +168,7 @@ def costs() -> None:
 
 
 if __name__ == "__main__":
-    warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
+    warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
     for kinematics in ("pdelta", "finite"):
         errors(kinematics)
     costs()

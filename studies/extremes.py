@@ -16,6 +16,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 import rbsdem
+from rbsdem.springs import Elastic, Takeda
 
 Row = tuple[str, str, str]
 
@@ -23,7 +24,7 @@ Row = tuple[str, str, str]
 def main() -> None:
     """Print one Markdown table."""
     # Some rows are about large rotations and loads close to the critical one.
-    warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
+    warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
     print("| extreme | how | observed |")
     print("| --- | --- | --- |")
     for row in (
@@ -43,7 +44,7 @@ def main() -> None:
 
 def chain(n: int, **more: object) -> rbsdem.Column:
     """Return an elastic cantilever as n bodies."""
-    return rbsdem.Column(4.0, 2000.0, rbsdem.Elastic(4e8 * n), rbsdem.Elastic(1e8 * n), n=n, **more)
+    return rbsdem.Column(4.0, 2000.0, Elastic(4e8 * n), Elastic(1e8 * n), n=n, **more)
 
 
 def below_the_limit() -> Row:
@@ -103,9 +104,7 @@ def stiffness_ratios() -> Row:
     """Load columns whose springs differ by many orders of magnitude."""
     worst = 0.0
     for power in range(-9, 10, 3):
-        column = rbsdem.Column(
-            1.6, 600.0, rbsdem.Elastic(1e8 * 10.0**power / 1.6**2), rbsdem.Elastic(1e8), n=5
-        )
+        column = rbsdem.Column(1.6, 600.0, Elastic(1e8 * 10.0**power / 1.6**2), Elastic(1e8), n=5)
         run = rbsdem.cyclic(column, force=[1e3, -1e3, 500.0])
         arms = 1.6 * (1 - np.arange(5) / 5)
         exact = 1e3 * (5 / column.shear.k + np.sum(arms**2) / 1e8)
@@ -153,9 +152,7 @@ def many_bodies() -> Row:
 
 def full_turns() -> Row:
     """Let a chain rotate through many full turns."""
-    column = rbsdem.Column(
-        1.0, 100.0, rbsdem.Elastic(1e5), rbsdem.Elastic(50.0), n=3, kinematics="finite"
-    )
+    column = rbsdem.Column(1.0, 100.0, Elastic(1e5), Elastic(50.0), n=3, kinematics="finite")
     start = {"rotation_velocity": [30.0, 0.0, 0.0]}
     run = rbsdem.time_history(column, np.linspace(0, 1, 101), initial=start, dt=2e-5, method="rk4")
     return (
@@ -168,9 +165,7 @@ def full_turns() -> Row:
 
 def long_path() -> Row:
     """Follow a path of ten million points."""
-    spring = rbsdem.Takeda(
-        k_c=2.5428e8, d_c=3.1891e-4, k_y=6.2937e7, d_y=2.7183e-3, k_u=7.5772e6, b1=0.22
-    )
+    spring = Takeda(k_c=2.5428e8, d_c=3.1891e-4, k_y=6.2937e7, d_y=2.7183e-3, k_u=7.5772e6, b1=0.22)
     corners = np.random.default_rng(1).uniform(-0.02, 0.02, 1000)
     parts = np.linspace(0, 1, 10_001)[1:]
     path = np.concatenate(
@@ -197,8 +192,8 @@ def axial_loads() -> Row:
         column = rbsdem.Column(
             length,
             600.0,
-            rbsdem.Elastic(1e9),
-            rbsdem.Elastic(k_m),
+            Elastic(1e9),
+            Elastic(k_m),
             axial_load=share * critical,
             kinematics="pdelta",
         )

@@ -17,6 +17,7 @@ import numpy as np
 
 import rbsdem
 from rbsdem.solve.methods import IMPLICIT
+from rbsdem.springs import Bilinear, Elastic, Takeda
 
 TIME = np.linspace(0.0, 1.0, 101)
 WAVE = np.sin(20.0 * TIME)
@@ -24,11 +25,11 @@ WAVE = np.sin(20.0 * TIME)
 
 def chain(n: int, *, yields: bool) -> rbsdem.Column:
     """Return a chain of n bodies with a mass at its top."""
-    flexure: rbsdem.Spring = rbsdem.Elastic(1.5e6 * n)
-    shear: rbsdem.Spring = rbsdem.Elastic(1e8 * n)
+    flexure: rbsdem.Spring = Elastic(1.5e6 * n)
+    shear: rbsdem.Spring = Elastic(1e8 * n)
     if yields:
-        flexure = rbsdem.Takeda(6e6 * n, 3e-3 / n, 1.5e6 * n, 1.5e-2 / n, 1.5e5 * n)
-        shear = rbsdem.Bilinear(1e7 * n, 1e-3 / n, 2e5 * n)
+        flexure = Takeda(6e6 * n, 3e-3 / n, 1.5e6 * n, 1.5e-2 / n, 1.5e5 * n)
+        shear = Bilinear(1e7 * n, 1e-3 / n, 2e5 * n)
     return rbsdem.Column(
         2.0, 1000.0, shear, flexure, n=n, kinematics="finite", axial_load=2e4, top_mass=2000.0,
         lengths=np.linspace(1.0, 1.5, n) * 2.0 / np.linspace(1.0, 1.5, n).sum(),

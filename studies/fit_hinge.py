@@ -151,7 +151,7 @@ _cases: list[Case] = []
 
 
 def _begin(folder: str, fitted_before: bool) -> None:
-    warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
+    warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
     _cases[:] = load(folder, fitted_before)
 
 

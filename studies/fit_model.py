@@ -302,7 +302,7 @@ def sides() -> tuple[np.ndarray, np.ndarray]:
 
 
 def _begin(folder: str) -> None:
-    warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
+    warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
     if not _cases:
         _cases[:] = load(folder)
 

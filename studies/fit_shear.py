@@ -23,6 +23,7 @@ from rbsdem.calibration.misfit import Target, forces, rms
 from rbsdem.measured.drawing import draw
 from rbsdem.section.parameters import ShearParameters, parameters
 from rbsdem.section.shear_model import shear_spring
+from rbsdem.springs import Elastic
 
 # Bounds of what is fitted; the others keep their values.
 BOUNDS = {
@@ -58,7 +59,7 @@ class Case:
         self.section = draw(specimen).section
         foot = self.column.shear[0]
         self.stiffness = foot.f_c / foot.d_c * specimen.length
-        force = self.force(rbsdem.Elastic(foot.f_c / foot.d_c))
+        force = self.force(Elastic(foot.f_c / foot.d_c))
         self.without = rms(self.target.error(force))
         self.failed = specimen.failure_mode != "Flexure"
         strength = foot.f_y / parameters("2026.2").shear.strength
@@ -109,7 +110,7 @@ def _left_out(
     folder: str, series: list[str], evaluations: int
 ) -> list[tuple[str, float, float, ShearParameters]]:
     """Fit without some series; return name and nrmse of their tests without spring and with it."""
-    warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
+    warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
     cases = load(folder)
     given = fit([c for c in cases if c.specimen.series not in series], evaluations)
     return [
@@ -135,7 +136,7 @@ def main() -> None:
     given = parser.parse_args()
 
     # The warnings are of rotations above 0.1 at the end of some tests.
-    warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
+    warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
     cases = load(given.folder)
     names = sorted({case.specimen.series for case in cases})
     folds = [names[i :: given.folds] for i in range(given.folds)]

@@ -57,7 +57,7 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=2)
     given = parser.parse_args()
 
-    warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
+    warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
     left_out = {NEW: read(given.left_out)}
     if given.before:
         left_out = {VERSIONS[-2]: read(given.before), **left_out}

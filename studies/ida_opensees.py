@@ -19,6 +19,7 @@ import openseespy.opensees as ops
 
 import rbsdem
 from rbsdem import fragility, motions
+from rbsdem.springs import Elastic, PeakOriented
 
 HEIGHT, MASS, WEIGHT, RATE = 3.0, 5e4, 4.9e5, 0.5
 HINGE = {"d_y": 0.004, "f_y": 2e5, "d_cap": 0.03, "f_cap": 2.4e5, "d_pc": 0.06}
@@ -32,8 +33,8 @@ def column() -> rbsdem.Column:
     return rbsdem.Column(
         HEIGHT,
         1e-3,
-        rbsdem.Elastic(1e12),
-        rbsdem.PeakOriented(**HINGE),
+        Elastic(1e12),
+        PeakOriented(**HINGE),
         top_mass=MASS,
         axial_load=WEIGHT,
         kinematics="pdelta",

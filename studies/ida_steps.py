@@ -22,6 +22,7 @@ import numpy as np
 
 import rbsdem
 from rbsdem import fragility, motions
+from rbsdem.springs import Elastic, PeakOriented
 
 HUNT = fragility.Hunt(resolution=5e-4, points=1, yielding=False)
 SETTINGS = [
@@ -39,11 +40,11 @@ SETTINGS = [
 
 def softening() -> rbsdem.Column:
     """Return the column of example 08."""
-    hinge = rbsdem.PeakOriented(d_y=0.004, f_y=2e5, d_cap=0.03, f_cap=2.4e5, d_pc=0.06)
+    hinge = PeakOriented(d_y=0.004, f_y=2e5, d_cap=0.03, f_cap=2.4e5, d_pc=0.06)
     return rbsdem.Column(
         3.0,
         1e3,
-        rbsdem.Elastic(5e8),
+        Elastic(5e8),
         hinge,
         top_mass=5e4,
         axial_load=4.9e5,
@@ -54,7 +55,7 @@ def softening() -> rbsdem.Column:
 
 def paper() -> rbsdem.Column:
     """Return column 1 of the paper under the mass that its axial load is the weight of."""
-    column = rbsdem.paper_columns()["soesianawati_1"]
+    column = rbsdem.peer.paper_columns()["soesianawati_1"]
     return replace(column, top_mass=75e3, kinematics="pdelta", damping=0.05)
 
 
@@ -75,7 +76,7 @@ def collapses(column: rbsdem.Column, records, **settings) -> tuple[np.ndarray, f
     """Return the collapse intensities of the records, and the time of the processors."""
     start = time.process_time()
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
+        warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
         found = rbsdem.ida(column, records, levels=HUNT, measures=("peak_drift",), **settings)
     return found.collapse_intensity[0], time.process_time() - start
 

@@ -26,6 +26,7 @@ import sys
 import numpy as np
 
 import rbsdem
+from rbsdem.springs import Bilinear, Elastic, Layered
 
 try:
     import openseespy.opensees as ops
@@ -54,11 +55,11 @@ def paths() -> dict[str, tuple[np.ndarray, np.ndarray]]:
 def ours(rotation: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
     """Return opening, moment, and the rotation at rest under the first load."""
     layers = [
-        (y, rbsdem.Bilinear(k=k, d_y=d_y, k_post=SHARE * k))
+        (y, Bilinear(k=k, d_y=d_y, k_post=SHARE * k))
         for y, k, d_y in zip(PLACES, STIFFNESS, YIELD, strict=True)
     ]
     # A slip spring so stiff that the displacement of the top is the rotation times the height.
-    column = rbsdem.Column(1.0, 1.0, rbsdem.Elastic(1e22), rbsdem.Layered(layers))
+    column = rbsdem.Column(1.0, 1.0, Elastic(1e22), Layered(layers))
     result = rbsdem.cyclic(column, displacement=rotation, axial_load=load, openings=True)
     assert result.rest is not None
     return result.opening[:, 0], result.moment[:, 0], float(result.rest[0, 0])

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from observed_solvers import rows as rows_of_solvers
 
 import rbsdem
+from rbsdem.springs import Bilinear, Elastic, Takeda
 
 Array = NDArray[np.float64]
 
@@ -26,7 +27,7 @@ KEY = "soesianawati_1"
 def main() -> None:
     """Print one Markdown table."""
     # Some rows are about large rotations and loads close to the critical one.
-    warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
+    warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
     print("| what | how | observed | theory |")
     print("| --- | --- | --- | --- |")
     for row in (
@@ -63,7 +64,7 @@ def eq_6() -> tuple[str, str, str, str]:
         length, mass = rng.uniform(0.5, 10.0), 10 ** rng.uniform(1, 5)
         k_m, kappa = 10 ** rng.uniform(5, 10), 10 ** rng.uniform(-2, 2)
         k_v = 3 * k_m * kappa / length**2
-        column = rbsdem.Column(length, mass, rbsdem.Elastic(k_v), rbsdem.Elastic(k_m))
+        column = rbsdem.Column(length, mass, Elastic(k_v), Elastic(k_m))
         root = np.sqrt(1 + kappa + kappa**2)
         # The lower root without cancellation.
         factors = np.array([kappa / (1 + kappa + root), 1 + kappa + root])
@@ -99,9 +100,7 @@ def mass_matrices() -> tuple[str, str, str, str]:
 def critical_load() -> tuple[str, str, str, str]:
     """Critical load of one body: with P = (1 - e) k_M/l the lower frequency vanishes."""
     k_m, length = 2.5e8, 1.6
-    column = rbsdem.Column(
-        length, 600.0, rbsdem.Elastic(7e8), rbsdem.Elastic(k_m), kinematics="pdelta"
-    )
+    column = rbsdem.Column(length, 600.0, Elastic(7e8), Elastic(k_m), kinematics="pdelta")
     below, above = 0.5 * k_m / length, 2 * k_m / length
     while above - below > 1e-15 * below * 4:
         middle = 0.5 * (below + above)
@@ -132,8 +131,8 @@ def cantilever() -> tuple[str, str, str, str]:
         column = rbsdem.Column(
             height,
             1000.0,
-            rbsdem.Elastic(g_a / part[0]),
-            [rbsdem.Elastic(e_i / length) for length in tributary],
+            Elastic(g_a / part[0]),
+            [Elastic(e_i / length) for length in tributary],
             n=n,
         )
         errors.append(abs(rbsdem.cyclic(column, force=[force]).displacement[0] / exact - 1))
@@ -202,7 +201,7 @@ def shaken(parts: int) -> rbsdem.Result:
     """Response of column 1 of table 3 to a pulse far into yield; each 0.01 s in `parts` steps."""
     time = np.linspace(0.0, 1.0, 101)
     ground = 392.0 * np.sin(8 * np.pi * time) * np.exp(-2 * time)
-    column = rbsdem.paper_columns()[KEY]
+    column = rbsdem.peer.paper_columns()[KEY]
     return rbsdem.time_history(
         column, time, ground_acceleration=ground, dt=0.01 / parts, method="rk4"
     )
@@ -267,7 +266,7 @@ def rk4_energy_nonlinear() -> tuple[str, str, str, str]:
 
 def highest_mode() -> tuple[str, str, str, str]:
     """Energy that RK4 loses in the highest mode with the automatic step."""
-    column = rbsdem.paper_columns()[KEY]
+    column = rbsdem.peer.paper_columns()[KEY]
     modes = rbsdem.modes(column)
     start = 1e-4 * modes.shapes[:, 1] / np.max(np.abs(modes.shapes[:, 1]))
     period = 2 * np.pi / modes.omega[1]
@@ -290,7 +289,7 @@ def highest_mode() -> tuple[str, str, str, str]:
 
 def slow_loading() -> tuple[str, str, str, str]:
     """Load RK4 by a force, slower and slower, against the static path."""
-    column = rbsdem.paper_columns()[KEY]
+    column = rbsdem.peer.paper_columns()[KEY]
     points = rbsdem.peer.shipped_reversals(KEY)
     at = np.arange(0.0, points.force.size - 1 + 1e-9, 1 / 30)
     force = np.interp(at, np.arange(points.force.size), points.force)
@@ -374,7 +373,7 @@ def spring_increments() -> tuple[str, str, str, str]:
     """Spring forces with 1, 7 and 1000 sub-increments."""
     rng = np.random.default_rng(1)
     differ = total = 0
-    for column in rbsdem.paper_columns().values():
+    for column in rbsdem.peer.paper_columns().values():
         for spring in (column.shear, column.flexure):
             path = rng.uniform(-6, 6, 500) * spring.d_y
             one = spring.response(path)
@@ -421,25 +420,23 @@ def finite_to_small() -> tuple[str, str, str, str]:
 def chain(n: int, rng: np.random.Generator, *, nonlinear: bool = False) -> rbsdem.Column:
     """Return a random chain of n bodies, all different."""
     lengths, masses = rng.uniform(0.3, 1.2, n), rng.uniform(100, 500, n)
-    shear: list[rbsdem.Elastic | rbsdem.Bilinear] = []
-    flexure: list[rbsdem.Elastic | rbsdem.Takeda] = []
+    shear: list[Elastic | Bilinear] = []
+    flexure: list[Elastic | Takeda] = []
     for _ in range(n):
         k_v, k_m = rng.uniform(5e7, 2e8), rng.uniform(5e7, 2e8)
         if nonlinear:
             d_y, d_c = 1e5 / k_v, 4e4 / k_m
-            shear.append(rbsdem.Bilinear(k_v, d_y, 0.05 * k_v))
-            flexure.append(rbsdem.Takeda(k_m, d_c, 0.3 * k_m, 8 * d_c, 0.05 * k_m, b1=0.4))
+            shear.append(Bilinear(k_v, d_y, 0.05 * k_v))
+            flexure.append(Takeda(k_m, d_c, 0.3 * k_m, 8 * d_c, 0.05 * k_m, b1=0.4))
         else:
-            shear.append(rbsdem.Elastic(k_v))
-            flexure.append(rbsdem.Elastic(k_m))
+            shear.append(Elastic(k_v))
+            flexure.append(Elastic(k_m))
     return rbsdem.Column(lengths.sum(), None, shear, flexure, n=n, lengths=lengths, masses=masses)
 
 
 def swing() -> rbsdem.Column:
     """Return the soft column of misprint E6, with finite rotations."""
-    return rbsdem.Column(
-        1.6, 614.4, rbsdem.Elastic(7e3), rbsdem.Elastic(2.5e3), kinematics="finite"
-    )
+    return rbsdem.Column(1.6, 614.4, Elastic(7e3), Elastic(2.5e3), kinematics="finite")
 
 
 def subdivided(path: Array, parts: int) -> Array:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 import rbsdem
+from rbsdem.springs import Bilinear, Elastic
 
 Row = tuple[str, str, str, str]
 
@@ -30,8 +31,8 @@ def yielding(n: int) -> tuple[rbsdem.Column, dict[str, np.ndarray]]:
     column = rbsdem.Column(
         1.6,
         614.4,
-        rbsdem.Bilinear(7e8 * n, 1.3e-4 / n, 8e6 * n),
-        rbsdem.Bilinear(6e7 * n, 2.7e-3 / n, 1e7 * n),
+        Bilinear(7e8 * n, 1.3e-4 / n, 8e6 * n),
+        Bilinear(6e7 * n, 2.7e-3 / n, 1e7 * n),
         n=n,
         axial_load=2e5,
         top_mass=2e4,
@@ -103,8 +104,8 @@ def finite_chain_energy() -> Row:
     column = rbsdem.Column(
         1.6,
         600.0,
-        rbsdem.Elastic(4e5),
-        rbsdem.Elastic(3e4),
+        Elastic(4e5),
+        Elastic(3e4),
         n=3,
         kinematics="finite",
         self_weight=True,
@@ -149,7 +150,7 @@ def spread_frequencies() -> Row:
     for power in range(-9, 10, 3):
         kappa, k_m, length, mass = 10.0**power, 2.5e8, 1.6, 614.4
         k_v = kappa * k_m / length**2
-        column = rbsdem.Column(length, mass, rbsdem.Elastic(k_v), rbsdem.Elastic(k_m))
+        column = rbsdem.Column(length, mass, Elastic(k_v), Elastic(k_m))
         total = 4 * k_v / mass + 12 * k_m / (mass * length**2)
         product = 12 * k_v * k_m / (mass**2 * length**2)
         high = total / 2 + np.sqrt(total**2 / 4 - product)

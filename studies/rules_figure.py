@@ -11,10 +11,10 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 
-import rbsdem
-
 mpl.use("svg")
 from matplotlib import pyplot as plt
+
+from rbsdem.springs import PeakOriented, Pinching
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 
@@ -50,7 +50,7 @@ def draw_axes(ax: plt.Axes, title: str) -> None:
     """Draw cross, limits and the virgin backbone."""
     back = np.linspace(0, REACH, 500)
     for side in (1, -1):
-        force = rbsdem.PeakOriented(**CRACKED, **SOFT).response(side * back)
+        force = PeakOriented(**CRACKED, **SOFT).response(side * back)
         ax.plot(side * back, force, color=GREY, lw=1, ls=(0, (5, 3)))
     ax.axhline(0, color=GREY, lw=0.6)
     ax.axvline(0, color=GREY, lw=0.6)
@@ -62,12 +62,12 @@ def main() -> None:
     """Draw the three panels."""
     lasting = {"lambda_s": 80.0, "lambda_c": 80.0, "lambda_k": 160.0, "lambda_a": 160.0}
     panels = {
-        "(a) peak-oriented": (rbsdem.PeakOriented(**CRACKED, **SOFT, b0=0.3), BLUE, 1),
+        "(a) peak-oriented": (PeakOriented(**CRACKED, **SOFT, b0=0.3), BLUE, 1),
         r"(b) with deterioration, $\lambda$ = 80, 160": (
-            rbsdem.PeakOriented(**CRACKED, **SOFT, b0=0.3, **lasting), BLUE, 2,
+            PeakOriented(**CRACKED, **SOFT, b0=0.3, **lasting), BLUE, 2,
         ),
         r"(c) pinching, $\kappa_f$ = 0.3, $\kappa_d$ = 0.5": (
-            rbsdem.Pinching(**CRACKED, **SOFT, b0=0.3, **lasting, kappa_f=0.3, kappa_d=0.5), RED, 2,
+            Pinching(**CRACKED, **SOFT, b0=0.3, **lasting, kappa_f=0.3, kappa_d=0.5), RED, 2,
         ),
     }  # fmt: skip
     with plt.rc_context(STYLE):

@@ -36,7 +36,7 @@ from rbsdem.__main__ import executable  # noqa: E402
 KINDS = {"static": 0.35, "layered": 0.15, "varying": 0.15, "time": 0.35}
 
 
-def case(kind: str, seed: int) -> rbsdem.Case | None:
+def case(kind: str, seed: int) -> rbsdem.results.case.Case | None:
     """Return a case of a kind; None where the seed gives none."""
     rng = np.random.default_rng([sum(map(ord, kind)), seed])
     moves = kind == "time" or (kind == "layered" and seed % 3 == 0)
@@ -66,7 +66,7 @@ def case(kind: str, seed: int) -> rbsdem.Case | None:
             axial = column.axial_load or 1e5
             loads["axial_load"] = axial * (1 + 0.5 * strategies.waves(rng, len(time)))
     method = settings.pop("method", "static")
-    return rbsdem.Case(
+    return rbsdem.results.case.Case(
         title="", column=column, method=method, time=time, settings=settings, **loads
     )
 
@@ -82,7 +82,7 @@ def cases(count: int, folder: Path) -> Iterator[Path]:
                 with warnings.catch_warnings():
                     warnings.simplefilter("ignore")
                     made = case(kind, seed)
-            except rbsdem.RbsdemError:
+            except rbsdem.errors.RbsdemError:
                 continue
             if made is None:
                 continue

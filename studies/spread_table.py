@@ -77,7 +77,7 @@ _group: dict[str, int] = {}
 
 
 def _begin(folder: str, state: str, groups: int) -> None:
-    warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
+    warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
     fit_model._begin(folder)
     kept = json.loads(Path(state).read_text("utf-8"))
     _state.update({name: np.array(value) for name, value in kept.items()})

@@ -21,6 +21,7 @@ import warnings
 import numpy as np
 
 import rbsdem
+from rbsdem.springs import Bilinear, Elastic, PeakOriented, Takeda
 
 Generator = np.random.Generator
 
@@ -37,13 +38,13 @@ def spring(rng: Generator, force: float, yielding: float, *, softens: bool) -> r
     k = force / yielding
     post = k * 10 ** rng.uniform(-3, -0.5)
     if kind == 0:
-        return rbsdem.Elastic(k)
+        return Elastic(k)
     if kind == 1:
-        return rbsdem.Bilinear(k, yielding, post)
+        return Bilinear(k, yielding, post)
     if kind in (2, 3):
         crack = yielding * rng.uniform(0.05, 0.5)
         k_y = k * rng.uniform(0.3, 1.0)
-        return rbsdem.Takeda(
+        return Takeda(
             k_c=k * rng.uniform(1.05, 3.0),
             d_c=crack,
             k_y=k_y,
@@ -55,7 +56,7 @@ def spring(rng: Generator, force: float, yielding: float, *, softens: bool) -> r
         )
     cap = yielding * rng.uniform(3, 10)
     top = force * rng.uniform(1.01, 1.3)
-    return rbsdem.PeakOriented(
+    return PeakOriented(
         yielding, force, cap, top, cap * rng.uniform(3, 20), top * rng.uniform(0.05, 0.4)
     )
 
@@ -85,7 +86,7 @@ def problem(rng: Generator) -> tuple[rbsdem.Column, bool, list[float]]:
         shear, flexure = [shear[0]] * n, [flexure[0]] * n
     more = {}
     if rng.random() < 0.15:
-        more["axial_spring"] = [rbsdem.Elastic(10 ** rng.uniform(8, 9.5)) for _ in range(n)]
+        more["axial_spring"] = [Elastic(10 ** rng.uniform(8, 9.5)) for _ in range(n)]
     load = rng.choice([0.0, 0.0, rng.uniform(0, 0.1), rng.uniform(0, 0.6)])
     column = rbsdem.Column(
         height, 600.0, shear, flexure, n=n, kinematics="finite",

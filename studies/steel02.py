@@ -13,7 +13,7 @@ import numpy as np
 import openseespy.opensees as ops
 from numpy.typing import NDArray
 
-import rbsdem
+from rbsdem.springs import SteelSpring
 
 Array = NDArray[np.float64]
 
@@ -73,8 +73,8 @@ def steel02(path: Array) -> Array:
 
 
 def ours(path: Array) -> Array:
-    """Return the forces of `rbsdem.SteelSpring`."""
-    return rbsdem.SteelSpring(1.0, 1.0, B, R0, CR1, CR2).response(path)
+    """Return the forces of `SteelSpring`."""
+    return SteelSpring(1.0, 1.0, B, R0, CR1, CR2).response(path)
 
 
 def largest_change(response, histories: int, size: float) -> float:

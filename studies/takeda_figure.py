@@ -40,7 +40,7 @@ def fine(corners: np.ndarray) -> np.ndarray:
 
 def main() -> None:
     """Draw both panels."""
-    spring = rbsdem.paper_columns()["soesianawati_1"].flexure
+    spring = rbsdem.peer.paper_columns()["soesianawati_1"].flexure
     f_c = spring.k_c * spring.d_c
     f_y = f_c + spring.k_y * (spring.d_y - spring.d_c)
 

@@ -20,8 +20,8 @@ import numpy as np
 
 import rbsdem
 from rbsdem import plot
-from rbsdem.methods.measure import trade
-from rbsdem.methods.outcome import Trade
+from rbsdem.methods.measure import compare_methods
+from rbsdem.methods.outcome import MethodStudy
 from rbsdem.methods.rows import Row, seconds_text
 from rbsdem.peer import shipped_reversals
 
@@ -36,37 +36,37 @@ TOLERANCES = (1e-2, 1e-3, 1e-5, 1e-7)
 ROWS, ROW_TIME = 30, 0.1
 
 
-def static(key: str, budget: float) -> Trade:
-    """Return the trade of the cyclic drifts."""
-    column = rbsdem.paper_columns("pdelta")[key]
+def static(key: str, budget: float) -> MethodStudy:
+    """Return the study of the cyclic drifts."""
+    column = rbsdem.peer.paper_columns("pdelta")[key]
     path = column.height * rbsdem.protocol(DRIFTS, cycles=2)
-    return trade(column, displacement=path, budget=budget)
+    return compare_methods(column, displacement=path, budget=budget)
 
 
-def slow(key: str, budget: float) -> Trade:
-    """Return the trade of the test's reversal forces, equation 4 of the paper."""
-    column = rbsdem.paper_columns("finite", axial_load=0.0)[key]
+def slow(key: str, budget: float) -> MethodStudy:
+    """Return the study of the test's reversal forces, equation 4 of the paper."""
+    column = rbsdem.peer.paper_columns("finite", axial_load=0.0)[key]
     force = shipped_reversals(key).force
     leg = 0.5 - 0.5 * np.cos(np.pi * np.arange(ROWS) / ROWS)
     path = np.append((force[:-1, None] + np.outer(np.diff(force), leg)).ravel(), force[-1])
     time = ROW_TIME * np.arange(path.size)
-    return trade(column, time, force=path, setting={"method": "rk4"}, budget=budget)
+    return compare_methods(column, time, force=path, setting={"method": "rk4"}, budget=budget)
 
 
-def ground(key: str, budget: float) -> Trade:
-    """Return the trade of the ground motion, with a storey on top."""
-    weight = rbsdem.paper_columns()[key].axial_load
-    column = rbsdem.paper_columns("pdelta", top_mass=weight / GRAVITY)[key]
+def ground(key: str, budget: float) -> MethodStudy:
+    """Return the study of the ground motion, with a storey on top."""
+    weight = rbsdem.peer.paper_columns()[key].axial_load
+    column = rbsdem.peer.paper_columns("pdelta", top_mass=weight / GRAVITY)[key]
     time, acceleration = np.loadtxt(MOTION, delimiter=",", skiprows=2, unpack=True)
     motion = GRAVITY * acceleration
     own = {"method": "rk4"}
-    return trade(column, time, ground_acceleration=motion, setting=own, budget=budget)
+    return compare_methods(column, time, ground_acceleration=motion, setting=own, budget=budget)
 
 
-def chain(budget: float) -> Trade:
-    """Return the trade of the stiff chain of three bodies of the example."""
+def chain(budget: float) -> MethodStudy:
+    """Return the study of the stiff chain of three bodies of the example."""
     case = rbsdem.read_case(MOTION.with_name("case.nml"))
-    return trade(
+    return compare_methods(
         case.column,
         case.time,
         ground_acceleration=case.ground_acceleration,
@@ -91,7 +91,7 @@ def cell(row: Row | None, given: str) -> str:
     return f"{row.setting.name} {value}{level}, {seconds_text(row.seconds)}"
 
 
-def settings_table(found: dict[str, Trade]) -> None:
+def settings_table(found: dict[str, MethodStudy]) -> None:
     """Print reference and cheapest settings of one scene."""
     print("| column | digits of the reference |", end="")
     print(" | ".join(f" within {tolerance:g}" for tolerance in TOLERANCES), "|")
@@ -103,7 +103,7 @@ def settings_table(found: dict[str, Trade]) -> None:
     print()
 
 
-def physics_table(found: dict[str, Trade]) -> None:
+def physics_table(found: dict[str, MethodStudy]) -> None:
     """Print the effects of the parts of the model: peak, base moment, energy in %."""
     print(f"| change | {' | '.join(name(key) for key in found)} |")
     print("| --- |" + " --- |" * len(found))
@@ -133,7 +133,7 @@ SHOWN = {
 }
 
 
-def same_settings(found: dict[str, Trade]) -> dict[tuple[str, str], list[Row]]:
+def same_settings(found: dict[str, MethodStudy]) -> dict[tuple[str, str], list[Row]]:
     """Return the rows of each setting, one for each column, at the columns' level of kinematics."""
     families: dict[tuple[str, str], list[Row]] = {}
     for one in found.values():
@@ -196,10 +196,10 @@ def span(values: list[float], text: Callable[[float], str]) -> str:
 
 def name(key: str) -> str:
     """Return the name of a specimen."""
-    return rbsdem.paper_sections()[key].specimen if key in rbsdem.paper_columns() else key
+    return rbsdem.peer.paper_sections()[key].specimen if key in rbsdem.peer.paper_columns() else key
 
 
-def picture(found: dict[str, Trade], path: Path) -> None:
+def picture(found: dict[str, MethodStudy], path: Path) -> None:
     """Draw the four columns of one scene."""
     from matplotlib.figure import Figure  # noqa: PLC0415
 
@@ -227,7 +227,7 @@ def main() -> None:
     words = []
     for scene, (title, make) in SCENES.items():
         found = {}
-        for key in rbsdem.paper_columns():
+        for key in rbsdem.peer.paper_columns():
             found[key] = make(key, given.budget)
             print(f"{title}, {name(key)}: {found[key].seconds:.0f} s", file=sys.stderr)
         print(f"### {title}\n")

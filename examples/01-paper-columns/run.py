@@ -95,7 +95,7 @@ def read(key: str, folder: Path | None) -> Drive:
     if path is None and folder is None and not os.environ.get(FOLDER_VARIABLE) and BESIDE.is_dir():
         path = find_history(key, BESIDE)
     if path is not None:
-        test = rbsdem.read_peer(path)
+        test = rbsdem.peer.read_peer(path)
         rows = np.arange(len(test.force))
         source = f"full history, {len(rows)} rows ({path.name})"
         return Drive(key, test.displacement, test.force, rows, True, source)
@@ -192,7 +192,7 @@ def print_histories(console: Console, measured: dict[str, Drive]) -> None:
     """Print which measured rows are used."""
     console.print("[bold]Measured histories[/bold]")
     for key, drive in measured.items():
-        line = f"  {rbsdem.paper_sections()[key].specimen:<20}{drive.source}"
+        line = f"  {rbsdem.peer.paper_sections()[key].specimen:<20}{drive.source}"
         console.print(line, markup=False, soft_wrap=True)
     if not all(drive.full for drive in measured.values()):
         console.print(
@@ -205,7 +205,7 @@ def print_histories(console: Console, measured: dict[str, Drive]) -> None:
 
 def print_table(console: Console, title: str, error: str, notes: str, runs: dict[str, Run]) -> None:
     """Print test, model and ratio for each specimen, and what the columns mean."""
-    sections = rbsdem.paper_sections()
+    sections = rbsdem.peer.paper_sections()
     dynamic = any(run.static_difference is not None for run in runs.values())
     out = Table(box=box.SIMPLE_HEAD, padding=0, show_edge=False)
     out.add_column("\n\nSpecimen")
@@ -254,7 +254,7 @@ def write_csv(path: Path, parts: dict[tuple[str, str], dict[str, Run]]) -> None:
 
 def panel(run: Run) -> plot.Panel:
     """Return the panel of a run: model over test."""
-    section, rows = rbsdem.paper_sections()[run.drive.key], run.drive.rows
+    section, rows = rbsdem.peer.paper_sections()[run.drive.key], run.drive.rows
     return plot.Panel(
         title=section.specimen,
         model=run.curve,
@@ -335,14 +335,14 @@ def main() -> None:
     """Do the main job."""
     given = arguments()
     console = Console(highlight=False)
-    columns = rbsdem.paper_columns()
+    columns = rbsdem.peer.paper_columns()
     measured = {key: read(key, given.peer) for key in columns}
 
     seconds = 0.0
     drawn: dict[str, Run] = {}
     by_drive: dict[str, dict[str, Run]] = {"force": {}, "displacement": {}}
     for key, column in columns.items():
-        drawn[key], taken = from_drawing(measured[key], rbsdem.paper_sections()[key])
+        drawn[key], taken = from_drawing(measured[key], rbsdem.peer.paper_sections()[key])
         seconds += taken
         by_drive["force"][key], taken = by_force(measured[key], column, given.row_time)
         seconds += taken
@@ -400,6 +400,6 @@ if __name__ == "__main__":
     except rbsdem.InputError as error:
         print(f"run.py: {error}", file=sys.stderr)
         sys.exit(2)
-    except (rbsdem.RbsdemError, OSError) as error:
+    except (rbsdem.errors.RbsdemError, OSError) as error:
         print(f"run.py: {error}", file=sys.stderr)
         sys.exit(1)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import rbsdem
 
-column = rbsdem.paper_columns(kinematics="pdelta")["soesianawati_1"]
+column = rbsdem.peer.paper_columns(kinematics="pdelta")["soesianawati_1"]
 drifts = [0.0025, 0.005, 0.01, 0.02, 0.03]
 displacement = column.height * rbsdem.protocol(drifts, cycles=2)
 result = rbsdem.cyclic(column, displacement=displacement)

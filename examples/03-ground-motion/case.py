@@ -7,12 +7,12 @@ import numpy as np
 
 import rbsdem
 
-hinge = rbsdem.paper_columns()["soesianawati_1"].flexure
-elastic = rbsdem.Elastic(3.0e8)
+hinge = rbsdem.peer.paper_columns()["soesianawati_1"].flexure
+elastic = rbsdem.springs.Elastic(3.0e8)
 column = rbsdem.Column(
     height=1.6,
     mass=None,
-    shear=rbsdem.Elastic(2.1e9),
+    shear=rbsdem.springs.Elastic(2.1e9),
     flexure=[hinge, elastic, elastic],
     n=3,
     lengths=[0.35, 0.6, 0.65],

@@ -6,7 +6,7 @@ from pathlib import Path
 import rbsdem
 
 case = rbsdem.read_case(Path(__file__).with_name("case.nml"))
-found = rbsdem.trade(
+found = rbsdem.compare_methods(
     case.column,
     case.time,
     ground_acceleration=case.ground_acceleration,

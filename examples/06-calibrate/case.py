@@ -14,7 +14,7 @@ from rbsdem.peer import find_history, read_peer, shipped_reversals
 
 KEY = "tanaka_park_1"
 
-column = rbsdem.paper_columns("pdelta")[KEY]
+column = rbsdem.peer.paper_columns("pdelta")[KEY]
 history = find_history(KEY)
 test = read_peer(history) if history else shipped_reversals(KEY)
 print(f"{len(test.force)} points of {test.name}\n")

@@ -66,7 +66,7 @@ print(f"{np.median(found.collapse_intensity):.1f} m/s2 for all")
 
 # Stripes: all columns and records at four intensities.
 levels = np.median(found.collapse_intensity) * np.array([0.4, 0.7, 1.0, 1.4])
-stripes = rbsdem.stripes(sample.columns, records, levels, **settings)
+stripes = rbsdem.fragility.stripes(sample.columns, records, levels, **settings)
 curve = stripes.fragility()
 print(f"stripes: {curve.data.failures.tolist()} of {curve.data.number.tolist()} runs collapse")
 print(f"theta {curve.theta:.1f} m/s2, beta {curve.beta:.2f}")

@@ -3,135 +3,123 @@
 SI units throughout: N, m, kg, s, rad. Axial load is positive in compression.
 """
 
-from rbsdem import _registered as _registered
-from rbsdem import codes, curves, fragility, motions, peer, plot, springs
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from rbsdem._core import version as _version
-from rbsdem.calibration.fit import calibrate
-from rbsdem.calibration.outcome import Calibration
-from rbsdem.checks.limit_states import LimitState, LimitStates
-from rbsdem.curves.envelope import Envelope, envelope
-from rbsdem.curves.idealise import Idealisation
-from rbsdem.curves.scores import Comparison, compare
-from rbsdem.errors import (
-    AccuracyWarning,
-    InputError,
-    Interrupted,
-    LongRunWarning,
-    RbsdemError,
-    RepairWarning,
-    SolveError,
-)
-from rbsdem.many.cloud import cloud
-from rbsdem.many.ensemble import Ensemble, ensemble
-from rbsdem.many.ida import ida
-from rbsdem.many.stripes import stripes
-from rbsdem.measured.file import PeerTest, read_peer
-from rbsdem.measured.laboratory import read_test
-from rbsdem.methods.measure import trade
-from rbsdem.methods.outcome import Trade
-from rbsdem.model.circular import CircularSection
-from rbsdem.model.column import Column
-from rbsdem.model.damping import Damping
-from rbsdem.model.ends import double_curvature
-from rbsdem.model.footing import Footing
-from rbsdem.model.hollow import HollowCircularSection, HollowRectangularSection
-from rbsdem.model.materials import Concrete, Steel
-from rbsdem.model.parameter import Parameter
-from rbsdem.model.rectangular import RectangularSection
-from rbsdem.model.reinforcement import Layout, Spiral, Ties
-from rbsdem.model.springs import (
-    Bilinear,
-    Compression,
-    ConcreteSpring,
-    Elastic,
-    Layered,
-    PeakOriented,
-    Pinching,
-    SteelSpring,
-    Takeda,
-)
-from rbsdem.model.strains import Gauge, Strains
-from rbsdem.motions.motion import GroundMotion
-from rbsdem.results.case import Case, read_case
-from rbsdem.results.result import Result, cyclic, time_history
-from rbsdem.results.saved import read_result
-from rbsdem.section.paper import paper_columns, paper_sections
-from rbsdem.solve.analysis import Matrices, Modes, matrices, modes
-from rbsdem.solve.protocol import protocol
+
+if TYPE_CHECKING:
+    from rbsdem import codes, fragility, peer, plot, springs
+    from rbsdem import curves as curves
+    from rbsdem import errors as errors
+    from rbsdem import motions as motions
+    from rbsdem.calibration.fit import calibrate
+    from rbsdem.curves.scores import compare
+    from rbsdem.errors import InputError, Interrupted, SolveError
+    from rbsdem.many.ensemble import ensemble
+    from rbsdem.many.ida import ida
+    from rbsdem.measured.laboratory import read_test
+    from rbsdem.methods.measure import compare_methods
+    from rbsdem.model.circular import CircularSection
+    from rbsdem.model.column import Column
+    from rbsdem.model.damping import Damping
+    from rbsdem.model.ends import double_curvature
+    from rbsdem.model.footing import Footing
+    from rbsdem.model.hollow import HollowCircularSection, HollowRectangularSection
+    from rbsdem.model.materials import Concrete, Steel
+    from rbsdem.model.rectangular import RectangularSection
+    from rbsdem.model.reinforcement import Layout, Spiral, Ties
+    from rbsdem.motions.motion import GroundMotion
+    from rbsdem.motions.read import read_motions
+    from rbsdem.results.case import read_case
+    from rbsdem.results.result import Result, cyclic, time_history
+    from rbsdem.results.saved import read_result
+    from rbsdem.solve.analysis import matrices, modes
+    from rbsdem.solve.protocol import protocol
 
 __version__ = _version()
 
+#: Where the public names are; each module is imported when it is first asked for.
+_HOMES = {
+    "calibration.fit": ("calibrate",),
+    "curves.scores": ("compare",),
+    "errors": ("InputError", "Interrupted", "SolveError"),
+    "many.ensemble": ("ensemble",),
+    "many.ida": ("ida",),
+    "measured.laboratory": ("read_test",),
+    "methods.measure": ("compare_methods",),
+    "model.circular": ("CircularSection",),
+    "model.column": ("Column",),
+    "model.damping": ("Damping",),
+    "model.ends": ("double_curvature",),
+    "model.footing": ("Footing",),
+    "model.hollow": ("HollowCircularSection", "HollowRectangularSection"),
+    "model.materials": ("Concrete", "Steel"),
+    "model.rectangular": ("RectangularSection",),
+    "model.reinforcement": ("Layout", "Spiral", "Ties"),
+    "motions.motion": ("GroundMotion",),
+    "motions.read": ("read_motions",),
+    "results.case": ("read_case",),
+    "results.result": ("Result", "cyclic", "time_history"),
+    "results.saved": ("read_result",),
+    "solve.analysis": ("matrices", "modes"),
+    "solve.protocol": ("protocol",),
+}
+_MODULE_OF = {name: home for home, names in _HOMES.items() for name in names}
+#: Public modules; curves, errors and motions hold what the names above return, raise or read.
+_MODULES = ("codes", "curves", "errors", "fragility", "motions", "peer", "plot", "springs")
+
 __all__ = [
-    "AccuracyWarning",
-    "Bilinear",
-    "Calibration",
-    "Case",
     "CircularSection",
     "Column",
-    "Comparison",
-    "Compression",
     "Concrete",
-    "ConcreteSpring",
     "Damping",
-    "Elastic",
-    "Ensemble",
-    "Envelope",
     "Footing",
-    "Gauge",
     "GroundMotion",
     "HollowCircularSection",
     "HollowRectangularSection",
-    "Idealisation",
     "InputError",
     "Interrupted",
-    "Layered",
     "Layout",
-    "LimitState",
-    "LimitStates",
-    "LongRunWarning",
-    "Matrices",
-    "Modes",
-    "Parameter",
-    "PeakOriented",
-    "PeerTest",
-    "Pinching",
-    "RbsdemError",
     "RectangularSection",
-    "RepairWarning",
     "Result",
     "SolveError",
     "Spiral",
     "Steel",
-    "SteelSpring",
-    "Strains",
-    "Takeda",
     "Ties",
-    "Trade",
     "calibrate",
-    "cloud",
     "codes",
     "compare",
-    "curves",
+    "compare_methods",
     "cyclic",
     "double_curvature",
     "ensemble",
-    "envelope",
     "fragility",
     "ida",
     "matrices",
     "modes",
-    "motions",
-    "paper_columns",
-    "paper_sections",
     "peer",
     "plot",
     "protocol",
     "read_case",
-    "read_peer",
+    "read_motions",
     "read_result",
     "read_test",
     "springs",
-    "stripes",
     "time_history",
-    "trade",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first asked for."""
+    if name in _MODULES:
+        return import_module(f"rbsdem.{name}")
+    if name not in _MODULE_OF:
+        raise AttributeError(f"module 'rbsdem' has no attribute {name!r}")
+    found = getattr(import_module(f"rbsdem.{_MODULE_OF[name]}"), name)
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__", "curves", "errors", "motions"]

@@ -9,6 +9,7 @@ record imports its views, which registers them.
 from __future__ import annotations
 
 from collections.abc import Callable
+from importlib import import_module
 from typing import Any, TypeVar
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -36,6 +37,7 @@ def view_of(kind: type, name: str) -> Callable[[Function], Function]:
 
 def view(record: object, name: str, *arguments: Any, **options: Any) -> Any:
     """Call the view of a record with the record and the arguments, and return its result."""
+    import_module("rbsdem._registered")
     for kind in type(record).__mro__:
         if (kind, name) in _FUNCTIONS:
             return _FUNCTIONS[kind, name](record, *arguments, **options)

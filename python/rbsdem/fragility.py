@@ -1,12 +1,13 @@
 """Incremental dynamic analysis, stripes, clouds, fragility, hazard, uncertain columns."""
 
-from rbsdem.many.cloud import Cloud, CloudFragility
+from rbsdem.many.cloud import Cloud, CloudFragility, cloud
+from rbsdem.many.ensemble import Ensemble
 from rbsdem.many.fragility import Capacities, Counts, Fragility, fit_fragility
 from rbsdem.many.hazard import Hazard
 from rbsdem.many.hunt import Hunt
 from rbsdem.many.ida import IDA
 from rbsdem.many.measures import LIMIT_STATES, MEASURES, STATUSES
-from rbsdem.many.stripes import Stripes
+from rbsdem.many.stripes import Stripes, stripes
 from rbsdem.many.uncertain import Sample, Uncertain, VarianceSplit, lognormal, variance_split
 
 __all__ = [
@@ -18,6 +19,7 @@ __all__ = [
     "Cloud",
     "CloudFragility",
     "Counts",
+    "Ensemble",
     "Fragility",
     "Hazard",
     "Hunt",
@@ -25,7 +27,9 @@ __all__ = [
     "Stripes",
     "Uncertain",
     "VarianceSplit",
+    "cloud",
     "fit_fragility",
     "lognormal",
+    "stripes",
     "variance_split",
 ]

@@ -26,6 +26,7 @@ from rbsdem.measured.shipped import (
 )
 from rbsdem.measured.specimen import Observed, Specimen
 from rbsdem.measured.specimens import Specimens, read_specimens
+from rbsdem.section.paper import paper_columns, paper_sections
 from rbsdem.section.remote import likeness
 
 __all__ = [
@@ -56,6 +57,8 @@ __all__ = [
     "measured_loops",
     "nearest",
     "net_force",
+    "paper_columns",
+    "paper_sections",
     "predict",
     "predict_one",
     "read_peer",

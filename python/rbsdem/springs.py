@@ -1,5 +1,6 @@
 """Springs of the joints: one class for each rule."""
 
+from rbsdem.model.parameter import Parameter
 from rbsdem.model.springs import (
     SPRINGS,
     Bilinear,
@@ -14,6 +15,7 @@ from rbsdem.model.springs import (
     SteelSpring,
     Takeda,
 )
+from rbsdem.model.strains import Gauge, Strains
 
 __all__ = [
     "SPRINGS",
@@ -21,11 +23,14 @@ __all__ = [
     "Compression",
     "ConcreteSpring",
     "Elastic",
+    "Gauge",
     "Landmark",
     "Layered",
+    "Parameter",
     "PeakOriented",
     "Pinching",
     "Spring",
     "SteelSpring",
+    "Strains",
     "Takeda",
 ]

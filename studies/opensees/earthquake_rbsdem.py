@@ -3,6 +3,7 @@
 import numpy as np
 
 import rbsdem
+from rbsdem.springs import Bilinear, Elastic
 
 HEIGHT, TOP_MASS = 3.0, 5e4  # m, kg
 STIFFNESS, YIELD_MOMENT, HARDENING = 5e7, 2e5, 0.02  # N m/rad, N m
@@ -15,8 +16,8 @@ def solve(motion: rbsdem.GroundMotion) -> dict[str, float | np.ndarray]:
     column = rbsdem.Column(
         HEIGHT,
         1e-3,
-        rbsdem.Elastic(1e12),
-        rbsdem.Bilinear(STIFFNESS, YIELD_MOMENT / STIFFNESS, HARDENING * STIFFNESS),
+        Elastic(1e12),
+        Bilinear(STIFFNESS, YIELD_MOMENT / STIFFNESS, HARDENING * STIFFNESS),
         top_mass=TOP_MASS,
         axial_load=TOP_MASS * 9.81,
         kinematics="pdelta",

@@ -3,6 +3,7 @@
 import numpy as np
 
 import rbsdem
+from rbsdem.springs import Elastic
 
 HEIGHT, WIDTH, DEPTH = 3.2, 0.4, 0.4  # m
 E, G, DENSITY, TOP_MASS = 30e9, 12.5e9, 2500.0, 20e3  # Pa, kg/m3, kg
@@ -15,8 +16,8 @@ def solve() -> dict[str, float]:
     # A joint has the flexibility of half a body on both sides; the one at the ground has one side.
     part = np.full(BODIES, HEIGHT / BODIES)
     part[0] /= 2
-    shear = [rbsdem.Elastic(k) for k in 5 / 6 * G * area / part]
-    flexure = [rbsdem.Elastic(k) for k in E * inertia / part]
+    shear = [Elastic(k) for k in 5 / 6 * G * area / part]
+    flexure = [Elastic(k) for k in E * inertia / part]
     mass = DENSITY * area * HEIGHT
     column = rbsdem.Column(
         HEIGHT, mass, shear, flexure, n=BODIES, depth=DEPTH, top_mass=TOP_MASS, gravity=0.0

@@ -35,6 +35,7 @@ from rows import ROOT, Row, newest, show
 import rbsdem
 from rbsdem import _core, peer
 from rbsdem.__main__ import executable as installed_executable
+from rbsdem.springs import Takeda
 
 try:
     import resource
@@ -98,15 +99,13 @@ def growing_cycles(points: int) -> np.ndarray:
 
 def through_python(repeats: int) -> list[Row]:
     """Time analyses through the Python package."""
-    column = rbsdem.paper_columns()["soesianawati_1"]
+    column = rbsdem.peer.paper_columns()["soesianawati_1"]
     path = growing_cycles(20_000)
     static = seconds(lambda: rbsdem.cyclic(column, displacement=path), 3 * repeats)
     rotation = path / column.height
-    spring = rbsdem.Takeda(
-        k_c=2.5428e8, d_c=3.1891e-4, k_y=6.2937e7, d_y=2.7183e-3, k_u=7.5772e6, b1=0.22
-    )
+    spring = Takeda(k_c=2.5428e8, d_c=3.1891e-4, k_y=6.2937e7, d_y=2.7183e-3, k_u=7.5772e6, b1=0.22)
     response = seconds(lambda: spring.response(rotation), 3 * repeats)
-    paper = rbsdem.paper_sections()["tanaka_park_5"]
+    paper = rbsdem.peer.paper_sections()["tanaka_park_5"]
     section, load = paper.section, paper.axial_load
     curvature = np.linspace(0.0, 0.1, 100)
     moments = seconds(lambda: section.moment_curvature(load, curvature), 3 * repeats)
@@ -136,7 +135,7 @@ def predicted_column(repeats: int) -> list[Row]:
 
     Processor time of this process: wall time on a machine that does nothing else.
     """
-    paper = rbsdem.paper_sections()["soesianawati_1"]
+    paper = rbsdem.peer.paper_sections()["soesianawati_1"]
 
     def make() -> rbsdem.Column:
         return paper.section.column(paper.length, axial_load=paper.axial_load)
@@ -171,8 +170,8 @@ def predicted_column(repeats: int) -> list[Row]:
 
 def crossing(repeats: int) -> list[Row]:
     """Time the way of a column, from Python or from its file, to a solver ready to start."""
-    one = rbsdem.paper_columns()["soesianawati_1"]
-    paper = rbsdem.paper_sections()["tanaka_park_5"]
+    one = rbsdem.peer.paper_columns()["soesianawati_1"]
+    paper = rbsdem.peer.paper_sections()["tanaka_park_5"]
     predicted = paper.section.column(paper.length, axial_load=paper.axial_load)
     text = predicted.to_namelist() + "&loading drive = 'displacement', values = 0.001 /\n"
     calls: list[tuple[str, float, Callable[[], Any]]] = [
@@ -231,7 +230,7 @@ def each_prediction(quick: bool) -> list[Row]:
         return rows
     tests = list(peer.read_specimens(folder).with_history())[:: 10 if quick else 1]
     # What is assumed of a test takes no part here.
-    warnings.simplefilter("ignore", rbsdem.AccuracyWarning)
+    warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
     events = points = 0
     for specimen in tests:
         path = specimen.test().displacement
@@ -363,7 +362,7 @@ def four_columns(repeats: int) -> list[Row]:
     except (ImportError, SystemExit) as error:
         row.note = str(error)
         return [row]
-    columns = rbsdem.paper_columns()
+    columns = rbsdem.peer.paper_columns()
     drives = {key: job.read(key, None) for key in columns}
     for repeat in range(repeats + 1):
         total = 0.0

@@ -34,13 +34,13 @@ MANY = 1_000_000
 
 def pier() -> rbsdem.Column:
     """Return the paper's column with the mass that its axial load has."""
-    column = rbsdem.paper_columns()["soesianawati_1"]
+    column = rbsdem.peer.paper_columns()["soesianawati_1"]
     return dataclasses.replace(column, top_mass=744e3 / 9.81, axial_load=744e3, kinematics="pdelta")
 
 
 def predicted() -> rbsdem.Column:
     """Return the layered column that is predicted from its drawing, with its mass."""
-    paper = rbsdem.paper_sections()["soesianawati_1"]
+    paper = rbsdem.peer.paper_sections()["soesianawati_1"]
     column = paper.section.column(paper.length, axial_load=paper.axial_load)
     return dataclasses.replace(column, top_mass=paper.axial_load / 9.81)
 

@@ -15,15 +15,16 @@ import time
 import numpy as np
 
 import rbsdem
+from rbsdem.springs import ConcreteSpring, Elastic, Layered, SteelSpring, Takeda
 
-TAKEDA = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b0=0.4, b1=0.22)
+TAKEDA = Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b0=0.4, b1=0.22)
 DRIFTS = np.linspace(0.005, 0.03, 20)
 
 
-def joint(strips: int) -> rbsdem.Layered:
+def joint(strips: int) -> Layered:
     """Return strips of concrete over 0.4 m between two rows of bars."""
     share = 1 / strips
-    strip = rbsdem.ConcreteSpring(
+    strip = ConcreteSpring(
         k=1.6e10 * share,
         f_peak=4.8e6 * share,
         d_peak=6e-4,
@@ -33,17 +34,15 @@ def joint(strips: int) -> rbsdem.Layered:
         misfit=0.4,
         wear=0.03,
     )
-    bar = rbsdem.SteelSpring(8e8, 7.2e5, 8e6, r0=8, cr1=0.83, cr2=0.42)
+    bar = SteelSpring(8e8, 7.2e5, 8e6, r0=8, cr1=0.83, cr2=0.42)
     ys = 0.4 * ((np.arange(strips) + 0.5) / strips - 0.5)
-    return rbsdem.Layered((*((y, strip) for y in ys), (-0.16, bar), (0.16, bar)))
+    return Layered((*((y, strip) for y in ys), (-0.16, bar), (0.16, bar)))
 
 
 def cost(spring: rbsdem.Spring, repeats: int) -> tuple[float, int]:
     """Return the seconds of one run and its events."""
-    load = 700e3 if isinstance(spring, rbsdem.Layered) else 0.0
-    column = rbsdem.Column(
-        1.6, 614.4, rbsdem.Elastic(1e9), spring, kinematics="pdelta", axial_load=load
-    )
+    load = 700e3 if isinstance(spring, Layered) else 0.0
+    column = rbsdem.Column(1.6, 614.4, Elastic(1e9), spring, kinematics="pdelta", axial_load=load)
     path = rbsdem.protocol(DRIFTS * 1.6, cycles=2, points=1)
     events = rbsdem.cyclic(column, displacement=path).summary["events"]
     times = []
@@ -57,7 +56,7 @@ def cost(spring: rbsdem.Spring, repeats: int) -> tuple[float, int]:
 def main() -> None:
     """Print the table."""
     repeats = 20 if "--quick" in sys.argv[1:] else 200
-    bare, _ = cost(rbsdem.Elastic(1e8), repeats)
+    bare, _ = cost(Elastic(1e8), repeats)
     base, events = cost(TAKEDA, repeats)
     base = (base - bare) / events
     print(f"{'spring':<22}{'events':>8}{'per event':>12}{'over Takeda':>13}")

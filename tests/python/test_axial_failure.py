@@ -12,15 +12,14 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import Bilinear, Elastic, Layered
-from rbsdem.springs import Spring
+from rbsdem.springs import Bilinear, ConcreteSpring, Elastic, Layered, Spring
 
 PLACES = (-3, -1, 1, 3)
 
 
-def crushing(softening: float) -> rbsdem.ConcreteSpring:
+def crushing(softening: float) -> ConcreteSpring:
     """Return a layer whose curve to the peak is straight but for the last digits."""
-    return rbsdem.ConcreteSpring(
+    return ConcreteSpring(
         k=100 * (1 + 1e-9),
         f_peak=4.0,
         d_peak=0.04,

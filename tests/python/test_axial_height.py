@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import Bilinear, Column, Compression, Elastic, InputError, Layered
+from rbsdem import Column, InputError
+from rbsdem.springs import Bilinear, Compression, Elastic, Layered
 
 HEIGHT, LOAD = 2.0, 2e5
 

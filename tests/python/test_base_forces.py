@@ -12,6 +12,7 @@ import pytest
 from reference_chain import STEP, Chain
 
 import rbsdem
+from rbsdem.springs import Bilinear, Elastic, Takeda
 
 N = 3
 LENGTHS, MASSES = np.array([0.9, 0.6, 0.7]), np.array([50.0, 20.0, 30.0])
@@ -32,7 +33,7 @@ DAMPINGS = {
 
 def chain(kinematics: str, damping: rbsdem.Damping | None, **more) -> rbsdem.Column:
     return rbsdem.Column(
-        HEIGHT, None, [rbsdem.Elastic(k) for k in K_V], [rbsdem.Elastic(k) for k in K_M], n=N,
+        HEIGHT, None, [Elastic(k) for k in K_V], [Elastic(k) for k in K_M], n=N,
         lengths=LENGTHS, masses=MASSES, kinematics=kinematics, damping=damping, **more,
     )  # fmt: skip
 
@@ -126,9 +127,9 @@ def test_base_forces_hold_the_bodies_with_exact_rotations(damping):
 
 def test_base_shear_of_a_yielding_column_is_that_of_its_bodies_all_the_way():
     """Accelerations of the bodies are second differences of their recorded positions."""
-    flexure = rbsdem.Takeda(k_c=2.5e8, d_c=3e-4, k_y=6.3e7, d_y=2.7e-3, k_u=7.6e6, b1=0.22)
+    flexure = Takeda(k_c=2.5e8, d_c=3e-4, k_y=6.3e7, d_y=2.7e-3, k_u=7.6e6, b1=0.22)
     column = rbsdem.Column(
-        1.6, 614.4, rbsdem.Elastic(7e8), [flexure, flexure.split(2)], n=2, axial_load=744e3,
+        1.6, 614.4, Elastic(7e8), [flexure, flexure.split(2)], n=2, axial_load=744e3,
         kinematics="pdelta", top_mass=75e3, damping=rbsdem.Damping(mass=0.5, stiffness=1e-4),
     )  # fmt: skip
     time = np.arange(0.0, 2.0, 0.01)
@@ -155,9 +156,9 @@ def test_base_shear_of_a_yielding_column_is_that_of_its_bodies_all_the_way():
 @pytest.mark.parametrize("kinematics", ["small", "pdelta", "finite"])
 def test_static_base_forces_are_those_of_the_lateral_force_and_the_leaning_load(kinematics):
     load = 744e3 if kinematics != "small" else 0.0
-    spring = rbsdem.Bilinear(2.5e8, 2e-3, 7e6)
+    spring = Bilinear(2.5e8, 2e-3, 7e6)
     column = rbsdem.Column(
-        1.6, 614.4, rbsdem.Elastic(7e8), spring, n=2, axial_load=load, kinematics=kinematics,
+        1.6, 614.4, Elastic(7e8), spring, n=2, axial_load=load, kinematics=kinematics,
         damping=0.05,
     )  # fmt: skip
     path = 1.6 * rbsdem.protocol([0.005, 0.02], cycles=1)

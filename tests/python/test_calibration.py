@@ -13,19 +13,20 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import AccuracyWarning, Bilinear, Column, Elastic, InputError, SolveError, Takeda
+from rbsdem import Column, InputError, SolveError
 from rbsdem.calibration import Parameter, free_names, misfit, paths, undetermined
 from rbsdem.calibration.determined import determine
 from rbsdem.calibration.misfit import POINTS, Misfit, Target
 from rbsdem.calibration.search import COARSE, Search
 from rbsdem.curves.cycles import half_cycle_numbers
+from rbsdem.errors import AccuracyWarning
 from rbsdem.peer import find_history, read_peer
-from rbsdem.springs import ConcreteSpring, Layered, Pinching, SteelSpring
+from rbsdem.springs import Bilinear, ConcreteSpring, Elastic, Layered, Pinching, SteelSpring, Takeda
 
 mpl.use("Agg")
 
 PEER = os.environ.get("RBSDEM_PEER_DIR") or Path(__file__).resolve().parents[3] / "shared" / "peer"
-COLUMNS = rbsdem.paper_columns("pdelta")
+COLUMNS = rbsdem.peer.paper_columns("pdelta")
 KEYS = list(COLUMNS)
 TAKEDA = ("k_c", "k_y", "d_y", "k_u", "b0")
 FREE = [f"flexure.{name}" for name in TAKEDA]
@@ -48,7 +49,7 @@ def noisy(column: Column, displacement: np.ndarray, share: float, seed: int = 1)
     return d, f + share * np.max(np.abs(f)) * noise
 
 
-def quiet(*args, **options) -> rbsdem.Calibration:
+def quiet(*args, **options) -> rbsdem.calibration.Calibration:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
         return rbsdem.calibrate(*args, **options)
@@ -598,7 +599,7 @@ def test_zero_start_with_bounds():
 
 
 @pytest.fixture(scope="module")
-def fit() -> rbsdem.Calibration:
+def fit() -> rbsdem.calibration.Calibration:
     start = COLUMNS["zahn_7"]
     other = replace(start, flexure=replace(start.flexure, k_y=4e7, d_y=4e-3))
     return quiet(start, noisy(other, path(start), 0.05), ["flexure.k_y", "flexure.d_y"])

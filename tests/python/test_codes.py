@@ -22,6 +22,7 @@ from rbsdem.checks import asce_41, ec_8, flexure, regressions
 from rbsdem.checks.drifts import backbones, drift_at_loss, yield_drift
 from rbsdem.codes import quantities
 from rbsdem.section.interaction import nominal_moment
+from rbsdem.springs import Bilinear, Elastic
 
 STEEL = rbsdem.Steel(460e6, 575e6, es=200e9)
 BAR = 0.25 * math.pi * 0.025**2
@@ -288,8 +289,8 @@ def test_backbones_have_their_corners():
 
 def test_a_response_beside_the_codes():
     """The model is a bilinear column, whose quantities are known in closed form."""
-    flexure = rbsdem.Bilinear(k=1e8, d_y=0.006, k_post=1e4)
-    column = rbsdem.Column(1.5, 100.0, rbsdem.Elastic(1e14), flexure)
+    flexure = Bilinear(k=1e8, d_y=0.006, k_post=1e4)
+    column = rbsdem.Column(1.5, 100.0, Elastic(1e14), flexure)
     result = rbsdem.cyclic(column, displacement=1.5 * rbsdem.protocol([0.003, 0.02, 0.04]))
     drift = np.linspace(0.0, 0.08, 9)
     test = 1.5 * drift, 3e5 * np.array([0.0, 0.8, 0.9, 1.0, 1.0, 0.9, 0.7, 0.6, 0.5])

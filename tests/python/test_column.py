@@ -14,22 +14,23 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 import rbsdem
+from rbsdem.springs import Bilinear, Compression, Elastic, Takeda
 
 # The same column is made at every level of kinematics, and masses without weight are tried.
 pytestmark = pytest.mark.filterwarnings(
     "ignore:column. (axial_load|self_weight|top_mass|height|shear has) "
 )
 
-ELASTIC = rbsdem.Elastic(1.0e6)
-BILINEAR = rbsdem.Bilinear(7.0387e8, 1.2960e-4, 8.3185e6)
-TAKEDA = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
+ELASTIC = Elastic(1.0e6)
+BILINEAR = Bilinear(7.0387e8, 1.2960e-4, 8.3185e6)
+TAKEDA = Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
 
 # The warning that frequencies hang on the last digits of the load is right, and not the matter.
-NEAR_CRITICAL = pytest.mark.filterwarnings("ignore::rbsdem.AccuracyWarning")
+NEAR_CRITICAL = pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
 
 
-def elastic(values) -> list[rbsdem.Elastic]:
-    return [rbsdem.Elastic(k) for k in values]
+def elastic(values) -> list[Elastic]:
+    return [Elastic(k) for k in values]
 
 
 def random_column(rng: np.random.Generator, n: int, **options) -> rbsdem.Column:
@@ -175,7 +176,7 @@ def test_modes_are_orthonormal_and_satisfy_the_eigenproblem(n):
 
 def test_modes_of_a_bilinear_and_takeda_column_are_those_of_the_initial_stiffness():
     nonlinear = rbsdem.Column(1.6, 614.4, BILINEAR, TAKEDA, n=3)
-    linear = rbsdem.Column(1.6, 614.4, rbsdem.Elastic(7.0387e8), rbsdem.Elastic(2.5428e8), n=3)
+    linear = rbsdem.Column(1.6, 614.4, Elastic(7.0387e8), Elastic(2.5428e8), n=3)
     assert np.array_equal(rbsdem.modes(nonlinear).omega, rbsdem.modes(linear).omega)
 
 
@@ -337,8 +338,8 @@ def test_stable_step_is_safe_for_springs_that_yield(n, ratio):
     yielding = rbsdem.Column(
         linear.height,
         None,
-        [rbsdem.Bilinear(spring.k, 1e-3, 1e-3 * spring.k) for spring in linear.joints("shear")],
-        [rbsdem.Bilinear(spring.k, 1e-3, 1e-3 * spring.k) for spring in linear.joints("flexure")],
+        [Bilinear(spring.k, 1e-3, 1e-3 * spring.k) for spring in linear.joints("shear")],
+        [Bilinear(spring.k, 1e-3, 1e-3 * spring.k) for spring in linear.joints("flexure")],
         n=n,
         lengths=linear.lengths,
         masses=linear.masses,
@@ -382,7 +383,7 @@ def test_tension_raises_and_compression_lowers_the_frequencies():
 
     def omega(n, k_v, load, kinematics="pdelta"):
         column = rbsdem.Column(
-            2.0, 800.0, rbsdem.Elastic(k_v), rbsdem.Elastic(3e6), n=n, axial_load=load,
+            2.0, 800.0, Elastic(k_v), Elastic(3e6), n=n, axial_load=load,
             kinematics=kinematics,
         )  # fmt: skip
         return rbsdem.modes(column).omega
@@ -412,7 +413,7 @@ def test_critical_load_of_one_body_is_k_m_over_l(kinematics):
 
     def column(load):
         return rbsdem.Column(
-            length, 614.4, rbsdem.Elastic(7.0387e8), rbsdem.Elastic(k_m), axial_load=load,
+            length, 614.4, Elastic(7.0387e8), Elastic(k_m), axial_load=load,
             kinematics=kinematics,
         )  # fmt: skip
 
@@ -438,7 +439,7 @@ def test_critical_load_of_two_bodies():
 
     def column(load):
         return rbsdem.Column(
-            2 * length, 500.0, rbsdem.Elastic(1e16), rbsdem.Elastic(k), n=2, axial_load=load,
+            2 * length, 500.0, Elastic(1e16), Elastic(k), n=2, axial_load=load,
             kinematics="pdelta",
         )  # fmt: skip
 
@@ -463,7 +464,7 @@ def test_shear_flexibility_lowers_the_critical_load_of_two_bodies():
 
     def column(load):
         return rbsdem.Column(
-            2 * length, 500.0, rbsdem.Elastic(k_v), rbsdem.Elastic(k_m), n=2, axial_load=load,
+            2 * length, 500.0, Elastic(k_v), Elastic(k_m), n=2, axial_load=load,
             kinematics="pdelta",
         )  # fmt: skip
 
@@ -493,7 +494,7 @@ def test_two_bodies_buckle_in_tension_at_a_slider():
 
     def column(load):
         return rbsdem.Column(
-            2 * length, 500.0, rbsdem.Elastic(k_v), rbsdem.Elastic(k_m), n=2, axial_load=load,
+            2 * length, 500.0, Elastic(k_v), Elastic(k_m), n=2, axial_load=load,
             kinematics="pdelta",
         )  # fmt: skip
 
@@ -508,7 +509,7 @@ def test_two_bodies_buckle_in_tension_at_a_slider():
 @pytest.mark.parametrize("kinematics", ["pdelta", "finite"])
 def test_weight_of_one_body_is_half_of_it_at_the_top(kinematics):
     mass, gravity, load = 5.0e4, 9.81, 1.0e5
-    springs = rbsdem.Elastic(4e6), rbsdem.Elastic(3e6)
+    springs = Elastic(4e6), Elastic(3e6)
     heavy = rbsdem.Column(
         2.0, mass, *springs, axial_load=load, kinematics=kinematics, self_weight=True,
         gravity=gravity,
@@ -523,7 +524,7 @@ def test_weight_of_one_body_in_the_static_path():
     """k_M phi = F l + m g (l/2) phi."""
     mass, gravity, length, k_v, k_m = 5.0e4, 9.81, 2.0, 4e6, 3e6
     column = rbsdem.Column(
-        length, mass, rbsdem.Elastic(k_v), rbsdem.Elastic(k_m), kinematics="pdelta",
+        length, mass, Elastic(k_v), Elastic(k_m), kinematics="pdelta",
         self_weight=True, gravity=gravity,
     )  # fmt: skip
     force = 1.0e4
@@ -545,8 +546,8 @@ def test_weight_of_three_bodies_is_the_second_order_potential():
 
 
 def test_weight_does_nothing_without_second_order_work():
-    springs = rbsdem.Elastic(4e6), rbsdem.Elastic(3e6)
-    with pytest.warns(rbsdem.AccuracyWarning, match="self_weight does nothing .*'pdelta'"):
+    springs = Elastic(4e6), Elastic(3e6)
+    with pytest.warns(rbsdem.errors.AccuracyWarning, match="self_weight does nothing .*'pdelta'"):
         heavy = rbsdem.Column(2.0, 5e4, *springs, self_weight=True)
     light = rbsdem.Column(2.0, 5e4, *springs)
     assert np.array_equal(rbsdem.modes(heavy).omega, rbsdem.modes(light).omega)
@@ -615,7 +616,7 @@ BAD = [
     ({"axial_spring": []}, ["axial_spring", "empty"]),
     ({"axial_spring": TAKEDA}, ["axial spring", "'takeda'"]),
     ({"axial_spring": [ELASTIC] * 2, "n": 3}, ["axial_spring has 2 springs for n = 3 joints"]),
-    ({"shear": rbsdem.Compression(1e9)}, ["shear spring", "'compression'"]),
+    ({"shear": Compression(1e9)}, ["shear spring", "'compression'"]),
     ({"damping": "5 %"}, ["damping", "5 %"]),
     ({"damping": [0.1]}, ["damping", "[0.1]"]),
     ({"damping": 5.0}, ["damping: modal = 5", "below 1"]),
@@ -663,7 +664,7 @@ def test_what_is_no_column_is_refused(analysis):
 def test_extreme_but_valid_columns():
     """From a needle to a tower: eq 6 holds, nothing overflows."""
     for length, mass, k in [(1e-6, 1e-9, 1e-3), (1e4, 1e12, 1e15), (1.0, 1e-12, 1e12)]:
-        column = rbsdem.Column(length, mass, rbsdem.Elastic(k), rbsdem.Elastic(k * length**2))
+        column = rbsdem.Column(length, mass, Elastic(k), Elastic(k * length**2))
         root = np.sqrt(1 + 1 / 3 + 1 / 9)
         scale = 6 * k / mass
         expected = scale * np.array([(1 / 3) / (4 / 3 + root), 4 / 3 + root])
@@ -717,7 +718,7 @@ def test_mass_matrix_with_lumped_mass_depth_and_rotary_inertia(n):
 
 def test_cantilever_with_a_heavy_top_is_the_oscillator_of_one_mass():
     """A bridge pier: omega^2 = k/M with k of shear and bending in series."""
-    column = rbsdem.Column(6.0, 1.0, rbsdem.Elastic(4e8), rbsdem.Elastic(3e8), top_mass=5e5)
+    column = rbsdem.Column(6.0, 1.0, Elastic(4e8), Elastic(3e8), top_mass=5e5)
     stiffness_ = 1 / (1 / 4e8 + 36.0 / 3e8)
     assert rbsdem.modes(column).omega[0] ** 2 == pytest.approx(stiffness_ / 5e5, rel=1e-5)
 

@@ -22,9 +22,10 @@ import numpy as np
 import pytest
 
 import rbsdem
+from rbsdem.springs import Bilinear, Elastic, Takeda
 
-BILINEAR = rbsdem.Bilinear(7.0387e8, 1.296e-4, 8.3185e6)
-TAKEDA = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
+BILINEAR = Bilinear(7.0387e8, 1.296e-4, 8.3185e6)
+TAKEDA = Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
 COLUMN = rbsdem.Column(1.6, 614.4, BILINEAR, TAKEDA)
 
 # Silence of a run before its progress is shown, and from line to line, with some to spare [s].
@@ -1330,7 +1331,7 @@ def test_force_and_ground_motion_together_are_their_sum_on_a_linear_column(
         assert np.array_equal(parts["both"][column], parts["turned"][column])
         if column != "force_N":
             assert np.max(np.abs(parts["b"][column])) > 0.01 * scale
-    column = rbsdem.Column(1.6, 614.4, rbsdem.Elastic(7e8), rbsdem.Elastic(7e8))
+    column = rbsdem.Column(1.6, 614.4, Elastic(7e8), Elastic(7e8))
     run = rbsdem.time_history(
         column,
         times,
@@ -1592,7 +1593,7 @@ def test_masses_and_lengths_of_each_body(run_cli, case_text, tmp_path):
     )  # fmt: skip
     write(tmp_path, text)
     lines = run_cli(["modes", "case.nml"], tmp_path).stdout.splitlines()[1:-1]
-    spring = rbsdem.Elastic(7e8)
+    spring = Elastic(7e8)
     column = rbsdem.Column(2, None, spring, spring, n=2, lengths=[0.5, 1.5], masses=[100, 30])
     assert [float(line.split(",")[1]) for line in lines] == rbsdem.modes(column).frequency.tolist()
 

@@ -16,13 +16,14 @@ from rbsdem.curves import cycles
 from rbsdem.curves.scores import SCORES
 from rbsdem.curves.strength import strength_loss
 from rbsdem.errors import InputError
+from rbsdem.springs import Bilinear, Takeda
 
 DEFINITIONS = REPOSITORY.parent / "shared" / "loop_metrics.py"
 
 THEIRS = {"stiffness_ratio": "k70_ratio", "path_fraction": "done", "nrmse_reached": "nrmse_done"}
 
-SHEAR = rbsdem.Bilinear(7e8, 1.3e-4, 8e6)
-FLEXURE = rbsdem.Takeda(2.5e8, 3.2e-4, 6.3e7, 2.7e-3, 7.6e6, b1=0.3)
+SHEAR = Bilinear(7e8, 1.3e-4, 8e6)
+FLEXURE = Takeda(2.5e8, 3.2e-4, 6.3e7, 2.7e-3, 7.6e6, b1=0.3)
 
 
 def wave(turns: float, amplitude: float, rows: int = 400) -> np.ndarray:

@@ -15,9 +15,10 @@ import numpy as np
 import pytest
 
 import rbsdem
+from rbsdem.springs import Bilinear, Compression, Elastic, PeakOriented, Pinching, Takeda
 
-BILINEAR = rbsdem.Bilinear(7.0387e8, 1.296e-4, 8.3185e6)
-TAKEDA = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
+BILINEAR = Bilinear(7.0387e8, 1.296e-4, 8.3185e6)
+TAKEDA = Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
 
 ELASTIC = "rule = 'elastic', k = 2e8"
 CAPPED = "rule = 'peak_oriented', d_y = 4e-3, f_y = 2e5, d_cap = 2e-2, f_cap = 2.2e5, d_pc = 0.1"
@@ -53,7 +54,7 @@ CASES = {
             "column": "n = 2, height = 2, mass = 100",
             "shear": [ELASTIC + ", joint = 2", "rule = 'elastic', k = 1e8"],
         },
-        {"n": 2, "shear": (rbsdem.Elastic(1e8), rbsdem.Elastic(2e8)), "flexure": TAKEDA},
+        {"n": 2, "shear": (Elastic(1e8), Elastic(2e8)), "flexure": TAKEDA},
         {},
     ),
     "capped springs": (
@@ -63,9 +64,9 @@ CASES = {
             "flexure": [CAPPED + SOFT + ", joint = 1", ELASTIC],
         },
         {
-            "shear": rbsdem.Pinching(4e-3, 2e5, 2e-2, 2.2e5, 0.1, kappa_f=0.4, kappa_d=0.5),
+            "shear": Pinching(4e-3, 2e5, 2e-2, 2.2e5, 0.1, kappa_f=0.4, kappa_d=0.5),
             "flexure": (
-                rbsdem.PeakOriented(
+                PeakOriented(
                     4e-3,
                     2e5,
                     2e-2,
@@ -91,7 +92,7 @@ CASES = {
                     3e-4,
                     5e4,
                 ),
-                rbsdem.Elastic(2e8),
+                Elastic(2e8),
             ),
         },
         {},
@@ -201,7 +202,7 @@ CASES = {
             "loading": [GROUND, VERTICAL, AXIAL, FORCE],
             "analysis": "method = 'rk45', duration = 0.3",
         },
-        {"axial_spring": rbsdem.Compression(1e9)},
+        {"axial_spring": Compression(1e9)},
         {},
     ),
     "loads that follow": (
@@ -223,7 +224,7 @@ CASES = {
             "loading": VERTICAL,
             "analysis": "method = 'rk4'",
         },
-        {"axial_spring": (rbsdem.Bilinear(1e9, 1e-3, 1e8), rbsdem.Elastic(2e9))},
+        {"axial_spring": (Bilinear(1e9, 1e-3, 1e8), Elastic(2e9))},
         {},
     ),
     "openings and small rotations": (
@@ -233,7 +234,7 @@ CASES = {
             "loading": AXIAL,
             "analysis": "method = 'newmark'",
         },
-        {"axial_spring": rbsdem.Elastic(2e9), "kinematics": "small"},
+        {"axial_spring": Elastic(2e9), "kinematics": "small"},
         {},
     ),
 }
@@ -437,7 +438,7 @@ def test_result_without_openings_has_zeros_and_no_axial_forces():
 
 def test_top_of_the_column_by_the_level_of_kinematics():
     """Free vibration from a turn of one body: height l, l (1 - th^2/2), l cos(th)."""
-    spring = rbsdem.Elastic(1e6), rbsdem.Elastic(1e4)
+    spring = Elastic(1e6), Elastic(1e4)
     initial = {"rotation": [0.09], "slip": [0.02]}
     heights = {"small": 2.0, "pdelta": 2 * (1 - 0.09**2 / 2), "finite": 2 * np.cos(0.09)}
     for kinematics, height in heights.items():
@@ -449,14 +450,14 @@ def test_top_of_the_column_by_the_level_of_kinematics():
 
 
 def test_openings_begin_in_equilibrium_or_where_they_are_put():
-    spring = rbsdem.Elastic(1e8)
+    spring = Elastic(1e8)
     column = rbsdem.Column(
         2.0,
         1e3,
         spring,
         spring,
         n=2,
-        axial_spring=rbsdem.Elastic(1e8),
+        axial_spring=Elastic(1e8),
         axial_load=3e4,
         self_weight=True,
     )
@@ -596,7 +597,7 @@ def test_small_rotations_that_grow_large_are_noted(run_cli, case_text, tmp_path,
                 warnings.simplefilter("error")
                 assert case.run().summary["peak_rotation"] < 0.1
             continue
-        with pytest.warns(rbsdem.AccuracyWarning) as caught:
+        with pytest.warns(rbsdem.errors.AccuracyWarning) as caught:
             run = case.run()
         assert len(caught) == 1
         assert result.stdout.splitlines()[-1] == f"note: {caught[0].message}"
@@ -608,10 +609,10 @@ def test_small_rotations_that_grow_large_are_noted(run_cli, case_text, tmp_path,
 
 def test_note_of_large_rotations_is_right_about_the_error():
     """One body turned by 0.3 rad: the top of the exact one is at l sin(0.3)."""
-    spring = rbsdem.Elastic(1e9), rbsdem.Elastic(1e4)
+    spring = Elastic(1e9), Elastic(1e4)
     error = 1 - np.sin(0.3) / 0.3
     column = rbsdem.Column(2.0, 100.0, *spring)
-    with pytest.warns(rbsdem.AccuracyWarning, match=r"about th\^2/6 of it") as caught:
+    with pytest.warns(rbsdem.errors.AccuracyWarning, match=r"about th\^2/6 of it") as caught:
         run = rbsdem.time_history(column, [0.0, 1e-4], initial={"rotation": [0.3]}, method="rk4")
     assert run.summary["peak_rotation"] ** 2 / 6 == pytest.approx(error, rel=0.02)
     # The warning stands at the caller's line, for filters by module.
@@ -619,9 +620,7 @@ def test_note_of_large_rotations_is_right_about_the_error():
 
 
 def test_finite_rotations_need_no_note():
-    column = rbsdem.Column(
-        2.0, 100.0, rbsdem.Elastic(1e9), rbsdem.Elastic(1e4), kinematics="finite"
-    )
+    column = rbsdem.Column(2.0, 100.0, Elastic(1e9), Elastic(1e4), kinematics="finite")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         run = rbsdem.time_history(column, [0.0, 1e-3], initial={"rotation": [0.5]}, method="rk4")
@@ -630,7 +629,7 @@ def test_finite_rotations_need_no_note():
 
 def test_largest_rotation_is_that_of_all_steps():
     """Whichever rows are kept."""
-    column = rbsdem.paper_columns()["zahn_7"]
+    column = rbsdem.peer.paper_columns()["zahn_7"]
     path = [0.0, 0.01, 0.02, 0.01, 0.0, 0.0]
     runs = [rbsdem.cyclic(column, displacement=path, every=every) for every in (1, 5)]
     assert runs[0].summary["peak_rotation"] == np.abs(runs[0].rotation).max()
@@ -682,7 +681,7 @@ def test_summary_says_the_method_and_why(run_cli, case_text, tmp_path):
 
 
 def test_failed_run_has_its_status():
-    spring = rbsdem.Bilinear(1e6, 1e-3, 0.0)
+    spring = Bilinear(1e6, 1e-3, 0.0)
     with pytest.raises(rbsdem.SolveError) as caught:
-        rbsdem.cyclic(rbsdem.Column(1.6, 1.0, spring, rbsdem.Elastic(1e6)), force=[500.0, 2000.0])
+        rbsdem.cyclic(rbsdem.Column(1.6, 1.0, spring, Elastic(1e6)), force=[500.0, 2000.0])
     assert caught.value.result.summary["status"] == "failed"

@@ -22,14 +22,15 @@ from scipy.linalg import expm
 
 import rbsdem
 from rbsdem import _core
+from rbsdem.springs import Bilinear, Elastic, Takeda
 
 # The same column is made at every level of kinematics, and masses without weight are tried.
 pytestmark = pytest.mark.filterwarnings(
     "ignore:column. (axial_load|self_weight|top_mass|height|shear has) "
 )
 
-SHEAR = rbsdem.Bilinear(7.0387e8, 1.2960e-4, 8.3185e6)
-FLEXURE = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
+SHEAR = Bilinear(7.0387e8, 1.2960e-4, 8.3185e6)
+FLEXURE = Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
 HEIGHT, MASS = 1.6, 614.4
 
 # Three bodies, nothing equal to anything; their highest frequency is 12 times the lowest.
@@ -37,8 +38,8 @@ LENGTHS, MASSES = [0.9, 0.6, 0.7], [500.0, 200.0, 300.0]
 K_V, K_M = [4.0e6, 3.0e6, 2.0e6], [9.0e6, 7.0e6, 5.0e6]
 
 
-def elastic(values) -> list[rbsdem.Elastic]:
-    return [rbsdem.Elastic(k) for k in values]
+def elastic(values) -> list[Elastic]:
+    return [Elastic(k) for k in values]
 
 
 def linear_column(n: int, **options) -> rbsdem.Column:
@@ -305,9 +306,7 @@ def test_momentum_above_the_ground_joint(kinematics):
 
 
 def finite_column(k_v=7e3, k_m=2.5e3, **options) -> rbsdem.Column:
-    return rbsdem.Column(
-        HEIGHT, MASS, rbsdem.Elastic(k_v), rbsdem.Elastic(k_m), kinematics="finite", **options
-    )
+    return rbsdem.Column(HEIGHT, MASS, Elastic(k_v), Elastic(k_m), kinematics="finite", **options)
 
 
 def test_e6_finite_free_vibration_conserves_energy_with_order_4_or_more():
@@ -329,9 +328,7 @@ def test_e6_finite_free_vibration_conserves_energy_with_order_4_or_more():
 
 def test_finite_tends_to_small_quadratically():
     def normalised(kinematics, amplitude):
-        column = rbsdem.Column(
-            HEIGHT, MASS, rbsdem.Elastic(7e3), rbsdem.Elastic(2.5e3), kinematics=kinematics
-        )
+        column = rbsdem.Column(HEIGHT, MASS, Elastic(7e3), Elastic(2.5e3), kinematics=kinematics)
         start = {"slip": [0.06 * amplitude], "rotation": [amplitude]}
         run = rbsdem.time_history(
             column, np.linspace(0, 3, 301), dt=0.002, initial=start, method="rk4"
@@ -472,9 +469,7 @@ def bilinear_reference(column, velocity, times):
 
 def test_bilinear_column_converges_to_the_solution_with_located_events():
     """Springs change their line at the end of a step: order 2, not 4; no two steps are alike."""
-    column = rbsdem.Column(
-        2.0, 500.0, rbsdem.Bilinear(4e6, 2e-3, 4e5), rbsdem.Bilinear(9e6, 3e-3, 1e6)
-    )
+    column = rbsdem.Column(2.0, 500.0, Bilinear(4e6, 2e-3, 4e5), Bilinear(9e6, 3e-3, 1e6))
     times = np.linspace(0, 0.4, 21)
     velocity = [0.3, 0.4]
     expected, events = bilinear_reference(column, velocity, times)
@@ -620,7 +615,7 @@ def test_step_just_below_the_limit_stays_bounded_when_springs_yield(ratio):
 
     def column(damping):
         return rbsdem.Column(
-            HEIGHT, MASS, rbsdem.Bilinear(7e8, 1e-4, 7e5), rbsdem.Bilinear(2.5e8, 1e-4, 2.5e5),
+            HEIGHT, MASS, Bilinear(7e8, 1e-4, 7e5), Bilinear(2.5e8, 1e-4, 2.5e5),
             damping=rbsdem.Damping(stiffness=damping),
         )  # fmt: skip
 
@@ -838,7 +833,7 @@ def test_buckled_column_is_refused():
 def test_motion_that_loses_all_bounds_keeps_its_rows():
     """P-Delta beyond the stiffness after yield: the motion grows without end."""
     column = rbsdem.Column(
-        2.0, 500.0, rbsdem.Elastic(4e6), rbsdem.Bilinear(9e6, 3e-3, 1e5), axial_load=1e6,
+        2.0, 500.0, Elastic(4e6), Bilinear(9e6, 3e-3, 1e5), axial_load=1e6,
         kinematics="pdelta",
     )  # fmt: skip
     times = np.linspace(0, 50, 5001)
@@ -849,7 +844,7 @@ def test_motion_that_loses_all_bounds_keeps_its_rows():
     assert np.array_equal(kept.time, times[: len(kept.time)])
     assert np.all(np.isfinite(kept.displacement))
     # Exponential growth at the rate of the yielded column.
-    mass = Exact(rbsdem.Column(2.0, None, [column.shear], [rbsdem.Elastic(1.0)], lengths=[2.0],
+    mass = Exact(rbsdem.Column(2.0, None, [column.shear], [Elastic(1.0)], lengths=[2.0],
                                masses=[500.0])).mass  # fmt: skip
     squares = np.linalg.eigvals(np.linalg.solve(mass, np.diag([4e6, 1e5 - 2e6])))
     growth = np.sqrt(-np.min(squares))
@@ -862,11 +857,11 @@ def test_motion_that_loses_all_bounds_keeps_its_rows():
 
 def test_double_precision_survives_the_door():
     value = 1.0 + 1e-12
-    assert rbsdem.Elastic(1.0).response([value])[0] == value
-    assert rbsdem.Elastic(value).response([1.0])[0] == value
-    column = rbsdem.Column(value, value, rbsdem.Elastic(1.0), rbsdem.Elastic(1.0))
+    assert Elastic(1.0).response([value])[0] == value
+    assert Elastic(value).response([1.0])[0] == value
+    column = rbsdem.Column(value, value, Elastic(1.0), Elastic(1.0))
     assert rbsdem.matrices(column).mass[0, 0] == value
-    with pytest.warns(rbsdem.AccuracyWarning, match="half of the height"):
+    with pytest.warns(rbsdem.errors.AccuracyWarning, match="half of the height"):
         assert rbsdem.cyclic(column, force=[value]).shear[0, 0] == value
     run = rbsdem.time_history(column, [0, 1e-3], initial={"slip": [value]}, method="rk4")
     assert run.slip[0, 0] == value

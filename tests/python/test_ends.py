@@ -11,9 +11,18 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import Compression, Elastic, Footing, Layered, PeakOriented, SteelSpring, Takeda, peer
+from rbsdem import Footing, peer
+from rbsdem.springs import (
+    Bilinear,
+    Compression,
+    Elastic,
+    Layered,
+    PeakOriented,
+    SteelSpring,
+    Takeda,
+)
 
-pytestmark = pytest.mark.filterwarnings("ignore::rbsdem.AccuracyWarning")
+pytestmark = pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
 
 LEVELS = ("small", "pdelta", "finite")
 RIGID = Elastic(1e17)  # slips far below the last digit of a rotation times the height
@@ -369,7 +378,7 @@ def test_ends_have_two_doors(tmp_path: Path):
         top="fixed",
         top_mass=2e4,
         footing=Footing(
-            rbsdem.Bilinear(4e8, 1e-3, 1e6),
+            Bilinear(4e8, 1e-3, 1e6),
             Layered([*layers, *((-y, spring) for y, spring in reversed(layers))]),
             mass=3e3,
             inertia=2e3,

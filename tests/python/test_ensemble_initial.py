@@ -12,12 +12,13 @@ from test_ensembles import column, motion, same_as_alone
 import rbsdem
 from rbsdem import InputError, motions
 from rbsdem.many.hunt import Hunt
+from rbsdem.springs import Elastic
 
 NEWMARK = {"method": "newmark"}
 
 
 def layered() -> rbsdem.Column:
-    section = rbsdem.paper_sections()["zahn_7"].section
+    section = rbsdem.peer.paper_sections()["zahn_7"].section
     return replace(section.column(1.6, axial_load=1.01e6), top_mass=1.01e5, damping=0.02)
 
 
@@ -115,7 +116,7 @@ def test_ida_of_a_damaged_column() -> None:
     """
     records = motions.synthetic(2)
     given = {"levels": Hunt(points=2, resolution=0.2), "method": "newmark", "dt": 0.01}
-    elastic = rbsdem.Column(2.0, 1e3, rbsdem.Elastic(4e5), rbsdem.Elastic(4e9))
+    elastic = rbsdem.Column(2.0, 1e3, Elastic(4e5), Elastic(4e9))
     rest = rbsdem.cyclic(elastic, displacement=[0.0])
     virgin, same = (rbsdem.ida(elastic, records, initial=state, **given) for state in (None, rest))
     np.testing.assert_array_equal(virgin.collapse_intensity, same.collapse_intensity)

@@ -21,6 +21,7 @@ from rbsdem.batch import store
 from rbsdem.many import ensemble
 from rbsdem.many.measures import MEASURES
 from rbsdem.many.plan import Plan
+from rbsdem.springs import Elastic
 
 parquet = pytest.importorskip("pyarrow.parquet", reason="the extra 'ensembles' brings pyarrow")
 
@@ -34,7 +35,7 @@ def small_shards(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(store, "_BEAT", 0.0)
 
 
-def run(folder: Path, **more: object) -> rbsdem.Ensemble:
+def run(folder: Path, **more: object) -> rbsdem.fragility.Ensemble:
     return rbsdem.ensemble([column(), column(15e3)], motion(1), store=folder, **(GIVEN | more))
 
 
@@ -43,7 +44,7 @@ def shards(folder: Path) -> dict[str, int]:
     return {path.name: path.stat().st_mtime_ns for path in (folder / "shards").iterdir()}
 
 
-def same(one: rbsdem.Ensemble, other: rbsdem.Ensemble) -> None:
+def same(one: rbsdem.fragility.Ensemble, other: rbsdem.fragility.Ensemble) -> None:
     assert list(one.status) == list(other.status)
     assert one.errors == other.errors
     for name in one.measures:
@@ -105,7 +106,7 @@ def test_failed_runs_and_measures_of_functions_come_back(tmp_path: Path) -> None
     def swing(result: rbsdem.Result) -> float:
         return float(np.ptp(result.displacement))
 
-    elastic = rbsdem.Column(1.6, 600.0, rbsdem.Elastic(7e7), rbsdem.Elastic(2.5e8))
+    elastic = rbsdem.Column(1.6, 600.0, Elastic(7e7), Elastic(2.5e8))
     given = {"method": "rk4", "dt": 5e-3, "allow_unstable": True, "scales": [0.0, 1.0]}
     first, again = (
         rbsdem.ensemble(elastic, motion(1), measures=[swing], store=tmp_path, **given)

@@ -17,6 +17,7 @@ from rbsdem import InputError, SolveError
 from rbsdem.many.inputs import Motion
 from rbsdem.many.measures import LIMIT_STATES, MEASURES, STATUSES, core_measures
 from rbsdem.many.plan import Plan, compute
+from rbsdem.springs import Bilinear, ConcreteSpring, Elastic, Layered, PeakOriented, Takeda
 
 TIME = 0.01 * np.arange(400)
 
@@ -35,13 +36,13 @@ def motion(seed: int, points: int = 400, dt: float = 0.01) -> tuple[np.ndarray, 
 
 def column(mass: float = 30e3, **more: object) -> rbsdem.Column:
     """Return one body with a bilinear and a Takeda spring that yields under such motions."""
-    shear = rbsdem.Bilinear(k=7.0e7, d_y=1.3e-3, k_post=8.0e5)
-    flexure = rbsdem.Takeda(k_c=2.5e8, d_c=3.2e-4, k_y=6.3e7, d_y=2.7e-3, k_u=7.6e6, b1=0.22)
+    shear = Bilinear(k=7.0e7, d_y=1.3e-3, k_post=8.0e5)
+    flexure = Takeda(k_c=2.5e8, d_c=3.2e-4, k_y=6.3e7, d_y=2.7e-3, k_u=7.6e6, b1=0.22)
     weight = {"axial_load": 9.81 * mass, "kinematics": "pdelta", "top_mass": mass}
     return rbsdem.Column(1.6, 600.0, shear, flexure, **(weight | more))  # type: ignore[arg-type]
 
 
-def same_as_alone(found: rbsdem.Ensemble) -> None:
+def same_as_alone(found: rbsdem.fragility.Ensemble) -> None:
     """Hold every run of an ensemble to `time_history`, to the last bit."""
     for run in range(len(found)):
         values = {name: found.measures[name][run] for name in found.measures}
@@ -89,7 +90,7 @@ def test_the_number_of_threads_changes_no_bit() -> None:
 
 def test_a_run_that_fails_is_a_row() -> None:
     """Beyond the stability limit RK4 grows without bounds."""
-    elastic = rbsdem.Column(1.6, 600.0, rbsdem.Elastic(7e7), rbsdem.Elastic(2.5e8))
+    elastic = rbsdem.Column(1.6, 600.0, Elastic(7e7), Elastic(2.5e8))
     found = rbsdem.ensemble(
         elastic, motion(1), scales=[0.0, 1.0], method="rk4", dt=5e-3, allow_unstable=True
     )
@@ -131,9 +132,9 @@ def test_first_yield_is_that_of_the_history() -> None:
 
 def test_limit_states_are_those_of_the_history() -> None:
     """Of a layered hinge, a spring with a cap, and a spring in lanes."""
-    section = rbsdem.paper_sections()["zahn_7"].section
+    section = rbsdem.peer.paper_sections()["zahn_7"].section
     layered = replace(section.column(1.6, axial_load=1.01e6), top_mass=1.01e5, damping=0.02)
-    peaked = rbsdem.PeakOriented(d_y=0.003, f_y=2e5, d_cap=0.01, f_cap=2.2e5, d_pc=0.1)
+    peaked = PeakOriented(d_y=0.003, f_y=2e5, d_cap=0.01, f_cap=2.2e5, d_pc=0.1)
     capped = replace(column(), flexure=peaked)
     time, acceleration = motion(1)
     time, acceleration = time[:300], acceleration[:300]
@@ -172,9 +173,9 @@ def test_no_measure_depends_on_what_else_is_asked_for(method: str) -> None:
 
 def test_a_lost_joint_has_the_number_that_results_give_it() -> None:
     """1 at the bottom of a column on a footing, 0 beneath it, NaN where none was lost."""
-    crushing = rbsdem.ConcreteSpring(k=1e7, f_peak=4e4, d_peak=6e-3, k_soft=5e6, f_res=1e4)
-    layers = rbsdem.Layered([(y, crushing) for y in (-0.15, -0.05, 0.05, 0.15)])
-    elastic = rbsdem.Elastic(1e8)
+    crushing = ConcreteSpring(k=1e7, f_peak=4e4, d_peak=6e-3, k_soft=5e6, f_res=1e4)
+    layers = Layered([(y, crushing) for y in (-0.15, -0.05, 0.05, 0.15)])
+    elastic = Elastic(1e8)
     weight = {"axial_load": 1e5, "top_mass": 1e4, "kinematics": "pdelta"}
     columns = [
         rbsdem.Column(1.0, 1e3, elastic, hinge, footing=footing, **weight)
@@ -283,9 +284,9 @@ def test_bad_input(given: dict, message: str) -> None:
 def bodies() -> list[rbsdem.Column]:
     """Return columns of one body that differ in mass, springs and damping."""
     columns = [column(mass) for mass in (2e3, 10e3, 30e3, 80e3)]
-    stiff = rbsdem.Elastic(7e9)
+    stiff = Elastic(7e9)
     columns.append(rbsdem.Column(1.6, 600.0, stiff, columns[0].flexure))
-    capped = rbsdem.PeakOriented(
+    capped = PeakOriented(
         d_y=1.3e-3, f_y=9.1e4, d_cap=5e-3, f_cap=9.4e4, d_pc=0.05, f_res=2e4, lambda_h=20, s_min=0.3
     )
     columns.append(rbsdem.Column(1.6, 3e3, capped, columns[0].flexure))
@@ -307,7 +308,7 @@ def damped() -> list[rbsdem.Column]:
 def chains() -> list[rbsdem.Column]:
     """Return chains, with and without damping and axial load, and with other ends."""
     plain = column()
-    elastic = rbsdem.Elastic(6e8), rbsdem.Elastic(2e8)
+    elastic = Elastic(6e8), Elastic(2e8)
     beneath = rbsdem.Footing(*elastic, mass=3e3, inertia=2e3, height=0.4)
     return [
         column(20e3, n=3),

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import Envelope, InputError, envelope
+from rbsdem import InputError
+from rbsdem.curves import Envelope, envelope
 
 # A worked envelope: (0, 0) (5, 100) (10, 160) (20, 200) (40, 210) (60, 190), mm and kN.
 WORKED = Envelope(
@@ -17,7 +18,7 @@ WORKED = Envelope(
 )
 # It bends so late that balanced lines would yield beyond its largest force.
 NEARLY_STRAIGHT = np.array([0.0, 0.3, 4.44, 4.72]), np.array([0.0, 0.129, 1.813, 1.903])
-COLUMN = rbsdem.paper_columns()["zahn_7"]
+COLUMN = rbsdem.peer.paper_columns()["zahn_7"]
 
 
 # The numbers are worked by hand from the definitions: areas 6800 and 10800 N m.

@@ -20,8 +20,9 @@ from rbsdem import InputError
 from rbsdem import __main__ as command
 from rbsdem.results.accuracy import Answer, errors_of
 from rbsdem.solve.methods import METHODS
+from rbsdem.springs import Elastic
 
-COLUMN = rbsdem.paper_columns("pdelta", top_mass=75.9e3)["soesianawati_1"]
+COLUMN = rbsdem.peer.paper_columns("pdelta", top_mass=75.9e3)["soesianawati_1"]
 TIME = np.arange(0.0, 3.0, 0.01)
 MOTION = 5.0 * np.sin(2 * np.pi * 2.0 * TIME)
 
@@ -69,7 +70,7 @@ def test_no_error_is_zero(exact):
     sharpest = shake(method="rk45", tolerance=1e-13)
     true = errors_of(answer(sharpest), answer(exact)).largest
     assert true < sharpest.refined_error().largest < 1e-8
-    elastic = rbsdem.Column(2.0, 500.0, rbsdem.Elastic(1e9), rbsdem.Elastic(1e9))
+    elastic = rbsdem.Column(2.0, 500.0, Elastic(1e9), Elastic(1e9))
     found = rbsdem.cyclic(elastic, displacement=[0.0, 0.01, -0.01]).refined_error()
     assert min(found.peak, found.energy, found.largest) >= np.finfo(float).eps
 
@@ -159,13 +160,13 @@ def test_a_long_run_says_so_before_it_starts_and_names_the_faster_method(tmp_pat
     (tmp_path / "case.nml").write_text(LONG, "utf-8")
     case = rbsdem.read_case(tmp_path / "case.nml")
     # Warnings are errors here, so nothing is solved.
-    with pytest.raises(rbsdem.LongRunWarning, match=SAID) as caught:
+    with pytest.raises(rbsdem.errors.LongRunWarning, match=SAID) as caught:
         case.run()
     assert "Faster: method = 'generalised_alpha'" in str(caught.value)
     assert f"errors of about {METHODS['generalised_alpha'].usual_error:g}" in str(caught.value)
     # With the faster method there is nothing to say.
     assert case.run(method="generalised_alpha").summary["status"] == "completed"
-    with pytest.raises(rbsdem.LongRunWarning, match="Faster: method = 'generalised_alpha'"):
+    with pytest.raises(rbsdem.errors.LongRunWarning, match="Faster: method = 'generalised_alpha'"):
         case.run(replace(case.column, kinematics="finite"))
 
 
@@ -191,7 +192,7 @@ def test_a_run_of_many_minutes_needs_a_yes(tmp_path, run_cli):
         assert told.returncode == 2
         assert "give max_seconds" in told.stderr
     # Warnings are errors here: allowed, it would start.
-    with pytest.raises(rbsdem.LongRunWarning, match="will take some"):
+    with pytest.raises(rbsdem.errors.LongRunWarning, match="will take some"):
         case.run(max_seconds=1e6)
     (tmp_path / "allowed.nml").write_text(allowed, "utf-8")
     assert run_cli(["check", "allowed.nml"], tmp_path).returncode == 0

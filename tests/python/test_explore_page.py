@@ -299,7 +299,7 @@ def test_a_report_asks_nothing(unopened, tmp_path):
 
 def test_the_gallery_of_many_tests(unopened, tmp_path):
     page = unopened
-    column = rbsdem.paper_columns("pdelta")["zahn_7"]
+    column = rbsdem.peer.paper_columns("pdelta")["zahn_7"]
     result = rbsdem.cyclic(column, displacement=1.6 * rbsdem.protocol([0.01], points=8))
     rows = []
     for name, factor, mode in (("Good", 1.0, "Flexure"), ("Bad <i>", 2.0, "Shear")):

@@ -12,7 +12,7 @@ import pytest
 
 import rbsdem
 from rbsdem import InputError
-from rbsdem.springs import Elastic
+from rbsdem.springs import Bilinear, Elastic
 
 TIME = np.arange(0.0, 1.0, 0.01)
 MOTION = 3.0 * np.sin(8 * TIME)
@@ -31,7 +31,7 @@ def layered() -> rbsdem.Column:
 
 
 def results() -> dict[str, rbsdem.Result]:
-    paper = rbsdem.paper_columns()["zahn_7"]
+    paper = rbsdem.peer.paper_columns()["zahn_7"]
     damped = rbsdem.Column(
         1.6,
         600.0,
@@ -90,7 +90,7 @@ def test_layers_and_a_case_come_back_too(tmp_path):
 
 
 def test_csv_is_that_of_the_executable(run_cli, tmp_path):
-    column = replace(rbsdem.paper_columns()["zahn_7"], axial_load=0.0)
+    column = replace(rbsdem.peer.paper_columns()["zahn_7"], axial_load=0.0)
     (tmp_path / "case.nml").write_text(
         f"&case title = 'a pier' /\n{column.to_namelist()}\n"
         "&loading drive = 'displacement', amplitudes = 0.01, points = 3 /\n"
@@ -183,7 +183,7 @@ def test_state_between_rows_is_linear():
 
 def test_residual_drift_of_a_static_path_is_at_the_last_zero_of_force():
     """An elastic and perfectly plastic spring: what is beyond yield is left."""
-    spring = rbsdem.Bilinear(k=1e6, d_y=0.01, k_post=0.0)
+    spring = Bilinear(k=1e6, d_y=0.01, k_post=0.0)
     column = rbsdem.Column(2.0, 100.0, spring, Elastic(1e12))
     path = rbsdem.cyclic(column, displacement=[0.0, 0.03, 0.015])
     assert path.residual_drift == pytest.approx(0.02 / 2.0, rel=1e-5)
@@ -194,7 +194,7 @@ def test_residual_drift_of_a_static_path_is_at_the_last_zero_of_force():
 
 
 def test_residual_drift_in_time_is_that_of_an_ensemble():
-    spring = rbsdem.Bilinear(k=1e6, d_y=0.002, k_post=1e4)
+    spring = Bilinear(k=1e6, d_y=0.002, k_post=1e4)
     column = rbsdem.Column(2.0, 5000.0, spring, Elastic(1e12), damping=0.05)
     time = np.arange(0.0, 3.0, 0.01)
     motion = np.where(time < 1.0, 4.0 * np.sin(9 * time), 0.0)

@@ -17,6 +17,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import eigh
 
 import rbsdem
+from rbsdem.springs import Elastic
 
 # The same column is made at every level of kinematics, and masses without weight are tried.
 pytestmark = pytest.mark.filterwarnings(
@@ -27,8 +28,8 @@ IMPLICIT = ("newmark", "hht", "generalised_alpha")
 METHODS = ("rk4", "rk45", *IMPLICIT)
 
 
-def elastic(values) -> list[rbsdem.Elastic]:
-    return [rbsdem.Elastic(float(k)) for k in values]
+def elastic(values) -> list[Elastic]:
+    return [Elastic(float(k)) for k in values]
 
 
 def chain(lengths, masses, shear, flexure, **options) -> rbsdem.Column:
@@ -187,7 +188,7 @@ def test_mass_at_the_top_a_million_times_that_of_the_column(method):
     """One mass on a spring of three in series, its rotary inertia that of a point: none."""
     k_v, k_m, mass = 3e8, 2e8, 1e6
     column = rbsdem.Column(
-        3.0, 1.0, rbsdem.Elastic(k_v), rbsdem.Elastic(k_m), top_mass=mass, n=2
+        3.0, 1.0, Elastic(k_v), Elastic(k_m), top_mass=mass, n=2
     )  # fmt: skip
     stiffness = 1.0 / (2 / k_v + (3.0**2 + 1.5**2) / k_m)
     omega = np.sqrt(stiffness / mass)

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import rbsdem
+from rbsdem.springs import Bilinear, Compression, Elastic, Takeda
 
 # The same column is made at every level of kinematics, and masses without weight are tried.
 pytestmark = pytest.mark.filterwarnings(
@@ -26,16 +27,16 @@ IMPLICIT = ("newmark", "hht", "generalised_alpha")
 METHODS = ("rk4", "rk45", *IMPLICIT)
 
 SPRINGS = {
-    rbsdem.Elastic: {"k": 1e8},
-    rbsdem.Compression: {"k": 1e8},
-    rbsdem.Bilinear: {"k": 1e8, "d_y": 1e-3, "k_post": 1e6},
-    rbsdem.Takeda: {
+    Elastic: {"k": 1e8},
+    Compression: {"k": 1e8},
+    Bilinear: {"k": 1e8, "d_y": 1e-3, "k_post": 1e6},
+    Takeda: {
         "k_c": 2e8, "d_c": 3e-4, "k_y": 6e7, "d_y": 3e-3, "k_u": 7e6, "b0": 0.4, "b1": 0.3,
     },
 }  # fmt: skip
 COLUMN = {
     "height": 2.0, "mass": None, "n": 2,
-    "shear": rbsdem.Elastic(1e8), "flexure": rbsdem.Elastic(1e8),
+    "shear": Elastic(1e8), "flexure": Elastic(1e8),
     "lengths": [0.9, 1.1], "masses": [300.0, 200.0], "axial_load": 1e4, "gravity": 9.8,
     "top_mass": 100.0, "top_inertia": 3.0, "rotary_inertia": [30.0, 20.0],
     "damping": rbsdem.Damping(0.1, 1e-5), "kinematics": "pdelta", "self_weight": True,
@@ -176,7 +177,7 @@ def test_numbers_at_the_edge_of_meaning_run():
         k_v = k_m / length**2
         if not 1e-50 < k_v < 1e50:
             continue
-        column = rbsdem.Column(length, mass, rbsdem.Elastic(k_v), rbsdem.Elastic(k_m), n=2)
+        column = rbsdem.Column(length, mass, Elastic(k_v), Elastic(k_m), n=2)
         omega = rbsdem.modes(column).omega
         assert np.all(np.isfinite(omega))
         assert np.all(omega > 0)
@@ -197,15 +198,15 @@ def test_numbers_at_the_edge_of_meaning_run():
 
 def jobs():
     """Every analysis and method, each with springs that remember."""
-    shear = rbsdem.Bilinear(7.0387e8, 1.2960e-4, 8.3185e6)
-    flexure = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
+    shear = Bilinear(7.0387e8, 1.2960e-4, 8.3185e6)
+    flexure = Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
     rng = np.random.default_rng(8)
     times, ground = 2e-3 * np.arange(60), rng.uniform(-30, 30, 60)
     path = rng.uniform(-0.04, 0.04, 40)
     for n, level, opens in ((1, "small", False), (3, "pdelta", True), (12, "finite", False)):
         column = rbsdem.Column(
             1.6, 614.4, shear, flexure, n=n, kinematics=level, axial_load=1e5,
-            axial_spring=rbsdem.Compression(1e9) if opens else None, top_mass=500.0,
+            axial_spring=Compression(1e9) if opens else None, top_mass=500.0,
         )  # fmt: skip
         yield lambda c=column: rbsdem.cyclic(c, displacement=path[: 40 // c.n])
         yield lambda c=column: rbsdem.cyclic(c, force=3e5 * path)

@@ -15,19 +15,21 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
 import rbsdem
+from rbsdem.errors import AccuracyWarning
+from rbsdem.springs import Compression, Elastic
 
 HEIGHT, BENDING = 2.0, 1e6
 
 
-def elastic(values) -> list[rbsdem.Elastic]:
-    return [rbsdem.Elastic(float(k)) for k in values]
+def elastic(values) -> list[Elastic]:
+    return [Elastic(float(k)) for k in values]
 
 
 def slender(n: int, load: float = 0.0, kinematics: str = "finite") -> rbsdem.Column:
     """A beam that only bends; its foot, half a body from the ground, is twice as stiff."""
     length = HEIGHT / n
     return rbsdem.Column(
-        HEIGHT, 100.0, rbsdem.Elastic(1e12 * n),
+        HEIGHT, 100.0, Elastic(1e12 * n),
         elastic([2 * BENDING / length] + [BENDING / length] * (n - 1)), n=n,
         kinematics=kinematics, axial_load=load,
     )  # fmt: skip
@@ -107,9 +109,7 @@ def test_load_beyond_the_critical_one_bends_a_chain_to_the_elastica_with_order_2
 def test_top_that_is_driven_farther_than_the_column_is_long_slides_at_the_foot(n):
     """All bodies lie; the slip of the lowest joint, along the ground, is what is left."""
     k_v = 1e9
-    column = rbsdem.Column(
-        HEIGHT, 100.0, rbsdem.Elastic(k_v), rbsdem.Elastic(1e5), n=n, kinematics="finite"
-    )
+    column = rbsdem.Column(HEIGHT, 100.0, Elastic(k_v), Elastic(1e5), n=n, kinematics="finite")
     run = rbsdem.cyclic(column, displacement=HEIGHT * np.linspace(0.0, 1.2, 61)[1:])
     assert run.force[-1] == pytest.approx(k_v * 0.2 * HEIGHT, rel=1e-3)
     assert np.sum(run.rotation[-1]) == pytest.approx(np.pi / 2, abs=0.01)
@@ -179,9 +179,7 @@ def test_turning_chain_keeps_its_energy():
 @pytest.mark.parametrize("turn", [0.0999, 0.1001, 0.5, np.pi / 2, 2 * np.pi])
 def test_small_rotations_warn_above_a_tenth(level, turn):
     """Of the path and of the run in time; by the rotation of a body, not of a joint."""
-    column = rbsdem.Column(
-        2.0, 100.0, rbsdem.Elastic(1e12), rbsdem.Elastic(1e6), n=2, kinematics=level
-    )
+    column = rbsdem.Column(2.0, 100.0, Elastic(1e12), Elastic(1e6), n=2, kinematics=level)
     # Two equal joints under a force at the top turn by 2 : 1.
     analyses = [
         lambda: rbsdem.cyclic(column, force=[turn / (2.0 / 1e6 + 1.0 / 1e6)]),
@@ -194,7 +192,7 @@ def test_small_rotations_warn_above_a_tenth(level, turn):
             warnings.simplefilter("always")
             run = analysis()
         assert run.summary["peak_rotation"] == pytest.approx(turn, rel=1e-5)
-        assert [one.category for one in caught] == ([rbsdem.AccuracyWarning] if turn > 0.1 else [])
+        assert [one.category for one in caught] == ([AccuracyWarning] if turn > 0.1 else [])
         if turn > 1 and number == 0:
             # A path whose top goes so far is asked for its units.
             assert "beyond half of the height" in str(caught[0].message)
@@ -215,8 +213,8 @@ def measure_bounces(method: str, bounces: int, stiffness: float) -> tuple[float,
     """
     mass, g, height = 50.0, 9.80665, 0.01
     column = rbsdem.Column(
-        1.0, mass, rbsdem.Elastic(1e6), rbsdem.Elastic(1e6),
-        axial_spring=rbsdem.Compression(stiffness),
+        1.0, mass, Elastic(1e6), Elastic(1e6),
+        axial_spring=Compression(stiffness),
         self_weight=True, gravity=g,
     )  # fmt: skip
     omega = np.sqrt(stiffness / mass)
@@ -256,8 +254,8 @@ def test_body_lifts_off_where_the_ground_falls_faster_than_it(method, push):
     """The ground falls with `push` times gravity: closed below 1, open above."""
     stiffness, mass, g = 1e8, 50.0, 9.80665
     column = rbsdem.Column(
-        1.0, mass, rbsdem.Elastic(1e6), rbsdem.Elastic(1e6),
-        axial_spring=rbsdem.Compression(stiffness),
+        1.0, mass, Elastic(1e6), Elastic(1e6),
+        axial_spring=Compression(stiffness),
         self_weight=True, gravity=g, damping=rbsdem.Damping(stiffness=1e-4, tangent=True),
     )  # fmt: skip
     times = np.linspace(0.0, 0.5, 51)

@@ -14,6 +14,7 @@ import pytest
 import reference_springs
 
 import rbsdem
+from rbsdem.springs import Bilinear, Compression, Takeda
 
 # The same column is made at every level of kinematics, and masses without weight are tried.
 pytestmark = pytest.mark.filterwarnings(
@@ -21,14 +22,14 @@ pytestmark = pytest.mark.filterwarnings(
 )
 
 EPS = np.finfo(float).eps
-BILINEAR = rbsdem.Bilinear(7.0387e8, 1.296e-4, 8.3185e6)
-PLASTIC = rbsdem.Bilinear(7.0387e8, 1.296e-4, 0.0)
+BILINEAR = Bilinear(7.0387e8, 1.296e-4, 8.3185e6)
+PLASTIC = Bilinear(7.0387e8, 1.296e-4, 0.0)
 NUMBERS = {
     "k_c": 2.5428e8, "d_c": 3.1891e-4, "k_y": 6.2937e7, "d_y": 2.7183e-3, "k_u": 7.5772e6,
     "b0": 0.4, "b1": 0.22,
 }  # fmt: skip
-TAKEDA = {inner: rbsdem.Takeda(**NUMBERS, inner=inner) for inner in ("kc", "kr", "one")}
-SPRINGS = {"bilinear": BILINEAR, "plastic": PLASTIC, "compression": rbsdem.Compression(1e9)}
+TAKEDA = {inner: Takeda(**NUMBERS, inner=inner) for inner in ("kc", "kr", "one")}
+SPRINGS = {"bilinear": BILINEAR, "plastic": PLASTIC, "compression": Compression(1e9)}
 SPRINGS |= {f"takeda {inner}": spring for inner, spring in TAKEDA.items()}
 
 
@@ -49,7 +50,7 @@ def wild_path(spring, points: int, seed: int = 0) -> np.ndarray:
 # ---- amplitude -----------------------------------------------------------------------------------
 
 
-def play(spring: rbsdem.Bilinear, path: np.ndarray) -> list[Fraction]:
+def play(spring: Bilinear, path: np.ndarray) -> list[Fraction]:
     """Forces along a path without any round-off: k_post d + (k - k_post) play(d)."""
     k, k_post, d_y = Fraction(spring.k), Fraction(spring.k_post), Fraction(spring.d_y)
     forces, here, inside = [], Fraction(0), Fraction(0)

@@ -15,6 +15,7 @@ import pytest
 from scipy.linalg import eig
 
 import rbsdem
+from rbsdem.springs import Bilinear, Elastic
 
 # Chains of many bodies are as high as they come, and planned for long runs that end early.
 pytestmark = pytest.mark.filterwarnings("ignore:(column. height|analysis. about) ")
@@ -28,8 +29,8 @@ def chain(n: int, **options) -> rbsdem.Column:
     rng = np.random.default_rng(n)
     lengths = rng.uniform(0.5, 1.5, n)
     return rbsdem.Column(
-        lengths.sum(), None, [rbsdem.Elastic(k) for k in rng.uniform(2e7, 5e7, n)],
-        [rbsdem.Elastic(k) for k in rng.uniform(2e7, 5e7, n)], n=n, lengths=lengths,
+        lengths.sum(), None, [Elastic(k) for k in rng.uniform(2e7, 5e7, n)],
+        [Elastic(k) for k in rng.uniform(2e7, 5e7, n)], n=n, lengths=lengths,
         masses=rng.uniform(50, 100, n), **options,
     )  # fmt: skip
 
@@ -123,7 +124,7 @@ def test_above_the_limit_is_refused_with_the_limit_or_stops_with_the_time(n, sha
 
 @pytest.mark.parametrize("n", [1, 3])
 def test_above_the_limit_springs_that_harden_without_end_let_it_grow_too(n):
-    spring = rbsdem.Bilinear(5e8, 1e-3, 4e8)
+    spring = Bilinear(5e8, 1e-3, 4e8)
     column = rbsdem.Column(2.0, 500.0, spring, spring, n=n)
     limit = rbsdem.modes(column).stable_step
     with pytest.raises(rbsdem.SolveError, match="grows without bounds at time"):
@@ -255,9 +256,9 @@ def test_tangent_damping_of_a_perfectly_plastic_spring_vanishes(method):
 
     With the initial stiffness in its place the damping force would be some 60 times F_y.
     """
-    spring = rbsdem.Bilinear(1e6, 1e-6, 0.0)
+    spring = Bilinear(1e6, 1e-6, 0.0)
     column = rbsdem.Column(
-        1.0, 100.0, spring, rbsdem.Elastic(1e12), rotary_inertia=1e6,
+        1.0, 100.0, spring, Elastic(1e12), rotary_inertia=1e6,
         damping=rbsdem.Damping(stiffness=1e-4, tangent=True),
     )  # fmt: skip
     options = {"rk45": {"tolerance": 1e-9}, "rk4": {"events": "located"}}.get(method, {"dt": 1e-5})
@@ -282,7 +283,7 @@ def test_tangent_damping_of_a_perfectly_plastic_spring_vanishes(method):
     ],
 )
 def test_bodies_without_mass_or_inertia_are_refused_by_name(change, named):
-    spring = rbsdem.Elastic(1e6)
+    spring = Elastic(1e6)
     with pytest.raises(rbsdem.InputError, match=named):
         rbsdem.Column(
             **{"height": 2.0, "mass": 10.0, "shear": spring, "flexure": spring, "n": 2} | change
@@ -299,7 +300,7 @@ def test_nearly_massless_body_moves_as_if_it_had_none(method, lightness):
     """
     k_v, k_m, heavy, length = [3e6, 2e6], [4e6, 5e6], 80.0, 0.7
     column = rbsdem.Column(
-        2 * length, None, [rbsdem.Elastic(k) for k in k_v], [rbsdem.Elastic(k) for k in k_m], n=2,
+        2 * length, None, [Elastic(k) for k in k_v], [Elastic(k) for k in k_m], n=2,
         lengths=[length] * 2, masses=[heavy * lightness, heavy],
     )  # fmt: skip
     centre = np.array([1.0, 1.0, 1.5 * length, 0.5 * length])

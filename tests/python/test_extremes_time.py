@@ -17,17 +17,16 @@ import pytest
 from scipy.linalg import expm
 
 import rbsdem
+from rbsdem.springs import Bilinear, Elastic, Takeda
 
 IMPLICIT = ("newmark", "hht", "generalised_alpha")
 METHODS = ("rk4", "rk45", *IMPLICIT)
 
 HEIGHT, MASS, K_V, K_M = 3.0, 1000.0, 4e6, 3e6
-SOFT = rbsdem.Column(
-    HEIGHT, MASS, rbsdem.Elastic(K_V), rbsdem.Elastic(K_M), damping=rbsdem.Damping(mass=1.0)
-)
+SOFT = rbsdem.Column(HEIGHT, MASS, Elastic(K_V), Elastic(K_M), damping=rbsdem.Damping(mass=1.0))
 YIELDING = rbsdem.Column(
-    1.6, 614.4, rbsdem.Bilinear(7e8, 1.3e-4, 8e6),
-    rbsdem.Takeda(2.5e8, 3e-4, 6e7, 2.7e-3, 7.5e6, b1=0.22),
+    1.6, 614.4, Bilinear(7e8, 1.3e-4, 8e6),
+    Takeda(2.5e8, 3e-4, 6e7, 2.7e-3, 7.5e6, b1=0.22),
 )  # fmt: skip
 
 
@@ -203,7 +202,7 @@ def test_jump_of_a_load_within_the_last_digits_of_the_time(method, width):
     times = np.arange(0, 4097) / 8192
     times = np.insert(times, 1025, max(np.nextafter(jump, 1), jump + width))
     force = np.where(times > jump, 1e4, 0.0)
-    column = rbsdem.Column(HEIGHT, MASS, rbsdem.Elastic(K_V), rbsdem.Elastic(K_M))
+    column = rbsdem.Column(HEIGHT, MASS, Elastic(K_V), Elastic(K_M))
     run = rbsdem.time_history(column, times, force=force, method=method)
     assert np.array_equal(run.time, times)
     modes = rbsdem.modes(column)

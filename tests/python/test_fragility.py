@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 from scipy import integrate, optimize, special, stats
 
-from rbsdem import AccuracyWarning, Column, Elastic, InputError
+from rbsdem import Column, InputError
+from rbsdem.errors import AccuracyWarning
 from rbsdem.many.fragility import Capacities, Counts, Fragility, fit_fragility
 from rbsdem.many.hazard import Hazard
 from rbsdem.many.lognormal import Bounds, bounds_of_counts, fit_bounds
 from rbsdem.many.regression import fit_line, fit_logistic
 from rbsdem.many.uncertain import Uncertain, lognormal, variance_split
+from rbsdem.springs import Elastic
 
 
 def counts(level, number, failures, paired=False) -> Counts:
@@ -329,7 +331,7 @@ def by_quadrature(hazard: Hazard, mu: float, beta: float) -> float:
     return float((half * weights * np.exp(logs)).sum() / (beta * np.sqrt(2 * np.pi)))
 
 
-@pytest.mark.filterwarnings("ignore::rbsdem.AccuracyWarning")
+@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
 def test_frequency_under_steep_hazards():
     """Steep segments are not lost: 150 random hazards, slopes to 30, and one of slope 24."""
     steep = Hazard([0.5, 1, 2, 2.2], [1e-1, 1e-2, 1e-3, 1e-4])

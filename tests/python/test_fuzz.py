@@ -435,7 +435,7 @@ import rbsdem
 for path in sorted(Path(sys.argv[1]).glob("*-*")):
     print(path.name, end=" ", flush=True)
     try:
-        test = rbsdem.read_peer(path)
+        test = rbsdem.peer.read_peer(path)
     except rbsdem.InputError as error:
         print("refused" if str(error) and "Traceback" not in str(error) else "no message")
     except BaseException as error:
@@ -454,7 +454,7 @@ print("end")
 
 
 def test_mutated_histories_in_python(folder):
-    """`rbsdem.read_peer` raises InputError and nothing else; one process, for it might crash."""
+    """`read_peer` raises InputError and nothing else; one process, for it might crash."""
     for i, base, text in mutants(HISTORIES, SEED):
         (folder / f"{i:04d}-{base}").write_bytes(text)
     result = subprocess.run(

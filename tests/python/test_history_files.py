@@ -1,4 +1,4 @@
-"""History files through both doors: `rbsdem.read_peer`, and a loading of the executable.
+"""History files through both doors: `rbsdem.peer.read_peer`, and a loading of the executable.
 
 Traps of the PEER text format: README of the shared folder peer, "Original file format". Numbers are
 compared to the last bit with what Python's own reading makes of the same text.
@@ -67,7 +67,7 @@ def complaint(run_cli, case_text, tmp_path, monkeypatch):
         assert len(said) == 1
         monkeypatch.chdir(tmp_path)
         with pytest.raises(rbsdem.InputError) as error:
-            rbsdem.read_peer(file)
+            rbsdem.peer.read_peer(file)
         assert said[0] == f"rbsdem: {error.value}"
         return str(error.value)
 
@@ -117,7 +117,7 @@ TRAPS = {
 @pytest.mark.parametrize("trap", TRAPS)
 def test_peer_format_trap(through_executable, tmp_path, trap):
     (tmp_path / "test.txt").write_bytes(TRAPS[trap].encode())
-    test = rbsdem.read_peer(tmp_path / "test.txt")
+    test = rbsdem.peer.read_peer(tmp_path / "test.txt")
     assert test.name == "Test"
     assert np.array_equal(test.displacement, EXPECTED[0])
     assert np.array_equal(test.force, EXPECTED[1])
@@ -147,7 +147,7 @@ def test_peer_format_trap(through_executable, tmp_path, trap):
 )
 def test_name_with_digits_commas_and_the_like(through_executable, tmp_path, line, name):
     (tmp_path / "test.txt").write_text(peer_text(name=line), encoding="utf-8")
-    test = rbsdem.read_peer(tmp_path / "test.txt")
+    test = rbsdem.peer.read_peer(tmp_path / "test.txt")
     assert test.name == name
     for drive, expected in zip(("displacement", "force"), EXPECTED, strict=True):
         assert np.array_equal(through_executable("test.txt", drive), expected)
@@ -156,7 +156,7 @@ def test_name_with_digits_commas_and_the_like(through_executable, tmp_path, line
 
 def test_name_that_is_no_utf_8_does_not_stop_the_reading(through_executable, tmp_path):
     (tmp_path / "test.txt").write_bytes(peer_text(name="Säule").encode("latin-1"))
-    test = rbsdem.read_peer(tmp_path / "test.txt")
+    test = rbsdem.peer.read_peer(tmp_path / "test.txt")
     assert test.name == "S\N{REPLACEMENT CHARACTER}ule"
     assert np.array_equal(test.force, EXPECTED[1])
     assert np.array_equal(through_executable("test.txt", "force"), EXPECTED[1])
@@ -168,7 +168,7 @@ def test_count_is_never_let_in_as_a_pair(tmp_path):
     pairs = rng.uniform(-100, 100, (8734, 2)).round(4)
     text = peer_text(count="8734\t0", lines=[f"{d}\t{f}" for d, f in pairs])
     (tmp_path / "abouorc3.txt").write_text(text)
-    test = rbsdem.read_peer(tmp_path / "abouorc3.txt")
+    test = rbsdem.peer.read_peer(tmp_path / "abouorc3.txt")
     assert test.displacement.size == 8734
     assert np.array_equal(test.displacement, pairs[:, 0] / 1000)
     assert np.array_equal(test.force, pairs[:, 1] * 1000)
@@ -179,7 +179,7 @@ def test_first_pair_is_not_always_zero_and_rows_may_repeat(tmp_path):
     for first in ((0.0, -1.31), (2.56, 29.5)):
         pairs = [first, (0.0, 0.0), (0.0, 20.0), (0.0, 20.0), (5.0, 1.0)]
         (tmp_path / "t.txt").write_text(peer_text(lines=[f"{d}\t{f}" for d, f in pairs]))
-        test = rbsdem.read_peer(tmp_path / "t.txt")
+        test = rbsdem.peer.read_peer(tmp_path / "t.txt")
         assert np.array_equal(test.displacement, np.array([d for d, _ in pairs]) / 1000)
         assert np.array_equal(test.force, np.array([f for _, f in pairs]) * 1000)
 
@@ -283,7 +283,7 @@ CSV = {
 @pytest.mark.parametrize("kind", CSV)
 def test_csv_variant(through_executable, tmp_path, kind):
     (tmp_path / "test.csv").write_bytes(CSV[kind].encode())
-    test = rbsdem.read_peer(tmp_path / "test.csv")
+    test = rbsdem.peer.read_peer(tmp_path / "test.csv")
     assert test.name == "test.csv"
     assert np.array_equal(test.displacement, EXPECTED[0])
     assert np.array_equal(test.force, EXPECTED[1])
@@ -342,7 +342,7 @@ def test_units_in_another_notation_are_not_taken_for_si_in_silence(complaint, tm
     """A displacement in mm read as metres is wrong by 1000 and nobody is told."""
     (tmp_path / "test.csv").write_text(csv_text(header))
     try:
-        test = rbsdem.read_peer(tmp_path / "test.csv")
+        test = rbsdem.peer.read_peer(tmp_path / "test.csv")
     except rbsdem.InputError:
         assert "mm" in complaint("test.csv")
     else:
@@ -497,14 +497,14 @@ def apart(code: str, folder: Path) -> str:
 def test_file_with_a_single_column_is_no_test(tmp_path, text):
     """Rows of two bytes were more than the arrays of read_peer had been made for."""
     (tmp_path / "one.csv").write_text(text)
-    assert apart("rbsdem.read_peer('one.csv')", tmp_path).startswith("refused: one.csv")
+    assert apart("rbsdem.peer.read_peer('one.csv')", tmp_path).startswith("refused: one.csv")
 
 
 def test_time_and_value_are_no_displacement_and_force(tmp_path):
     """The second of two columns must not stand for both."""
     (tmp_path / "two.csv").write_text("time,value\n0,1\n1,2\n")
     with pytest.raises(rbsdem.InputError, match=r"two\.csv"):
-        rbsdem.read_peer(tmp_path / "two.csv")
+        rbsdem.peer.read_peer(tmp_path / "two.csv")
 
 
 @pytest.mark.parametrize("kind", ["text", "path", "relative"])
@@ -513,24 +513,24 @@ def test_path_of_any_kind(tmp_path, monkeypatch, kind):
     name = "ein Test.txt"
     Path(name).write_text(peer_text())
     path = {"text": str(tmp_path / name), "path": tmp_path / name, "relative": name}[kind]
-    assert np.array_equal(rbsdem.read_peer(path).force, EXPECTED[1])
+    assert np.array_equal(rbsdem.peer.read_peer(path).force, EXPECTED[1])
 
 
 def test_path_with_letters_beyond_ascii(through_executable, tmp_path):
     folder = tmp_path / "Säulen ½"
     folder.mkdir()
     (folder / "prüfung.txt").write_text(peer_text())
-    assert np.array_equal(rbsdem.read_peer(folder / "prüfung.txt").force, EXPECTED[1])
+    assert np.array_equal(rbsdem.peer.read_peer(folder / "prüfung.txt").force, EXPECTED[1])
     assert np.array_equal(through_executable("Säulen ½/prüfung.txt", "force"), EXPECTED[1])
     with pytest.raises(rbsdem.InputError, match="fehlt-ü"):
-        rbsdem.read_peer(folder / "fehlt-ü.txt")
+        rbsdem.peer.read_peer(folder / "fehlt-ü.txt")
 
 
 @pytest.mark.parametrize("path", ["''", "'a' + chr(0) + 'b'", "'x' * 5000"])
 def test_path_that_can_be_none(tmp_path, path):
     """C takes a zero byte for the end of the path: another file than the one asked for."""
     (tmp_path / "a").write_text(peer_text(lines=["1\t2"] * 5000, count=5000))
-    assert apart(f"rbsdem.read_peer({path})", tmp_path).startswith("refused")
+    assert apart(f"rbsdem.peer.read_peer({path})", tmp_path).startswith("refused")
 
 
 def test_ten_thousand_random_numbers_to_the_last_bit(through_executable, tmp_path):
@@ -546,7 +546,7 @@ def test_ten_thousand_random_numbers_to_the_last_bit(through_executable, tmp_pat
     values = np.array([float(word.replace("D", "e")) for word in words])
     rows = [f"{word},{word}" for word in words]
     (tmp_path / "test.csv").write_text(csv_text("displacement,force", rows))
-    test = rbsdem.read_peer(tmp_path / "test.csv")
+    test = rbsdem.peer.read_peer(tmp_path / "test.csv")
     assert np.array_equal(test.displacement, values)
     assert np.array_equal(test.force, values)
     # Through the executable only what a column can stand.
@@ -563,7 +563,7 @@ def test_columns_of_the_fortran_limit(complaint, tmp_path):
         text = ",".join(names[:count]) + "\n" + ",".join(["1"] * count) + "\n"
         (tmp_path / "wide.csv").write_text(text)
         if count <= 64:
-            assert rbsdem.read_peer(tmp_path / "wide.csv").force[0] == 1
+            assert rbsdem.peer.read_peer(tmp_path / "wide.csv").force[0] == 1
         else:
             assert "wide.csv" in complaint("wide.csv")
 
@@ -603,7 +603,7 @@ def histories(peer_folder):
 def test_all_histories_are_read_as_numpy_reads_them(histories):
     for path in histories:
         assert path.read_text().startswith("displacement_mm,force_kN\n")
-        test = rbsdem.read_peer(path)
+        test = rbsdem.peer.read_peer(path)
         d, f = numpy_reading(path)
         assert test.name == path.name
         assert np.array_equal(test.displacement, d), path.name
@@ -616,7 +616,7 @@ def test_all_histories_are_as_long_as_their_table_says(histories, peer_folder):
         table = {row["file"]: row for row in csv.DictReader(file) if row["file"]}
     for path in histories:
         row = table.pop(path.name)
-        test = rbsdem.read_peer(path)
+        test = rbsdem.peer.read_peer(path)
         assert test.force.size == int(row["n_points"])
         said = [float(row[key]) for key in ("d_max_mm", "d_min_mm", "F_max_kN", "F_min_kN")]
         d, f = test.displacement * 1e3, test.force / 1e3
@@ -637,7 +637,7 @@ def test_original_file_equals_the_csv_to_the_last_bit(through_executable, peer_f
     raw = peer_folder / "raw" / f"{PRIORITY[stem]}.txt"
     d, f = numpy_reading(peer_folder / f"{stem}.csv")
     lines = raw.read_text().splitlines()
-    test = rbsdem.read_peer(raw)
+    test = rbsdem.peer.read_peer(raw)
     assert test.name == lines[0].strip().strip('"').strip()
     assert test.force.size == int(lines[1].split()[0])
     assert np.array_equal(test.displacement, d)
@@ -658,7 +658,7 @@ def test_original_file_equals_the_csv_to_the_last_bit(through_executable, peer_f
 def test_priority_test_has_the_extremes_of_its_description(
     peer_folder, stem, rows, force, displacement
 ):
-    test = rbsdem.read_peer(peer_folder / f"{stem}.csv")
+    test = rbsdem.peer.read_peer(peer_folder / f"{stem}.csv")
     assert test.force.size == rows
     np.testing.assert_allclose(
         (test.force.max(), test.force.min()), np.array(force) * 1e3, rtol=5e-5

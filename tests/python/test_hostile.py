@@ -23,6 +23,18 @@ from rbsdem import curves as comparison
 from rbsdem.calibration import free_names, undetermined
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.section.parameters import parameters
+from rbsdem.springs import (
+    Bilinear,
+    Compression,
+    ConcreteSpring,
+    Elastic,
+    Gauge,
+    Layered,
+    PeakOriented,
+    Pinching,
+    SteelSpring,
+    Takeda,
+)
 
 pytestmark = pytest.mark.filterwarnings("ignore")
 
@@ -78,14 +90,14 @@ HOSTILE: dict[str, Any] = {
     "timedeltas": np.array([1, 2], dtype="timedelta64[s]"),
     "objects": np.array([object()], dtype=object),
     "record array": np.zeros(2, dtype=[("a", float)]),
-    "column": rbsdem.paper_columns()["zahn_7"],
+    "column": rbsdem.peer.paper_columns()["zahn_7"],
     "/dev/zero": "/dev/zero",
     "folder": "/",
-    "spring": rbsdem.Elastic(1e8),
+    "spring": Elastic(1e8),
 }
 
-SPRING = rbsdem.Elastic(1e8)
-BILINEAR = rbsdem.Bilinear(1e8, 1e-3, 1e6)
+SPRING = Elastic(1e8)
+BILINEAR = Bilinear(1e8, 1e-3, 1e6)
 COLUMN = rbsdem.Column(1.6, 614.4, SPRING, BILINEAR)
 STEEL = rbsdem.Steel(400e6, 600e6)
 CONCRETE = rbsdem.Concrete(35e6)
@@ -115,21 +127,21 @@ MANY = {"method": "newmark", "dt": 0.02, "jobs": 1}
 
 #: Public calls with arguments that are taken, and others that they have.
 CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
-    "Elastic": (rbsdem.Elastic, {"k": 1e8}),
-    "Bilinear": (rbsdem.Bilinear, {"k": 1e8, "d_y": 1e-3, "k_post": 1e6}),
+    "Elastic": (Elastic, {"k": 1e8}),
+    "Bilinear": (Bilinear, {"k": 1e8, "d_y": 1e-3, "k_post": 1e6}),
     "Takeda": (
-        rbsdem.Takeda,
+        Takeda,
         {"k_c": 2e8, "d_c": 3e-4, "k_y": 6e7, "d_y": 3e-3, "k_u": 7e6},
     ),
-    "PeakOriented": (rbsdem.PeakOriented, CAPPED),
-    "Pinching": (rbsdem.Pinching, CAPPED | {"kappa_f": 0.5, "kappa_d": 0.5}),
-    "Compression": (rbsdem.Compression, {"k": 1e8}),
+    "PeakOriented": (PeakOriented, CAPPED),
+    "Pinching": (Pinching, CAPPED | {"kappa_f": 0.5, "kappa_d": 0.5}),
+    "Compression": (Compression, {"k": 1e8}),
     "ConcreteSpring": (
-        rbsdem.ConcreteSpring,
+        ConcreteSpring,
         {"k": 1e8, "f_peak": 1e6, "d_peak": 0.02, "k_soft": 1e6},
     ),
-    "SteelSpring": (rbsdem.SteelSpring, {"k": 1e8, "f_y": 1e5, "k_post": 1e6}),
-    "Layered": (rbsdem.Layered, {"layers": [(-0.1, SPRING), (0.1, SPRING)]}),
+    "SteelSpring": (SteelSpring, {"k": 1e8, "f_y": 1e5, "k_post": 1e6}),
+    "Layered": (Layered, {"layers": [(-0.1, SPRING), (0.1, SPRING)]}),
     "Spring.response": (BILINEAR.response, {"deformation": PATH}),
     "Spring.split": (BILINEAR.split, {"n": 2}),
     "Damping": (rbsdem.Damping, {"mass": 0.1}),
@@ -149,10 +161,10 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "matrices": (rbsdem.matrices, {"column": COLUMN}),
     "protocol": (rbsdem.protocol, {"amplitudes": [0.01, 0.02], "cycles": 2}),
     "read_case": (rbsdem.read_case, {"path": "x"}),
-    "read_peer": (rbsdem.read_peer, {"path": "x"}),
+    "read_peer": (rbsdem.peer.read_peer, {"path": "x"}),
     "read_test": (rbsdem.read_test, {"path": "x"}),
     "read_result": (rbsdem.read_result, {"path": "x"}),
-    "paper_columns": (rbsdem.paper_columns, {}),
+    "paper_columns": (rbsdem.peer.paper_columns, {}),
     "Result.at": (RESULT.at, {"time": 1}),
     "Result.idealise": (RESULT.idealise, {}),
     "Result.strength_loss": (RESULT.strength_loss, {}),
@@ -162,7 +174,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Result.save": (RESULT.save, {"path": "/nowhere/x"}),
     "Result.save_state": (RESULT.save_state, {"path": "/nowhere/x"}),
     "compare": (rbsdem.compare, {"result": RESULT, "test": TEST}),
-    "envelope": (rbsdem.envelope, {"curve": RESULT}),
+    "envelope": (rbsdem.curves.envelope, {"curve": RESULT}),
     "comparison.energy": (comparison.energy, {"displacement": PATH, "force": PATH}),
     "half_cycles": (comparison.half_cycles, {"displacement": PATH, "force": PATH}),
     "strength_loss": (comparison.strength_loss, {"displacement": PATH, "force": PATH}),
@@ -240,11 +252,11 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         {"column": COLUMN, "motions": MOTION, "levels": [0.1, 0.2]} | MANY,
     ),
     "stripes": (
-        rbsdem.stripes,
+        rbsdem.fragility.stripes,
         {"column": COLUMN, "motions": MOTION, "levels": [0.1, 0.2]} | MANY,
     ),
     "cloud": (
-        rbsdem.cloud,
+        rbsdem.fragility.cloud,
         {"column": COLUMN, "motions": [MOTION] * 1, "scales": [0.1, 0.2, 0.3]} | MANY,
     ),
     "Hunt": (fragility.Hunt, {}),
@@ -288,10 +300,10 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "undetermined": (undetermined, {"column": COLUMN, "test": TEST, "free": ["flexure.k"]}),
     "free_names": (free_names, {"column": COLUMN}),
     "trade": (
-        rbsdem.trade,
+        rbsdem.compare_methods,
         {"column": COLUMN, "displacement": PATH, "budget": 0.01},
     ),
-    "Gauge": (rbsdem.Gauge, {"part": ("cover",), "length": (0.1,)}),
+    "Gauge": (Gauge, {"part": ("cover",), "length": (0.1,)}),
 }
 
 

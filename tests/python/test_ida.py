@@ -11,6 +11,7 @@ from rbsdem.many.hazard import Hazard
 from rbsdem.many.hunt import Hunt
 from rbsdem.many.uncertain import variance_split
 from rbsdem.plot import fragilities
+from rbsdem.springs import Elastic, PeakOriented
 
 HEIGHT = 2.0
 SETTINGS = {"method": "newmark", "dt": 0.002}
@@ -18,7 +19,7 @@ SETTINGS = {"method": "newmark", "dt": 0.002}
 
 def oscillator(k: float = 4e5) -> rbsdem.Column:
     """Shear spring under a mass: the drift is the spectral displacement over the height."""
-    return rbsdem.Column(HEIGHT, 1000.0, rbsdem.Elastic(k), rbsdem.Elastic(4e9), damping=0.05)
+    return rbsdem.Column(HEIGHT, 1000.0, Elastic(k), Elastic(4e9), damping=0.05)
 
 
 @pytest.fixture(scope="module")
@@ -43,11 +44,11 @@ def hunted(column, records) -> rbsdem.fragility.IDA:
 
 def softening() -> rbsdem.Column:
     """A hinge that loses its strength, under an axial load that pulls it down."""
-    hinge = rbsdem.PeakOriented(d_y=0.004, f_y=2e5, d_cap=0.03, f_cap=2.4e5, d_pc=0.06)
+    hinge = PeakOriented(d_y=0.004, f_y=2e5, d_cap=0.03, f_cap=2.4e5, d_pc=0.06)
     return rbsdem.Column(
         3.0,
         1e3,
-        rbsdem.Elastic(5e8),
+        Elastic(5e8),
         hinge,
         top_mass=5e4,
         axial_load=4.9e5,
@@ -215,7 +216,7 @@ def test_stripes_of_an_elastic_column(column, records, omega):
     """All or none at each level: no spread is known, and the step lies between the levels."""
     limit = omega**2 * 0.03 * HEIGHT
     levels = limit * np.array([0.5, 0.9, 1.1, 2.0])
-    found = rbsdem.stripes(column, records, levels, **SETTINGS)
+    found = rbsdem.fragility.stripes(column, records, levels, **SETTINGS)
     counts = found.counts("peak_drift", 0.03)
     assert counts.number.tolist() == [6, 6, 6, 6]
     assert counts.failures.tolist() == [0, 0, 6, 6]
@@ -231,7 +232,7 @@ def test_stripes_of_an_elastic_column(column, records, omega):
 def test_stripes_with_records_of_their_own(column, records, omega):
     limit = omega**2 * 0.03 * HEIGHT
     own = {0.9 * limit: records[:3], 1.1 * limit: records[2:]}
-    found = rbsdem.stripes(column, own, **SETTINGS)
+    found = rbsdem.fragility.stripes(column, own, **SETTINGS)
     counts = found.counts("peak_drift", 0.03)
     assert not counts.paired
     assert counts.number.tolist() == [3, 4]
@@ -243,7 +244,7 @@ def test_stripes_and_ida_tell_the_same_of_a_softening_column(records):
     settings = {"method": "newmark"}
     hunted = rbsdem.ida(softening(), records, levels=Hunt(resolution=0.01, points=1), **settings)
     levels = np.quantile(hunted.collapse_intensity, [0.1, 0.5, 0.7, 0.9])
-    found = rbsdem.stripes(softening(), records, levels, **settings)
+    found = rbsdem.fragility.stripes(softening(), records, levels, **settings)
     below = (hunted.collapse_intensity[0] < levels[:, None]).sum(axis=1)
     assert found.counts().failures.tolist() == below.tolist()
 
@@ -253,7 +254,7 @@ def test_stripes_and_ida_tell_the_same_of_a_softening_column(records):
 
 def test_cloud_of_an_elastic_column(column, records, omega):
     """ln drift = ln Sa - ln(w^2 h), slope 1, no scatter but the error of the method."""
-    found = rbsdem.cloud(column, records, scales=np.geomspace(0.2, 3, 6), **SETTINGS)
+    found = rbsdem.fragility.cloud(column, records, scales=np.geomspace(0.2, 3, 6), **SETTINGS)
     line = found.regression()
     assert line.b == pytest.approx(1, abs=3e-3)
     assert line.a == pytest.approx(-np.log(omega**2 * HEIGHT), abs=3e-3)
@@ -262,7 +263,9 @@ def test_cloud_of_an_elastic_column(column, records, omega):
 
 def test_cloud_without_collapse_is_lognormal(records):
     """theta = exp((ln d - a)/b), beta = sigma/b."""
-    found = rbsdem.cloud(softening(), records, scales=np.geomspace(0.04, 0.4, 6), method="newmark")
+    found = rbsdem.fragility.cloud(
+        softening(), records, scales=np.geomspace(0.04, 0.4, 6), method="newmark"
+    )
     assert not found.runs.collapsed.any()
     line = found.regression()
     curve = found.fragility("peak_drift", 0.01)
@@ -277,7 +280,7 @@ def test_cloud_without_collapse_is_lognormal(records):
 def test_cloud_counts_collapses(records):
     """Jalayer et al. 2017: P(C) + (1 - P(C)) P(D > d | no C), with both parts as fitted."""
     scales = np.geomspace(0.1, 2.0, 6)
-    found = rbsdem.cloud(softening(), records, scales=scales, method="newmark")
+    found = rbsdem.fragility.cloud(softening(), records, scales=scales, method="newmark")
     lost = found.runs.collapsed
     assert 0 < lost.sum() < 6
     curve = found.fragility("peak_drift", 0.02)
@@ -319,8 +322,8 @@ def test_figures(hunted, column, records, tmp_path):
     assert len(fragilities(curves, level=0).get_lines()) == 4
     assert curves["light"].plot(color="red").get_lines()[0].get_color() == "red"
     levels = [2.0, 5.0]
-    assert rbsdem.stripes(column, records, levels, **SETTINGS).plot().get_lines()
-    found = rbsdem.cloud(column, records, scales=np.geomspace(0.2, 3, 6), **SETTINGS)
+    assert rbsdem.fragility.stripes(column, records, levels, **SETTINGS).plot().get_lines()
+    found = rbsdem.fragility.cloud(column, records, scales=np.geomspace(0.2, 3, 6), **SETTINGS)
     assert len(found.plot().get_lines()) == 4
 
 
@@ -345,9 +348,9 @@ def test_figures(hunted, column, records, tmp_path):
         (lambda c, m: rbsdem.ida(c, m[0].scaled(1e-30), levels=[1.0]), "motions without intensity"),
         (lambda c, m: rbsdem.ida(c, m[0], levels=[1.0], measures=[broken], **SETTINGS), "KeyError"),
         (lambda c, m: Hunt(growth=1.0, points=0), "growth = 1 must be.*\nhunt: points = 0"),
-        (rbsdem.stripes, "levels are missing"),
-        (lambda c, m: rbsdem.stripes(c, {1.0: m}, [1.0]), "leave levels out"),
-        (lambda c, m: rbsdem.cloud(c, m, scales=[1.0, 2.0]), "2 factors for 6 motions"),
+        (rbsdem.fragility.stripes, "levels are missing"),
+        (lambda c, m: rbsdem.fragility.stripes(c, {1.0: m}, [1.0]), "leave levels out"),
+        (lambda c, m: rbsdem.fragility.cloud(c, m, scales=[1.0, 2.0]), "2 factors for 6 motions"),
     ],
 )
 def test_bad_input(column, records, call, words):

@@ -11,26 +11,23 @@ import pytest
 
 import rbsdem
 from rbsdem import InputError
+from rbsdem.springs import Bilinear, ConcreteSpring, Elastic, Layered, Pinching, SteelSpring, Takeda
 
-SHEAR = rbsdem.Bilinear(k=7.0387e8, d_y=1.2960e-4, k_post=8.3185e6)
-TAKEDA = rbsdem.Takeda(
-    k_c=2.5428e8, d_c=3.1891e-4, k_y=6.2937e7, d_y=2.7183e-3, k_u=7.5772e6, b1=0.22
-)
+SHEAR = Bilinear(k=7.0387e8, d_y=1.2960e-4, k_post=8.3185e6)
+TAKEDA = Takeda(k_c=2.5428e8, d_c=3.1891e-4, k_y=6.2937e7, d_y=2.7183e-3, k_u=7.5772e6, b1=0.22)
 CAPPED = {"f_y": 1.8e5, "d_y": 3e-3, "f_cap": 2.2e5, "d_cap": 2e-2, "d_pc": 0.2, "f_res": 1e4}
-PINCHING = rbsdem.Pinching(**CAPPED, kappa_f=0.4, kappa_d=0.5, lambda_s=60.0)
-STEEL = [
-    (y, rbsdem.SteelSpring(k=2e8, f_y=4e5, k_post=2e6, endurance=300.0)) for y in (-0.15, 0.0, 0.15)
-]
+PINCHING = Pinching(**CAPPED, kappa_f=0.4, kappa_d=0.5, lambda_s=60.0)
+STEEL = [(y, SteelSpring(k=2e8, f_y=4e5, k_post=2e6, endurance=300.0)) for y in (-0.15, 0.0, 0.15)]
 STRIPS = [
     (
         y,
-        rbsdem.ConcreteSpring(
+        ConcreteSpring(
             k=4e8, f_peak=4e5, d_peak=2e-3, k_soft=2e7, f_res=4e4, misfit=0.1, friction=0.3
         ),
     )
     for y in np.linspace(-0.18, 0.18, 6)
 ]
-LAYERED = rbsdem.Layered(layers=STEEL + STRIPS)
+LAYERED = Layered(layers=STEEL + STRIPS)
 
 
 def column(flexure=TAKEDA, kinematics="pdelta", n=1, **other):
@@ -53,7 +50,7 @@ def assert_goes_on(part, whole, cut, state=True):
 
 
 def test_steps_that_do_not_follow_the_times_go_on_from_their_origin():
-    made = column(rbsdem.Elastic(k=1e8), "small")
+    made = column(Elastic(k=1e8), "small")
     release = {"initial": {"slip": [0.0], "rotation": [0.001]}}
     whole = rbsdem.time_history(made, [0, 1], dt=2.0**-7 * 3, method="newmark", **release)
     cut = 12 * 3 * 2.0**-7
@@ -78,7 +75,7 @@ def test_a_record_with_decimal_times_goes_on_up_to_round_off():
 
 def test_a_path_after_a_motion_begins_in_equilibrium_at_the_displacement_of_the_top():
     k, k_r, height = 1e7, 1e8, 1.6
-    made = rbsdem.Column(height, 6144.0, rbsdem.Elastic(k=k), rbsdem.Elastic(k=k_r), axial_load=0.0)
+    made = rbsdem.Column(height, 6144.0, Elastic(k=k), Elastic(k=k_r), axial_load=0.0)
     moved = rbsdem.time_history(
         made, [0, 0.37], initial={"slip": [0.004], "rotation": [0.001]}, method="newmark"
     )
@@ -109,7 +106,7 @@ def test_joints_are_in_equilibrium_after_a_motion(flexure, kinematics):
 
 
 def test_a_column_that_was_pulled_and_let_go_keeps_its_energy():
-    made = rbsdem.Column(1.6, 6144.0, rbsdem.Elastic(k=1e9), rbsdem.Elastic(k=1e8))
+    made = rbsdem.Column(1.6, 6144.0, Elastic(k=1e9), Elastic(k=1e8))
     pulled = rbsdem.cyclic(made, displacement=[0.01])
     let_go = rbsdem.time_history(made, [0, 1], method="rk4", initial=pulled)
     assert let_go.displacement[0] == 0.01
@@ -144,21 +141,19 @@ def test_the_main_shock_is_in_the_aftershock_and_in_the_pushover():
 
 def test_the_axial_load_may_be_another():
     k = 1e8
-    elastic = {"shear": rbsdem.Elastic(k=7e8)}
-    made = column(rbsdem.Elastic(k=k), axial_load=4e5, **elastic)
+    elastic = {"shear": Elastic(k=7e8)}
+    made = column(Elastic(k=k), axial_load=4e5, **elastic)
     pushed = rbsdem.cyclic(made, displacement=[0.01])
     more = rbsdem.cyclic(
-        column(rbsdem.Elastic(k=k), axial_load=8e5, **elastic),
+        column(Elastic(k=k), axial_load=8e5, **elastic),
         displacement=[0.01],
         initial=pushed,
     )
-    fresh = rbsdem.cyclic(
-        column(rbsdem.Elastic(k=k), axial_load=8e5, **elastic), displacement=[0.01]
-    )
+    fresh = rbsdem.cyclic(column(Elastic(k=k), axial_load=8e5, **elastic), displacement=[0.01])
     assert more.force[0] == pytest.approx(fresh.force[0], rel=1e-11)
     # A layered joint: elastic layers end where they would be without the history.
-    layers = [(y, rbsdem.Elastic(k=1e8)) for y in (-0.1, 0.0, 0.3)]
-    one, two = (column(rbsdem.Layered(layers=layers), axial_load=p) for p in (4e5, 8e5))
+    layers = [(y, Elastic(k=1e8)) for y in (-0.1, 0.0, 0.3)]
+    one, two = (column(Layered(layers=layers), axial_load=p) for p in (4e5, 8e5))
     pushed = rbsdem.cyclic(one, displacement=[0.01], openings=True)
     more = rbsdem.cyclic(two, displacement=[0.02], initial=pushed, openings=True)
     assert more.opening[0, 0] - pushed.opening[0, 0] == pytest.approx(
@@ -229,7 +224,7 @@ def test_a_state_that_is_damaged_is_refused(tmp_path):
 
 def test_a_failed_analysis_has_no_state():
     with pytest.raises(rbsdem.SolveError) as failed:
-        rbsdem.cyclic(column(rbsdem.Bilinear(k=1e8, d_y=1e-3, k_post=0.0)), force=[1e4, 1e6])
+        rbsdem.cyclic(column(Bilinear(k=1e8, d_y=1e-3, k_post=0.0)), force=[1e4, 1e6])
     assert failed.value.result.state is None
     collapsed = rbsdem.cyclic(column(), displacement=[0.01, 0.05, 0.1], collapse_drift=0.02)
     assert collapsed.summary["status"] == "collapsed"
@@ -290,7 +285,7 @@ def test_both_doors_write_and_begin_in_the_same_state(run_cli, tmp_path):
 
 @pytest.mark.parametrize("kinematics", ["pdelta", "finite"])
 def test_velocity_and_acceleration_are_derivatives_of_the_displacement(kinematics):
-    made = column(rbsdem.Elastic(k=1e8), kinematics, 2, shear=rbsdem.Elastic(k=7e8))
+    made = column(Elastic(k=1e8), kinematics, 2, shear=Elastic(k=7e8))
     moved = rbsdem.time_history(
         made,
         np.arange(0, 0.2, 1e-4),

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import Bilinear, Elastic, Layered
+from rbsdem.springs import Bilinear, Elastic, Layered
 
 DRIVEN = (0.012, -0.012, 0.03, -0.03, 0.045, 0.0)
 
@@ -147,7 +147,7 @@ def test_response_in_time() -> None:
     ground = 14 * np.sin(4 * np.pi * time) * np.minimum(time / 0.3, 1)
     column = one_body()
     keywords = {"ground_acceleration": ground, "axial_load": load}
-    with pytest.warns(rbsdem.AccuracyWarning, match=r"0\.1"):
+    with pytest.warns(rbsdem.errors.AccuracyWarning, match=r"0\.1"):
         result = rbsdem.time_history(column, time, method="newmark", dt=0.005, **keywords)
     rows = [25, 50, 100]
     np.testing.assert_allclose(
@@ -158,7 +158,7 @@ def test_response_in_time() -> None:
     )
 
 
-@pytest.mark.filterwarnings("ignore::rbsdem.AccuracyWarning")
+@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
 @pytest.mark.parametrize("method", ["newmark", "generalised_alpha"])
 def test_order_two_in_time(method: str) -> None:
     """The error falls with the square of the step; rk4 with tiny steps is the reference."""
@@ -344,7 +344,7 @@ def test_high_axial_load_ends_the_path() -> None:
     )
     path = 1.6 * rbsdem.protocol([0.0025, 0.005, 0.01, 0.02], cycles=2)
     columns = {0.1: section.column(1.6, axial_load=0.1 * 46.5e6 * 0.16)}
-    with pytest.warns(rbsdem.AccuracyWarning, match="axial load ratio = 0.9 is outside"):
+    with pytest.warns(rbsdem.errors.AccuracyWarning, match="axial load ratio = 0.9 is outside"):
         columns[0.9] = section.column(1.6, axial_load=0.9 * 46.5e6 * 0.16)
     ends = {}
     for share in (0.1, 0.9):

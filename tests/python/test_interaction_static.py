@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import Bilinear, Elastic, Layered
+from rbsdem.springs import Bilinear, Elastic, Layered
 
 HEIGHT, K_V, K_M, RATIO = 1.5, 4e7, 5e6, 1.5
 WIDE = np.array([0.2, -0.3, 0.6, 0.9, 1.2, 0.1])

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import Bilinear, Elastic, Layered
+from rbsdem.springs import Bilinear, ConcreteSpring, Elastic, Layered
 
 FIBRES, WIDTH, DEPTH, STRESS, STRAIN = 40, 0.3, 0.5, 30e6, 1e-6
 PLACES = DEPTH * ((np.arange(FIBRES) + 0.5) / FIBRES - 0.5)
@@ -100,7 +100,7 @@ def test_concrete_and_bars() -> None:
     The softening is so slow that it takes less than 0.2 % of the strength on the way there.
     """
     crushing, bar = 0.9 * FORCE, 4.0 * FORCE
-    concrete = rbsdem.ConcreteSpring(
+    concrete = ConcreteSpring(
         k=1.0001 * crushing / STRAIN,
         f_peak=crushing,
         d_peak=STRAIN,
@@ -131,7 +131,7 @@ def test_a_joint_cut_from_a_section() -> None:
     layout = rbsdem.Layout(12, 0.016, rbsdem.Steel(446e6, 447e6))
     section = rbsdem.RectangularSection(0.4, 0.4, rbsdem.Concrete(30e6), layout=layout, cover=0.02)
     law, area = section.concrete_law, 0.4 * 0.4 / 60
-    concrete = rbsdem.ConcreteSpring(
+    concrete = ConcreteSpring(
         k=law["ec"] * area,
         f_peak=law["fc"] * area,
         d_peak=law["eps0"],

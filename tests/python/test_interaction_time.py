@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import Bilinear, Elastic, Layered
+from rbsdem.springs import Bilinear, Elastic, Layered
 
 TIME = np.linspace(0, 0.5, 51)
 LOAD = 3e5 + 2e5 * np.sin(6.2 * np.pi * TIME)

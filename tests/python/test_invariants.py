@@ -34,7 +34,7 @@ from rbsdem import _core
 from rbsdem.many.inputs import Motion
 from rbsdem.many.plan import Plan, compute
 from rbsdem.model.ends import turned
-from rbsdem.springs import Layered, Spring
+from rbsdem.springs import Elastic, Layered, Spring
 
 TIMES = float(os.environ.get("RBSDEM_CASES", "1"))
 SEED = int(os.environ.get("RBSDEM_SEED", "0"))
@@ -580,7 +580,7 @@ def same_but_round_off(
 
 
 def with_huge_axial_springs(column: rbsdem.Column, stiffness: float) -> rbsdem.Column:
-    springs = rbsdem.Elastic(stiffness)
+    springs = Elastic(stiffness)
     beneath = column.footing
     if beneath is not None:
         beneath = replace(beneath, axial_spring=springs)
@@ -621,7 +621,7 @@ def test_huge_axial_springs_change_nothing(rng: Rng) -> None:
 def test_a_huge_footing_changes_nothing(rng: Rng) -> None:
     """A footing that hardly moves is the ground: to the share of the stiffnesses, 1e-6."""
     column, loading = static_case(rng, footing=None, axial_height=None)
-    stiff = rbsdem.Elastic(1e8 * stiffest(column) * max(1.0, column.height) ** 2)
+    stiff = Elastic(1e8 * stiffest(column) * max(1.0, column.height) ** 2)
     beneath = rbsdem.Footing(
         stiff, stiff, stiff if column.opens else None, mass=1.0, inertia=1.0, height=0.0
     )

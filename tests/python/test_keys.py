@@ -18,7 +18,7 @@ import rbsdem
 from rbsdem import _core
 from rbsdem.model.damping import Damping
 from rbsdem.solve import analysis
-from rbsdem.springs import SPRINGS
+from rbsdem.springs import SPRINGS, Elastic, Layered
 
 KEYS = _core.keys()
 RULES = KEYS["rules"]
@@ -74,15 +74,15 @@ def test_places_of_a_rule_are_where_a_column_takes_it(rule):
     """`suits` of the Fortran part, seen through the door of a column."""
     values = GOOD.get(rule)
     if values is None:
-        values = {"layers": [(-0.1, rbsdem.Elastic(1e8)), (0.1, rbsdem.Elastic(1e8))]}
-    spring, elastic = SPRINGS[rule](**values), rbsdem.Elastic(1e8)
+        values = {"layers": [(-0.1, Elastic(1e8)), (0.1, Elastic(1e8))]}
+    spring, elastic = SPRINGS[rule](**values), Elastic(1e8)
     taken = set()
     column = {"height": 1, "mass": 1, "shear": elastic, "flexure": elastic}
     for place, made in {
         "shear": lambda: {"shear": spring},
         "flexure": lambda: {"flexure": spring},
         "axial": lambda: {"axial_spring": spring},
-        "layer": lambda: {"flexure": rbsdem.Layered([(-0.1, spring), (0.1, elastic)])},
+        "layer": lambda: {"flexure": Layered([(-0.1, spring), (0.1, elastic)])},
     }.items():
         try:
             rbsdem.Column(**(column | made()))
@@ -143,7 +143,7 @@ def test_keywords_of_the_analyses_are_the_keys_of_their_groups():
 
 def test_drives_of_a_case_are_the_loads_of_python():
     drives = group("loading")["drive"]["choices"]
-    assert set(drives) <= {field.name for field in fields(rbsdem.Case)}
+    assert set(drives) <= {field.name for field in fields(rbsdem.results.case.Case)}
 
 
 # ---- the executable, the documents ---------------------------------------------------------------

@@ -10,26 +10,27 @@ import numpy as np
 import pytest
 
 import rbsdem
+from rbsdem.springs import Compression, ConcreteSpring, Elastic, Layered, SteelSpring, Takeda
 
 ARM = 0.2  # m
 K, FY, POST = 4e8, 4e5, 4e6  # N/m, N, N/m
 LOAD = 8e5  # N
 
 
-def steel(**changes: float) -> rbsdem.SteelSpring:
-    return rbsdem.SteelSpring(k=K, f_y=FY, k_post=POST, **changes)
+def steel(**changes: float) -> SteelSpring:
+    return SteelSpring(k=K, f_y=FY, k_post=POST, **changes)
 
 
-def concrete(**changes: float) -> rbsdem.ConcreteSpring:
+def concrete(**changes: float) -> ConcreteSpring:
     numbers = {"k": 2e9, "f_peak": 1e6, "d_peak": 8e-4, "k_soft": 1e8, "f_res": 2e5}
-    return rbsdem.ConcreteSpring(**numbers | changes)
+    return ConcreteSpring(**numbers | changes)
 
 
-def joint(**changes: float) -> rbsdem.Layered:
+def joint(**changes: float) -> Layered:
     """A symmetric section: four layers of concrete between two of steel."""
     ys = np.array([-0.15, -0.05, 0.05, 0.15])
     layers = [(y, concrete(**changes)) for y in ys]
-    return rbsdem.Layered([(-ARM, steel()), *layers, (ARM, steel())])
+    return Layered([(-ARM, steel()), *layers, (ARM, steel())])
 
 
 def wander(seed: int, points: int = 60) -> np.ndarray:
@@ -54,12 +55,12 @@ def test_contacts_without_an_axial_load_stand_on_a_corner() -> None:
     is w = k_c c turn/(2 k_b + k_c), and M = 2 k_b a^2 turn + k_c c (c turn - w).
     """
     k_b, k_c, a, c = 1.3e9, 1.05e9, 0.16, 0.1
-    bar, contact = rbsdem.Elastic(k_b), rbsdem.Compression(k_c)
-    spring = rbsdem.Layered([(-a, bar), (-c, contact), (c, contact), (a, bar)])
+    bar, contact = Elastic(k_b), Compression(k_c)
+    spring = Layered([(-a, bar), (-c, contact), (c, contact), (a, bar)])
     turn = np.array([0.0, 1e-3, 0.0, -1e-3, 1e-9, 0.0, 0.0, 2e-3])
     stiffness = 2 * k_b * a**2 + k_c * c**2 * (1 - k_c / (2 * k_b + k_c))
     np.testing.assert_allclose(spring.response(turn), stiffness * turn, rtol=1e-12)
-    beneath = rbsdem.Column(1.5, 3000.0, rbsdem.Elastic(1e9), spring)
+    beneath = rbsdem.Column(1.5, 3000.0, Elastic(1e9), spring)
     time = 0.005 * np.arange(100)
     for method in ("rk4", "rk45", "newmark"):
         run = rbsdem.time_history(
@@ -92,14 +93,14 @@ def test_concrete_refuses(changes: dict[str, float], message: str) -> None:
         concrete(**changes)
 
 
-def column(spring: rbsdem.Layered, axial_load: float) -> rbsdem.Column:
+def column(spring: Layered, axial_load: float) -> rbsdem.Column:
     return rbsdem.Column(
-        1.6, 600.0, rbsdem.Elastic(1e9), spring, kinematics="pdelta", axial_load=axial_load
+        1.6, 600.0, Elastic(1e9), spring, kinematics="pdelta", axial_load=axial_load
     )
 
 
 def test_axial_load_over_the_capacity_is_refused() -> None:
-    blocks = rbsdem.Layered([(y, concrete()) for y in (-ARM, 0.0, ARM)])
+    blocks = Layered([(y, concrete()) for y in (-ARM, 0.0, ARM)])
     assert column(blocks, 2.9e6).n == 1
     with pytest.raises(rbsdem.InputError, match=r"cannot carry the axial load of 3\.1e\+06 N"):
         column(blocks, 3.1e6)
@@ -110,12 +111,12 @@ def test_axial_load_over_the_capacity_is_refused() -> None:
 def test_static_path_is_the_response_of_the_joint() -> None:
     spring = joint()
     path = [0.004, -0.004, 0.008]
-    rigid = rbsdem.Column(1.0, 600.0, rbsdem.Elastic(1e14), spring)
+    rigid = rbsdem.Column(1.0, 600.0, Elastic(1e14), spring)
     result = rbsdem.cyclic(rigid, displacement=path)
     np.testing.assert_allclose(result.force, spring.response(path), rtol=1e-4)
 
 
 def test_layers_refuse_what_is_no_normal_spring() -> None:
-    takeda = rbsdem.Takeda(k_c=2.0, d_c=0.1, k_y=1.0, d_y=0.2, k_u=0.1)
+    takeda = Takeda(k_c=2.0, d_c=0.1, k_y=1.0, d_y=0.2, k_u=0.1)
     with pytest.raises(rbsdem.InputError, match="layer 2"):
-        rbsdem.Layered([(0.1, rbsdem.Elastic(1.0)), (0.2, takeda)])
+        Layered([(0.1, Elastic(1.0)), (0.2, takeda)])

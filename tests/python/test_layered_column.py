@@ -16,6 +16,7 @@ from rbsdem import peer
 from rbsdem.errors import InputError
 from rbsdem.section.directions import DIRECTIONS
 from rbsdem.section.parameters import FACTORS, VERSIONS, parameters, versions
+from rbsdem.springs import Elastic
 
 SPECIMEN = peer.Specimen(
     name="Square",
@@ -208,7 +209,7 @@ def test_parameters_of_bond_and_of_cracked_shear_are_factors():
     slopes = [(foot.f_y - foot.f_c) / (foot.d_y - foot.d_c) for foot in feet]
     assert slopes[1] / slopes[0] == pytest.approx(0.5)
     assert (feet[0].b0, feet[1].b0) == (0.0, 0.3)
-    assert all(isinstance(spring, rbsdem.Elastic) for spring in plain.joints("flexure")[1:])
+    assert all(isinstance(spring, Elastic) for spring in plain.joints("flexure")[1:])
 
 
 # ---- from a section ------------------------------------------------------------------------------
@@ -385,8 +386,8 @@ KEPT = {
     "kinematics": {"kinematics": "finite"},
     "masses": {"mass": None, "masses": (100.0, 400.0)},
     "lengths": {"lengths": (0.3, 1.3)},
-    "shear": {"shear": rbsdem.Elastic(1e9)},
-    "flexure": {"flexure": rbsdem.Elastic(1e8)},
+    "shear": {"shear": Elastic(1e9)},
+    "flexure": {"flexure": Elastic(1e8)},
     "self_weight": {"self_weight": True},
     "gravity": {"gravity": 9.0},
     "top_mass": {"top_mass": 2e4},
@@ -399,7 +400,7 @@ KEPT = {
     "model": {"model": "mine"},
     "axial_follows": {"kinematics": "finite", "axial_follows": True},
     "force_follows": {"kinematics": "finite", "force_follows": True},
-    "footing": {"footing": rbsdem.Footing(rbsdem.Elastic(1e9), rbsdem.Elastic(1e9))},
+    "footing": {"footing": rbsdem.Footing(Elastic(1e9), Elastic(1e9))},
 }
 # With the height and the number of bodies the springs are others; joints that open have no layers.
 OTHERS = {"height", "n", "recipe", "axial_spring", "top"}
@@ -497,7 +498,7 @@ def test_parameters_of_another_model_are_held_to_the_same_limits():
 
 def test_a_parameter_beyond_its_limit_starts_at_the_limit():
     """The version's stiffness above a stocky hinge of high axial load would be above 2."""
-    with pytest.warns(rbsdem.AccuracyWarning, match="axial load ratio"):
+    with pytest.warns(rbsdem.errors.AccuracyWarning, match="axial load ratio"):
         column = SECTION.column(1.6, axial_load=5e6)
     stiffness = column.parameters["stiffness"]
     assert column.recipe.parameters.hinge.stiffness > column.recipe.limits["stiffness"][1]
@@ -508,23 +509,23 @@ def test_a_parameter_beyond_its_limit_starts_at_the_limit():
 
 def test_another_axial_load_draws_the_springs_again():
     """`dataclasses.replace` gives the column that the section makes for that load, bit for bit."""
-    section = rbsdem.paper_sections()["zahn_7"].section
+    section = rbsdem.peer.paper_sections()["zahn_7"].section
     column, other = (section.column(1.6, axial_load=load) for load in (0.5e6, 1.0e6))
     again = replace(column, axial_load=1.0e6)
     assert again == other
     assert again.recipe == other.recipe
     assert replace(replace(column, damping=0.02), axial_load=1.0e6) == replace(other, damping=0.02)
     # Springs of the user's own stay as they are.
-    own = rbsdem.Elastic(1e9)
+    own = Elastic(1e9)
     mixed = replace(replace(column, shear=[own, own]), axial_load=1.0e6)
     assert mixed.joints("shear") == (own, own)
     assert mixed.flexure == other.flexure
-    with pytest.warns(rbsdem.AccuracyWarning, match="axial load ratio"):
+    with pytest.warns(rbsdem.errors.AccuracyWarning, match="axial load ratio"):
         replace(column, axial_load=0.9 * section.concrete.fc * section.gross_area)
 
 
 def test_sizes_that_the_springs_are_made_for_are_not_changed_alone():
-    section = rbsdem.paper_sections()["zahn_7"].section
+    section = rbsdem.peer.paper_sections()["zahn_7"].section
     column = section.column(1.6, axial_load=0.5e6)
     for change in ({"height": 2.0}, {"n": 3}):
         with pytest.raises(rbsdem.InputError, match="make the column anew"):
@@ -533,5 +534,5 @@ def test_sizes_that_the_springs_are_made_for_are_not_changed_alone():
     other = rbsdem.double_curvature(replace(column, axial_load=1e6))
     assert replace(twice, axial_load=1e6) == other
     # Springs of the user's own suit any size.
-    own = rbsdem.Elastic(1e9)
+    own = Elastic(1e9)
     assert replace(column, height=2.0, n=1, lengths=None, shear=own, flexure=own).height == 2.0

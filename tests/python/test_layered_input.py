@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import rbsdem
+from rbsdem.springs import ConcreteSpring, Elastic, Layered, SteelSpring
 
 CONCRETE = (
     "rule = 'concrete', k = 2e9, f_peak = 6e5, d_peak = 6e-4, k_soft = 4e7, f_res = 2e5, "
@@ -17,8 +18,8 @@ STEEL = (
     "rule = 'steel', k = 6e8, f_y = 5.4e5, k_post = 6e6, r0 = 8, cr1 = 0.83, cr2 = 0.42, "
     "isotropic_hardening = 0.005, endurance = 800"
 )
-BLOCK = rbsdem.ConcreteSpring(2e9, 6e5, 6e-4, 4e7, 2e5, 1.2, 0.35, 0.4, 0.03)
-BAR = rbsdem.SteelSpring(6e8, 5.4e5, 6e6, 8, 0.83, 0.42, 0.005, endurance=800)
+BLOCK = ConcreteSpring(2e9, 6e5, 6e-4, 4e7, 2e5, 1.2, 0.35, 0.4, 0.03)
+BAR = SteelSpring(6e8, 5.4e5, 6e6, 8, 0.83, 0.42, 0.005, endurance=800)
 LAYERED = "rule = 'layered'"
 PLACES = (-0.15, -0.05, 0.05, 0.15)
 SPRINGS = ["id = 1, " + CONCRETE, "id = 2, " + STEEL]
@@ -38,9 +39,9 @@ def groups(**changes: str | list[str]) -> Groups:
     } | changes
 
 
-def spring(strips: rbsdem.Spring = BLOCK, bars: rbsdem.Spring = BAR) -> rbsdem.Layered:
+def spring(strips: rbsdem.Spring = BLOCK, bars: rbsdem.Spring = BAR) -> Layered:
     layers = [(y, strips) for y in PLACES] + [(y, bars) for y in (-0.16, 0.16)]
-    return rbsdem.Layered(tuple(layers))
+    return Layered(tuple(layers))
 
 
 def write(folder: Path, text: str) -> Path:
@@ -49,7 +50,7 @@ def write(folder: Path, text: str) -> Path:
     return path
 
 
-ELASTIC = rbsdem.Elastic(1e8)
+ELASTIC = Elastic(1e8)
 DOORS = {
     "one joint": (groups(), (spring(),)),
     "without joint: every joint": (groups(column=TWO), (spring(), spring())),
@@ -82,7 +83,7 @@ DOORS = {
                 "joint = 1, " + LAYERS,
             ],
         ),
-        (spring(), spring(bars=rbsdem.Elastic(6e8))),
+        (spring(), spring(bars=Elastic(6e8))),
     ),
 }
 

@@ -11,7 +11,7 @@ import pytest
 import reference_layered as reference
 from numpy.typing import NDArray
 
-import rbsdem
+from rbsdem.springs import ConcreteSpring, Layered, SteelSpring
 
 Array = NDArray[np.float64]
 
@@ -50,7 +50,7 @@ def test_concrete_is_the_reference_to_round_off(seed: int, changes: dict[str, fl
     rng = np.random.default_rng(seed)
     path = rng.uniform(-1, 0.4, 25) * 10 ** rng.uniform(-0.7, 1, 25) * CONCRETE["d_peak"]
     numbers = CONCRETE | changes
-    got = rbsdem.ConcreteSpring(**numbers).response(path)
+    got = ConcreteSpring(**numbers).response(path)
     expected = fine(reference.Concrete(**numbers), path, 60)
     np.testing.assert_allclose(got, expected, atol=1e-11 * CONCRETE["f_peak"])
 
@@ -69,7 +69,7 @@ def test_concrete_is_the_reference_to_round_off(seed: int, changes: dict[str, fl
 def test_steel_is_the_reference_to_round_off(seed: int, changes: dict[str, float]) -> None:
     path = np.random.default_rng(seed).uniform(-1, 1, 20) * np.linspace(0.5, 10, 20) * D_Y
     numbers = STEEL | changes
-    got = rbsdem.SteelSpring(**numbers).response(path)
+    got = SteelSpring(**numbers).response(path)
     expected = fine(reference.Steel(**numbers), path, 7)
     np.testing.assert_allclose(got, expected, atol=1e-12 * STEEL["f_y"])
 
@@ -77,7 +77,7 @@ def test_steel_is_the_reference_to_round_off(seed: int, changes: dict[str, float
 def test_wear_of_steel_is_the_reference_to_first_order() -> None:
     path = np.random.default_rng(1).uniform(-1, 1, 20) * np.linspace(0.5, 10, 20) * D_Y
     numbers = STEEL | {"endurance": 100.0}
-    got = rbsdem.SteelSpring(**numbers).response(path)
+    got = SteelSpring(**numbers).response(path)
     coarse, finer = (
         np.max(np.abs(got - fine(reference.Steel(**numbers), path, steps))) for steps in (100, 400)
     )
@@ -106,7 +106,7 @@ def layers(concrete, steel) -> list:
 @pytest.mark.parametrize("ratio", [0.0, 0.15, 0.4])
 def test_joint_is_the_reference_to_first_order(path: Array, ratio: float) -> None:
     load = ratio * CAPACITY
-    spring = rbsdem.Layered(layers(rbsdem.ConcreteSpring, rbsdem.SteelSpring))
+    spring = Layered(layers(ConcreteSpring, SteelSpring))
     got = spring.response(path, load)
     expected = reference.response(load, layers(reference.Concrete, reference.Steel), path, 60)
     assert np.max(np.abs(got - expected)) < 1e-3 * np.max(np.abs(expected))

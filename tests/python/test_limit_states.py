@@ -14,8 +14,9 @@ from rich.console import Console
 
 import rbsdem
 from rbsdem import InputError, plot
+from rbsdem.springs import Bilinear, Elastic, Layered, PeakOriented, SteelSpring
 
-SECTION = rbsdem.paper_sections()["zahn_7"].section
+SECTION = rbsdem.peer.paper_sections()["zahn_7"].section
 COLUMN = SECTION.column(1.6, axial_load=1.01e6)
 PATH = 1.6 * rbsdem.protocol([0.0025, 0.005, 0.01, 0.02, 0.03, 0.05, 0.07], cycles=2)
 RESULT = rbsdem.cyclic(COLUMN, displacement=PATH, openings=True)
@@ -23,8 +24,8 @@ RESULT = rbsdem.cyclic(COLUMN, displacement=PATH, openings=True)
 
 def test_states_of_springs_are_where_their_lines_end():
     """A cantilever of one bilinear spring: the rotation at yield times the height, to round-off."""
-    flexure = rbsdem.Bilinear(k=1e8, d_y=0.004, k_post=1e6)
-    column = rbsdem.Column(2.0, 100.0, rbsdem.Elastic(1e14), flexure)
+    flexure = Bilinear(k=1e8, d_y=0.004, k_post=1e6)
+    column = rbsdem.Column(2.0, 100.0, Elastic(1e14), flexure)
     states = rbsdem.cyclic(column, displacement=np.linspace(0.0, 0.02, 30)).limit_states()
     assert states.names() == ["first_yield"]
     assert states["first_yield"].displacement == pytest.approx(0.008, rel=1e-6)
@@ -32,7 +33,7 @@ def test_states_of_springs_are_where_their_lines_end():
     assert math.isnan(states.drift("cap"))
 
 
-@pytest.mark.filterwarnings("ignore::rbsdem.AccuracyWarning")
+@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
 def test_what_codes_are_not_for_does_not_hide_the_rest():
     """No relation for bar buckling is for tension; cracking and yield are strains all the same."""
     column = SECTION.column(1.6, axial_load=-0.3e6)
@@ -41,8 +42,8 @@ def test_what_codes_are_not_for_does_not_hide_the_rest():
 
 
 def test_first_state_of_either_side_counts():
-    flexure = rbsdem.Bilinear(k=1e8, d_y=0.004, k_post=1e6)
-    column = rbsdem.Column(2.0, 100.0, rbsdem.Elastic(1e14), flexure)
+    flexure = Bilinear(k=1e8, d_y=0.004, k_post=1e6)
+    column = rbsdem.Column(2.0, 100.0, Elastic(1e14), flexure)
     path = [0.0, 0.004, -0.012, 0.02]
     state = rbsdem.cyclic(column, displacement=path).limit_states()["first_yield"]
     assert (state.row, state.time) == (2, pytest.approx(1.75))
@@ -51,10 +52,10 @@ def test_first_state_of_either_side_counts():
 
 def test_each_side_has_its_own_lines():
     """Of a capped spring that yields earlier to the negative side."""
-    flexure = rbsdem.PeakOriented(
+    flexure = PeakOriented(
         d_y=0.004, f_y=4e5, d_cap=0.02, f_cap=5e5, d_pc=0.03, d_y_neg=0.002, f_y_neg=2e5
     )
-    column = rbsdem.Column(2.0, 100.0, rbsdem.Elastic(1e14), flexure)
+    column = rbsdem.Column(2.0, 100.0, Elastic(1e14), flexure)
     result = rbsdem.cyclic(column, displacement=[0.0, 0.006, -0.012, 0.0])
     state = result.limit_states()["first_yield"]
     assert state.displacement == pytest.approx(-0.004)
@@ -66,11 +67,11 @@ def test_a_spring_without_a_cracking_point_does_not_crack():
     """A rigid column on a capped hinge: its only states are yield and cap, at theirs."""
     capped = {"d_y": 0.004, "f_y": 4e5, "d_cap": 0.02, "f_cap": 5e5, "d_pc": 0.03}
     slip = {"d_y": 0.01, "f_y": 1e9, "d_cap": 0.02, "f_cap": 1e9, "d_pc": 0.1}
-    column = rbsdem.Column(2.0, 100.0, rbsdem.PeakOriented(**slip), rbsdem.PeakOriented(**capped))
+    column = rbsdem.Column(2.0, 100.0, PeakOriented(**slip), PeakOriented(**capped))
     path = np.linspace(0.0, 0.05, 30)
     states = rbsdem.cyclic(column, displacement=path).limit_states()
     assert states.names() == ["first_yield", "cap"]
-    cracked = replace(column, flexure=rbsdem.PeakOriented(**capped, d_c=0.001, f_c=2e5))
+    cracked = replace(column, flexure=PeakOriented(**capped, d_c=0.001, f_c=2e5))
     states = rbsdem.cyclic(cracked, displacement=path).limit_states()
     assert states.names() == ["cracking", "first_yield", "cap"]
     # Nor does concrete without tensile strength, under no load, crack at time 0.
@@ -81,22 +82,22 @@ def test_a_spring_without_a_cracking_point_does_not_crack():
 
 def test_a_steel_spring_yields():
     """At 6.2 times f_y/k the ductility is 6.2, in flexure and in shear."""
-    steel = rbsdem.SteelSpring(k=1e8, f_y=4e5, k_post=1e6)
-    column = rbsdem.Column(2.0, 100.0, rbsdem.Elastic(1e14), steel)
+    steel = SteelSpring(k=1e8, f_y=4e5, k_post=1e6)
+    column = rbsdem.Column(2.0, 100.0, Elastic(1e14), steel)
     result = rbsdem.cyclic(column, displacement=[0.0, 6.2 * 0.008])
     assert result.hinge().ductility == pytest.approx(6.2, rel=1e-4)
     assert result.hinge().plastic_rotation[-1] == pytest.approx(5.2 * 0.004, rel=1e-4)
     assert result.limit_states()["first_yield"].displacement == pytest.approx(0.008, rel=1e-4)
-    shear = rbsdem.Column(2.0, 100.0, steel, rbsdem.Elastic(1e14))
+    shear = rbsdem.Column(2.0, 100.0, steel, Elastic(1e14))
     state = rbsdem.cyclic(shear, displacement=[0.0, 6.2 * 0.004]).limit_states()["shear_yield"]
     assert state.displacement == pytest.approx(0.004, rel=1e-4)
 
 
 def test_layers_without_a_drawing_yield_where_their_steel_does():
     """Two bars 0.4 m apart that share nothing else: the rotation at yield is 2 f_y/k/0.4."""
-    steel = rbsdem.SteelSpring(k=1e8, f_y=2e5, k_post=1e6, r0=20.0)
-    flexure = rbsdem.Layered([(-0.2, steel), (0.2, steel)])
-    column = rbsdem.Column(2.0, 100.0, rbsdem.Elastic(1e14), flexure)
+    steel = SteelSpring(k=1e8, f_y=2e5, k_post=1e6, r0=20.0)
+    flexure = Layered([(-0.2, steel), (0.2, steel)])
+    column = rbsdem.Column(2.0, 100.0, Elastic(1e14), flexure)
     path = np.linspace(0.0, 0.06, 200)
     result = rbsdem.cyclic(column, displacement=path, openings=True)
     state = result.limit_states()["first_yield"]
@@ -106,8 +107,8 @@ def test_layers_without_a_drawing_yield_where_their_steel_does():
 
 def test_plastic_rotation_and_curvature_of_a_hinge():
     """A rigid column on one bilinear hinge of 0.25 m: the rotation is the drift."""
-    flexure = rbsdem.Bilinear(k=1e8, d_y=0.004, k_post=1e6)
-    column = rbsdem.Column(2.0, 100.0, rbsdem.Elastic(1e14), flexure)
+    flexure = Bilinear(k=1e8, d_y=0.004, k_post=1e6)
+    column = rbsdem.Column(2.0, 100.0, Elastic(1e14), flexure)
     result = rbsdem.cyclic(column, displacement=[0.0, 0.006, 0.02, 0.0, -0.014])
     hinge = result.hinge(length=0.25)
     assert hinge.yield_rotation == (0.004, 0.004)
@@ -194,14 +195,14 @@ def test_states_do_not_depend_on_what_comes_after():
 
 
 def test_ends_of_a_path_are_states():
-    flexure = rbsdem.Elastic(1e8)
-    column = rbsdem.Column(2.0, 100.0, rbsdem.Elastic(1e9), flexure)
+    flexure = Elastic(1e8)
+    column = rbsdem.Column(2.0, 100.0, Elastic(1e9), flexure)
     path = np.linspace(0.0, 0.2, 40)
     states = rbsdem.cyclic(column, displacement=path, collapse_drift=0.05).limit_states()
     assert states["collapse"].row == states.result.time.size - 1
     # Near the squash load the layers lose the axial load under a small drift.
-    other = rbsdem.paper_sections()["soesianawati_1"].section
-    with pytest.warns(rbsdem.AccuracyWarning, match="axial load ratio"):
+    other = rbsdem.peer.paper_sections()["soesianawati_1"].section
+    with pytest.warns(rbsdem.errors.AccuracyWarning, match="axial load ratio"):
         heavy = other.column(1.6, axial_load=0.9 * other.concrete.fc * other.gross_area)
     lost = rbsdem.cyclic(heavy, displacement=np.linspace(0.0, 0.1, 200), openings=True)
     assert lost.summary["status"] == "axial_failure"
@@ -261,6 +262,6 @@ def test_state_of_the_section():
     plt.close(section.figure)
     with pytest.raises(InputError, match="outside"):
         plot.section_state(RESULT, 1e9)
-    spring = rbsdem.cyclic(rbsdem.paper_columns()["zahn_7"], displacement=[0.0, 0.01])
+    spring = rbsdem.cyclic(rbsdem.peer.paper_columns()["zahn_7"], displacement=[0.0, 0.01])
     with pytest.raises(InputError, match="not made from a section"):
         plot.section_state(spring, 0.0)

@@ -10,6 +10,7 @@ import pytest
 import rbsdem
 from rbsdem import _core
 from rbsdem.solve.methods import IMPLICIT, IN_TIME, METHODS
+from rbsdem.springs import Elastic
 
 ROOT = Path(__file__).resolve().parents[2]
 VALUES = {
@@ -41,9 +42,7 @@ def test_names_in_time() -> None:
 
 
 def column(kinematics: str) -> rbsdem.Column:
-    return rbsdem.Column(
-        1.0, 100.0, rbsdem.Elastic(1e6), rbsdem.Elastic(1e6), kinematics=kinematics
-    )
+    return rbsdem.Column(1.0, 100.0, Elastic(1e6), Elastic(1e6), kinematics=kinematics)
 
 
 @pytest.mark.parametrize("method", IN_TIME)

@@ -12,6 +12,7 @@ import pytest
 from scipy.linalg import eigh
 
 import rbsdem
+from rbsdem.springs import Elastic
 
 # Three bodies, nothing equal to anything.
 LENGTHS = np.array([0.5, 0.8, 0.3])
@@ -26,8 +27,8 @@ def chain(**options) -> rbsdem.Column:
     return rbsdem.Column(
         LENGTHS.sum(),
         None,
-        options.pop("shear", rbsdem.Elastic(3.0e6)),
-        options.pop("flexure", rbsdem.Elastic(2.0e6)),
+        options.pop("shear", Elastic(3.0e6)),
+        options.pop("flexure", Elastic(2.0e6)),
         n=N,
         lengths=LENGTHS,
         masses=MASSES,
@@ -237,7 +238,7 @@ def test_e4_rotary_inertia_has_length_squared():
     corrected = square_frequencies(*si, power=2), square_frequencies(*mm, power=2)
     np.testing.assert_allclose(*corrected, rtol=1e-12)
     for (mass, length, k_v, k_m), expected in zip((si, mm), corrected, strict=True):
-        column = rbsdem.Column(length, mass, rbsdem.Elastic(k_v), rbsdem.Elastic(k_m))
+        column = rbsdem.Column(length, mass, Elastic(k_v), Elastic(k_m))
         np.testing.assert_allclose(rbsdem.modes(column).omega ** 2, expected, rtol=1e-12)
 
 
@@ -246,7 +247,7 @@ def test_e4_rotary_inertia_is_that_of_a_slender_rod():
     points, weights = np.polynomial.legendre.leggauss(3)
     x = HEIGHT / 2 * (points + 1)
     about_the_joint = np.sum(weights * HEIGHT / 2 * (MASS / HEIGHT) * x**2)
-    column = rbsdem.Column(HEIGHT, MASS, rbsdem.Elastic(K_V), rbsdem.Elastic(K_M))
+    column = rbsdem.Column(HEIGHT, MASS, Elastic(K_V), Elastic(K_M))
     for form in ("symmetric", "paper"):
         assert rbsdem.matrices(column, form).mass[1, 1] == pytest.approx(about_the_joint, rel=1e-14)
     printed = MASS * HEIGHT**3 / 12 + MASS * HEIGHT**2 / 4
@@ -274,7 +275,7 @@ def test_e5_eq_6_has_the_rotary_inertia_below():
     np.testing.assert_allclose(corrected, expected, rtol=1e-12)
     np.testing.assert_allclose(corrected, eq_6(6 * K_M / (MASS * HEIGHT**2)), rtol=1e-15)
 
-    column = rbsdem.Column(HEIGHT, MASS, rbsdem.Elastic(K_V), rbsdem.Elastic(K_M))
+    column = rbsdem.Column(HEIGHT, MASS, Elastic(K_V), Elastic(K_M))
     modes = rbsdem.modes(column)
     np.testing.assert_allclose(modes.omega**2, corrected, rtol=1e-12)
     np.testing.assert_allclose(modes.frequency, [95.585, 395.070], atol=5e-4)
@@ -344,9 +345,7 @@ def test_e6_eq_4_has_no_further_term_in_row_2():
     energy = e6_energy(*corrected[:, :4].T)
     assert np.ptp(energy) < 2e-11 * energy[0]
 
-    column = rbsdem.Column(
-        HEIGHT, MASS, rbsdem.Elastic(E6_K_V), rbsdem.Elastic(E6_K_M), kinematics="finite"
-    )
+    column = rbsdem.Column(HEIGHT, MASS, Elastic(E6_K_V), Elastic(E6_K_M), kinematics="finite")
     times = dt * np.arange(round(duration / dt) + 1)
     run = rbsdem.time_history(
         column, times, dt=dt, initial={"slip": [0.05], "rotation": [0.8]}, method="rk4"
@@ -364,7 +363,7 @@ def test_e6_eq_4_has_no_further_term_in_row_2():
 def test_e7_moment_spring_sees_the_relative_rotation():
     """All bodies turned about the ground by 0.01: only joint 1 is deformed."""
     angle, k = 0.01, 2.0e6
-    column = chain(flexure=rbsdem.Elastic(k))
+    column = chain(flexure=Elastic(k))
     run = rbsdem.time_history(
         column, [0.0, 1e-6], initial={"rotation": [angle, 0.0, 0.0]}, method="rk4"
     )
@@ -380,8 +379,8 @@ def test_e7_moment_spring_sees_the_relative_rotation():
 def test_e7_stiff_upper_joints_make_one_body_of_the_column():
     """Limit N = 3 -> N = 1: top displacement F H^2/k_1, not the printed F H l_1/k_1."""
     k, force, height = 2.0e6, 1.0e3, LENGTHS.sum()
-    flexure = [rbsdem.Elastic(k), rbsdem.Elastic(1e12 * k), rbsdem.Elastic(1e12 * k)]
-    column = chain(shear=rbsdem.Elastic(1e18), flexure=flexure)
+    flexure = [Elastic(k), Elastic(1e12 * k), Elastic(1e12 * k)]
+    column = chain(shear=Elastic(1e18), flexure=flexure)
     top = rbsdem.cyclic(column, force=[force]).displacement[0]
     stiffness = np.array([spring.k for spring in flexure])
     above = height - np.concatenate([[0.0], np.cumsum(LENGTHS)[:-1]])
@@ -431,8 +430,8 @@ def test_e8_slips_above_the_joint_belong_to_the_lever_arm():
     load, force = 1.0e5, 2.0e3
     shear, flexure = np.array([8.0e5, 2.0e6, 4.0e6]), np.array([9.0e5, 7.0e5, 2.5e6])
     column = chain(
-        shear=[rbsdem.Elastic(k) for k in shear],
-        flexure=[rbsdem.Elastic(k) for k in flexure],
+        shear=[Elastic(k) for k in shear],
+        flexure=[Elastic(k) for k in flexure],
         axial_load=load,
         kinematics="pdelta",
     )

@@ -16,6 +16,7 @@ from scipy.linalg import eigh, expm
 from scipy.optimize import brentq
 
 import rbsdem
+from rbsdem.springs import Elastic
 
 DIGITS = 120
 
@@ -82,8 +83,8 @@ def chain(lengths, masses, shear, flexure, **options) -> rbsdem.Column:
     return rbsdem.Column(
         float(np.sum(lengths)),
         None,
-        [rbsdem.Elastic(float(k)) for k in shear],
-        [rbsdem.Elastic(float(k)) for k in flexure],
+        [Elastic(float(k)) for k in shear],
+        [Elastic(float(k)) for k in flexure],
         n=len(lengths),
         lengths=lengths,
         masses=masses,
@@ -183,9 +184,9 @@ def test_modes_of_too_many_bodies_are_refused():
 @pytest.mark.parametrize("top", ["free", "fixed"])
 def test_the_first_modes_are_those_of_all_modes(top):
     """With openings, whose modes lie between the others."""
-    stiff = rbsdem.Elastic(3e8)
+    stiff = Elastic(3e8)
     column = rbsdem.Column(
-        3.0, 900.0, stiff, stiff, n=12, axial_spring=rbsdem.Elastic(2e9), axial_load=1e6,
+        3.0, 900.0, stiff, stiff, n=12, axial_spring=Elastic(2e9), axial_load=1e6,
         kinematics="pdelta", top=top, top_mass=50.0,
     )  # fmt: skip
     every = rbsdem.modes(column)
@@ -203,9 +204,9 @@ def test_the_first_modes_are_those_of_all_modes(top):
 @pytest.mark.parametrize("form", ["symmetric", "paper"])
 def test_matrices_satisfy_the_eigenproblem_of_the_modes(form, top):
     """K + K_G and C = 2 zeta omega M too; the paper's unknowns are sums of the others."""
-    stiff, zeta, n = rbsdem.Elastic(3e8), 0.04, 5
+    stiff, zeta, n = Elastic(3e8), 0.04, 5
     column = rbsdem.Column(
-        3.0, 900.0, stiff, stiff, n=n, axial_spring=rbsdem.Elastic(2e9), axial_load=1e6,
+        3.0, 900.0, stiff, stiff, n=n, axial_spring=Elastic(2e9), axial_load=1e6,
         kinematics="pdelta", top=top, top_mass=50.0, damping=zeta,
     )  # fmt: skip
     found = rbsdem.matrices(column, form)

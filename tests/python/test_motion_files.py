@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import InputError, RepairWarning, motions
+from rbsdem import InputError, motions
+from rbsdem.errors import RepairWarning
 
 G = motions.STANDARD_GRAVITY
 

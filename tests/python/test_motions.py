@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 
 import rbsdem
 from rbsdem import GroundMotion, InputError, motions
+from rbsdem.springs import Elastic
 
 G = motions.STANDARD_GRAVITY
 
@@ -279,7 +280,7 @@ def test_synthetic_motions_are_earthquakes():
 
 @pytest.fixture(scope="module")
 def column() -> rbsdem.Column:
-    return rbsdem.Column(2.0, 1000.0, rbsdem.Elastic(4e5), rbsdem.Elastic(4e9), damping=0.05)
+    return rbsdem.Column(2.0, 1000.0, Elastic(4e5), Elastic(4e9), damping=0.05)
 
 
 def test_time_history_takes_a_motion_in_place_of_arrays(column):
@@ -303,7 +304,7 @@ def test_a_column_that_is_an_oscillator_has_the_spectrum(column):
 def test_of_two_motions_the_shorter_rests(column):
     motion = motions.synthetic(1)[0]
     short = GroundMotion(0.5 * motion.acceleration[:400], motion.dt)
-    opens = replace(column, axial_spring=rbsdem.Elastic(1e9))
+    opens = replace(column, axial_spring=Elastic(1e9))
     result = rbsdem.time_history(opens, ground_acceleration=motion, vertical_acceleration=short)
     assert result.call["vertical_acceleration"].size == motion.acceleration.size
     assert not result.call["vertical_acceleration"][400:].any()
@@ -312,7 +313,9 @@ def test_of_two_motions_the_shorter_rests(column):
 def test_trade_takes_a_motion(column):
     motion = motions.synthetic(1)[0]
     short = GroundMotion(motion.acceleration[:200], motion.dt)
-    found = rbsdem.trade(column, ground_acceleration=short, budget=0.5, methods=["newmark"])
+    found = rbsdem.compare_methods(
+        column, ground_acceleration=short, budget=0.5, methods=["newmark"]
+    )
     assert found.rows
 
 

@@ -14,6 +14,7 @@ from scipy.integrate import solve_ivp
 import rbsdem
 from rbsdem import motions
 from rbsdem.many.hunt import Hunt
+from rbsdem.springs import Bilinear, Elastic
 
 MASS, HEIGHT, DAMPING = 1e4, 3.0, 0.05
 RECORDS = motions.synthetic(20)
@@ -23,12 +24,12 @@ def oscillator(period: float, yield_force: float, hardening: float = 0.0) -> rbs
     """Elastic and perfectly plastic, unless it hardens; damped in proportion to the mass."""
     omega = 2 * np.pi / period
     k = MASS * omega**2
-    shear = rbsdem.Bilinear(k=k, d_y=yield_force / k, k_post=hardening * k)
+    shear = Bilinear(k=k, d_y=yield_force / k, k_post=hardening * k)
     return rbsdem.Column(
         HEIGHT,
         1e-3 * MASS,
         shear,
-        rbsdem.Elastic(1e6 * k),
+        Elastic(1e6 * k),
         top_mass=MASS * (1 - 5e-4),
         gravity=0.0,
         damping=rbsdem.Damping(mass=2 * DAMPING * omega),
@@ -146,8 +147,8 @@ def softening() -> rbsdem.Column:
     return rbsdem.Column(
         HEIGHT,
         1e-3,
-        rbsdem.Elastic(1e12),
-        rbsdem.Bilinear(**HINGE),
+        Elastic(1e12),
+        Bilinear(**HINGE),
         top_mass=TOP,
         axial_load=WEIGHT,
         kinematics="pdelta",

@@ -232,7 +232,7 @@ def test_measured_loops_state_the_peaks_of_the_histories(key):
 
 @pytest.mark.parametrize("key", KEYS)
 def test_reversal_points_are_rows_of_the_full_history(key):
-    test, points = rbsdem.read_peer(history(key)), peer.shipped_reversals(key)
+    test, points = rbsdem.peer.read_peer(history(key)), peer.shipped_reversals(key)
     assert len(test.force) == HISTORY[key][0]
     rows = set(zip(test.displacement.tolist(), test.force.tolist(), strict=True))
     assert set(zip(points.displacement.tolist(), points.force.tolist(), strict=True)) <= rows
@@ -240,7 +240,7 @@ def test_reversal_points_are_rows_of_the_full_history(key):
 
 @pytest.mark.parametrize("key", KEYS)
 def test_measured_loops_are_those_of_the_full_histories(key):
-    test = rbsdem.read_peer(history(key))
+    test = rbsdem.peer.read_peer(history(key))
     loop, shipped = comparison.summarise(test.displacement, test.force), peer.measured_loops()[key]
     assert loop.peak_force == pytest.approx(shipped.peak_force, rel=5e-6)
     assert loop.displacement_at_peak == pytest.approx(shipped.displacement_at_peak, rel=5e-6)

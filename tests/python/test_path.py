@@ -17,10 +17,11 @@ from numpy.typing import NDArray
 
 import rbsdem
 from rbsdem import curves as comparison
+from rbsdem.springs import Bilinear, Elastic, PeakOriented, Pinching, SteelSpring, Takeda
 
 Array = NDArray[np.float64]
 
-SECTION = rbsdem.paper_sections()["zahn_7"].section
+SECTION = rbsdem.peer.paper_sections()["zahn_7"].section
 
 
 def random_spring(rng: np.random.Generator, scale: float) -> rbsdem.springs.Spring:
@@ -32,12 +33,12 @@ def random_spring(rng: np.random.Generator, scale: float) -> rbsdem.springs.Spri
         "lambda_s": 60.0, "d_c": 0.1 * d_y, "f_c": 0.3 * f_y,
     }  # fmt: skip
     kinds: list[Callable[[], rbsdem.springs.Spring]] = [
-        lambda: rbsdem.Elastic(k),
-        lambda: rbsdem.Bilinear(k, d_y, 0.05 * k),
-        lambda: rbsdem.Takeda(3 * k, 0.2 * d_y, k, d_y, 0.03 * k),
-        lambda: rbsdem.PeakOriented(**capped),
-        lambda: rbsdem.Pinching(kappa_f=0.4, kappa_d=0.6, **capped),
-        lambda: rbsdem.SteelSpring(k, f_y, 0.02 * k),
+        lambda: Elastic(k),
+        lambda: Bilinear(k, d_y, 0.05 * k),
+        lambda: Takeda(3 * k, 0.2 * d_y, k, d_y, 0.03 * k),
+        lambda: PeakOriented(**capped),
+        lambda: Pinching(kappa_f=0.4, kappa_d=0.6, **capped),
+        lambda: SteelSpring(k, f_y, 0.02 * k),
     ]
     return kinds[rng.integers(len(kinds))]()
 
@@ -145,8 +146,8 @@ def test_a_plastic_hinge_by_hand():
     """A rigid column of 2 m on an elastoplastic hinge: the residual drift is what did not spring
     back, and the half-cycles hold the work from zero force to zero force."""
     k, d_y, top = 1e8, 4e-3, 0.05
-    flexure = rbsdem.Bilinear(k=k, d_y=d_y, k_post=0.0)
-    column = rbsdem.Column(2.0, 100.0, rbsdem.Elastic(1e14), flexure)
+    flexure = Bilinear(k=k, d_y=d_y, k_post=0.0)
+    column = rbsdem.Column(2.0, 100.0, Elastic(1e14), flexure)
     result = rbsdem.cyclic(column, displacement=[top, -top])
     # The force that yields, k d_y/2, springs back by 2 d_y; seen from the last zero.
     assert result.residual_drift == pytest.approx(top / 2.0 - d_y, rel=1e-6)
@@ -171,8 +172,8 @@ def test_a_path_that_goes_on_begins_where_the_other_one_ended(tmp_path):
 
 
 def test_a_path_that_breaks_off_has_corners_up_to_there():
-    flexure = rbsdem.Bilinear(k=1e8, d_y=4e-3, k_post=0.0)
-    column = rbsdem.Column(2.0, 100.0, rbsdem.Elastic(1e9), flexure)
+    flexure = Bilinear(k=1e8, d_y=4e-3, k_post=0.0)
+    column = rbsdem.Column(2.0, 100.0, Elastic(1e9), flexure)
     with pytest.raises(rbsdem.SolveError) as raised:
         rbsdem.cyclic(column, force=[1e5, 3e5])
     result = raised.value.result
@@ -204,7 +205,7 @@ def test_figures_of_a_curve_do_not_depend_on_points_on_its_lines(seed: int) -> N
         of = [getattr(comparison.half_cycles(*curve), name) for curve in ((d, f), more)]
         assert of[1] == pytest.approx(of[0], nan_ok=True)
     for side in (1, -1):
-        one, other = (rbsdem.envelope(curve, side) for curve in ((d, f), more))
+        one, other = (rbsdem.curves.envelope(curve, side) for curve in ((d, f), more))
         for share in (0.3, 0.7, 0.9, 1.0):
             assert other.displacement_at(share) == pytest.approx(one.displacement_at(share))
         lost = [curve.displacement_at(0.8, falling=True) for curve in (one, other)]

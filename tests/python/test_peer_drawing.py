@@ -190,7 +190,7 @@ def test_wires_stronger_than_the_plateau_is_long():
 def test_the_papers_columns_are_drawn_as_table_2_has_them(peer_folder):
     table = peer.read_specimens(peer_folder)
     names = {"soesianawati_1": "7", "tanaka_park_1": "18", "tanaka_park_5": "22", "zahn_7": "11"}
-    for key, printed in rbsdem.paper_sections().items():
+    for key, printed in rbsdem.peer.paper_sections().items():
         drawn = peer.draw(table[names[key]])
         d = drawn.section
         assert (d.width, d.depth, d.cover) == (printed.width, printed.depth, printed.cover)

@@ -24,6 +24,7 @@ from rbsdem import peer
 from rbsdem.cli import main
 from rbsdem.errors import InputError
 from rbsdem.measured import pictures
+from rbsdem.springs import Bilinear, Takeda
 
 HEADER = (
     "peer_id,file,name,author,year,section,L_mm,b_mm,h_mm,cover_mm,fc_MPa,axial_kN,n_long,"
@@ -31,8 +32,8 @@ HEADER = (
     "legs_Nv,failure_mode,pdelta_code"
 )
 SPRINGS = {
-    "shear": rbsdem.Bilinear(7e8, 1.3e-4, 8e6),
-    "flexure": rbsdem.Takeda(2.5e8, 3.2e-4, 6.3e7, 2.7e-3, 7.6e6, b1=0.3),
+    "shear": Bilinear(7e8, 1.3e-4, 8e6),
+    "flexure": Takeda(2.5e8, 3.2e-4, 6.3e7, 2.7e-3, 7.6e6, b1=0.3),
 }
 
 
@@ -187,7 +188,7 @@ def test_a_history_that_says_nothing_is_a_row(folder):
 
 def test_warnings_are_notes(table):
     def bold(specimen):
-        warnings.warn("hm", rbsdem.AccuracyWarning, stacklevel=1)
+        warnings.warn("hm", rbsdem.errors.AccuracyWarning, stacklevel=1)
         return good(specimen)
 
     assert peer.predict_one(table[0], bold).note == "hm"

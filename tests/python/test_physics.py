@@ -15,6 +15,7 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 import rbsdem
+from rbsdem.springs import Elastic
 
 pytestmark = pytest.mark.filterwarnings("ignore:the rotation of a body")
 
@@ -23,8 +24,8 @@ LENGTHS, MASSES = [0.9, 0.6, 0.7], [50.0, 20.0, 30.0]
 K_V, K_M, K_N = [4e4, 3e4, 2e4], [9e3, 7e3, 5e3], [3e5, 2e5, 4e5]
 
 
-def elastic(values) -> list[rbsdem.Elastic]:
-    return [rbsdem.Elastic(float(k)) for k in values]
+def elastic(values) -> list[Elastic]:
+    return [Elastic(float(k)) for k in values]
 
 
 def soft(*, opens: bool = False, **options) -> rbsdem.Column:
@@ -131,7 +132,7 @@ def test_finite_tends_to_small_rotations_quadratically_for_three_bodies(opens, l
 
 def floating(**options) -> rbsdem.Column:
     """Three bodies whose joint at the ground is nothing."""
-    nothing = rbsdem.Elastic(1e-30)
+    nothing = Elastic(1e-30)
     return rbsdem.Column(
         sum(LENGTHS), None, [nothing, *elastic(K_V[1:])], [nothing, *elastic(K_M[1:])], n=3,
         lengths=LENGTHS, masses=MASSES, axial_spring=[nothing, *elastic(K_N[1:])], **options,
@@ -275,7 +276,7 @@ def test_lost_stiffness_of_a_slender_chain_tends_to_eulers_load_with_order_2():
 
         def left(load, n=n, flexure=flexure):
             column = rbsdem.Column(
-                height, 100.0, rbsdem.Elastic(1e15), flexure, n=n, kinematics="pdelta",
+                height, 100.0, Elastic(1e15), flexure, n=n, kinematics="pdelta",
                 axial_load=load,
             )  # fmt: skip
             return stiffness_left(column, height)

@@ -12,7 +12,7 @@ matplotlib = pytest.importorskip("matplotlib")
 matplotlib.use("Agg")
 plt = pytest.importorskip("matplotlib.pyplot")
 
-COLUMN = rbsdem.paper_columns("pdelta")["zahn_7"]
+COLUMN = rbsdem.peer.paper_columns("pdelta")["zahn_7"]
 D = COLUMN.height * rbsdem.protocol([0.005, 0.01], cycles=1, points=20)
 RESULT = rbsdem.cyclic(COLUMN, displacement=D)
 TEST = (D, RESULT.force)
@@ -122,7 +122,7 @@ def test_axes_of_the_caller_keep_their_letters(family):
 
 
 def test_trade_passes_keywords_on():
-    found = rbsdem.trade(COLUMN, displacement=D[:40], budget=2.0)
+    found = rbsdem.compare_methods(COLUMN, displacement=D[:40], budget=2.0)
     ax = plot.methods(found, lw=2.5)
     assert {one.get_linewidth() for one in ax.get_lines() if one.get_marker() == "o"} == {2.5}
     figure, own = plt.subplots()

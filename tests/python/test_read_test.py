@@ -181,7 +181,7 @@ def test_net_force_is_that_of_the_manual(tmp_path, code):
 
 def test_it_goes_where_a_test_of_the_database_goes(tmp_path):
     """Compared, calibrated and drawn; without a length there is no drift."""
-    column = rbsdem.paper_columns("pdelta")["zahn_7"]
+    column = rbsdem.peer.paper_columns("pdelta")["zahn_7"]
     d = column.height * rbsdem.protocol([0.005, 0.01], cycles=1, points=20)
     model = rbsdem.cyclic(column, displacement=d)
     np.savetxt(tmp_path / "t.txt", np.column_stack((1e3 * d, 1e-3 * model.force)), fmt="%.17g")

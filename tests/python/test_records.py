@@ -10,30 +10,39 @@ import numpy as np
 import pytest
 
 import rbsdem
+from rbsdem.springs import (
+    Bilinear,
+    Compression,
+    ConcreteSpring,
+    Elastic,
+    Layered,
+    SteelSpring,
+    Takeda,
+)
 
-SHEAR = rbsdem.Bilinear(7.0387e8, 1.296e-4, 8.3185e6)
-FLEXURE = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
-LAYERS = rbsdem.Layered(
+SHEAR = Bilinear(7.0387e8, 1.296e-4, 8.3185e6)
+FLEXURE = Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
+LAYERS = Layered(
     [
-        *((y, rbsdem.ConcreteSpring(4e9, 1.2e6, 6e-4, 8e7)) for y in np.linspace(-0.2, 0.2, 40)),
-        (-0.16, rbsdem.SteelSpring(8e8, 7e5, 8e6)),
-        (0.16, rbsdem.SteelSpring(8e8, 7e5, 8e6)),
+        *((y, ConcreteSpring(4e9, 1.2e6, 6e-4, 8e7)) for y in np.linspace(-0.2, 0.2, 40)),
+        (-0.16, SteelSpring(8e8, 7e5, 8e6)),
+        (0.16, SteelSpring(8e8, 7e5, 8e6)),
     ]
 )
 COLUMN = rbsdem.Column(
-    3.0, None, [SHEAR, rbsdem.Elastic(1e9), SHEAR], [LAYERS, FLEXURE, FLEXURE], n=3,
+    3.0, None, [SHEAR, Elastic(1e9), SHEAR], [LAYERS, FLEXURE, FLEXURE], n=3,
     masses=[300.0, 200.0, 100.0], axial_load=7e5, kinematics="pdelta", damping=0.05,
     rotary_inertia=[30.0, 20.0, 10.0], top_mass=1e3, model="layered 2026.2",
 )  # fmt: skip
 OPEN = rbsdem.Column(
     2.0, 500.0, SHEAR, FLEXURE, n=2, kinematics="finite", axial_load=1e5,
-    axial_spring=[rbsdem.Compression(1e9), rbsdem.Elastic(1e9)], damping=rbsdem.Damping(0.1, 1e-5),
+    axial_spring=[Compression(1e9), Elastic(1e9)], damping=rbsdem.Damping(0.1, 1e-5),
 )  # fmt: skip
-BIG = rbsdem.Column(1e2, 1e6, rbsdem.Elastic(1e9), rbsdem.Elastic(1e9), n=10_000)
+BIG = rbsdem.Column(1e2, 1e6, Elastic(1e9), Elastic(1e9), n=10_000)
 PATH = 3.0 * rbsdem.protocol([0.005, 0.01], points=3)
 TIME = np.linspace(0.0, 0.05, 11)
 MOTION = np.sin(200 * TIME)
-CASE = rbsdem.Case(
+CASE = rbsdem.results.case.Case(
     "pushed", COLUMN, "static", np.arange(float(PATH.size)), PATH, None, None, None, None,
     {"every": 2},
 )  # fmt: skip
@@ -48,9 +57,9 @@ def results() -> dict[str, rbsdem.Result]:
 
 
 def failed() -> rbsdem.Result:
-    plastic = rbsdem.Bilinear(1e6, 1e-3, 0.0)
+    plastic = Bilinear(1e6, 1e-3, 0.0)
     with pytest.raises(rbsdem.SolveError) as caught:
-        rbsdem.cyclic(rbsdem.Column(1.6, 1.0, plastic, rbsdem.Elastic(1e6)), force=[500.0, 2e3])
+        rbsdem.cyclic(rbsdem.Column(1.6, 1.0, plastic, Elastic(1e6)), force=[500.0, 2e3])
     return caught.value.result
 
 
@@ -155,6 +164,6 @@ def test_a_changed_copy_is_checked_anew():
     with pytest.raises(rbsdem.InputError, match="cannot carry the axial load"):
         replace(
             COLUMN,
-            flexure=rbsdem.Layered([(y, rbsdem.Compression(1e8)) for y in (-0.1, 0.1)]),
+            flexure=Layered([(y, Compression(1e8)) for y in (-0.1, 0.1)]),
             axial_load=-1e3,
         )

@@ -12,7 +12,10 @@ import pytest
 from strategies import Rng, accepted, any_column, rules, spring
 
 import rbsdem
+from rbsdem.errors import AccuracyWarning
+from rbsdem.results.case import Case
 from rbsdem.section.parameters import parameters
+from rbsdem.springs import Compression, Elastic
 
 # The same column is made at every level of kinematics, and masses without weight are tried.
 pytestmark = pytest.mark.filterwarnings(
@@ -34,7 +37,7 @@ def some(rng: Rng, rule: str) -> rbsdem.springs.Spring:
 # ---- columns -------------------------------------------------------------------------------------
 
 
-def read_back(folder: Path, text: str) -> rbsdem.Case:
+def read_back(folder: Path, text: str) -> Case:
     path = folder / "case.nml"
     path.write_text(text, "utf-8")
     return rbsdem.read_case(path)
@@ -88,7 +91,7 @@ def test_equal_springs_are_stated_once(tmp_path):
 
 
 def test_column_of_a_section_comes_back_and_its_loop_too(tmp_path, run_cli, read_csv):
-    section = rbsdem.paper_sections()["zahn_7"].section
+    section = rbsdem.peer.paper_sections()["zahn_7"].section
     for model in ("layered", "paper"):
         column = section.column(1.6, axial_load=7e5, model=model)
         path = rbsdem.protocol([0.005, 0.01, 0.02], points=3) * 1.6
@@ -168,7 +171,7 @@ def drawn_column(rng: Rng) -> rbsdem.Column:
     return section.column(height, axial_load=load, n=int(rng.integers(2, 4)), **given)
 
 
-@pytest.mark.filterwarnings("ignore::rbsdem.AccuracyWarning")
+@pytest.mark.filterwarnings("ignore::AccuracyWarning")
 @pytest.mark.parametrize("seed", range(4))
 def test_a_drawing_comes_back(tmp_path, run_cli, read_csv, seed):
     """The column, what its layers stand for, and what follows when the drawing is changed."""
@@ -234,7 +237,7 @@ def test_a_wrong_drawing_is_named(tmp_path, old, new, words):
     ("old", "new"), [("lambda_s = 46.9", "lambda_s = 40"), ("width = 0.4", "width = 0.41")]
 )
 def test_springs_that_are_not_as_drawn_are_told(tmp_path, old, new):
-    with pytest.warns(rbsdem.AccuracyWarning, match="shear.* other than layered 2026.5 draws"):
+    with pytest.warns(AccuracyWarning, match="shear.* other than layered 2026.5 draws"):
         case = read_back(tmp_path, drawn_text(**{old: new}))
     assert ("flexure" in case.column.replaced) == (old == "width = 0.4")
 
@@ -242,7 +245,7 @@ def test_springs_that_are_not_as_drawn_are_told(tmp_path, old, new):
 def test_a_case_under_another_load_keeps_its_springs(tmp_path):
     """As the executable does, which cannot draw: its answer would be another one."""
     text = drawn_text()
-    with pytest.warns(rbsdem.AccuracyWarning, match="drawn for axial_load = 744000 N, and its col"):
+    with pytest.warns(AccuracyWarning, match="drawn for axial_load = 744000 N, and its col"):
         case = read_back(tmp_path, text.replace("axial_load = 744000", "axial_load = 700000", 1))
     assert type(case.column) is rbsdem.Column
     assert case.column.joints("shear") == read_back(tmp_path, text).column.joints("shear")
@@ -251,13 +254,13 @@ def test_a_case_under_another_load_keeps_its_springs(tmp_path):
 # ---- cases ---------------------------------------------------------------------------------------
 
 
-def made(column: rbsdem.Column, method: str, title: str = "", **given: Any) -> rbsdem.Case:
+def made(column: rbsdem.Column, method: str, title: str = "", **given: Any) -> Case:
     """A case by hand: histories by their names, and settings."""
     drives = ("displacement", "force", "ground_acceleration", "vertical_acceleration", "axial_load")
     loads = {name: given.pop(name, None) for name in drives}
     points = max(len(values) for values in loads.values() if values is not None)
     time = given.pop("time", np.arange(float(points)))
-    return rbsdem.Case(title, column, method, time, **loads, settings=given)
+    return Case(title, column, method, time, **loads, settings=given)
 
 
 def rows(run_cli, read_csv, folder: Path) -> dict[str, np.ndarray]:
@@ -277,7 +280,7 @@ def same_rows(run: rbsdem.Result, csv: dict[str, np.ndarray], before: rbsdem.Res
         assert np.array_equal(getattr(run, name), getattr(before, name)), name
 
 
-def random_case(rng: Rng) -> rbsdem.Case:
+def random_case(rng: Rng) -> Case:
     """A column at rest under small random histories, by each kind of method."""
     column = any_column(
         rng, kinematics=str(rng.choice(["small", "pdelta"])), top="free", axial_load=1e4
@@ -324,8 +327,8 @@ def test_cases_come_back_and_run_alike(tmp_path, run_cli, read_csv, seed):
 def test_finite_case_with_loads_that_follow_comes_back(tmp_path, run_cli, read_csv, method):
     rng = np.random.default_rng(5)
     column = rbsdem.Column(
-        2.0, 1e3, rbsdem.Elastic(2e8), rbsdem.Elastic(1e8), n=2, kinematics="finite",
-        axial_follows=True, force_follows=True, axial_spring=rbsdem.Compression(1e9), top_mass=1e3,
+        2.0, 1e3, Elastic(2e8), Elastic(1e8), n=2, kinematics="finite",
+        axial_follows=True, force_follows=True, axial_spring=Compression(1e9), top_mass=1e3,
         axial_load=1e4,
     )  # fmt: skip
     time, force = np.linspace(0, 0.02, 9), rng.uniform(-1e3, 1e3, 9)
@@ -353,7 +356,7 @@ def test_case_of_a_file_comes_back_with_its_histories_in_the_text(tmp_path, case
 
 def test_a_long_history_comes_back(tmp_path):
     values = np.random.default_rng(1).normal(size=50_000) * 1e-3
-    column = rbsdem.Column(1.0, 1.0, rbsdem.Elastic(1e8), rbsdem.Elastic(1e8))
+    column = rbsdem.Column(1.0, 1.0, Elastic(1e8), Elastic(1e8))
     case = made(column, "static", displacement=values)
     back = read_back(tmp_path, case.to_namelist())
     assert np.array_equal(back.displacement, values)

@@ -16,7 +16,15 @@ import pytest
 
 import rbsdem
 from rbsdem import _core
-from rbsdem.springs import SPRINGS
+from rbsdem.springs import (
+    SPRINGS,
+    Compression,
+    ConcreteSpring,
+    Elastic,
+    Layered,
+    SteelSpring,
+    Takeda,
+)
 
 CAPPED = {"d_y": 1e-3, "f_y": 1e5, "d_cap": 1e-2, "f_cap": 1.2e5, "d_pc": 0.1}
 GOOD: dict[str, dict[str, float]] = {
@@ -121,9 +129,9 @@ def test_missing_parameters_are_named_in_a_file(tmp_path, case_text):
         assert [line.split(": ")[2].split()[0] for line in lines] == required
 
 
-E, SOFT = rbsdem.Elastic(1e8), rbsdem.Compression(1e8)
-STEEL, CONCRETE = rbsdem.SteelSpring(8e8, 7e5, 0.0), rbsdem.ConcreteSpring(4e9, 1.2e6, 6e-4, 8e7)
-LAYERS = rbsdem.Layered([(-0.1, STEEL), (0.0, CONCRETE), (0.1, STEEL)])
+E, SOFT = Elastic(1e8), Compression(1e8)
+STEEL, CONCRETE = SteelSpring(8e8, 7e5, 0.0), ConcreteSpring(4e9, 1.2e6, 6e-4, 8e7)
+LAYERS = Layered([(-0.1, STEEL), (0.0, CONCRETE), (0.1, STEEL)])
 LAYERS_TEXT = (
     "&flexure rule = 'layered' /\n"
     "&layer_spring id = 1, rule = 'steel', k = 8e8, f_y = 7e5, k_post = 0 /\n"
@@ -138,7 +146,7 @@ ELASTIC_TEXT = "rule = 'elastic', k = 1e8"
 COLUMNS: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
     "rule at the wrong joint": ({"shear": SOFT}, {"shear": "rule = 'compression', k = 1e8"}),
     "rules at the wrong joints": (
-        {"flexure": CONCRETE, "axial_spring": rbsdem.Takeda(2e8, 1e-3, 1e8, 2e-3, 1e6)},
+        {"flexure": CONCRETE, "axial_spring": Takeda(2e8, 1e-3, 1e8, 2e-3, 1e6)},
         {
             "flexure": "rule = 'concrete', k = 4e9, f_peak = 1.2e6, d_peak = 6e-4, k_soft = 8e7",
             "axial_spring": "rule = 'takeda', k_c = 2e8, d_c = 1e-3, k_y = 1e8, d_y = 2e-3, "

@@ -17,6 +17,7 @@ import pytest
 
 import rbsdem
 from rbsdem.section import strength
+from rbsdem.springs import ConcreteSpring
 
 #: Least and largest values of each input of a column, and the value while others vary [SI].
 INPUTS = {
@@ -82,7 +83,7 @@ def predicted(made: rbsdem.section.model.LayeredColumn) -> dict[str, float]:
         found[f"layers {name}"] = sum(value for _, value in of_layers)
         found[f"layers {name} y2"] = sum(value * y**2 for y, value in of_layers)
     # Strips of core and cover come and go with the place of the hoops.
-    concrete = [layer for _, layer in layers if isinstance(layer, rbsdem.ConcreteSpring)]
+    concrete = [layer for _, layer in layers if isinstance(layer, ConcreteSpring)]
     found["layers d_peak"] = sum(layer.f_peak * layer.d_peak for layer in concrete)
     found["mcft"] = strength.shear_strength_mcft(section, *place)
     found["sezen"] = strength.shear_strength_sezen(section, *place)
@@ -121,14 +122,14 @@ def jumps(at: Callable[[float], dict[str, float]], low: float, high: float) -> l
     ]
 
 
-@pytest.mark.filterwarnings("ignore::rbsdem.AccuracyWarning")
+@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
 @pytest.mark.parametrize("name", INPUTS)
 def test_nothing_jumps(name):
     low, high, _ = INPUTS[name]
     assert jumps(lambda value: predicted(column(**{name: value})), low, high) == []
 
 
-@pytest.mark.filterwarnings("ignore::rbsdem.AccuracyWarning")
+@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
 @pytest.mark.parametrize(("name", "place"), [("row", 0.0), ("legs", 2.0), ("legs", 2.5)])
 def test_predicted_loops_do_not_jump(name, place):
     """A column that fails in shear, with bars at mid-depth and legs where counts change."""

@@ -103,7 +103,7 @@ def test_walls_are_not_confined():
 @pytest.mark.parametrize("section", [BOX, RING])
 def test_everything_that_a_section_can_be_asked(section):
     load = 0.05 * 35e6 * section.gross_area
-    with pytest.warns(rbsdem.AccuracyWarning, match="hollow"):
+    with pytest.warns(rbsdem.errors.AccuracyWarning, match="hollow"):
         column = section.column(12.0, axial_load=load)
     loop = rbsdem.cyclic(column, displacement=12.0 * rbsdem.protocol([0.005, 0.01]))
     assert loop.summary["status"] == "completed"

@@ -10,6 +10,7 @@ import pytest
 
 import rbsdem
 from rbsdem import InputError
+from rbsdem.springs import SteelSpring
 
 STEEL = rbsdem.Steel(460e6, es=200e9)
 BAR = 0.25 * math.pi * 0.025**2
@@ -191,14 +192,14 @@ def test_ends_of_a_section_that_is_not_symmetric():
 
 def test_joint_of_a_column_carries_what_its_paths_do():
     """First loading reaches the diagram; at its lower end all bars yield in tension."""
-    column = rbsdem.paper_sections()["soesianawati_1"].section.column(1.6, axial_load=744e3)
+    column = rbsdem.peer.paper_sections()["soesianawati_1"].section.column(1.6, axial_load=744e3)
     joint = column.joints("flexure")[0]
     diagram = column.interaction(rotation=0.03)
     pushed = rbsdem.cyclic(column, displacement=np.linspace(0.0, 0.06, 200))
     moment = pushed.moment[:, 0][pushed.rotation[:, 0] <= 0.03]
     assert diagram.moment_at(744e3) == pytest.approx(moment.max(), rel=5e-3)
-    bars = [spring for _, spring in joint.layers if isinstance(spring, rbsdem.SteelSpring)]
-    concrete = [spring for _, spring in joint.layers if not isinstance(spring, rbsdem.SteelSpring)]
+    bars = [spring for _, spring in joint.layers if isinstance(spring, SteelSpring)]
+    concrete = [spring for _, spring in joint.layers if not isinstance(spring, SteelSpring)]
     yielding = sum(bar.f_y for bar in bars)
     assert diagram.axial_load[0] == pytest.approx(-yielding)
     assert diagram.axial_load[-1] <= yielding + sum(layer.f_peak for layer in concrete)

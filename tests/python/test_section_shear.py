@@ -48,7 +48,7 @@ STRENGTH = {
 
 def column(key: str) -> tuple[RectangularSection, float, float]:
     """Section, length and axial load of a column of table 2, bars and ties put together here."""
-    p = rbsdem.paper_sections()[key]
+    p = rbsdem.peer.paper_sections()[key]
     section = RectangularSection(
         p.width,
         p.depth,
@@ -136,7 +136,7 @@ def test_shear_spring_agrees_with_the_reference(key: str) -> None:
 def test_shear_spring_against_table_3(key: str) -> None:
     section, length, load = column(key)
     found = fit_shear_spring(section, length, load, ULTIMATE[key]).spring
-    printed = rbsdem.paper_columns()[key].shear
+    printed = rbsdem.peer.paper_columns()[key].shear
     assert found.k == pytest.approx(printed.k, rel=0.20)
     assert found.d_y == pytest.approx(printed.d_y, rel=0.17)
     assert found.k * found.d_y == pytest.approx(printed.k * printed.d_y, rel=0.05)
@@ -201,7 +201,7 @@ def test_moment_is_that_of_the_section_and_force_is_moment_over_length() -> None
 def test_coupled_shear_takes_some_of_the_moment(key: str, at_yield: float) -> None:
     """Reference: a coupled analysis without tension stiffening, which adds up to 2 per cent."""
     section, length, load = column(key)
-    yielding = rbsdem.paper_columns()[key].flexure.d_y
+    yielding = rbsdem.peer.paper_columns()[key].flexure.d_y
     yielding /= 0.08 * length + 0.022e-6 * section.bars[0][2].fy * section.bar_diameter
     curvature = np.linspace(0.0, ULTIMATE[key], 61)[1:]
     moments = [

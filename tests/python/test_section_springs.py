@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import AccuracyWarning, InputError, Layout, RectangularSection
+from rbsdem import InputError, Layout, RectangularSection
+from rbsdem.errors import AccuracyWarning
 from rbsdem.section.paper import KEYS, paper_columns, paper_sections
+from rbsdem.springs import Elastic
 
 mpl.use("Agg")
 
@@ -256,7 +258,7 @@ def without_load_layers(column: rbsdem.Column) -> rbsdem.Column:
 @pytest.mark.parametrize("kind", ["shear", "flexure"])
 def test_springs_of_a_whole_column_are_refused_in_several_joints(kind):
     springs = SECTION.springs(1.6, LOAD)
-    elastic = rbsdem.Elastic(1e9)
+    elastic = Elastic(1e9)
     given = {"shear": elastic, "flexure": elastic}
     for several in (getattr(springs, kind), [getattr(springs, kind)] * 4):
         with pytest.raises(InputError, match=rf"{kind} is .* whole column.*4 joints.*column\("):

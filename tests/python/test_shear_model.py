@@ -13,6 +13,7 @@ from rbsdem import peer
 from rbsdem.section.parameters import parameters
 from rbsdem.section.shear_model import cracked_shear_stiffness, shear_spring
 from rbsdem.section.strength import shear_strength_mcft, shear_strength_sezen
+from rbsdem.springs import Elastic, Pinching
 
 # Slender and well tied; the same squat, with few ties and much steel.
 SLENDER = peer.Specimen(
@@ -47,7 +48,7 @@ def section(specimen: peer.Specimen) -> rbsdem.model.section.Section:
     return peer.draw(specimen).section
 
 
-def spring(specimen: peer.Specimen, **numbers: float) -> rbsdem.Pinching:
+def spring(specimen: peer.Specimen, **numbers: float) -> Pinching:
     given = replace(parameters().shear, **numbers)
     s = specimen
     return shear_spring(section(s), s.length, s.axial_load, STIFFNESS, given)
@@ -132,9 +133,7 @@ def test_a_squat_column_fails_in_shear():
     # An endurance of its own: the test is of the rule, not of fitted numbers.
     column = peer.column(SQUAT, "layered").with_parameters(shear_endurance=100.0)
     foot = column.joints("shear")[0]
-    bending = replace(
-        column, shear=[rbsdem.Elastic(foot.f_c / foot.d_c), *column.joints("shear")[1:]]
-    )
+    bending = replace(column, shear=[Elastic(foot.f_c / foot.d_c), *column.joints("shear")[1:]])
     force = rbsdem.cyclic(column, displacement=d).force
     strong = rbsdem.cyclic(bending, displacement=d).force
     peak, last = np.max(np.abs(force)), np.max(np.abs(force[-80:]))
@@ -225,9 +224,7 @@ def test_shear_failures_of_the_database(peer_folder):
     for specimen in table:
         test, column = specimen.test(), peer.column(specimen, "layered")
         foot = column.joints("shear")[0]
-        rigid = replace(
-            column, shear=[rbsdem.Elastic(foot.f_c / foot.d_c), *column.joints("shear")[1:]]
-        )
+        rigid = replace(column, shear=[Elastic(foot.f_c / foot.d_c), *column.joints("shear")[1:]])
         kind = "Flexure" if specimen.failure_mode == "Flexure" else "other"
         if kind == "Flexure" and specimen.span_depth_ratio > 3:
             continue

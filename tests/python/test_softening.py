@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import rbsdem
+from rbsdem.springs import Bilinear, Elastic, PeakOriented
 
 # The same column is made at every level of kinematics, and masses without weight are tried.
 pytestmark = pytest.mark.filterwarnings(
@@ -17,12 +18,12 @@ pytestmark = pytest.mark.filterwarnings(
 
 LENGTH, MASS, K_SHEAR = 2.0, 1e3, 5e7
 # In moments and rotations: stiffness 1e8, cap at (0.01, 240e3), softening -4e6 to 40e3 at 0.06.
-FLEXURE = rbsdem.PeakOriented(2e-3, 200e3, 0.01, 240e3, 0.06, 40e3)
+FLEXURE = PeakOriented(2e-3, 200e3, 0.01, 240e3, 0.06, 40e3)
 SOFTENING = -240e3 / 0.06
 
 
 def column(flexure=FLEXURE, shear=None, **keywords) -> rbsdem.Column:
-    return rbsdem.Column(LENGTH, MASS, shear or rbsdem.Elastic(K_SHEAR), flexure, **keywords)
+    return rbsdem.Column(LENGTH, MASS, shear or Elastic(K_SHEAR), flexure, **keywords)
 
 
 def backbone(turn):
@@ -52,10 +53,10 @@ def test_path_past_the_cap(kinematics, load):
 @pytest.mark.parametrize("kinematics", ["small", "pdelta"])
 def test_weakest_joint_softens_alone(kinematics, n):
     """Shear springs in series, one a little weaker: past its cap the others unload."""
-    strong = rbsdem.PeakOriented(2e-3, 100e3, 4e-3, 110e3, 0.11)
-    weak = rbsdem.PeakOriented(2e-3, 99e3, 4e-3, 109e3, 0.109)
+    strong = PeakOriented(2e-3, 100e3, 4e-3, 110e3, 0.11)
+    weak = PeakOriented(2e-3, 99e3, 4e-3, 109e3, 0.109)
     shear = [weak, *[strong] * (n - 1)]
-    stiff = rbsdem.Elastic(1e12)
+    stiff = Elastic(1e12)
     chain = rbsdem.Column(
         LENGTH, MASS, shear, [stiff] * n, n=n, kinematics=kinematics, axial_load=1.0
     )
@@ -71,8 +72,8 @@ def test_weakest_joint_softens_alone(kinematics, n):
 
 
 def test_equal_joints_soften_together():
-    spring = rbsdem.PeakOriented(2e-3, 100e3, 4e-3, 110e3, 0.11)
-    chain = rbsdem.Column(LENGTH, MASS, spring, rbsdem.Elastic(1e12), n=2)
+    spring = PeakOriented(2e-3, 100e3, 4e-3, 110e3, 0.11)
+    chain = rbsdem.Column(LENGTH, MASS, spring, Elastic(1e12), n=2)
     result = rbsdem.cyclic(chain, displacement=[0.1])
     np.testing.assert_allclose(result.slip[-1], result.slip[-1, 0], rtol=1e-9)
     np.testing.assert_allclose(result.shear[-1], spring.response(result.slip[-1, :1])[0], rtol=1e-9)
@@ -88,7 +89,7 @@ def test_capacity_under_a_driven_force(kinematics):
 @pytest.mark.parametrize("kinematics", ["small", "pdelta", "finite"])
 def test_snap_back_is_reported(kinematics):
     """Softening steeper than the rest unloads: the top would have to go back."""
-    soft = rbsdem.Elastic(0.9 * -SOFTENING / LENGTH**2)
+    soft = Elastic(0.9 * -SOFTENING / LENGTH**2)
     with pytest.raises(rbsdem.SolveError, match="snaps back") as caught:
         rbsdem.cyclic(
             column(shear=soft, kinematics=kinematics, axial_load=1.0), displacement=[0.05, 0.5]
@@ -98,7 +99,7 @@ def test_snap_back_is_reported(kinematics):
 
 @pytest.mark.parametrize("kinematics", ["small", "pdelta", "finite"])
 def test_no_snap_back_if_the_rest_is_a_little_stiffer(kinematics):
-    stiffer = rbsdem.Elastic(1.3 * -SOFTENING / LENGTH**2)
+    stiffer = Elastic(1.3 * -SOFTENING / LENGTH**2)
     result = rbsdem.cyclic(
         column(shear=stiffer, kinematics=kinematics, axial_load=1.0), displacement=[0.05, 0.2]
     )
@@ -107,7 +108,7 @@ def test_no_snap_back_if_the_rest_is_a_little_stiffer(kinematics):
 
 def test_softening_beside_a_spring_without_stiffness():
     """Perfectly plastic shear below the cap: it takes all motion, the other spring stands still."""
-    plastic = rbsdem.Bilinear(1e8, 1e-3, 0.0)
+    plastic = Bilinear(1e8, 1e-3, 0.0)
     result = rbsdem.cyclic(column(shear=plastic), displacement=[0.01, 0.05, 0.2])
     np.testing.assert_allclose(result.force[1:], 100e3, rtol=1e-12)
     np.testing.assert_allclose(result.rotation[1:, 0], 2e-3, rtol=1e-9)
@@ -117,7 +118,7 @@ def test_softening_beside_a_spring_without_stiffness():
 def test_cycles_with_deterioration_keep_the_energy(n):
     lasting = {"lambda_s": 60, "lambda_c": 60, "lambda_k": 120, "lambda_a": 120, "b0": 0.3}
     flexure = [
-        rbsdem.PeakOriented(2e-3, m * 200e3, 0.01, m * 240e3, 0.06, m * 40e3, **lasting)
+        PeakOriented(2e-3, m * 200e3, 0.01, m * 240e3, 0.06, m * 40e3, **lasting)
         for m in np.linspace(1, 0.5, n)
     ]
     for kinematics in ("small", "pdelta", "finite"):
@@ -136,7 +137,7 @@ def test_cycles_with_deterioration_keep_the_energy(n):
 def test_methods_in_time_agree_past_the_cap(kinematics):
     """A pulse carries the column past its cap; it comes to rest with a drift."""
     lasting = {"lambda_s": 60.0, "lambda_k": 120.0, "b0": 0.3}
-    flexure = rbsdem.PeakOriented(2e-3, 200e3, 0.006, 220e3, 0.1, 80e3, **lasting)
+    flexure = PeakOriented(2e-3, 200e3, 0.006, 220e3, 0.1, 80e3, **lasting)
     shaken = column(
         flexure,
         kinematics=kinematics,

@@ -22,6 +22,17 @@ import reference_springs
 from numpy.typing import ArrayLike, NDArray
 
 import rbsdem
+from rbsdem.springs import (
+    Bilinear,
+    Compression,
+    ConcreteSpring,
+    Elastic,
+    Layered,
+    PeakOriented,
+    Pinching,
+    SteelSpring,
+    Takeda,
+)
 
 Array = NDArray[np.float64]
 
@@ -74,7 +85,7 @@ def test_takeda_s2_lines_between_the_points(inner: str) -> None:
         first,
         FC + KY * (1.2e-3 - DC),  # and on along the backbone
     ]
-    force = response(rbsdem.Takeda(**COLUMN_1, inner=inner), path)
+    force = response(Takeda(**COLUMN_1, inner=inner), path)
     np.testing.assert_allclose(force, by_hand, rtol=1e-9, atol=1e-9 * FY)
 
 
@@ -89,7 +100,7 @@ ROUND = {"k_c": 1.0, "d_c": 1.0, "k_y": 0.3, "d_y": 6.0, "k_u": 0.01}
 
 @pytest.mark.parametrize("inner", INNER)
 def test_takeda_rule_1_peak_of_the_own_side(inner: str) -> None:
-    force = response(rbsdem.Takeda(**COLUMN_1, inner=inner), [6 * DY, -2 * DY, -1.9 * DY])
+    force = response(Takeda(**COLUMN_1, inner=inner), [6 * DY, -2 * DY, -1.9 * DY])
     two = FY + KU * DY
     assert force[2] == pytest.approx(-two + K0 * (1 / 2) ** B0 * 0.1 * DY, rel=1e-9)
 
@@ -99,13 +110,13 @@ def test_takeda_rule_2_secant_of_that_line_goes_to_the_zero_crossing() -> None:
     crack, zero = 24 - (2.68 + 1) / k_r, 24 - 2.68 / k_r
     turn = -1 - (2.5 - 1) / (6 + crack) * (crack + 3)  # at -3
     secant = turn / (-3 - zero)
-    force = response(rbsdem.Takeda(**ROUND, b1=0.01), [24.0, -3.0, 0.0, zero])
+    force = response(Takeda(**ROUND, b1=0.01), [24.0, -3.0, 0.0, zero])
     np.testing.assert_allclose(force[1:], [turn, turn + 3 * secant, 0], rtol=1e-12, atol=1e-12)
 
 
 def test_takeda_rule_2_extreme_line_goes_on_to_the_yielded_backbone() -> None:
     """F_c = 1, F_y = 1.0025: K_r = max(K_0 1.05/3, 1.0025/3) meets P(-) at -2.8645, beyond D_y."""
-    spring = rbsdem.Takeda(k_c=1.0, d_c=1.0, k_y=0.05, d_y=1.05, k_u=0.0, b0=1.0)
+    spring = Takeda(k_c=1.0, d_c=1.0, k_y=0.05, d_y=1.05, k_u=0.0, b0=1.0)
     k_r = max((1 + 1.0025) / (1 + 1.05) * 1.05 / 3, 1.0025 / 3)
     meeting = 3 - 2 * 1.0025 / k_r
     assert meeting < -1.05
@@ -121,7 +132,7 @@ def test_takeda_rule_2_extreme_line_goes_on_to_the_yielded_backbone() -> None:
 
 def test_takeda_rule_3_redirects_to_the_yield_point_and_stays() -> None:
     """B0 = 1. Zero at 2.4 after 20: the yield point is steeper; at 0 after 60: it is not."""
-    spring = rbsdem.Takeda(**ROUND, b0=1.0)
+    spring = Takeda(**ROUND, b0=1.0)
     zero = 20 - 2.64 / (0.5 * 6 / 20)
     redirected = -2.5 / (6 + zero) * (zero + 3)
     np.testing.assert_allclose(
@@ -138,7 +149,7 @@ def test_takeda_rule_3_redirects_to_the_yield_point_and_stays() -> None:
 
 def test_takeda_rule_4_aims_at_the_peak_of_the_other_side() -> None:
     """R(-) turns at -2 before any inner peak of side +: after zero force straight to (20, 2.64)."""
-    spring = rbsdem.Takeda(**ROUND, inner="one")
+    spring = Takeda(**ROUND, inner="one")
     k_plus, k_minus = 0.5 * (6 / 20) ** 0.4, (1.6 + 1) / (3 + 1)
     zero = 20 - 2.64 / k_plus
     turn = -2.5 / (6 + zero) * (2 + zero)  # redirected by rule 3
@@ -150,7 +161,7 @@ def test_takeda_rule_4_aims_at_the_peak_of_the_other_side() -> None:
 
 def test_takeda_equality_at_cracking_and_at_yield() -> None:
     """Arriving exactly at an end is to be beyond it: the next line starts there."""
-    spring = rbsdem.Takeda(**ROUND)
+    spring = Takeda(**ROUND)
     # to -D_c on O(+), cracked: turning there unloads C(-) with K_c, not O(+)
     k_r = (1.6 + 1) / (3 + 1)
     assert response(spring, [3, -1, -0.5])[2] == pytest.approx(-0.5, rel=1e-12)
@@ -162,7 +173,7 @@ def test_takeda_equality_at_cracking_and_at_yield() -> None:
 
 def test_takeda_zero_force_is_passed_only_beyond() -> None:
     """At exactly the zero crossing O(+) still leads back to its peak, and so does an ulp beyond."""
-    spring = rbsdem.Takeda(**COLUMN_1)
+    spring = Takeda(**COLUMN_1)
     peak = 4 * DY
     zero = peak - (FY + 3 * KU * DY) / (K0 * (1 / 4) ** B0)
     for turn in (zero, math.nextafter(zero, -1), math.nextafter(zero, 1), zero - 1e-13 * DY):
@@ -179,7 +190,7 @@ def test_takeda_zero_force_reached_exactly_is_not_passed() -> None:
     Short of the crossing and at it O(+) runs both ways, so that 6 is no inner peak. Any distance
     beyond it is, and then the last loading aims at (6, 1) first.
     """
-    spring = rbsdem.Takeda(k_c=1.0, d_c=1.0, k_y=0.25, d_y=5.0, k_u=0.0, b0=0.0, inner="one")
+    spring = Takeda(k_c=1.0, d_c=1.0, k_y=0.25, d_y=5.0, k_u=0.0, b0=0.0, inner="one")
     zero = 3 - (1 / 6) / -0.5  # of I(-) from (3, -1/6)
     to_the_peak = 2 / (8 - zero) * (7 - zero)
     for turn in (4.0, math.nextafter(4.0, 5.0)):
@@ -196,7 +207,7 @@ def test_takeda_section_2b_the_secant_wins_over_k_r() -> None:
 
     Side - has no K_r of its own, so K_in is bounded by that of side +, which is below the secant.
     """
-    spring = rbsdem.Takeda(**(ROUND | {"k_u": 0.1}))
+    spring = Takeda(**(ROUND | {"k_u": 0.1}))
     assert 61.9 / 600 > 0.5 * (6 / 600) ** 0.4  # the floor of rule 1: zero force at zero
     force = response(spring, [24, -3, 600, -3, -2.9])
     slope = 2.5 / 6
@@ -215,7 +226,7 @@ class Case:
     path: Array
 
     def spring(self) -> Any:
-        maker = rbsdem.Bilinear if self.kind == "bilinear" else rbsdem.Takeda
+        maker = Bilinear if self.kind == "bilinear" else Takeda
         return maker(**self.parameters)
 
     def reference(self) -> Any:
@@ -664,8 +675,8 @@ def test_property_11_partial_unloading_is_one_line(kind: str) -> None:
 def test_property_12_b1_limits_equal_the_original_rule(inner: str, b1: float) -> None:
     """B1 Kc above every K_r, or B1 = 1 in the other reading: K_in = K_r."""
     for case in cases(inner):
-        limit = rbsdem.Takeda(**(case.parameters | {"b1": b1}))
-        original = rbsdem.Takeda(**(case.parameters | {"inner": "one"}))
+        limit = Takeda(**(case.parameters | {"b1": b1}))
+        original = Takeda(**(case.parameters | {"inner": "one"}))
         np.testing.assert_allclose(
             response(limit, case.path),
             response(original, case.path),
@@ -681,8 +692,8 @@ def test_property_12_b1_at_the_largest_unloading_stiffness() -> None:
         k_0 = (k_c * d_c + case.f_y) / (d_c + case.d_y)
         far = 1.5 * case.d_y
         path = np.concatenate(([far, -2 * far], case.path))
-        limit = rbsdem.Takeda(**(case.parameters | {"b1": k_0 / k_c * (1 + 1e-12)}))
-        original = rbsdem.Takeda(**(case.parameters | {"inner": "one"}))
+        limit = Takeda(**(case.parameters | {"b1": k_0 / k_c * (1 + 1e-12)}))
+        original = Takeda(**(case.parameters | {"inner": "one"}))
         np.testing.assert_allclose(
             response(limit, path), response(original, path), rtol=0, atol=1e-11 * case.scale
         )
@@ -690,7 +701,7 @@ def test_property_12_b1_at_the_largest_unloading_stiffness() -> None:
 
 def test_property_12_b1_is_unused_by_the_original_rule() -> None:
     for case in cases("one"):
-        other = rbsdem.Takeda(**(case.parameters | {"b1": 0.123}))
+        other = Takeda(**(case.parameters | {"b1": 0.123}))
         assert np.array_equal(response(other, case.path), case.force())
 
 
@@ -781,18 +792,18 @@ def test_input_error_is_a_value_error() -> None:
 
 
 def test_limits_of_the_parameters_are_allowed() -> None:
-    rbsdem.Bilinear(k=2.0, d_y=0.5, k_post=0.0)
-    rbsdem.Takeda(**(GOOD["Takeda"] | {"k_u": 0.0, "b0": 0.0, "b1": 1e-6}))
-    rbsdem.Takeda(**(GOOD["Takeda"] | {"k_u": 2.0, "b0": 1.0, "b1": 5.0}))
+    Bilinear(k=2.0, d_y=0.5, k_post=0.0)
+    Takeda(**(GOOD["Takeda"] | {"k_u": 0.0, "b0": 0.0, "b1": 1e-6}))
+    Takeda(**(GOOD["Takeda"] | {"k_u": 2.0, "b0": 1.0, "b1": 5.0}))
 
 
 def test_order_and_defaults_of_the_parameters() -> None:
     path = S4_MU * DY
-    default = rbsdem.Takeda(KC, DC, KY, DY, KU)
-    spelled = rbsdem.Takeda(k_c=KC, d_c=DC, k_y=KY, d_y=DY, k_u=KU, b0=0.4, b1=1.0, inner="kc")
+    default = Takeda(KC, DC, KY, DY, KU)
+    spelled = Takeda(k_c=KC, d_c=DC, k_y=KY, d_y=DY, k_u=KU, b0=0.4, b1=1.0, inner="kc")
     assert np.array_equal(response(default, path), response(spelled, path))
-    by_name = rbsdem.Bilinear(k=KC, d_y=DC, k_post=KU)
-    assert np.array_equal(response(rbsdem.Bilinear(KC, DC, KU), path), response(by_name, path))
+    by_name = Bilinear(k=KC, d_y=DC, k_post=KU)
+    assert np.array_equal(response(Bilinear(KC, DC, KU), path), response(by_name, path))
 
 
 @pytest.fixture(params=list(GOOD))
@@ -855,15 +866,15 @@ _CAPPED: dict[str, Any] = {
     "d_c_neg": 0.0, "f_c_neg": 0.0,
 }  # fmt: skip
 CORNERS: dict[str, Any] = {
-    "elastic": rbsdem.Elastic(2.0),
-    "bilinear": rbsdem.Bilinear(k=2.0, d_y=3.0, k_post=0.1),
-    "takeda": rbsdem.Takeda(k_c=4.0, d_c=1.0, k_y=2.0, d_y=3.0, k_u=0.1),
-    "peak_oriented": rbsdem.PeakOriented(**_CAPPED),
-    "pinching": rbsdem.Pinching(kappa_f=0.4, kappa_d=0.6, **_CAPPED),
-    "compression": rbsdem.Compression(k=2.0),
-    "concrete": rbsdem.ConcreteSpring(k=8.0, f_peak=9.0, d_peak=4.0, k_soft=2.0),
-    "steel": rbsdem.SteelSpring(k=4.0, f_y=8.0, k_post=0.5, f_u=9.0, plateau=1.0),
-    "layered": rbsdem.Layered([(-1.0, rbsdem.Elastic(1.0)), (1.0, rbsdem.Elastic(1.0))]),
+    "elastic": Elastic(2.0),
+    "bilinear": Bilinear(k=2.0, d_y=3.0, k_post=0.1),
+    "takeda": Takeda(k_c=4.0, d_c=1.0, k_y=2.0, d_y=3.0, k_u=0.1),
+    "peak_oriented": PeakOriented(**_CAPPED),
+    "pinching": Pinching(kappa_f=0.4, kappa_d=0.6, **_CAPPED),
+    "compression": Compression(k=2.0),
+    "concrete": ConcreteSpring(k=8.0, f_peak=9.0, d_peak=4.0, k_soft=2.0),
+    "steel": SteelSpring(k=4.0, f_y=8.0, k_post=0.5, f_u=9.0, plateau=1.0),
+    "layered": Layered([(-1.0, Elastic(1.0)), (1.0, Elastic(1.0))]),
 }
 
 

@@ -18,6 +18,7 @@ import reference_capped
 from numpy.typing import ArrayLike, NDArray
 
 import rbsdem
+from rbsdem.springs import Elastic, PeakOriented, Pinching
 
 Array = NDArray[np.float64]
 Numbers = dict[str, float]
@@ -38,8 +39,8 @@ HAND: Numbers = {
 }
 
 
-def make(numbers: Numbers) -> rbsdem.PeakOriented:
-    return (rbsdem.Pinching if "kappa_f" in numbers else rbsdem.PeakOriented)(**numbers)
+def make(numbers: Numbers) -> PeakOriented:
+    return (Pinching if "kappa_f" in numbers else PeakOriented)(**numbers)
 
 
 def reference(numbers: Numbers) -> reference_capped.Capped:
@@ -279,14 +280,14 @@ BAD: list[tuple[str, Any]] = [
 @pytest.mark.parametrize(("name", "value"), BAD)
 def test_bad_numbers_are_refused_by_name(name, value):
     with pytest.raises(rbsdem.InputError, match=rf"\b{name}\b"):
-        rbsdem.PeakOriented(**(HAND | {name: value}))
+        PeakOriented(**(HAND | {name: value}))
 
 
 @pytest.mark.parametrize("name", ["kappa_f", "kappa_d"])
 @pytest.mark.parametrize("value", [0.0, -0.1, 1.1, math.nan])
 def test_bad_shares_are_refused_by_name(name, value):
     with pytest.raises(rbsdem.InputError, match=name):
-        rbsdem.Pinching(**(HAND | {"kappa_f": 0.5, "kappa_d": 0.5, name: value}))
+        Pinching(**(HAND | {"kappa_f": 0.5, "kappa_d": 0.5, name: value}))
 
 
 @pytest.mark.parametrize(
@@ -299,13 +300,13 @@ def test_bad_shares_are_refused_by_name(name, value):
 )
 def test_cracking_point_must_be_on_the_stiff_side(d_c, f_c, words):
     with pytest.raises(rbsdem.InputError, match=words):
-        rbsdem.PeakOriented(**HAND, d_c=d_c, f_c=f_c)
+        PeakOriented(**HAND, d_c=d_c, f_c=f_c)
 
 
 def test_limits_of_the_numbers_are_allowed():
-    rbsdem.PeakOriented(1.0, 100.0, 1.0, 100.0, 1e-3)  # falls at once
-    rbsdem.PeakOriented(1.0, 100.0, 3.0, 300.0, 12.0, d_u=3.0)  # elastic up to rupture
-    rbsdem.Pinching(**HAND, kappa_f=1.0, kappa_d=1.0)
+    PeakOriented(1.0, 100.0, 1.0, 100.0, 1e-3)  # falls at once
+    PeakOriented(1.0, 100.0, 3.0, 300.0, 12.0, d_u=3.0)  # elastic up to rupture
+    Pinching(**HAND, kappa_f=1.0, kappa_d=1.0)
 
 
 def test_axial_springs_cannot_be_capped():
@@ -315,7 +316,7 @@ def test_axial_springs_cannot_be_capped():
         rbsdem.Column(
             2.0,
             1e3,
-            rbsdem.Elastic(1e8),
-            rbsdem.Elastic(1e8),
-            axial_spring=rbsdem.PeakOriented(**HAND),
+            Elastic(1e8),
+            Elastic(1e8),
+            axial_spring=PeakOriented(**HAND),
         )

@@ -19,6 +19,7 @@ import reference_springs
 from scipy.optimize import brentq
 
 import rbsdem
+from rbsdem.springs import Bilinear, Compression, Elastic, Layered, Takeda
 
 # The same column is made at every level of kinematics, and masses without weight are tried.
 pytestmark = pytest.mark.filterwarnings(
@@ -26,8 +27,8 @@ pytestmark = pytest.mark.filterwarnings(
 )
 
 # Column 1 of table 3 (Soesianawati No 1).
-SHEAR = rbsdem.Bilinear(7.0387e8, 1.2960e-4, 8.3185e6)
-FLEXURE = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
+SHEAR = Bilinear(7.0387e8, 1.2960e-4, 8.3185e6)
+FLEXURE = Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
 HEIGHT, MASS = 1.6, 614.4
 
 
@@ -37,7 +38,7 @@ def paper_column(**options) -> rbsdem.Column:
 
 def reference(spring):
     """The same spring by the independent method."""
-    if isinstance(spring, rbsdem.Bilinear):
+    if isinstance(spring, Bilinear):
         return reference_springs.Bilinear(spring.k, spring.d_y, spring.k_post)
     return reference_springs.Takeda(
         spring.k_c, spring.d_c, spring.k_y, spring.d_y, spring.k_u, spring.b0, spring.b1,
@@ -52,12 +53,12 @@ def random_springs(rng: np.random.Generator, n: int):
         yield_force = rng.uniform(0.7e5, 1.3e5)
         slip = 10 ** rng.uniform(-3.5, -2.5)
         shear.append(
-            rbsdem.Bilinear(yield_force / slip, slip, rng.uniform(0.01, 0.3) * yield_force / slip)
+            Bilinear(yield_force / slip, slip, rng.uniform(0.01, 0.3) * yield_force / slip)
         )
         crack = 10 ** rng.uniform(-4, -3)
         k_c = rng.uniform(0.4e5, 0.8e5) / crack
         flexure.append(
-            rbsdem.Takeda(
+            Takeda(
                 k_c,
                 crack,
                 rng.uniform(0.2, 0.4) * k_c,
@@ -137,7 +138,7 @@ def assert_energy(run: rbsdem.Result, rel: float = 1e-12) -> None:
 
 
 #: Linear kinematics are linear at any amplitude; that it is no longer true to life is told.
-LARGE_ROTATIONS = pytest.mark.filterwarnings("default::rbsdem.AccuracyWarning")
+LARGE_ROTATIONS = pytest.mark.filterwarnings("default::rbsdem.errors.AccuracyWarning")
 
 
 # ---- linear closed forms -------------------------------------------------------------------------
@@ -148,7 +149,7 @@ def test_linear_column_is_a_sum_of_flexibilities(n):
     rng = np.random.default_rng(n)
     k_v, k_m, lengths = rng.uniform(1e6, 5e6, n), rng.uniform(1e6, 5e6, n), rng.uniform(0.2, 1, n)
     column = rbsdem.Column(
-        lengths.sum(), 100.0, [rbsdem.Elastic(k) for k in k_v], [rbsdem.Elastic(k) for k in k_m],
+        lengths.sum(), 100.0, [Elastic(k) for k in k_v], [Elastic(k) for k in k_m],
         n=n, lengths=lengths,
     )  # fmt: skip
     arm = arms(column)
@@ -162,7 +163,7 @@ def test_linear_column_is_a_sum_of_flexibilities(n):
 def test_axial_load_does_nothing_in_small():
     history = random_history(1, 30, 0.05)
     with pytest.warns(
-        rbsdem.AccuracyWarning, match="axial_load = 744000 N does nothing .*'pdelta'"
+        rbsdem.errors.AccuracyWarning, match="axial_load = 744000 N does nothing .*'pdelta'"
     ):
         column = paper_column(axial_load=7.44e5)
     loaded = rbsdem.cyclic(column, displacement=history)
@@ -360,7 +361,7 @@ def test_weight_and_load_in_equilibrium(kinematics):
 
 # ---- limits --------------------------------------------------------------------------------------
 
-PLASTIC = rbsdem.Bilinear(1.0e8, 1.0e-3, 0.0)
+PLASTIC = Bilinear(1.0e8, 1.0e-3, 0.0)
 
 
 def reached(message: str) -> float:
@@ -372,7 +373,7 @@ def reached(message: str) -> float:
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_force_beyond_the_capacity_keeps_the_path(sign):
-    column = rbsdem.Column(2.0, 100.0, PLASTIC, rbsdem.Elastic(5e8))
+    column = rbsdem.Column(2.0, 100.0, PLASTIC, Elastic(5e8))
     capacity = 1.0e5
     forces = sign * np.array([0.5, -0.8, 0.9, 1.0 - 1e-9, 1.2, 0.3]) * capacity
     with pytest.raises(rbsdem.SolveError, match="shear spring of joint 1") as caught:
@@ -393,10 +394,10 @@ def test_a_joint_that_rocks_on_its_edge(kinematics):
     On the edge k_1 (y_1 - s/a)^2 is round-off of zero, and was taken for a slope.
     """
     load, edge, height = 687e3, 0.2, 2.0
-    contact = rbsdem.Compression(k=105981656.0)
-    rock = rbsdem.Layered([(-edge, contact), (edge, contact)])
+    contact = Compression(k=105981656.0)
+    rock = Layered([(-edge, contact), (edge, contact)])
     column = rbsdem.Column(
-        height, 500.0, rbsdem.Elastic(1e9), rock, axial_load=load, kinematics=kinematics
+        height, 500.0, Elastic(1e9), rock, axial_load=load, kinematics=kinematics
     )
     peaks = np.array([0.0362, -0.0362, 0.0423, -0.0423, 0.0454, -0.0454, 0.0497, -0.0497])
     run = rbsdem.cyclic(column, displacement=peaks)
@@ -413,14 +414,14 @@ def test_a_joint_that_rocks_on_its_edge(kinematics):
 
 
 def test_capacity_itself_can_be_reached():
-    column = rbsdem.Column(2.0, 100.0, PLASTIC, rbsdem.Elastic(5e8))
+    column = rbsdem.Column(2.0, 100.0, PLASTIC, Elastic(5e8))
     run = rbsdem.cyclic(column, force=[1.0e5, -1.0e5, 1.0e5])
     np.testing.assert_allclose(run.displacement, run.force * (1e-8 + 4 / 5e8), rtol=1e-12)
 
 
 def test_capacity_of_the_joint_that_is_named():
     """Plastic flexure of joint 2 of 3, weakest: F = k d_y / (height above it)."""
-    weak, strong = rbsdem.Bilinear(1e8, 1e-3, 0.0), rbsdem.Elastic(1e9)
+    weak, strong = Bilinear(1e8, 1e-3, 0.0), Elastic(1e9)
     column = rbsdem.Column(3.0, 100.0, strong, [strong, weak, strong], n=3)
     with pytest.raises(rbsdem.SolveError, match="flexural spring of joint 2") as caught:
         rbsdem.cyclic(column, force=[-1e6])
@@ -430,7 +431,7 @@ def test_capacity_of_the_joint_that_is_named():
 
 def test_plastic_column_by_displacement():
     """Force stays, the plastic joint takes all the motion, elastic unloading in between."""
-    column = rbsdem.Column(2.0, 100.0, PLASTIC, rbsdem.Elastic(5e8))
+    column = rbsdem.Column(2.0, 100.0, PLASTIC, Elastic(5e8))
     flexibility = 1e-8 + 4 / 5e8
     first = 1e5 * flexibility
     targets = np.array([0.5 * first, first, 0.05, 0.05 - first, 0.05 - 2 * first, -0.02])
@@ -450,7 +451,7 @@ def softening_column(share: float, k_post: float = 2.0e6):
     length, k_v, k_m, phi_y = 1.6, 5.0e8, 1.0e8, 4.0e-3
     load = share * k_m / length
     column = rbsdem.Column(
-        length, 100.0, rbsdem.Elastic(k_v), rbsdem.Bilinear(k_m, phi_y, k_post), axial_load=load,
+        length, 100.0, Elastic(k_v), Bilinear(k_m, phi_y, k_post), axial_load=load,
         kinematics="pdelta",
     )  # fmt: skip
     peak = (k_m - load * length) * phi_y / length
@@ -484,7 +485,7 @@ def test_yielded_shear_unloads_where_the_force_begins_to_fall(sign):
     length, k_v, u_y, k_v_post = 1.6, 5.0e8, 2.0e-4, 1.0e6
     k_m, phi_y, k_m_post, load = 1.0e8, 4.0e-3, 2.0e6, 6.25e6
     column = rbsdem.Column(
-        length, 100.0, rbsdem.Bilinear(k_v, u_y, k_v_post), rbsdem.Bilinear(k_m, phi_y, k_m_post),
+        length, 100.0, Bilinear(k_v, u_y, k_v_post), Bilinear(k_m, phi_y, k_m_post),
         axial_load=load, kinematics="pdelta",
     )  # fmt: skip
     assert load * length - k_m_post > length**2 * k_v_post
@@ -550,7 +551,7 @@ def path_by_trying(column: rbsdem.Column, targets):
 def test_yielded_joints_beyond_the_peak_against_trying_all_ways(n, k_post):
     """Joints yield in shear, joint 1 yields in flexure, the force falls, shear unloads or not."""
     column = rbsdem.Column(
-        1.6, 100.0, rbsdem.Bilinear(5.0e8, 2.0e-4, k_post), rbsdem.Bilinear(1.0e8, 4.0e-3, 2.0e6),
+        1.6, 100.0, Bilinear(5.0e8, 2.0e-4, k_post), Bilinear(1.0e8, 4.0e-3, 2.0e6),
         n=n, axial_load=3.0e6, kinematics="pdelta",
     )  # fmt: skip
     targets = [0.004, -0.006, 0.05, 0.13 if n == 4 else 0.15, 0.12, 0.13]
@@ -567,7 +568,7 @@ def test_snap_back_is_told_and_the_path_kept():
     """P l - k_post > l^2 k_V with elastic shear: at the peak every way on moves the top back."""
     length, k_v, k_m, phi_y, k_m_post, load = 1.6, 1.0e6, 1.0e8, 4.0e-3, 2.0e6, 6.25e6
     column = rbsdem.Column(
-        length, 100.0, rbsdem.Elastic(k_v), rbsdem.Bilinear(k_m, phi_y, k_m_post),
+        length, 100.0, Elastic(k_v), Bilinear(k_m, phi_y, k_m_post),
         axial_load=load, kinematics="pdelta",
     )  # fmt: skip
     peak = (k_m - load * length) * phi_y / length
@@ -645,7 +646,7 @@ def test_huge_amplitudes_are_on_the_last_branch(scale):
 
 def test_small_steps_far_out_do_not_stop():
     """Steps of one unit in the last place, across an event."""
-    column = rbsdem.Column(2.0, 100.0, rbsdem.Bilinear(1e8, 1e-3, 1e6), rbsdem.Elastic(5e8))
+    column = rbsdem.Column(2.0, 100.0, Bilinear(1e8, 1e-3, 1e6), Elastic(5e8))
     at = 1e5 * (1e-8 + 4 / 5e8)
     targets = [at]
     for _ in range(20):

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import Elastic, Gauge, Layered
+from rbsdem.springs import Elastic, Gauge, Layered
 
 
 def made() -> rbsdem.Column:

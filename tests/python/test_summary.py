@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 import rbsdem
+from rbsdem.springs import Bilinear, Elastic, PeakOriented
 
 #: A shear spring whose softening follows the work of the hinge of its joint.
-SHEAR = rbsdem.PeakOriented(
-    d_y=5e-4, f_y=6e4, d_cap=6e-3, f_cap=7.5e4, d_pc=4e-2, lambda_h=2.0, s_min=0.2
-)
-FLEXURE = rbsdem.Bilinear(k=6.3e7, d_y=1.5e-3, k_post=2e6)
+SHEAR = PeakOriented(d_y=5e-4, f_y=6e4, d_cap=6e-3, f_cap=7.5e4, d_pc=4e-2, lambda_h=2.0, s_min=0.2)
+FLEXURE = Bilinear(k=6.3e7, d_y=1.5e-3, k_post=2e6)
 PATH = 1.6 * rbsdem.protocol([0.005, 0.01, 0.015, 0.02], cycles=3, points=10)
 TIME = np.arange(0.0, 1.0, 0.01)
 MOTION = 9.0 * np.sin(2 * np.pi * 3.0 * TIME) * np.sin(np.pi * TIME)
@@ -52,7 +51,7 @@ def test_axial_springs_that_stay_still_change_nothing(analysis, kinematics):
     """
     subject = {"kinematics": kinematics}
     plain = solve(analysis, column(**subject))
-    inert = solve(analysis, column(axial_spring=rbsdem.Elastic(1e10), **subject))
+    inert = solve(analysis, column(axial_spring=Elastic(1e10), **subject))
     exact = kinematics != "finite" and analysis != "rk45"
     close = {"rel": 1e-12 if exact else 1e-3}
     for name in ("peak_displacement", "peak_base_shear", "peak_rotation", "spring_energy"):
@@ -93,7 +92,7 @@ def test_figures_and_limit_states_do_not_depend_on_the_rows(analysis, kinematics
 @pytest.mark.parametrize("settings", [{"method": "rk45"}, {"method": "rk4", "events": "located"}])
 def test_peaks_inside_a_step_are_found(settings):
     """Free vibration with a velocity at the start: the amplitude falls between all rows."""
-    column = rbsdem.Column(2.0, 1e3, rbsdem.Elastic(1e9), rbsdem.Elastic(4e7))
+    column = rbsdem.Column(2.0, 1e3, Elastic(1e9), Elastic(4e7))
     modes = rbsdem.modes(column)
     omega = modes.omega[0]
     shape = modes.shapes[:, 0] / (modes.shapes[0, 0] + 2.0 * modes.shapes[1, 0])
@@ -115,7 +114,7 @@ def test_peaks_inside_a_step_are_found(settings):
 
 def test_a_collapse_between_two_rows_is_seen_by_every_method():
     """Rows 10 ms apart of a motion of 30 Hz: the largest of them is 8.40 mm, the peak 8.93 mm."""
-    subject = rbsdem.paper_columns("pdelta")["soesianawati_1"]
+    subject = rbsdem.peer.paper_columns("pdelta")["soesianawati_1"]
     time = np.arange(0.0, 2.0, 0.01)
     motion = 300 * np.sin(2 * np.pi * 30 * time) * np.exp(-(((time - 0.6) / 0.3) ** 2))
     dense = np.linspace(0.0, time[-1], 20 * (time.size - 1) + 1)
@@ -147,8 +146,8 @@ def test_a_collapse_between_two_rows_is_seen_by_every_method():
 
 def test_limit_states_are_where_the_motion_crosses_them():
     """A free vibration u = a sin(w t) in a spring that would yield at half of its amplitude."""
-    hinge = rbsdem.Bilinear(k=4e7, d_y=2.5e-3, k_post=1e6)
-    subject = rbsdem.Column(2.0, 1e3, rbsdem.Elastic(1e9), hinge)
+    hinge = Bilinear(k=4e7, d_y=2.5e-3, k_post=1e6)
+    subject = rbsdem.Column(2.0, 1e3, Elastic(1e9), hinge)
     modes = rbsdem.modes(subject)
     omega = modes.omega[0]
     shape = modes.shapes[:, 0] / modes.shapes[1, 0]
@@ -166,7 +165,7 @@ def test_limit_states_are_where_the_motion_crosses_them():
 @pytest.mark.parametrize("analysis", ["static", "rk4", "rk45", "newmark"])
 def test_the_drift_of_collapse_counts_the_height_of_the_column(analysis):
     """On a footing of half the height, that does not move, as without one."""
-    rigid = rbsdem.Elastic(1e13 if analysis == "static" else 1e11)
+    rigid = Elastic(1e13 if analysis == "static" else 1e11)
     beneath = rbsdem.Footing(rigid, rigid, mass=1e6, inertia=1e6, height=0.8)
     subject = column(1, footing=beneath)
     result = solve(analysis, subject, collapse_drift=0.01)

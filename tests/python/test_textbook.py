@@ -21,6 +21,7 @@ import pytest
 from scipy.optimize import brentq
 
 import rbsdem
+from rbsdem.springs import Bilinear, Elastic
 
 INCH = 0.0254
 KIP = 1000 * 0.45359237 * 9.80665
@@ -36,8 +37,8 @@ def oscillator(
     return rbsdem.Column(
         1.0,
         mass * MASS,
-        spring or rbsdem.Elastic(k),
-        rbsdem.Elastic(RIGID * k),
+        spring or Elastic(k),
+        Elastic(RIGID * k),
         damping=rbsdem.Damping(mass=damping / mass),
     )
 
@@ -82,7 +83,7 @@ def test_chopra_example_5_3_average_acceleration():
 def test_chopra_examples_5_5_and_5_6_elastoplastic():
     """Yield at 7.5 kip, by Newton's method and by the modified one: the same displacements."""
     k = PULSE_STIFFNESS * KIP / INCH
-    yields = rbsdem.Bilinear(k=k, d_y=0.75 * INCH, k_post=0.0)
+    yields = Bilinear(k=k, d_y=0.75 * INCH, k_post=0.0)
     column = oscillator(PULSE_MASS, PULSE_STIFFNESS, PULSE_DAMPING, yields)
     printed = [0.0437, 0.2326, 0.6121, 1.1143, 1.6214, 1.9891, 2.0951, 1.9240, 1.5602]
     got = respond(column, 0.1, 0.9, method="newmark", dt=0.1)
@@ -165,9 +166,7 @@ def test_bathe_two_degrees_of_freedom_by_the_trapezoidal_rule():
     """
     inertia = brentq(lambda j: np.prod(bathe(j)[1:]) - 10 * bathe(j)[0] * j, 4.0, 6.0, xtol=1e-14)
     mass, shear, flexure = bathe(inertia)
-    column = rbsdem.Column(
-        1.0, mass, rbsdem.Elastic(shear), rbsdem.Elastic(flexure), rotary_inertia=[inertia]
-    )
+    column = rbsdem.Column(1.0, mass, Elastic(shear), Elastic(flexure), rotary_inertia=[inertia])
     np.testing.assert_allclose(rbsdem.modes(column).omega ** 2, [2.0, 5.0], rtol=1e-12)
 
     time = 0.28 * np.arange(13)
@@ -193,8 +192,8 @@ def beam(n: int, **options) -> rbsdem.Column:
     """EI = m = L = 1, only bending; the joint at the foot stands for half a body."""
     k = BENDING * n / LENGTH
     return rbsdem.Column(
-        LENGTH, WEIGHT, rbsdem.Elastic(1e9 * n),
-        [rbsdem.Elastic(2 * k)] + [rbsdem.Elastic(k)] * (n - 1), n=n, **options,
+        LENGTH, WEIGHT, Elastic(1e9 * n),
+        [Elastic(2 * k)] + [Elastic(k)] * (n - 1), n=n, **options,
     )  # fmt: skip
 
 
@@ -214,8 +213,8 @@ def test_chopra_example_6_2_period_of_a_pipe_column():
     stiffness, length, n = 29e3 * KIP * 7.23 * INCH**2, 144 * INCH, 60
     k = stiffness * n / length
     column = rbsdem.Column(
-        length, 1e-3, rbsdem.Elastic(1e9 * k),
-        [rbsdem.Elastic(2 * k)] + [rbsdem.Elastic(k)] * (n - 1),
+        length, 1e-3, Elastic(1e9 * k),
+        [Elastic(2 * k)] + [Elastic(k)] * (n - 1),
         n=n, top_mass=5.20 / 386 * MASS, gravity=0.0,
     )  # fmt: skip
     pushed = rbsdem.cyclic(column, displacement=[INCH])

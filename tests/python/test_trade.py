@@ -17,11 +17,11 @@ import numpy as np
 import pytest
 
 import rbsdem
+from rbsdem import compare_methods
 from rbsdem.cli import main
 from rbsdem.methods import scene
 from rbsdem.methods.answer import Setting
-from rbsdem.methods.measure import trade
-from rbsdem.methods.outcome import Trade
+from rbsdem.methods.outcome import MethodStudy
 from rbsdem.methods.path import reversals
 from rbsdem.methods.physics import split_bodies
 from rbsdem.methods.rows import seconds_text
@@ -29,11 +29,22 @@ from rbsdem.methods.scene import make_scene
 from rbsdem.output.methods import report
 from rbsdem.output.tables import write_csv
 from rbsdem.results.accuracy import Answer, at_times, common_interval, errors_of
+from rbsdem.springs import (
+    Bilinear,
+    Compression,
+    ConcreteSpring,
+    Elastic,
+    Layered,
+    PeakOriented,
+    Pinching,
+    SteelSpring,
+    Takeda,
+)
 
 LENGTH, MASS = 1.6, 614.4
 SHEAR, BENDING = 7.0387e8, 2.5428e8
-ELASTIC = rbsdem.Column(LENGTH, MASS, rbsdem.Elastic(SHEAR), rbsdem.Elastic(BENDING))
-PAPER = rbsdem.paper_columns("pdelta", top_mass=75000.0)["soesianawati_1"]
+ELASTIC = rbsdem.Column(LENGTH, MASS, Elastic(SHEAR), Elastic(BENDING))
+PAPER = rbsdem.peer.paper_columns("pdelta", top_mass=75000.0)["soesianawati_1"]
 TIME = np.arange(0.0, 1.0001, 0.005)
 MOTION = 4.0 * np.sin(2 * np.pi * 2.0 * TIME) * np.minimum(TIME / 0.3, 1.0)
 CYCLES = LENGTH * rbsdem.protocol([0.005, 0.01, 0.02], cycles=1)
@@ -45,12 +56,14 @@ def _short_runs_are_run_once(monkeypatch):
 
 
 @pytest.fixture(scope="module")
-def shaken() -> Trade:
+def shaken() -> MethodStudy:
     """The column of the paper with a storey, under a short motion."""
-    return trade(PAPER, TIME, ground_acceleration=MOTION, tolerance=1e-3, repeats=1, budget=30.0)
+    return compare_methods(
+        PAPER, TIME, ground_acceleration=MOTION, tolerance=1e-3, repeats=1, budget=30.0
+    )
 
 
-def rows_of(found: Trade, method: str, kinematics: str, events: str | None = None) -> list:
+def rows_of(found: MethodStudy, method: str, kinematics: str, events: str | None = None) -> list:
     wanted = (method, events, kinematics)
     return [row for row in found.rows if row.setting.family[:3] == wanted]
 
@@ -123,7 +136,7 @@ def free_vibration(time: np.ndarray) -> np.ndarray:
 
 def test_reference_and_orders_of_free_vibration():
     """The reference against the modal solution; errors fall with the orders of the methods."""
-    found = trade(
+    found = compare_methods(
         ELASTIC,
         [0.0, 0.2],
         initial={"slip": [1e-3]},
@@ -234,7 +247,7 @@ def test_lower_kinematics_err_by_what_the_physics_table_says(shaken):
 
 
 def test_a_setting_of_the_user_is_measured(shaken):
-    found = trade(
+    found = compare_methods(
         PAPER,
         TIME,
         ground_acceleration=MOTION,
@@ -247,12 +260,12 @@ def test_a_setting_of_the_user_is_measured(shaken):
     assert own.setting.method == "hht"
     assert 1e-9 < own.error < 0.1
     with pytest.raises(rbsdem.InputError, match="setting: 'step' is not known"):
-        trade(PAPER, TIME, ground_acceleration=MOTION, setting={"step": 1.0})
+        compare_methods(PAPER, TIME, ground_acceleration=MOTION, setting={"step": 1.0})
 
 
 def test_implicit_methods_take_every_level():
     column = dataclasses.replace(PAPER, kinematics="finite")
-    found = trade(
+    found = compare_methods(
         column, TIME, ground_acceleration=MOTION, methods=["newmark", "rk4"], repeats=1, digits=6
     )
     for level in ("finite", "pdelta"):
@@ -267,12 +280,14 @@ def test_implicit_methods_take_every_level():
 def test_irregular_times_are_compared_too():
     time = np.sort(np.concatenate([TIME, np.sqrt(2) * TIME[1:100]]))
     motion = np.interp(time, TIME, MOTION)
-    found = trade(PAPER, time, ground_acceleration=motion, methods=["rk4"], repeats=1, digits=6)
+    found = compare_methods(
+        PAPER, time, ground_acceleration=motion, methods=["rk4"], repeats=1, digits=6
+    )
     assert rows_of(found, "rk4", "pdelta", "step")[-1].error < 1e-5
 
 
 def test_collapse_ends_the_comparison():
-    found = trade(
+    found = compare_methods(
         PAPER,
         TIME,
         ground_acceleration=3 * MOTION,
@@ -290,11 +305,11 @@ def test_collapse_ends_the_comparison():
 
 
 def chain(n: int) -> rbsdem.Column:
-    spring = rbsdem.Bilinear(2.0e8 * n, 2e-3 / n, 2.0e7 * n)
+    spring = Bilinear(2.0e8 * n, 2e-3 / n, 2.0e7 * n)
     return rbsdem.Column(
         1.6,
         614.4,
-        rbsdem.Elastic(7e8 * n),
+        Elastic(7e8 * n),
         spring,
         n=n,
         top_mass=75000.0,
@@ -304,7 +319,7 @@ def chain(n: int) -> rbsdem.Column:
 
 
 def test_what_does_not_fit_into_the_budget_is_left_out_and_told():
-    found = trade(chain(100), TIME, ground_acceleration=MOTION, budget=1.5, digits=4)
+    found = compare_methods(chain(100), TIME, ground_acceleration=MOTION, budget=1.5, digits=4)
     skipped = [row for row in found.rows if row.status == "skipped"]
     assert any(row.setting.method == "rk4" for row in skipped)
     assert all("would take about" in row.reason for row in skipped)
@@ -315,7 +330,7 @@ def test_what_does_not_fit_into_the_budget_is_left_out_and_told():
 
 
 def test_digits_that_are_not_reached_are_told():
-    found = trade(
+    found = compare_methods(
         PAPER, TIME, ground_acceleration=MOTION, methods=["rk4"], digits=15, repeats=1, budget=10.0
     )
     assert not found.reference.reached
@@ -325,7 +340,7 @@ def test_digits_that_are_not_reached_are_told():
 
 def test_no_time_at_all():
     with pytest.raises(rbsdem.InputError, match="budget is too small for any setting"):
-        trade(chain(100), TIME, ground_acceleration=MOTION, budget=1e-6)
+        compare_methods(chain(100), TIME, ground_acceleration=MOTION, budget=1e-6)
 
 
 # ---- static --------------------------------------------------------------------------------------
@@ -335,7 +350,7 @@ def test_no_time_at_all():
 @pytest.mark.parametrize("kinematics", ["small", "pdelta", "finite"])
 def test_static_path_and_its_inverse(kinematics):
     column = dataclasses.replace(PAPER, kinematics=kinematics)
-    found = trade(column, displacement=CYCLES, tolerance=1e-3)
+    found = compare_methods(column, displacement=CYCLES, tolerance=1e-3)
     assert found.response == "force"
     assert found.reference.digits > 8
     assert "driven by force" in found.reference.second
@@ -350,7 +365,7 @@ def test_static_path_and_its_inverse(kinematics):
 
 
 def test_static_force():
-    found = trade(PAPER, force=1.2e5 * CYCLES / CYCLES.max())
+    found = compare_methods(PAPER, force=1.2e5 * CYCLES / CYCLES.max())
     assert found.response == "displacement"
     assert found.reference.digits > 10
 
@@ -360,12 +375,12 @@ def test_falling_force_cannot_be_driven_back():
     column = rbsdem.Column(
         1.6,
         614.4,
-        rbsdem.Elastic(1e9),
-        rbsdem.Bilinear(1e8, 1e-3, 1e5),
+        Elastic(1e9),
+        Bilinear(1e8, 1e-3, 1e5),
         kinematics="pdelta",
         axial_load=1e6,
     )
-    found = trade(column, displacement=np.linspace(0.0, 0.02, 50))
+    found = compare_methods(column, displacement=np.linspace(0.0, 0.02, 50))
     assert "increments are compared" in found.reference.note
     assert found.reference.digits > 10
 
@@ -373,7 +388,7 @@ def test_falling_force_cannot_be_driven_back():
 # ---- parts of the model --------------------------------------------------------------------------
 
 
-def effect_of(found: Trade, part: str):
+def effect_of(found: MethodStudy, part: str):
     return next(effect for effect in found.physics.effects if effect.part == part)
 
 
@@ -381,7 +396,7 @@ def test_effect_of_the_axial_load_on_an_elastic_column():
     """Without P the force is that of two springs in series; with it k_M is less by P l."""
     load = 0.1 * BENDING / LENGTH
     column = dataclasses.replace(ELASTIC, kinematics="pdelta", axial_load=load)
-    found = trade(column, displacement=CYCLES)
+    found = compare_methods(column, displacement=CYCLES)
 
     def flexibility(axial_load: float) -> float:
         return 1 / SHEAR + LENGTH**2 / (BENDING - axial_load * LENGTH)
@@ -396,7 +411,7 @@ def test_effect_of_the_axial_load_on_an_elastic_column():
 
 def test_effect_of_two_bodies_on_an_elastic_column():
     """Half of the joint's rotation takes place at half of the height."""
-    found = trade(ELASTIC, force=np.linspace(0.0, 1e5, 20))
+    found = compare_methods(ELASTIC, force=np.linspace(0.0, 1e5, 20))
     one = 1 / SHEAR + LENGTH**2 / BENDING
     two = 1 / SHEAR + (LENGTH**2 + (LENGTH / 2) ** 2) / (2 * BENDING)
     assert effect_of(found, "2 bodies").peak == pytest.approx(two / one - 1, rel=1e-9)
@@ -407,18 +422,18 @@ def test_effects_of_a_column_with_everything():
     column = rbsdem.Column(
         1.6,
         614.4,
-        rbsdem.Elastic(7e8),
+        Elastic(7e8),
         PAPER.flexure,
         kinematics="pdelta",
         axial_load=744e3,
         self_weight=True,
-        axial_spring=rbsdem.Compression(3e9),
+        axial_spring=Compression(3e9),
         top_mass=75000.0,
         top_inertia=2000.0,
         depth=0.4,
         damping=rbsdem.Damping(mass=0.2, stiffness=1e-5),
     )
-    found = trade(
+    found = compare_methods(
         column,
         TIME,
         ground_acceleration=MOTION,
@@ -451,7 +466,7 @@ def test_effects_of_a_column_with_everything():
 
 
 def test_joints_that_open_can_be_tried():
-    found = trade(PAPER, displacement=CYCLES, axial_spring=rbsdem.Elastic(2.4e9))
+    found = compare_methods(PAPER, displacement=CYCLES, axial_spring=Elastic(2.4e9))
     assert effect_of(found, "joints open").matters is not None
 
 
@@ -459,8 +474,8 @@ def test_split_bodies_keeps_mass_height_and_inertia():
     column = rbsdem.Column(
         2.0,
         None,
-        rbsdem.Elastic(1e8),
-        [rbsdem.Elastic(1e8), rbsdem.Elastic(2e8)],
+        Elastic(1e8),
+        [Elastic(1e8), Elastic(2e8)],
         n=2,
         lengths=[0.8, 1.2],
         masses=[100.0, 300.0],
@@ -476,17 +491,17 @@ def test_split_bodies_keeps_mass_height_and_inertia():
 
 #: A spring of each rule, in arbitrary units.
 SPRINGS = [
-    rbsdem.Elastic(3.0),
-    rbsdem.Bilinear(3.0, 1.0, 0.5),
-    rbsdem.Takeda(10.0, 0.1, 4.0, 1.0, 0.4, b1=0.3),
-    rbsdem.Takeda(10.0, 0.1, 4.0, 1.0, 0.4, b1=0.6, inner="kr"),
-    rbsdem.Compression(3.0),
-    rbsdem.PeakOriented(1.0, 3.0, 3.0, 3.5, 6.0),
-    rbsdem.PeakOriented(1.0, 3.0, 3.0, 3.5, 6.0, 0.2, d_c=0.1, f_c=0.8, lambda_s=40, d_u=20),
-    rbsdem.Pinching(1.0, 3.0, 3.0, 3.5, 6.0, kappa_f=0.3, kappa_d=0.4, lambda_a=50),
-    rbsdem.ConcreteSpring(3.0, 2.0, 1.5, 0.3, contact=0.3, misfit=0.2, wear=0.05),
-    rbsdem.SteelSpring(3.0, 2.0, 0.1, isotropic_hardening=0.01, f_u=2.6, plateau=2.0, endurance=90),
-    rbsdem.Layered([(-1.0, rbsdem.SteelSpring(3.0, 2.0, 0.1)), (1.0, rbsdem.Elastic(2.0))]),
+    Elastic(3.0),
+    Bilinear(3.0, 1.0, 0.5),
+    Takeda(10.0, 0.1, 4.0, 1.0, 0.4, b1=0.3),
+    Takeda(10.0, 0.1, 4.0, 1.0, 0.4, b1=0.6, inner="kr"),
+    Compression(3.0),
+    PeakOriented(1.0, 3.0, 3.0, 3.5, 6.0),
+    PeakOriented(1.0, 3.0, 3.0, 3.5, 6.0, 0.2, d_c=0.1, f_c=0.8, lambda_s=40, d_u=20),
+    Pinching(1.0, 3.0, 3.0, 3.5, 6.0, kappa_f=0.3, kappa_d=0.4, lambda_a=50),
+    ConcreteSpring(3.0, 2.0, 1.5, 0.3, contact=0.3, misfit=0.2, wear=0.05),
+    SteelSpring(3.0, 2.0, 0.1, isotropic_hardening=0.01, f_u=2.6, plateau=2.0, endurance=90),
+    Layered([(-1.0, SteelSpring(3.0, 2.0, 0.1)), (1.0, Elastic(2.0))]),
 ]
 
 
@@ -516,11 +531,11 @@ def test_every_rule_can_be_traded(spring):
     place = "axial_spring" if spring.rule == "compression" else "flexure"
     if spring.rule == "concrete":
         # Concrete stands in axial springs and layers only.
-        spring, place = rbsdem.Layered([(-1.0, spring), (1.0, rbsdem.Elastic(2.0))]), "flexure"
-    springs = {"shear": rbsdem.Elastic(9.0), "flexure": rbsdem.Elastic(9.0), place: spring}
+        spring, place = Layered([(-1.0, spring), (1.0, Elastic(2.0))]), "flexure"
+    springs = {"shear": Elastic(9.0), "flexure": Elastic(9.0), place: spring}
     column = rbsdem.Column(1.0, 1.0, **springs, axial_load=0.1, kinematics="pdelta")
     path = 0.5 * rbsdem.protocol([1.0, 2.0], cycles=1)
-    found = trade(column, displacement=path, repeats=1, budget=20.0)
+    found = compare_methods(column, displacement=path, repeats=1, budget=20.0)
     effect = next(effect for effect in found.physics.effects if effect.part == "2 bodies")
     assert effect.status == "completed", effect.reason
     assert math.isfinite(effect.largest)
@@ -552,18 +567,18 @@ def test_every_rule_can_be_traded(spring):
 )
 def test_bad_input(arguments, words):
     with pytest.raises(rbsdem.InputError) as caught:
-        trade(PAPER, **arguments)
+        compare_methods(PAPER, **arguments)
     assert words in str(caught.value)
 
 
 def test_what_no_setting_can_solve():
     """A force beyond what the column bears; an axial load above the critical one."""
-    column = rbsdem.Column(1.6, 614.4, rbsdem.Elastic(1e9), rbsdem.Bilinear(1e8, 1e-3, 0.0))
+    column = rbsdem.Column(1.6, 614.4, Elastic(1e9), Bilinear(1e8, 1e-3, 0.0))
     with pytest.raises(rbsdem.SolveError, match="no setting solves the case"):
-        trade(column, force=np.linspace(0.0, 1e6, 20))
+        compare_methods(column, force=np.linspace(0.0, 1e6, 20))
     column = dataclasses.replace(ELASTIC, kinematics="pdelta", axial_load=2 * BENDING / LENGTH)
     with pytest.raises(rbsdem.InputError, match="axial"):
-        trade(column, TIME, ground_acceleration=MOTION)
+        compare_methods(column, TIME, ground_acceleration=MOTION)
 
 
 # ---- tables, files, figure, command --------------------------------------------------------------

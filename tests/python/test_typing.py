@@ -30,8 +30,8 @@ def pushed(column: rbsdem.Column) -> rbsdem.Result:
     return rbsdem.cyclic(column, displacement=column.height * drifts)
 
 
-shear = rbsdem.Bilinear(k=7.0387e8, d_y=1.2960e-4, k_post=8.3185e6)
-flexure = rbsdem.Takeda(
+shear = rbsdem.springs.Bilinear(k=7.0387e8, d_y=1.2960e-4, k_post=8.3185e6)
+flexure = rbsdem.springs.Takeda(
     k_c=2.5428e8, d_c=3.1891e-4, k_y=6.2937e7, d_y=2.7183e-3, k_u=7.5772e6, b1=0.22, inner="kc"
 )
 column = rbsdem.Column(1.6, 614.4, shear, flexure, axial_load=744e3, kinematics="pdelta")
@@ -51,7 +51,8 @@ located = rbsdem.time_history(pier, time, force=motion, method="rk4", events="lo
 print(shaken.summary["method"], forced.top[-1, 0], located.time.size, shaken == forced)
 print(rbsdem.modes(pier).frequency[0], rbsdem.matrices(pier).mass[0, 0])
 
-layers = rbsdem.Layered([(-0.1, rbsdem.SteelSpring(8e8, 7e5, 8e6)), (0.1, rbsdem.Elastic(1e8))])
+bar, strip = rbsdem.springs.SteelSpring(8e8, 7e5, 8e6), rbsdem.springs.Elastic(1e8)
+layers = rbsdem.springs.Layered([(-0.1, bar), (0.1, strip)])
 print(layers.response([0.001, -0.001], axial_load=1e4)[-1], layers.split(2), shear.split(2).k)
 print([spring.response([1e-3])[0] for spring in pier.joints("flexure")])
 
@@ -90,7 +91,7 @@ except rbsdem.InputError as error:
 
 SLIPS = [
     ('rbsdem.Column(1.6, 1.0, s, s, kinematics="finit")', "arg-type"),
-    ('rbsdem.Takeda(2, 1, 1, 2, 0, inner="k_c")', "arg-type"),
+    ('rbsdem.springs.Takeda(2, 1, 1, 2, 0, inner="k_c")', "arg-type"),
     ("rbsdem.cyclic(c, [0.1])", "call-arg"),  # loads are keywords
     ('rbsdem.time_history(c, [0.0, 1.0], force=[0.0, 1.0], method="rk5")', "arg-type"),
     ('rbsdem.time_history(c, [0.0], force=[0.0], method="rk4", events="never")', "arg-type"),
@@ -124,7 +125,7 @@ def test_types_of_a_user_program(tmp_path):
     readme = (REPOSITORY / "README.md").read_text("utf-8")
     blocks = re.findall(r"^```python\n(.*?)^```$", readme, re.MULTILINE | re.DOTALL)
     assert len(blocks) >= 2
-    head = "import rbsdem\ns = rbsdem.Elastic(1.0)\nc = rbsdem.Column(1.6, 1.0, s, s)\n"
+    head = "import rbsdem\ns = rbsdem.springs.Elastic(1.0)\nc = rbsdem.Column(1.6, 1.0, s, s)\n"
     # One run for all, as most of it goes into reading the package.
     programs = {"program.py": PROGRAM} | {f"block_{i}.py": text for i, text in enumerate(blocks)}
     slips = head + "".join(f"{slip}\n" for slip, _ in SLIPS)

@@ -106,7 +106,7 @@ def text(groups: Groups, system: dict[str, str]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def read(folder: Path, name: str, content: str) -> rbsdem.Case:
+def read(folder: Path, name: str, content: str) -> rbsdem.results.case.Case:
     (folder / name).write_text(content, "utf-8")
     return rbsdem.read_case(folder / name)
 

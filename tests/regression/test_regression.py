@@ -29,14 +29,25 @@ from scipy.optimize import brentq
 
 import rbsdem
 from rbsdem import __main__ as command
+from rbsdem.springs import (
+    Bilinear,
+    Compression,
+    ConcreteSpring,
+    Elastic,
+    Layered,
+    PeakOriented,
+    Pinching,
+    SteelSpring,
+    Takeda,
+)
 
 HERE = Path(__file__).parent
 G = 9.80665
 
 Rows = dict[str, np.ndarray]
 
-BILINEAR = rbsdem.Bilinear(7.0387e8, 1.296e-4, 8.3185e6)
-TAKEDA = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b0=0.4, b1=0.22)
+BILINEAR = Bilinear(7.0387e8, 1.296e-4, 8.3185e6)
+TAKEDA = Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b0=0.4, b1=0.22)
 LENGTH, MASS = 1.6, 614.4
 
 
@@ -52,7 +63,7 @@ class Case:
 
 
 def run_static_bilinear() -> rbsdem.Result:
-    column = rbsdem.Column(LENGTH, MASS, BILINEAR, rbsdem.Elastic(2.5428e8))
+    column = rbsdem.Column(LENGTH, MASS, BILINEAR, Elastic(2.5428e8))
     drift = np.array([0.0025, 0.005, 0.01]) * LENGTH
     return rbsdem.cyclic(
         column, displacement=rbsdem.protocol(drift, [1, 2, 1], repeats=2, points=5)
@@ -83,11 +94,11 @@ def reason_static_bilinear(rows: Rows) -> None:
 # ---- 02: three bodies with P-Delta ---------------------------------------------------------------
 
 LENGTHS, MASSES, LOAD = np.array([0.8, 1.0, 1.2]), np.array([4.0e4, 2.5e4, 2.5e4]), 800e3
-SHEAR = (rbsdem.Bilinear(7e8, 2e-4, 8e6), rbsdem.Elastic(5e8), rbsdem.Elastic(5e8))
+SHEAR = (Bilinear(7e8, 2e-4, 8e6), Elastic(5e8), Elastic(5e8))
 FLEXURE = (
-    rbsdem.Takeda(2.5e8, 3e-4, 6.3e7, 2.7e-3, 7.6e6, b0=0.5, b1=0.22),
-    rbsdem.Bilinear(1.5e8, 1e-3, 2e7),
-    rbsdem.Elastic(1e8),
+    Takeda(2.5e8, 3e-4, 6.3e7, 2.7e-3, 7.6e6, b0=0.5, b1=0.22),
+    Bilinear(1.5e8, 1e-3, 2e7),
+    Elastic(1e8),
 )
 
 
@@ -163,7 +174,7 @@ def unloading_stiffness(peak: float) -> float:
 
 
 def run_static_force() -> rbsdem.Result:
-    column = rbsdem.Column(LENGTH, MASS, rbsdem.Elastic(7.0387e8), TAKEDA)
+    column = rbsdem.Column(LENGTH, MASS, Elastic(7.0387e8), TAKEDA)
     return rbsdem.cyclic(column, force=rbsdem.protocol(180.0 * 1000, points=6))
 
 
@@ -204,8 +215,8 @@ def run_rk4_ground() -> rbsdem.Result:
     column = rbsdem.Column(
         2.0,
         None,
-        rbsdem.Elastic(3e8),
-        [rbsdem.Elastic(4e7), rbsdem.Elastic(6e7)],
+        Elastic(3e8),
+        [Elastic(4e7), Elastic(6e7)],
         n=2,
         lengths=[1.2, 0.8],
         masses=[900.0, 500.0],
@@ -259,8 +270,8 @@ def run_rk4_finite() -> rbsdem.Result:
     column = rbsdem.Column(
         LENGTH,
         MASS,
-        rbsdem.Elastic(7e4),
-        rbsdem.Elastic(2.5e4),
+        Elastic(7e4),
+        Elastic(2.5e4),
         kinematics="finite",
         axial_load=600.0,
         self_weight=True,
@@ -307,7 +318,7 @@ def reason_rk4_finite(rows: Rows) -> None:
 # ---- 06: slow force by RK4 -----------------------------------------------------------------------
 
 
-SMOOTH = rbsdem.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, inner="one")
+SMOOTH = Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, inner="one")
 
 
 def run_rk4_slow() -> rbsdem.Result:
@@ -341,7 +352,7 @@ FILE_MM = np.array([0.0, 0.4, 2.5, 7.0, 12.0, 11.5])
 
 
 def run_history_file() -> rbsdem.Result:
-    test = rbsdem.read_peer(HERE / "07-history-file.txt")
+    test = rbsdem.peer.read_peer(HERE / "07-history-file.txt")
     return rbsdem.cyclic(
         rbsdem.Column(LENGTH, MASS, BILINEAR, TAKEDA), displacement=test.displacement * 1.5
     )
@@ -374,8 +385,8 @@ def run_newmark_modal() -> rbsdem.Result:
     column = rbsdem.Column(
         6.0,
         12e3,
-        rbsdem.Elastic(6e8),
-        [rbsdem.Elastic(2e8), rbsdem.Elastic(4e8), rbsdem.Elastic(4e8)],
+        Elastic(6e8),
+        [Elastic(2e8), Elastic(4e8), Elastic(4e8)],
         n=3,
         lengths=[2.5, 2.0, 1.5],
         top_mass=80e3,
@@ -419,8 +430,8 @@ def run_alpha_force() -> rbsdem.Result:
     column = rbsdem.Column(
         3.0,
         3e3,
-        rbsdem.Elastic(5e8),
-        rbsdem.Elastic(5e7),
+        Elastic(5e8),
+        Elastic(5e7),
         n=2,
         rotary_inertia=[400.0, 300.0],
         damping=rbsdem.Damping(mass=1.0, stiffness=1e-4),
@@ -462,8 +473,8 @@ def run_rk45_finite() -> rbsdem.Result:
     column = rbsdem.Column(
         2.0,
         1e3,
-        rbsdem.Elastic(4e5),
-        rbsdem.Elastic(4e4),
+        Elastic(4e5),
+        Elastic(4e4),
         n=2,
         lengths=[1.2, 0.8],
         top_mass=300.0,
@@ -529,9 +540,9 @@ def run_contact() -> rbsdem.Result:
     column = rbsdem.Column(
         1.0,
         1e3,
-        rbsdem.Elastic(1e7),
-        rbsdem.Elastic(1e7),
-        axial_spring=rbsdem.Compression(4e6),
+        Elastic(1e7),
+        Elastic(1e7),
+        axial_spring=Compression(4e6),
         self_weight=True,
     )
     ground = np.append(2.5 * G * rbsdem.protocol(1.0, points=2), 0.0)
@@ -596,8 +607,8 @@ def run_static_finite() -> rbsdem.Result:
     column = rbsdem.Column(
         LENGTH,
         MASS,
-        rbsdem.Elastic(2e5),
-        rbsdem.Elastic(4e4),
+        Elastic(2e5),
+        Elastic(4e4),
         kinematics="finite",
         axial_load=5e3,
         self_weight=True,
@@ -630,7 +641,7 @@ def reason_static_finite(rows: Rows) -> None:
 
 # ---- 13: capped backbone with deterioration ------------------------------------------------------
 
-CAPPED = rbsdem.PeakOriented(
+CAPPED = PeakOriented(
     d_c=5e-4,
     f_c=80e3,
     d_y=4e-3,
@@ -667,15 +678,13 @@ def numbers_of(spring: rbsdem.springs.Spring) -> dict[str, Any]:
     return {k: v for k, v in given.items() if k not in off}
 
 
-def second_method(spring: rbsdem.PeakOriented) -> Any:
+def second_method(spring: PeakOriented) -> Any:
     """Return the spring once more, of another make (`tests/python/reference_capped`)."""
     return other_make("reference_capped").Capped(**numbers_of(spring))
 
 
 def run_static_capped() -> rbsdem.Result:
-    column = rbsdem.Column(
-        1.6, 614.4, rbsdem.Elastic(4e8), CAPPED, kinematics="pdelta", axial_load=400e3
-    )
+    column = rbsdem.Column(1.6, 614.4, Elastic(4e8), CAPPED, kinematics="pdelta", axial_load=400e3)
     drifts = np.array([0.0025, 0.005, 0.01, 0.02, 0.03, 0.045])
     return rbsdem.cyclic(column, displacement=rbsdem.protocol(drifts * 1.6, cycles=1, points=4))
 
@@ -697,7 +706,7 @@ def reason_static_capped(rows: Rows) -> None:
 
 # ---- 14: pinching and deterioration in time ------------------------------------------------------
 
-PINCHED = rbsdem.Pinching(
+PINCHED = Pinching(
     d_c=5e-4,
     f_c=30e3,
     d_y=4e-3,
@@ -721,7 +730,7 @@ def run_pinching(method: str, dt: float, every: int) -> rbsdem.Result:
         1.0,
         500.0,
         PINCHED,
-        rbsdem.Elastic(5e7),
+        Elastic(5e7),
         top_mass=20e3,
         gravity=0.0,
         damping=rbsdem.Damping(mass=0.5),
@@ -758,7 +767,7 @@ def reason_rk4_pinching(rows: Rows) -> None:
 
 # ---- 15: layers of concrete and steel ------------------------------------------------------------
 
-STRIP = rbsdem.ConcreteSpring(
+STRIP = ConcreteSpring(
     k=2e9,
     f_peak=0.6e6,
     d_peak=6e-4,
@@ -769,20 +778,18 @@ STRIP = rbsdem.ConcreteSpring(
     misfit=0.4,
     wear=0.03,
 )
-SIDE = rbsdem.SteelSpring(
+SIDE = SteelSpring(
     6e8, 5.4e5, 6e6, r0=8, cr1=0.83, cr2=0.42, isotropic_hardening=0.005, endurance=800
 )
-MIDDLE = rbsdem.SteelSpring(
+MIDDLE = SteelSpring(
     4e8, 3.6e5, 4e6, r0=8, cr1=0.83, cr2=0.42, isotropic_hardening=0.005, endurance=800
 )
 STRIPS = [(y, STRIP) for y in (-0.175, -0.125, -0.075, -0.025, 0.025, 0.075, 0.125, 0.175)]
-LAYERED = rbsdem.Layered((*STRIPS, (-0.16, SIDE), (0.0, MIDDLE), (0.16, SIDE)))
+LAYERED = Layered((*STRIPS, (-0.16, SIDE), (0.0, MIDDLE), (0.16, SIDE)))
 
 
 def run_static_layered() -> rbsdem.Result:
-    column = rbsdem.Column(
-        1.6, 614.4, rbsdem.Elastic(4e8), LAYERED, kinematics="pdelta", axial_load=700e3
-    )
+    column = rbsdem.Column(1.6, 614.4, Elastic(4e8), LAYERED, kinematics="pdelta", axial_load=700e3)
     drifts = np.array([0.0025, 0.005, 0.01, 0.02, 0.03])
     return rbsdem.cyclic(column, displacement=rbsdem.protocol(drifts * 1.6, cycles=2, points=4))
 

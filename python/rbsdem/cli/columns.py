@@ -26,7 +26,7 @@ from rbsdem.many.hazard import Hazard
 from rbsdem.many.ida import IDA
 from rbsdem.many.ida import ida as run_ida
 from rbsdem.many.runs import NAMES
-from rbsdem.methods.measure import trade as compare_methods
+from rbsdem.methods.measure import compare_methods
 from rbsdem.methods.physics import Physics
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.read import read_motion, read_motions

@@ -46,6 +46,7 @@ force and misses the displacement: `displacement_metrics`.
 """
 
 from rbsdem.curves.cycles import TURN, HalfCycles, half_cycles, turning_points
+from rbsdem.curves.envelope import Envelope, Idealisation, envelope
 from rbsdem.curves.metrics import (
     N_POINTS,
     STIFFNESS_LEVEL,
@@ -62,7 +63,7 @@ from rbsdem.curves.scores import (
     compare,
     displacement_metrics,
 )
-from rbsdem.curves.strength import envelope, strength_loss
+from rbsdem.curves.strength import envelope_points, strength_loss
 
 __all__ = [
     "N_POINTS",
@@ -71,12 +72,15 @@ __all__ = [
     "TURN",
     "Comparison",
     "DisplacementMetrics",
+    "Envelope",
     "HalfCycles",
+    "Idealisation",
     "Loop",
     "compare",
     "displacement_metrics",
     "energy",
     "envelope",
+    "envelope_points",
     "half_cycles",
     "resample",
     "secant_stiffness",

@@ -12,7 +12,7 @@ from rbsdem.errors import InputError
 
 
 class HasLoop(Protocol):
-    """Anything with a loop, such as a `rbsdem.Result` or a test from `rbsdem.read_peer`."""
+    """Anything with a loop, such as a `rbsdem.Result` or a test from `rbsdem.peer.read_peer`."""
 
     @property
     def displacement(self) -> Array:

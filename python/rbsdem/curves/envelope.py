@@ -1,19 +1,87 @@
-"""The envelope of a cyclic curve to one side."""
+"""The envelope of a cyclic curve to one side, and two straight lines in its place."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
+from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.curves.curve import Curve, columns, loop_pair
-from rbsdem.curves.idealise import Idealisation, Method, crossing, idealise
 from rbsdem.curves.strength import beyond
 from rbsdem.errors import InputError
 
-__all__ = ["Envelope", "envelope"]
+__all__ = ["IDEALISATIONS", "Envelope", "Idealisation", "Method", "envelope"]
+
+Method = Literal["asce_41", "ec_8", "park", "equal_energy"]
+
+IDEALISATIONS: tuple[Method, ...] = get_args(Method)
+"""Names of the definitions."""
+
+_SOURCES: dict[str, str] = {
+    "asce_41": "ASCE 41-17, 7.4.3.2.4",
+    "ec_8": "EN 1998-1:2004, B.3",
+    "park": "Park 1988, 0.75 of the peak force",
+    "equal_energy": "ASTM E2126, equivalent energy",
+}
+
+_LOSS = 0.2
+"""Share of the strength whose loss ends an envelope (Park; ASTM E2126)."""
+
+
+@dataclass(frozen=True)
+class Idealisation:
+    """An envelope as two straight lines: from zero to the yield point, and on to the end.
+
+    Attributes
+    ----------
+    method, source : str
+        Name of the definition, and where it comes from.
+    yield_displacement, yield_force : float
+        The yield point [m, N].
+    end_displacement, end_force : float
+        End of the second line [m, N].
+    ultimate_displacement : float
+        Where 20 % of the strength is lost, or the last point of the envelope if it does not lose
+        so much [m].
+    lost : bool
+        Whether 20 % of the strength is lost.
+    """
+
+    method: str
+    source: str
+    yield_displacement: float
+    yield_force: float
+    end_displacement: float
+    end_force: float
+    ultimate_displacement: float
+    lost: bool
+
+    @property
+    def stiffness(self) -> float:
+        """Slope of the first line [N/m]."""
+        return self.yield_force / self.yield_displacement
+
+    @property
+    def post_yield_ratio(self) -> float:
+        """Slope of the second line over that of the first; 0 where there is no second line."""
+        length = self.end_displacement - self.yield_displacement
+        if not length > 0:
+            return 0.0
+        return (self.end_force - self.yield_force) / length / self.stiffness
+
+    @property
+    def ductility(self) -> float:
+        """Ultimate displacement over that at yield."""
+        return self.ultimate_displacement / self.yield_displacement
+
+    def force(self, displacement: Array) -> Array:
+        """Return the force of the two lines at displacements up to the end [N]."""
+        x = (0.0, self.yield_displacement, self.end_displacement)
+        return np.interp(displacement, x, (0.0, self.yield_force, self.end_force))
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +154,7 @@ class Envelope:
         """
         if not 0 < share <= 1:
             raise InputError(f"share = {share} must be above 0 and up to 1")
-        return crossing(self.displacement, self.force, share * self.peak_force, falling=falling)
+        return _crossing(self.displacement, self.force, share * self.peak_force, falling=falling)
 
     def idealise(self, method: Method = "asce_41", *, end: float | None = None) -> Idealisation:
         """Replace the envelope by two straight lines.
@@ -114,7 +182,7 @@ class Envelope:
         InputError
             If the method is not known, or the envelope has no such lines.
         """
-        return idealise(self.displacement, self.force, method, end)
+        return _idealise(self.displacement, self.force, method, end)
 
     def __repr__(self) -> str:
         return (
@@ -150,3 +218,117 @@ def envelope(curve: Curve, side: Literal[1, -1] = 1) -> Envelope:
             f"side, so give side = {-side} or another curve"
         )
     return Envelope(side, np.concatenate(([0.0], x)), np.concatenate(([0.0], y)))
+
+
+def _idealise(x: Array, y: Array, method: str, end: float | None = None) -> Idealisation:
+    """Return the two lines of an envelope that begins at zero; see `Envelope.idealise`."""
+    _arguments.choice(method, "method", IDEALISATIONS)
+    if end is not None and method not in ("asce_41", "ec_8"):
+        raise InputError(f"method = {method!r} has an end of its own; leave out end")
+    top = int(np.argmax(y))
+    if not (y[top] > 0 and x[top] > 0):
+        raise InputError("the envelope has no force; it cannot be idealised")
+    limit = x[top] if end is None else _arguments.number(end, "end")
+    if not 0 < limit <= x[-1]:
+        raise InputError(
+            f"end = {limit:g} m must be above 0 and up to the end of the envelope, {x[-1]:g} m"
+        )
+    fall = _crossing(x, y, (1 - _LOSS) * y[top], falling=True)
+    lost = not math.isnan(fall)
+    ultimate = fall if lost else float(x[-1])
+    if method == "asce_41":
+        points = _asce_41(*_up_to(x, y, limit))
+    elif method == "ec_8":
+        points = _ec_8(*_up_to(x, y, limit))
+    elif method == "park":
+        at = _crossing(x, y, 0.75 * y[top]) / 0.75
+        points = (at, y[top], max(at, ultimate), y[top])
+    else:
+        points = _equal_energy(*_up_to(x, y, ultimate), float(y[top]))
+    numbers = tuple(float(value) for value in points)
+    return Idealisation(method, _SOURCES[method], *numbers, ultimate, lost)
+
+
+def _crossing(x: Array, y: Array, level: float, *, falling: bool = False) -> float:
+    """Return where a curve first reaches a level, or falls to it behind its peak; else NaN."""
+    top = int(np.argmax(y))
+    if falling:
+        below = np.flatnonzero(y[top:] <= level)
+        if below.size == 0:
+            return math.nan
+        at = top + int(below[0])
+    else:
+        at = int(np.flatnonzero(y >= level)[0])
+    if at == 0 or y[at] == y[at - 1]:
+        return float(x[at])
+    share = (level - y[at - 1]) / (y[at] - y[at - 1])
+    return float(x[at - 1] + share * (x[at] - x[at - 1]))
+
+
+def _up_to(x: Array, y: Array, end: float) -> tuple[Array, Array]:
+    """Return a curve up to a displacement, where it steps there up to the larger force."""
+    first, after = np.searchsorted(x, end, side="left"), np.searchsorted(x, end, side="right")
+    if first < after:
+        last = int(first + np.argmax(y[first:after])) + 1
+        return x[:last], y[:last]
+    return np.append(x[:first], end), np.append(y[:first], np.interp(end, x, y))
+
+
+def _area(x: Array, y: Array) -> float:
+    """Return the area below a curve."""
+    return float(np.sum(0.5 * (y[1:] + y[:-1]) * np.diff(x)))
+
+
+def _asce_41(x: Array, y: Array) -> tuple[float, float, float, float]:
+    """Return the lines with equal areas whose first one goes through 0.6 of the yield force.
+
+    With a point (u, v) of the envelope at 0.6 of the yield force, the area of the lines is
+    (v end/0.6 + last end - last u/0.6)/2. Those points where it is that of the envelope lie on a
+    straight line, parallel to the chord; of all of them the highest is taken.
+    """
+    total, end, last, reach = _area(x, y), float(x[-1]), float(y[-1]), float(y.max())
+    off = end * y - last * x - 0.6 * (2.0 * total - last * end)
+    off[np.abs(off) <= 1e-12 * end * reach] = 0.0
+    low, high = off[:-1], off[1:]
+    # On a part that lies on that line, the furthest point with at <= end and no more than `reach`.
+    along, up = np.diff(x), np.diff(y)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        room = np.minimum(
+            np.where(along > 0, (0.6 * end - x[:-1]) / along, 1.0),
+            np.where(up > 0, (0.6 * reach - y[:-1]) / up, 1.0),
+        )
+        share = np.where(low == high, np.clip(room, 0.0, 1.0), low / (low - high))
+    met = np.flatnonzero((low == high) & (low == 0) | (low * high < 0) | (high == 0))
+    at = (x[:-1] + share * along)[met] / 0.6
+    force = (y[:-1] + share * up)[met] / 0.6
+    slack = 1.0 + 1e-9
+    good = (at > 0) & (at <= end * slack) & (force > 0) & (force <= reach * slack)
+    if not good.any():
+        raise InputError(
+            "ASCE 41, 7.4.3.2.4: no two lines through the envelope at 0.6 of the yield force have "
+            f"its area up to end = {end:g} m; choose another end or another method"
+        )
+    top, place = max(zip(force[good].tolist(), at[good].tolist(), strict=True))
+    return min(place, end), top, end, last
+
+
+def _ec_8(x: Array, y: Array) -> tuple[float, float, float, float]:
+    end, force = float(x[-1]), float(y[-1])
+    if not force > 0:
+        raise InputError(f"the envelope has no force at end = {end:g} m; choose another end")
+    at = 2.0 * (end - _area(x, y) / force)
+    if not 0 < at <= end * (1 + 1e-12):
+        raise InputError(
+            "EN 1998-1, B.3, finds no yield point: the envelope lies too far above its force at "
+            f"end = {end:g} m; choose an end at or before the peak"
+        )
+    return min(at, end), force, end, force
+
+
+def _equal_energy(x: Array, y: Array, top: float) -> tuple[float, float, float, float]:
+    end = float(x[-1])
+    stiffness = 0.4 * top / _crossing(x, y, 0.4 * top)
+    root = end**2 - 2.0 * _area(x, y) / stiffness
+    force = stiffness * (end - math.sqrt(root)) if root >= 0 else 0.85 * top
+    at = min(force / stiffness, end)
+    return at, force, end, force

@@ -14,7 +14,7 @@ from rbsdem.curves.curve import columns
 from rbsdem.curves.cycles import turning_points
 from rbsdem.errors import InputError
 
-__all__ = ["beyond", "envelope", "strength_loss", "strength_loss_point"]
+__all__ = ["beyond", "envelope_points", "strength_loss", "strength_loss_point"]
 
 _NEARLY = 0.95
 """Share of the largest displacement so far that a repeated cycle has to reach."""
@@ -64,7 +64,9 @@ def _beyond(x: Array, y: Array) -> tuple[Array, Array, Array]:
     )
 
 
-def envelope(displacement: ArrayLike, force: ArrayLike, side: int) -> tuple[Array, Array, Array]:
+def envelope_points(
+    displacement: ArrayLike, force: ArrayLike, side: int
+) -> tuple[Array, Array, Array]:
     """Return the envelope of a cyclic curve to one side.
 
     Parameters

@@ -46,7 +46,7 @@ class Reversals:
     Attributes
     ----------
     key : str
-        Key of the column, as in `rbsdem.paper_columns`.
+        Key of the column, as in `rbsdem.peer.paper_columns`.
     name : str
         Name of the specimen.
     displacement : ndarray, shape (n,)

@@ -1,4 +1,4 @@
 """Time against accuracy: which method, step or tolerance a case needs, and which physics.
 
-`trade` measures it; `Trade` holds what was found.
+`compare_methods` measures it; `MethodStudy` holds what was found.
 """

@@ -214,7 +214,7 @@ def own_setting(column: Column, given: Mapping[str, Any]) -> Setting:
     for name in given:
         if name not in known:
             raise InputError(
-                f"trade: setting: {name!r} is not known; it is one of {', '.join(known)}"
+                f"compare_methods: setting: {name!r} is not known; it is one of {', '.join(known)}"
             )
     fields = {"method": "rk4", **given}
     if fields["method"] == "rk4":
@@ -233,11 +233,11 @@ def checked_methods(methods: Sequence[str] | None) -> tuple[str, ...]:
     if methods is None:
         return METHODS
     wanted = (methods,) if isinstance(methods, str) else methods
-    wanted = tuple(_arguments.several(wanted, "trade: methods", "names"))
+    wanted = tuple(_arguments.several(wanted, "compare_methods: methods", "names"))
     for method in wanted:
-        _arguments.choice(method, "trade: method", METHODS)
+        _arguments.choice(method, "compare_methods: method", METHODS)
     if not wanted:
-        raise InputError("trade: methods is empty; name one, or leave it out to try all")
+        raise InputError("compare_methods: methods is empty; name one, or leave it out to try all")
     return wanted
 
 

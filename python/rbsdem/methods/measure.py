@@ -1,4 +1,4 @@
-"""The function `trade`: settings, reference and physics of one case, within a budget."""
+"""The function `compare_methods`: settings, reference and physics of one case, within a budget."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rbsdem import _arguments
 from rbsdem.errors import InputError, SolveError
 from rbsdem.methods.answer import Run
 from rbsdem.methods.ladder import Budget, checked_methods, climb, ladders, own_setting, probe
-from rbsdem.methods.outcome import Trade
+from rbsdem.methods.outcome import MethodStudy
 from rbsdem.methods.physics import Physics, find_physics
 from rbsdem.methods.progress import telling
 from rbsdem.methods.reference import Reference, find_reference
@@ -24,13 +24,13 @@ from rbsdem.model.springs import Spring
 from rbsdem.motions.acting import acting
 from rbsdem.motions.motion import GroundMotion
 
-__all__ = ["trade"]
+__all__ = ["compare_methods"]
 
 #: Shares of the budget at which the settings, and then the reference, have to be done.
 SETTINGS_SHARE, REFERENCE_SHARE = 0.4, 0.75
 
 
-def trade(
+def compare_methods(
     column: Column,
     time: ArrayLike | None = None,
     *,
@@ -49,7 +49,7 @@ def trade(
     collapse_drift: float | None = None,
     repeats: int = 3,
     progress: bool = False,
-) -> Trade:
+) -> MethodStudy:
     """Measure what accuracy costs in a case, and which physics it needs.
 
     The case is run over methods, steps or tolerances, ways of locating events and the levels of
@@ -99,7 +99,7 @@ def trade(
 
     Returns
     -------
-    Trade
+    MethodStudy
         Tables, figure and choice.
 
     Raises
@@ -112,7 +112,7 @@ def trade(
     _check(tolerance, budget, digits, repeats)
     wanted = checked_methods(methods)
     if axial_spring is not None and not isinstance(axial_spring, Spring):
-        raise InputError(f"trade: axial_spring = {axial_spring!r} must be a spring")
+        raise InputError(f"compare_methods: axial_spring = {axial_spring!r} must be a spring")
     loads = {
         "displacement": displacement,
         "force": force,
@@ -120,7 +120,7 @@ def trade(
         "vertical_acceleration": vertical_acceleration,
         "axial_load": axial_load,
     }
-    time, loads = acting(time, loads, "trade")
+    time, loads = acting(time, loads, "compare_methods")
     scene = make_scene(column, time, loads, initial, collapse_drift)
     clock = Budget(budget)
     with _telling(progress, clock) as told:
@@ -138,7 +138,7 @@ def trade(
     if isinstance(physics, str):
         notes.append(f"physics: {physics}")
     rows = make_rows(runs, known)
-    return Trade(
+    return MethodStudy(
         rows,
         known,
         None if tolerance is None else choose(rows, runs, tolerance),
@@ -151,18 +151,19 @@ def trade(
 
 
 def _check(tolerance: float | None, budget: float, digits: float, repeats: int) -> None:
-    if tolerance is not None and not 0 < _arguments.number(tolerance, "trade: tolerance") < 1:
-        raise InputError(f"trade: tolerance = {tolerance!r} must be above 0 and below 1")
-    if not 0 < _arguments.number(budget, "trade: budget") < math.inf:
-        raise InputError(f"trade: budget = {budget!r} must be a positive number of seconds")
-    if not 0 < _arguments.number(digits, "trade: digits") <= 15:
-        raise InputError(f"trade: digits = {digits!r} must be above 0 and at most 15")
-    if _arguments.whole(repeats, "trade: repeats") < 1:
-        raise InputError(f"trade: repeats = {repeats!r} must be a whole number, 1 or more")
+    who = "compare_methods: "
+    if tolerance is not None and not 0 < _arguments.number(tolerance, f"{who}tolerance") < 1:
+        raise InputError(f"{who}tolerance = {tolerance!r} must be above 0 and below 1")
+    if not 0 < _arguments.number(budget, f"{who}budget") < math.inf:
+        raise InputError(f"{who}budget = {budget!r} must be a positive number of seconds")
+    if not 0 < _arguments.number(digits, f"{who}digits") <= 15:
+        raise InputError(f"{who}digits = {digits!r} must be above 0 and at most 15")
+    if _arguments.whole(repeats, f"{who}repeats") < 1:
+        raise InputError(f"{who}repeats = {repeats!r} must be a whole number, 1 or more")
 
 
 def _telling(progress: bool, clock: Budget) -> AbstractContextManager[Callable[[str], None]]:
-    wanted = _arguments.switch(progress, "trade: progress")
+    wanted = _arguments.switch(progress, "compare_methods: progress")
     return telling(clock) if wanted else nullcontext(lambda text: None)
 
 
@@ -173,8 +174,10 @@ def _need_one(runs: Sequence[Run]) -> None:
     for status, error in (("failed", SolveError), ("refused", InputError)):
         for run in reversed(runs):
             if run.status == status:
-                raise error(f"trade: no setting solves the case; {run.setting}: {run.reason}")
-    raise InputError(f"trade: the budget is too small for any setting; {runs[0].reason}")
+                raise error(
+                    f"compare_methods: no setting solves the case; {run.setting}: {run.reason}"
+                )
+    raise InputError(f"compare_methods: the budget is too small for any setting; {runs[0].reason}")
 
 
 def _notes(scene: Scene, rows: Sequence[Row], reference: Reference | None) -> list[str]:

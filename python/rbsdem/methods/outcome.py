@@ -1,4 +1,4 @@
-"""What a trade found: the rows, the reference, the choice and the effects of parts of the model."""
+"""What a study of methods found: its rows, reference, choice and effects of parts of the model."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Trade:
+class MethodStudy:
     """Wall time against accuracy in one case.
 
     Attributes

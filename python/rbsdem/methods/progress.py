@@ -1,4 +1,4 @@
-"""The progress of a trade on the terminal."""
+"""The progress of a study of methods on the terminal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The reference of a trade: two independent methods, refined until they agree."""
+"""The reference of a study of methods: two independent methods, refined until they agree."""
 
 from __future__ import annotations
 

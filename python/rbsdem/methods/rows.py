@@ -1,4 +1,4 @@
-"""The table of a trade: settings with their cost and their errors, the front, the choice."""
+"""The rows of a study of methods: settings with cost and errors, the front, the choice."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The case of a trade: one column under one loading, solved by many settings."""
+"""The case of a study of methods: one column under one loading, solved by many settings."""
 
 from __future__ import annotations
 
@@ -202,7 +202,7 @@ def make_scene(
     InputError
         If the loads do not go together.
     """
-    checked_column(column, "trade: ")
+    checked_column(column, "compare_methods: ")
     given = {
         name: _arguments.finite_vector(values, name)
         for name, values in loads.items()
@@ -212,18 +212,24 @@ def make_scene(
         if set(given) not in ({"displacement"}, {"force"}):
             names = ", ".join(given) or "none"
             raise InputError(
-                "trade: without time the path is static and needs exactly one of displacement and "
-                f"force; given: {names}"
+                "compare_methods: without time the path is static and needs exactly one of "
+                f"displacement and force; given: {names}"
             )
         if initial is not None:
-            raise InputError("trade: initial has no meaning for a static path; give time as well")
+            raise InputError(
+                "compare_methods: initial has no meaning for a static path; give time as well"
+            )
         if next(iter(given.values())).size < 2:
-            raise InputError("trade: the path has fewer than 2 points")
+            raise InputError("compare_methods: the path has fewer than 2 points")
         return Scene(column, None, given, None, collapse_drift)
     if "displacement" in given:
-        raise InputError("trade: displacement drives a static path only; remove it, or time")
+        raise InputError(
+            "compare_methods: displacement drives a static path only; remove it, or time"
+        )
     if not given and not initial:
-        raise InputError("trade: nothing moves the column; give a load or an initial state")
+        raise InputError(
+            "compare_methods: nothing moves the column; give a load or an initial state"
+        )
     times = _arguments.finite_vector(time, "time")
     for name, values in given.items():
         if values.size != times.size:

@@ -237,7 +237,7 @@ class Response:
         if known is None:
             raise InputError(
                 f"joint {joint} was not made from a section, and over which lengths its layers "
-                "deform is not known; give gauge=rbsdem.Gauge(part=..., length=...)"
+                "deform is not known; give gauge=rbsdem.springs.Gauge(part=..., length=...)"
             )
         spring = self.column.joints("flexure")[self.column.place_of(joint)]
         assert isinstance(spring, Layered)

@@ -261,7 +261,7 @@ class Section(DrawnSection):
         Returns
         -------
         SectionSprings
-            `flexure` (`rbsdem.Takeda`), `shear` (`rbsdem.Bilinear`), `events`, `report`.
+            `flexure` (`springs.Takeda`), `shear` (`springs.Bilinear`), `events`, `report`.
 
         Raises
         ------

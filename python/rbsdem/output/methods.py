@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rbsdem._files import write_figure
 from rbsdem.errors import InputError
 from rbsdem.methods.ladder import LEVELS
-from rbsdem.methods.outcome import Trade
+from rbsdem.methods.outcome import MethodStudy
 from rbsdem.output.style import axes_or_new, line_of, style
 from rbsdem.output.tables import console, plain, table
 
@@ -43,12 +43,12 @@ DASHES = ("-", (0, (4, 1.5)), (0, (1, 1.5)))
 TOP = 10.0
 
 
-def methods(trade: Trade, *, ax: Axes | None = None, **line: Any) -> Axes:
+def methods(study: MethodStudy, *, ax: Axes | None = None, **line: Any) -> Axes:
     """Draw error against wall time, both logarithmic, with the Pareto front.
 
     Parameters
     ----------
-    trade : Trade
+    study : MethodStudy
         What `rbsdem.compare_methods` returns.
     ax : matplotlib Axes, optional
         Where to draw; a new figure without it.
@@ -65,10 +65,10 @@ def methods(trade: Trade, *, ax: Axes | None = None, **line: Any) -> Axes:
     InputError
         If there is nothing to draw.
     """
-    done = [row for row in trade.rows if math.isfinite(row.error)]
-    if not done or trade.reference is None:
-        raise InputError("trade: there is no setting with an error to draw; see notes")
-    floor = max(trade.reference.resolution, 1e-16)
+    done = [row for row in study.rows if math.isfinite(row.error)]
+    if not done or study.reference is None:
+        raise InputError("compare_methods: there is no setting with an error to draw; see notes")
+    floor = max(study.reference.resolution, 1e-16)
     with axes_or_new(ax, (5.2, 3.6)) as drawn:
         front = sorted((row for row in done if row.pareto), key=lambda row: row.seconds)
         drawn.plot(
@@ -103,7 +103,7 @@ def methods(trade: Trade, *, ax: Axes | None = None, **line: Any) -> Axes:
                 "zorder": 3,
             }
             drawn.plot(*_points(rows, floor), **line_of({**default, **mark}, line))
-        _dress(drawn, trade, floor)
+        _dress(drawn, study, floor)
     return drawn
 
 
@@ -111,7 +111,7 @@ def _points(rows: Sequence[Row], floor: float) -> tuple[list[float], list[float]
     return [row.seconds for row in rows], [max(row.error, floor) for row in rows]
 
 
-def _dress(ax: Axes, trade: Trade, floor: float) -> None:
+def _dress(ax: Axes, study: MethodStudy, floor: float) -> None:
     ax.set_xscale("log")
     ax.set_yscale("log")
     ax.set_xlabel("Wall time (s)")
@@ -131,10 +131,10 @@ def _dress(ax: Axes, trade: Trade, floor: float) -> None:
         va="top",
     )
     ax.set_ylim(low, high)
-    if trade.choice is not None:
-        ax.axhline(trade.choice.tolerance, color="0.6", linewidth=0.6, linestyle=(0, (4, 3)))
-        if trade.choice.row is not None:
-            row = trade.choice.row
+    if study.choice is not None:
+        ax.axhline(study.choice.tolerance, color="0.6", linewidth=0.6, linestyle=(0, (4, 3)))
+        if study.choice.row is not None:
+            row = study.choice.row
             ax.plot(
                 [row.seconds],
                 [max(row.error, floor)],
@@ -150,10 +150,10 @@ def _dress(ax: Axes, trade: Trade, floor: float) -> None:
     ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small", handlelength=2.2)
 
 
-def save(trade: Trade, path: Path, title: str) -> Path | None:
+def save(study: MethodStudy, path: Path, title: str) -> Path | None:
     """Write the figure; return None if there is nothing to draw, or nothing to draw it with."""
     try:
-        ax = methods(trade)
+        ax = methods(study)
     except (ImportError, InputError):
         return None
     import matplotlib.pyplot as plt  # noqa: PLC0415
@@ -174,8 +174,8 @@ def _reasons(rows: Sequence[Row]) -> list[str]:
     return [f"{', '.join(str(row.setting) for row in same)} {why}" for why, same in found.items()]
 
 
-def report(trade: Trade, title: str) -> None:
-    """Print the whole trade."""
+def report(study: MethodStudy, title: str) -> None:
+    """Print the whole study."""
     out = console(132)
 
     def say(text: str = "") -> None:
@@ -183,26 +183,26 @@ def report(trade: Trade, title: str) -> None:
 
     out.print(plain(title, style="bold"))
     say()
-    reference = trade.reference
+    reference = study.reference
     if reference is not None:
         say(f"Reference: {reference.first}, against {reference.second}.")
         say(
-            f"They agree to {reference.digits:.1f} digits in {trade.response}, "
+            f"They agree to {reference.digits:.1f} digits in {study.response}, "
             f"{reference.moment_digits:.1f} in base moment, {reference.energy_digits:.1f} in "
             f"energy and {reference.peak_digits:.1f} in peak."
         )
         if reference.note:
             say(f"Note: {reference.note}.")
     say()
-    out.print(table(_settings(trade), styles=_styles(trade)))
+    out.print(table(_settings(study), styles=_styles(study)))
     say("\n* on the Pareto front. Errors are relative to the reference's peaks; Error is the")
     say("largest of the four before it; To finer: what the next finer setting changes.")
-    for reason in _reasons(trade.rows):
+    for reason in _reasons(study.rows):
         say(f"  {reason}")
-    if trade.choice is not None:
-        say(f"\n{str(trade.choice).capitalize()}.")
-    if trade.physics is not None:
-        physics = trade.physics
+    if study.choice is not None:
+        say(f"\n{str(study.choice).capitalize()}.")
+    if study.physics is not None:
+        physics = study.physics
         say("\nWhat each part of the model changes, the others as given:\n")
         out.print(table(physics.to_frame().drop(columns=["response_rms", "status", "reason"])))
         say(f"\nSolved by {physics.setting}, error {physics.resolution:.1e}. What changes peak,")
@@ -210,17 +210,17 @@ def report(trade: Trade, title: str) -> None:
         for effect in physics.effects:
             if effect.matters is None:
                 say(f"  {effect.part} {effect.status}: {effect.reason}")
-    for note in trade.notes:
+    for note in study.notes:
         say(f"Note: {note}.")
-    say(f"\nDone in {trade.seconds:.1f} s of {trade.budget:g} s.")
+    say(f"\nDone in {study.seconds:.1f} s of {study.budget:g} s.")
 
 
-def _settings(trade: Trade) -> pd.DataFrame:
+def _settings(study: MethodStudy) -> pd.DataFrame:
     """Return the settings as they are printed."""
     import pandas  # noqa: PLC0415
 
     rows = []
-    for row in trade.rows:
+    for row in study.rows:
         value = row.setting.value
         if row.setting.method == "auto" and row.reason:
             value = f"chose {row.reason.split(':')[0]}"
@@ -233,7 +233,7 @@ def _settings(trade: Trade) -> pd.DataFrame:
                 "Method": f"{row.setting.name}, {row.setting.kinematics}{given}",
                 "Setting": value,
                 "Time, s": row.seconds,
-                trade.response.capitalize(): row.response_rms,
+                study.response.capitalize(): row.response_rms,
                 "Moment": row.moment,
                 "Energy": row.energy,
                 "Peak": row.peak,
@@ -244,6 +244,6 @@ def _settings(trade: Trade) -> pd.DataFrame:
     return pandas.DataFrame(rows)
 
 
-def _styles(trade: Trade) -> list[str | None]:
-    chosen = None if trade.choice is None else trade.choice.row
-    return ["bold" if chosen is not None and row == chosen else None for row in trade.rows]
+def _styles(study: MethodStudy) -> list[str | None]:
+    chosen = None if study.choice is None else study.choice.row
+    return ["bold" if chosen is not None and row == chosen else None for row in study.rows]

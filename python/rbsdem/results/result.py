@@ -18,9 +18,8 @@ from rbsdem.checks.hinge import hinge as hinge_of
 from rbsdem.checks.limit_states import LimitStates
 from rbsdem.curves.curve import loop_pair
 from rbsdem.curves.cycles import HalfCycles, half_cycles
-from rbsdem.curves.envelope import Envelope
+from rbsdem.curves.envelope import Envelope, Idealisation, Method
 from rbsdem.curves.envelope import envelope as curve_envelope
-from rbsdem.curves.idealise import Idealisation, Method
 from rbsdem.curves.strength import strength_loss
 from rbsdem.errors import SolveError
 from rbsdem.model.response import Response
@@ -87,13 +86,10 @@ class ErrorEstimate:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Result(Response):
-    """What `cyclic` and `time_history` return: a response with what it reaches and means.
-
-    The rows are the attributes of `rbsdem.model.response.Response`.
-    """
+    """What `cyclic` and `time_history` return: a response with what it reaches and means."""
 
     def envelope(self, side: Literal[1, -1] = 1) -> Envelope:
-        """Return the envelope of the loop to one side; see `rbsdem.envelope`."""
+        """Return the envelope of the loop to one side; see `rbsdem.curves.envelope`."""
         return curve_envelope(self, side)
 
     def idealise(
@@ -254,6 +250,9 @@ class Result(Response):
             If the finer setting does not solve the case.
         """
         return refined_error(self)
+
+
+Result.__doc__ = Response.__doc__
 
 
 def result_of(response: Response) -> Result:

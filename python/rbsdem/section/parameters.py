@@ -55,7 +55,7 @@ class HingeParameters:
         Exponent e of a factor (B/0.12)^e of it, B as for `r0_bond`.
     fatigue : float
         1 over the plastic deformation inside the reach, over d_y, that halves the strength of a
-        bar: 1 over the `endurance` of `rbsdem.SteelSpring`.
+        bar: 1 over the `endurance` of `rbsdem.springs.SteelSpring`.
     concrete_strength, concrete_size : float
         In-place over cylinder strength at 40 MPa; exponent of its decrease with the strength.
     peak_strain : float
@@ -87,10 +87,10 @@ class HingeParameters:
         on they buckle; factor of e = 0.03 + 700 rho_s f_yh/E_s - 0.1 P/(f'c A_g) >= 0.01
         (Goodnight, Kowalsky and Nau 2013).
     friction, seating : float
-        Of the concrete layers, see `rbsdem.ConcreteSpring`: share of the force by which opening is
+        Of the concrete layers, see `springs.ConcreteSpring`: share of the force by which opening is
         below closing, and of the early touch that it does not follow.
     plastic, misfit, contact, contact_axial, wear : float
-        Of the concrete layers, see `rbsdem.ConcreteSpring`; the contact is 0.9 at most.
+        Of the concrete layers, see `rbsdem.springs.ConcreteSpring`; the contact is 0.9 at most.
     """
 
     steel_strength: float
@@ -157,7 +157,7 @@ class ShearParameters:
     endurance : float
         Energy that the strength lasts for, over yield force times yield slip; 0: for ever.
     pinch_force, pinch_slip : float
-        `kappa_f`, at an axial load ratio of 0.1, and `kappa_d` of `rbsdem.Pinching`.
+        `kappa_f`, at an axial load ratio of 0.1, and `kappa_d` of `rbsdem.springs.Pinching`.
     pinch_axial : float
         Exponent e of a factor exp(e (n - 0.1)) of `kappa_f`: compression closes cracks.
     cracked : float
@@ -176,7 +176,7 @@ class ShearParameters:
         Ties that spirals and round hoops are worth, against those of rectangles, in what stays and
         in `endurance_ties`.
     fade : float
-        `fade` of `rbsdem.Pinching`: how the strength falls with its own energy.
+        `fade` of `rbsdem.springs.Pinching`: how the strength falls with its own energy.
     endurance_ties : float
         Exponent of V_s/(0.5 V_y), 1 at most, in a factor of `endurance`: without ties the strength
         does not last.

@@ -41,9 +41,9 @@ class SectionSprings:
         The section.
     confined : bool
         Whether its core is confined.
-    flexure : rbsdem.Takeda
+    flexure : rbsdem.springs.Takeda
         Trilinear spring of the hinge.
-    shear : rbsdem.Bilinear or None
+    shear : rbsdem.springs.Bilinear or None
         Shear spring of the whole length of the column.
     shear_fit : ShearSpring or None
         Points, strength and warnings of the shear spring, if it was read from a shear diagram.
