@@ -119,7 +119,7 @@ def test_many_runs_are_warned_of_once():
     """Python shows a warning once for a line of code, if the text is the same."""
     code = """
 import rbsdem
-elastic = Elastic(1e6)
+elastic = rbsdem.springs.Elastic(1e6)
 column = rbsdem.Column(1.0, 100.0, elastic, elastic, axial_load=2e3, kinematics="pdelta")
 for i in range(20):
     rbsdem.cyclic(column, displacement=[0.0, 0.3 + 0.01 * i])
