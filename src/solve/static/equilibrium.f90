@@ -26,8 +26,8 @@ module rbs_solve_static_equilibrium
       !> What takes the structure to equilibrium: of the deformations (moving), and of the force [N]
       real(wp), allocatable :: correction(:)
       real(wp) :: force_correction = 0.0_wp
-      !> The largest force that was found out of equilibrium before the correction; 0 where it was not looked
-      !> at [N]
+      !> The largest force that was found out of equilibrium before the correction; 0 where rates
+      !> followed from the last ones [N]
       real(wp) :: unbalance = 0.0_wp
    contains
       procedure(follow_lines), deferred :: follow

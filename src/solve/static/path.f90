@@ -244,7 +244,10 @@ contains
          end if
          ends = i == size(target) .or. lost > 0 .or. task%summary%collapsed .or. allocated(failure)
          if (lost > 0 .or. allocated(failure)) then
-            if (.not. self%is_wrong) call see_state(self, self%energies())
+            if (.not. self%is_wrong) then
+               call see_turn(self)
+               call task%summary%see_energies(self%energies())
+            end if
          else if (ends .or. .not. self%is_straight) then
             call self%look(target(i), self%unbalance(), .false., failure)
          end if
@@ -284,7 +287,8 @@ contains
       type(energy_type) :: energy
 
       energy = self%energies()
-      call see_state(self, energy)
+      call see_turn(self)
+      call self%task%summary%see_energies(energy)
       call self%check%look(self%structure, self%springs, self%displacement, self%force, unbalance, energy, &
                            on_ends, fault)
       if (.not. allocated(fault)) return
@@ -309,15 +313,13 @@ contains
       if (self%task%recorder%corners) call keep_row(self, self%number - 1 + share, error)
    end subroutine see_corner
 
-   !> Tell the summary of the present energies and rotations.
-   subroutine see_state(self, energy)
+   !> Tell the summary of the present rotations.
+   subroutine see_turn(self)
       class(static_path), intent(inout) :: self
-      type(energy_type), intent(in) :: energy
 
       call self%structure%rotations(self%springs%d, self%rotation)
       call self%task%summary%see_turn(maxval(abs(self%rotation)))
-      call self%task%summary%see_energies(energy)
-   end subroutine see_state
+   end subroutine see_turn
 
    !> Tell the summary of the present force and displacement.
    subroutine see_peak(self)

@@ -36,6 +36,8 @@ module rbs_solve_static_row_check
       !> Largest way of all springs, force and work so far [m, N, J]; the work that was missing at the start
       real(wp), private :: largest_place = 0.0_wp, largest_force = 0.0_wp, largest_work = 0.0_wp
       real(wp), private :: at_begin = 0.0_wp
+      !> Displacement up to which these have been measured [m]
+      real(wp), private :: farthest = 0.0_wp
       !> Force and work of the springs if they had their initial stiffness, the largest so far [N, J]
       real(wp), private :: stiff_force = 0.0_wp, stiff_work = 0.0_wp
       !> What a force of each spring is at the top: moments count by the height; those of axial springs not
@@ -85,49 +87,67 @@ contains
       logical, intent(in) :: on_ends
       !> What is wrong, for a message; not allocated if nothing is
       character(len=:), allocatable, intent(out) :: fault
-      real(wp) :: place, force_there, stiff_force, stiff_work, there, missing
+      real(wp) :: there, gap, missing, place
 
-      call measure(springs%count, springs%d, springs%d0, springs%f0, springs%k, structure%initial_stiffness, &
-                   structure%arm, self%share, place, force_there, stiff_force, stiff_work)
-      self%largest_force = max(self%largest_force, abs(force), force_there)
-      self%stiff_force = max(self%stiff_force, stiff_force)
-      self%stiff_work = max(self%stiff_work, stiff_work)
-      self%largest_place = max(self%largest_place, place)
-      self%largest_work = max(self%largest_work, abs(energy%input), abs(energy%spring), abs(energy%axial))
       there = structure%top_displacement(springs%d)
+      gap = abs(there - displacement)
       missing = energy%residual - self%at_begin
-      if (abs(there - displacement) > (self%place + merge(2.0_wp*on_the_end, 0.0_wp, on_ends)) &
-          *self%largest_place) then
-         fault = 'its joints move the top by '//to_text(there)//' m'
-      else if (unbalance > of_force*self%largest_force + digits*self%stiff_force) then
-         fault = to_text(unbalance)//' N of its forces are out of balance'
-      else if (abs(missing) > self%work*self%largest_work + digits*self%stiff_work) then
-         fault = to_text(missing)//' J of its work are missing'
+      place = self%place + merge(2.0_wp*on_the_end, 0.0_wp, on_ends)
+      self%largest_force = max(self%largest_force, abs(force))
+      self%largest_work = max(self%largest_work, abs(energy%input), abs(energy%spring), abs(energy%axial))
+      if (abs(displacement) > self%farthest .or. wrong() > 0) then
+         self%farthest = max(self%farthest, abs(displacement))
+         call measure(springs%count, springs%d, springs%d0, springs%f0, springs%k, &
+                      structure%initial_stiffness, structure%arm, self%share, self%largest_place, &
+                      self%largest_force, self%stiff_force, self%stiff_work)
       end if
+      select case (wrong())
+      case (1)
+         fault = 'its joints move the top by '//to_text(there)//' m'
+      case (2)
+         fault = to_text(unbalance)//' N of its forces are out of balance'
+      case (3)
+         fault = to_text(missing)//' J of its work are missing'
+      end select
+
+   contains
+
+      !> What misses more than round-off: place, forces, work; 0: nothing.
+      pure integer function wrong()
+         wrong = 0
+         if (gap > place*self%largest_place) then
+            wrong = 1
+         else if (unbalance > of_force*self%largest_force + digits*self%stiff_force) then
+            wrong = 2
+         else if (abs(missing) > self%work*self%largest_work + digits*self%stiff_work) then
+            wrong = 3
+         end if
+      end function wrong
+
    end subroutine look
 
-   !> Ways and forces of the springs, present and by their initial stiffness.
-   pure subroutine measure(n, d, d0, f0, k, initial, arm, share, place, force, stiff_force, stiff_work)
+   !> Ways, forces and works of the springs, the largest so far.
+   pure subroutine measure(n, d, d0, f0, k, initial, arm, share, way, force, stiff_force, stiff_work)
       integer, intent(in) :: n
       real(wp), intent(in) :: d(n), d0(n), f0(n), k(n), initial(n), arm(n), share(n)
       !> Sum of the ways on which they move the top, largest force, and the same by initial stiffness with the
       !> sum of the works
-      real(wp), intent(out) :: place, force, stiff_force, stiff_work
-      real(wp) :: term
+      real(wp), intent(inout) :: way, force, stiff_force, stiff_work
+      real(wp) :: ways, works, term
       integer :: i
 
-      place = 0.0_wp
-      force = 0.0_wp
-      stiff_force = 0.0_wp
-      stiff_work = 0.0_wp
+      ways = 0.0_wp
+      works = 0.0_wp
       do i = 1, n
          if (.not. share(i) > 0.0_wp) cycle
-         place = place + abs(arm(i)*d(i))
+         ways = ways + abs(arm(i)*d(i))
          force = max(force, abs(f0(i) + k(i)*(d(i) - d0(i)))*share(i))
          term = initial(i)*abs(d(i))
          stiff_force = max(stiff_force, term*share(i))
-         stiff_work = stiff_work + term*abs(d(i))
+         works = works + term*abs(d(i))
       end do
+      way = max(way, ways)
+      stiff_work = max(stiff_work, works)
    end subroutine measure
 
 end module rbs_solve_static_row_check
