@@ -102,11 +102,13 @@ contains
                       self%largest_force, self%stiff_force, self%stiff_work)
       end if
       select case (wrong())
+      case (0)
+         return
       case (1)
          fault = 'its joints move the top by '//to_text(there)//' m'
       case (2)
          fault = to_text(unbalance)//' N of its forces are out of balance'
-      case (3)
+      case default
          fault = to_text(missing)//' J of its work are missing'
       end select
 
