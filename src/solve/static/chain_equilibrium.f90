@@ -16,6 +16,7 @@ module rbs_solve_static_chain_equilibrium
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_few_bodies, only: few_bodies, most_unknowns
    use rbs_structure_column_chain, only: second_order_forces, geometric_forces
+   use rbs_structure_column_chain_matrices, only: geometric_stiffness
    use rbs_structure_column_column, only: column_type
    implicit none
    private
@@ -59,12 +60,10 @@ contains
    subroutine create(self, column)
       class(chain_equilibrium), intent(out) :: self
       class(column_type), intent(in) :: column
-      real(wp) :: unit(2*column%n)
-      integer :: m, n
+      integer :: m
 
-      n = column%n
-      m = 2*n
-      self%n = n
+      m = 2*column%n
+      self%n = column%n
       self%moving = m
       self%held = column%held
       self%height = column%total_height
@@ -76,47 +75,37 @@ contains
       if (.not. self%coupled) return
       allocate (self%axial(m), source=0.0_wp)
       if (column%axially_loaded) self%axial(:) = [column%axial_body, column%axial_slip]
-      ! All bodies turn alike.
-      unit = 0.0_wp
-      unit(n + 1) = 1.0_wp
-      allocate (self%geometric(n, 2), source=0.0_wp)
-      call second_order_forces(n, self%length, self%axial, unit, self%geometric(:, 1), 1, &
-                               self%geometric(:, 2))
-      if (n <= most_unknowns/2 .and. .not. column%held) then
-         call create_few(self)
+      if (m <= most_unknowns .and. .not. column%held) then
+         call create_few(self, column)
       else
          call create_band(self)
       end if
    end subroutine create
 
-   subroutine create_few(self)
+   subroutine create_few(self, column)
       type(chain_equilibrium), intent(inout) :: self
-      real(wp) :: unit(2*self%n), row(2*self%n + 1, 2*self%n + 1)
-      integer :: j
+      class(column_type), intent(in) :: column
+      real(wp) :: stiffness(most_unknowns, most_unknowns)
 
       associate (m => self%moving)
-         row = 0.0_wp
-         row(m + 1, :m) = -self%arm
-         row(:m, m + 1) = self%arm
-         self%f = 0.0_wp
-         do j = 1, m
-            unit = 0.0_wp
-            unit(j) = 1.0_wp
-            call find_residual(self, unit, self%f, 0.0_wp, self%residual)
-            ! No negative zeros
-            row(j, :m) = -self%residual + 0.0_wp
-         end do
+         call geometric_stiffness(column, stiffness(:m, :m))
+         call self%few%create(stiffness(:m, :m), self%arm)
       end associate
-      call self%few%create(row)
    end subroutine create_few
 
    subroutine create_band(self)
       type(chain_equilibrium), intent(inout) :: self
-      real(wp) :: stiffness(2*self%n)
+      real(wp) :: unit(2*self%n), stiffness(2*self%n)
       integer :: i
 
       associate (n => self%n, m => self%moving)
          allocate (self%lever(m), self%found(m, 2), self%missing(m, 2), self%along(m, 2), self%more(m, 2))
+         ! All bodies turn alike.
+         unit = 0.0_wp
+         unit(n + 1) = 1.0_wp
+         allocate (self%geometric(n, 2), source=0.0_wp)
+         call second_order_forces(n, self%length, self%axial, unit, self%geometric(:, 1), 1, &
+                                  self%geometric(:, 2))
          do i = 1, n
             self%lever(2*i - 1:2*i) = [1.0_wp, self%length(i)]
             stiffness(2*i - 1:2*i) = [self%initial(i), self%initial(n + i)]
@@ -384,8 +373,7 @@ contains
       class(chain_equilibrium), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
 
-      call stream%item(self%force_rate)
-      call stream%item(self%displacement_rate)
+      call stream%items(self%force_rate, self%displacement_rate)
       call self%few%serialize(stream)
    end subroutine serialize
 

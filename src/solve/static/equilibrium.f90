@@ -65,14 +65,12 @@ module rbs_solve_static_equilibrium
 
 contains
 
-   !> Save or restore what the next rates may follow from: here nothing.
+   !> Save or restore the rates, and what the next ones may follow from: here nothing.
    subroutine serialize(self, stream)
       class(equilibrium_type), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
 
-      call stream%item(self%force_rate)
-      call stream%item(self%displacement_rate)
-      call stream%item(self%further_rate)
+      call stream%items(self%force_rate, self%displacement_rate, self%further_rate)
    end subroutine serialize
 
 end module rbs_solve_static_equilibrium

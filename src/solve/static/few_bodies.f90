@@ -42,17 +42,18 @@ module rbs_solve_static_few_bodies
 
 contains
 
-   subroutine create(self, row)
+   subroutine create(self, geometric, arm)
       class(few_bodies), intent(out) :: self
-      !> Each column an equation without springs: geometric stiffness and the force; in the last one the
-      !> displacement (unknowns + 1, unknowns + 1)
-      real(wp), intent(in) :: row(:, :)
+      !> Geometric stiffness (unknowns, unknowns), arms of the lateral force (unknowns)
+      real(wp), intent(in) :: geometric(:, :), arm(:)
 
       associate (m => self%unknowns)
-         m = size(row, 1) - 1
+         m = size(arm)
          allocate (self%row(row_length, m + 1), source=0.0_wp)
          allocate (self%k(m), source=0.0_wp)
-         self%row(:m + 1, :) = row
+         self%row(:m, :m) = transpose(geometric)
+         self%row(m + 1, :m) = -arm
+         self%row(:m, m + 1) = arm
          self%row(row_length - 2, m + 1) = 1.0_wp
          self%solved = self%row
          self%changing = m

@@ -75,7 +75,7 @@ module rbs_solve_static_path
       procedure(solve_line_interface), deferred :: solve_line
       procedure(balance_interface), deferred :: find_balance
       procedure(unbalance_interface), deferred :: unbalance
-      procedure(stand_interface), deferred :: stand_still
+      procedure :: stand_still
    end type static_path
 
    abstract interface
@@ -115,13 +115,6 @@ module rbs_solve_static_path
          implicit none
          class(static_path), intent(inout) :: self
       end function unbalance_interface
-
-      !> The springs stand where the path begins: take their place as the present point.
-      subroutine stand_interface(self)
-         import :: static_path
-         implicit none
-         class(static_path), intent(inout) :: self
-      end subroutine stand_interface
 
       !> Save or restore all that the next target depends on, the springs excepted.
       subroutine serialize_interface(self, stream)
@@ -165,18 +158,21 @@ contains
       allocate (self%rotation(self%structure%n))
    end subroutine prepare
 
+   !> The springs stand where the path begins: take their place as the present point.
+   subroutine stand_still(self)
+      class(static_path), intent(inout) :: self
+
+      self%direction = 0
+   end subroutine stand_still
+
    !> Save or restore what every path remembers; solvers add what is their own.
    subroutine serialize_path(self, stream)
       class(static_path), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
 
-      call stream%item(self%displacement)
-      call stream%item(self%force)
-      call stream%item(self%work)
-      call stream%item(self%control)
+      call stream%items(self%displacement, self%force, self%work, self%control, self%load_now)
       call stream%item(self%direction)
       call stream%item(self%rate)
-      call stream%item(self%load_now)
    end subroutine serialize_path
 
    !> The axial springs follow their lines to the forces of load and weight.

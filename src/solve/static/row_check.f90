@@ -87,7 +87,8 @@ contains
       logical, intent(in) :: on_ends
       !> What is wrong, for a message; not allocated if nothing is
       character(len=:), allocatable, intent(out) :: fault
-      real(wp) :: there, gap, missing, place
+      real(wp) :: there, gap, missing, place, ways, works, term
+      integer :: i
 
       there = structure%top_displacement(springs%d)
       gap = abs(there - displacement)
@@ -97,9 +98,18 @@ contains
       self%largest_work = max(self%largest_work, abs(energy%input), abs(energy%spring), abs(energy%axial))
       if (abs(displacement) > self%farthest .or. wrong() > 0) then
          self%farthest = max(self%farthest, abs(displacement))
-         call measure(springs%count, springs%d, springs%d0, springs%f0, springs%k, &
-                      structure%initial_stiffness, structure%arm, self%share, self%largest_place, &
-                      self%largest_force, self%stiff_force, self%stiff_work)
+         ways = 0.0_wp
+         works = 0.0_wp
+         do i = 1, springs%count
+            if (.not. self%share(i) > 0.0_wp) cycle
+            ways = ways + abs(structure%arm(i)*springs%d(i))
+            self%largest_force = max(self%largest_force, abs(springs%force(i))*self%share(i))
+            term = structure%initial_stiffness(i)*abs(springs%d(i))
+            self%stiff_force = max(self%stiff_force, term*self%share(i))
+            works = works + term*abs(springs%d(i))
+         end do
+         self%largest_place = max(self%largest_place, ways)
+         self%stiff_work = max(self%stiff_work, works)
       end if
       select case (wrong())
       case (0)
@@ -127,29 +137,5 @@ contains
       end function wrong
 
    end subroutine look
-
-   !> Ways, forces and works of the springs, the largest so far.
-   pure subroutine measure(n, d, d0, f0, k, initial, arm, share, way, force, stiff_force, stiff_work)
-      integer, intent(in) :: n
-      real(wp), intent(in) :: d(n), d0(n), f0(n), k(n), initial(n), arm(n), share(n)
-      !> Sum of the ways on which they move the top, largest force, and the same by initial stiffness with the
-      !> sum of the works
-      real(wp), intent(inout) :: way, force, stiff_force, stiff_work
-      real(wp) :: ways, works, term
-      integer :: i
-
-      ways = 0.0_wp
-      works = 0.0_wp
-      do i = 1, n
-         if (.not. share(i) > 0.0_wp) cycle
-         ways = ways + abs(arm(i)*d(i))
-         force = max(force, abs(f0(i) + k(i)*(d(i) - d0(i)))*share(i))
-         term = initial(i)*abs(d(i))
-         stiff_force = max(stiff_force, term*share(i))
-         works = works + term*abs(d(i))
-      end do
-      way = max(way, ways)
-      stiff_work = max(stiff_work, works)
-   end subroutine measure
 
 end module rbs_solve_static_row_check

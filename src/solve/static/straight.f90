@@ -35,7 +35,6 @@ module rbs_solve_static_straight
       procedure :: solve_line
       procedure :: find_balance
       procedure :: unbalance
-      procedure :: stand_still
       procedure :: serialize
    end type straight_path
 
@@ -208,24 +207,14 @@ contains
       unbalance = self%equilibrium%unbalance
    end function unbalance
 
-   !> Nothing but the springs tells where the path is.
-   subroutine stand_still(self)
-      class(straight_path), intent(inout) :: self
-
-      self%direction = 0
-   end subroutine stand_still
-
    !> Save or restore the line that the structure is on.
    subroutine serialize(self, stream)
       class(straight_path), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
 
       call serialize_path(self, stream)
-      call stream%item(self%start)
+      call stream%items(self%start, self%force_start, self%displacement_start, self%finish)
       call stream%item(self%q)
-      call stream%item(self%force_start)
-      call stream%item(self%displacement_start)
-      call stream%item(self%finish)
       call stream%item(self%ends)
       call self%equilibrium%serialize(stream)
    end subroutine serialize
