@@ -17,7 +17,7 @@ module rbs_structure_structure
    implicit none
    private
 
-   public :: structure_type, load_pattern, unknown_group, accelerate_unknowns
+   public :: structure_type, motion_result, load_pattern, unknown_group, accelerate_unknowns
    public :: small, pdelta, finite
    public :: lateral, horizontal, vertical, top_axial, signals
 
@@ -129,6 +129,25 @@ module rbs_structure_structure
       procedure :: add_ground
       procedure :: work_of
    end type structure_type
+
+   !> What the equation of motion gives at one state. `create` allocates it once, before the first step.
+   type :: motion_result
+      !> Accelerations of the springs (springs) [m/s2, rad/s2]
+      real(wp), allocatable :: a(:)
+      !> Rates of the `speeds` of a structure, mass damping left out; where rotations are small
+      real(wp) :: of_speeds(2) = 0.0_wp
+      !> Forces of the springs with damping and, with small rotations, the second-order share of the axial
+      !> forces (springs) [N, N m, N]
+      real(wp), allocatable :: f(:)
+      !> Forces on the unknowns, without the inertia of the moving ground and without mass damping (unknowns)
+      real(wp), allocatable :: force(:)
+      !> Axial forces that do second-order work at the time, in the order of the structure [N]
+      real(wp), allocatable :: axial(:)
+      !> Work array of the structure (work_size)
+      real(wp), allocatable :: work(:)
+   contains
+      procedure :: create
+   end type motion_result
 
    abstract interface
       subroutine gather(self, dx, dd)
@@ -245,32 +264,40 @@ module rbs_structure_structure
 
 contains
 
-   !> Accelerations of the springs, for explicit steps.
-   subroutine accelerate_unknowns(self, d, v, load, axial, f, work, a, of_speeds)
+   subroutine create(self, structure)
+      class(motion_result), intent(out) :: self
+      class(structure_type), intent(in) :: structure
+      real(wp) :: at_rest(signals)
+      integer :: m
+
+      m = size(structure%place)
+      allocate (self%a(m), self%f(m), self%force(structure%unknowns), self%work(structure%work_size), &
+                self%axial(structure%axial_count), source=0.0_wp)
+      at_rest = 0.0_wp
+      call structure%axial_forces(at_rest, self%axial)
+   end subroutine create
+
+   !> Accelerations of the springs, mass damping included, for explicit steps.
+   subroutine accelerate_unknowns(self, d, v, load, pressing, result)
       class(structure_type), intent(in) :: self
-      !> Deformations of the springs and their velocities (springs), signals of the loads, axial forces
-      !> that do second-order work (see `axial_forces`; none where they do not)
-      real(wp), intent(in), contiguous :: d(:), v(:), load(:), axial(:)
-      !> Forces of springs and damping; see `forces` (springs)
-      real(wp), intent(inout), contiguous :: f(:)
-      !> (work_size), here at least the number of unknowns
-      real(wp), intent(inout), contiguous :: work(:)
-      !> Second derivatives of the deformations, mass damping included (springs)
-      real(wp), intent(out), contiguous :: a(:)
-      !> Rates of `speeds`, mass damping left out
-      real(wp), intent(out) :: of_speeds(2)
+      !> Deformations of the springs and their velocities (springs), signals of the loads
+      real(wp), intent(in) :: d(size(self%place)), v(size(self%place)), load(signals)
+      !> Number of axial forces that do second-order work: all, or none where none does
+      integer, intent(in) :: pressing
+      !> With axial forces, and with those of springs and damping, to which `forces` adds
+      type(motion_result), intent(inout) :: result
       integer :: i
 
-      associate (x => work(:self%unknowns))
-         call self%forces(d, load, axial, f, x)
+      associate (x => result%force)
+         call self%forces(d, load, result%axial(:pressing), result%f, x)
          call self%add_ground(load, x)
          do i = 1, self%unknowns
             x(i) = merge(0.0_wp, x(i)/self%inertias(i), self%is_held(i))
          end do
-         call self%spring_rates(x, a)
-         of_speeds = [self%work_of(lateral, x), self%work_of(horizontal, x)]
+         call self%spring_rates(x, result%a)
+         result%of_speeds = [self%work_of(lateral, x), self%work_of(horizontal, x)]
       end associate
-      if (self%mass_damping > 0.0_wp) a = a - self%mass_damping*v
+      if (self%mass_damping > 0.0_wp) result%a = result%a - self%mass_damping*v
    end subroutine accelerate_unknowns
 
    !> What the lateral force and the acceleration of the ground do work on, per unit of time: velocity of the

@@ -12,31 +12,11 @@ module rbs_solve_time_motion
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_modal_matrices, only: modal_damping
    use rbs_loading_loads, only: lateral, horizontal, vertical, axial
-   use rbs_structure_structure, only: structure_type, signals, pdelta, finite
+   use rbs_structure_structure, only: structure_type, motion_result, signals, pdelta, finite
    implicit none
    private
 
    public :: motion_type, motion_result
-
-   !> What the equation of motion gives at one state. `create` allocates it once, before the first step.
-   type :: motion_result
-      !> Accelerations of the springs (springs) [m/s2, rad/s2]
-      real(wp), allocatable :: a(:)
-      !> Rates of velocity of the top and momentum, see `speeds` of a structure
-      real(wp) :: of_speeds(2) = 0.0_wp
-      !> Forces of the springs with damping and, with small rotations, the second-order share of the axial
-      !> forces (springs) [N, N m, N]
-      real(wp), allocatable :: f(:)
-      !> Forces on the unknowns of the structure, without the inertia of the moving ground and without mass
-      !> damping (unknowns)
-      real(wp), allocatable :: force(:)
-      !> Axial forces that do second-order work at the time, in the order of the structure [N]
-      real(wp), allocatable :: axial(:)
-      !> Work array of the structure
-      real(wp), allocatable :: work(:)
-   contains
-      procedure :: create => create_result
-   end type motion_result
 
    type :: motion_type
       class(structure_type), pointer :: structure => null()
@@ -65,19 +45,6 @@ module rbs_solve_time_motion
    end type motion_type
 
 contains
-
-   subroutine create_result(self, structure)
-      class(motion_result), intent(out) :: self
-      class(structure_type), intent(in) :: structure
-      real(wp) :: at_rest(signals)
-      integer :: m
-
-      m = size(structure%place)
-      allocate (self%a(m), self%f(m), self%force(structure%unknowns), self%work(structure%work_size), &
-                self%axial(structure%axial_count), source=0.0_wp)
-      at_rest = 0.0_wp
-      call structure%axial_forces(at_rest, self%axial)
-   end subroutine create_result
 
    subroutine create(self, structure, acts, error)
       class(motion_type), intent(out) :: self
@@ -109,45 +76,47 @@ contains
       class(motion_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
       !> Deformations and their velocities (springs)
-      real(wp), intent(in), contiguous :: q(:), v(:)
+      real(wp), intent(in) :: q(springs%count), v(springs%count)
       !> Loads at the time
-      real(wp), intent(in) :: load(4)
+      real(wp), intent(in) :: load(signals)
       type(motion_result), intent(inout) :: result
       integer :: m
 
-      call self%joint_forces(springs, q, v, load, result%f)
-      call find_axial_forces(self, load, result, m)
-      call self%structure%accelerations(q, v, load, result%axial(:m), &
-                                        result%f, result%work, result%a, result%of_speeds)
+      call find_forces(self, springs, q, v, load, result, m)
+      call self%structure%accelerations(q, v, load, m, result)
    end subroutine acceleration
 
    !> Forces of the springs and on the unknowns with small rotations: all of the result but the accelerations.
    subroutine forces_on_bodies(self, springs, q, v, load, result)
       class(motion_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
-      real(wp), intent(in), contiguous :: q(:), v(:)
+      real(wp), intent(in) :: q(springs%count), v(springs%count)
       !> Loads at the time
-      real(wp), intent(in) :: load(4)
+      real(wp), intent(in) :: load(signals)
       type(motion_result), intent(inout) :: result
       integer :: m
 
-      call self%joint_forces(springs, q, v, load, result%f)
-      call find_axial_forces(self, load, result, m)
+      call find_forces(self, springs, q, v, load, result, m)
       call self%structure%forces(q, load, result%axial(:m), result%f, result%force)
    end subroutine forces_on_bodies
 
-   !> Axial forces that do second-order work, as far as they vary, and their number.
-   subroutine find_axial_forces(self, load, result, m)
-      type(motion_type), intent(in) :: self
-      real(wp), intent(in) :: load(4)
+   !> Forces of the springs and of the damping, and axial forces that do second-order work.
+   subroutine find_forces(self, springs, q, v, load, result, m)
+      class(motion_type), intent(in) :: self
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(in) :: q(springs%count), v(springs%count)
+      real(wp), intent(in) :: load(signals)
       type(motion_result), intent(inout) :: result
+      !> Number of axial forces that do second-order work
       integer, intent(out) :: m
 
+      call on_lines(springs%count, springs%d0, springs%f0, springs%k, q, result%f)
+      if (self%damped .or. springs%pressed) call add_to_springs(self, springs, v, load, result%f)
       m = 0
       if (.not. self%second_order) return
       m = size(result%axial)
       if (self%varies) call self%structure%axial_forces(load, result%axial)
-   end subroutine find_axial_forces
+   end subroutine find_forces
 
    !> Forces of the springs on their present lines, and of the damping beside them.
    subroutine joint_forces(self, springs, q, v, load, f)
@@ -155,12 +124,22 @@ contains
       type(spring_array), intent(in) :: springs
       real(wp), intent(in), contiguous :: q(:), v(:)
       !> Loads at the time
-      real(wp), intent(in) :: load(4)
+      real(wp), intent(in) :: load(signals)
       !> Forces (springs) [N, N m]
       real(wp), intent(out), contiguous :: f(:)
-      integer :: i, j
 
       call on_lines(size(f), springs%d0, springs%f0, springs%k, q, f)
+      if (self%damped .or. springs%pressed) call add_to_springs(self, springs, v, load, f)
+   end subroutine joint_forces
+
+   !> Add what layered joints bear by axial loads that have changed, and the forces of the damping.
+   subroutine add_to_springs(self, springs, v, load, f)
+      class(motion_type), intent(in) :: self
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(in) :: v(springs%count), load(signals)
+      real(wp), intent(inout), contiguous :: f(:)
+      integer :: i, j
+
       if (springs%pressed) then
          do j = 1, size(springs%layered)
             i = springs%layered(j)
@@ -174,7 +153,7 @@ contains
          f = f + self%joint_damping*v
       end if
       if (allocated(self%modal)) f = f + modal_forces(size(v), self%modal, v)
-   end subroutine joint_forces
+   end subroutine add_to_springs
 
    pure subroutine on_lines(m, d0, f0, k, q, f)
       integer, intent(in) :: m

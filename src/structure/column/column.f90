@@ -21,7 +21,7 @@ module rbs_structure_column_column
    use rbs_hysteresis_interaction_joints, only: opening_of, rest_of
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_spring_place, only: flexure
-   use rbs_structure_structure, only: structure_type, accelerate_unknowns, small, pdelta, finite, lateral, &
+   use rbs_structure_structure, only: structure_type, motion_result, accelerate_unknowns, small, pdelta, finite, lateral, &
                                       horizontal, vertical, top_axial, signals
    implicit none
    private
@@ -210,31 +210,28 @@ contains
    end subroutine add_geometric
 
    !> Accelerations of the joints, where the rotations are small.
-   subroutine accelerations(self, d, v, load, axial, f, work, a, of_speeds)
+   subroutine accelerations(self, d, v, load, pressing, result)
       class(column_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:), v(:), load(:), axial(:)
-      real(wp), intent(inout), contiguous :: f(:)
-      !> Accelerations of the bodies along x and in rotation, second-order moments
-      real(wp), intent(inout), contiguous :: work(:)
-      real(wp), intent(out), contiguous :: a(:)
-      real(wp), intent(out) :: of_speeds(2)
-      integer :: m, n
+      real(wp), intent(in) :: d(size(self%place)), v(size(self%place)), load(signals)
+      integer, intent(in) :: pressing
+      !> Its work array: second-order moments on the bodies, which stay zero where there are none, and
+      !> accelerations of the bodies, along x and in rotation (n each)
+      type(motion_result), intent(inout) :: result
+      integer :: n
 
       if (self%opens) then
-         call accelerate_unknowns(self, d, v, load, axial, f, work, a, of_speeds)
+         call accelerate_unknowns(self, d, v, load, pressing, result)
          return
       end if
       n = self%n
-      m = self%unknowns
-      associate (along => work(:n), turning => work(n + 1:m), moment => work(m + 1:m + n))
-         moment = 0.0_wp
-         if (size(axial) > 0) call second_order_forces(n, self%length, axial, d, f, 1, moment)
-         call chain_accelerations(n, self%lower, self%upper, self%inverse_mass, self%inverse_inertia, f, &
-                                  moment, load(lateral), load(horizontal), along, turning, a)
-         of_speeds = [along(n) + self%upper(n)*turning(n), &
-                      -(load(lateral) - f(1) - self%mass_above(1)*load(horizontal))]
+      associate (f => result%f, work => result%work)
+         if (pressing > 0) call second_order_forces(n, self%length, result%axial, d, f, 1, work)
+         call chain_accelerations(n, self%lower, self%upper, self%inverse_mass, self%inverse_inertia, f, work, &
+                                  load(lateral), load(horizontal), work(n + 1), work(2*n + 1), result%a)
+         result%of_speeds = [work(2*n) + self%upper(n)*work(3*n), &
+                             -(load(lateral) - f(1) - self%mass_above(1)*load(horizontal))]
       end associate
-      if (self%mass_damping > 0.0_wp) a = a - self%mass_damping*v
+      if (self%mass_damping > 0.0_wp) result%a = result%a - self%mass_damping*v
    end subroutine accelerations
 
    pure subroutine speeds(self, d, v, speed)

@@ -22,7 +22,7 @@ module rbs_structure_column_finite
    use rbs_base_linalg, only: solve_tridiagonal
    use rbs_structure_column_column, only: column_type
    use rbs_structure_spring_place, only: shear, flexure, axial
-   use rbs_structure_structure, only: lateral, horizontal, vertical, top_axial
+   use rbs_structure_structure, only: motion_result, signals, lateral, horizontal, vertical, top_axial
    implicit none
    private
 
@@ -62,22 +62,17 @@ contains
    !>
    !> Damping in proportion to the mass, -alpha (m v_c, I om) on every body, is -alpha M q' in the unknowns:
    !> it takes alpha q' from the accelerations.
-   subroutine accelerations(self, d, v, load, axial, f, work, a, of_speeds)
+   subroutine accelerations(self, d, v, load, pressing, result)
       class(finite_chain_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:), v(:), load(:), axial(:)
-      real(wp), intent(inout), contiguous :: f(:)
-      real(wp), intent(inout), contiguous :: work(:)
-      real(wp), intent(out), contiguous :: a(:)
-      real(wp), intent(out) :: of_speeds(2)
+      real(wp), intent(in) :: d(size(self%place)), v(size(self%place)), load(signals)
+      integer, intent(in) :: pressing
+      type(motion_result), intent(inout) :: result
 
-      of_speeds = 0.0_wp
-      if (size(d) == 2 .and. .not. (self%axial_follows .or. self%force_follows)) then
-         call accelerate_one_body(self, d, v, f, load, a)
+      if (pressing == 0 .and. size(d) == 2 .and. .not. (self%axial_follows .or. self%force_follows)) then
+         call accelerate_one_body(self, d, v, result%f, load, result%a)
       else
-         call self%accelerate(d, v, f, load, work, a)
+         call self%accelerate(d, v, result%f, load, result%work, result%a)
       end if
-      associate (unused => axial)
-      end associate
    end subroutine accelerations
 
    !> The same for any chain; it leaves the axial forces of joints that do not open in the work array (n).
