@@ -119,12 +119,12 @@ module rbs_structure_structure
       procedure :: speeds
       procedure :: power_of_loads
       procedure :: kinetic_energy
+      procedure :: largest_turn
       procedure :: top_displacement
       procedure :: top_acceleration
       procedure :: axial_force
       procedure :: check_loads
       procedure :: check_initial
-      procedure :: largest_turn
       procedure :: spring_of
       procedure :: add_ground
       procedure :: work_of
@@ -337,15 +337,7 @@ contains
       energy = 0.5_wp*sum(self%inertias*x**2)
    end function kinetic_energy
 
-   !> Displacement of the top along x [m].
-   pure real(wp) function top_displacement(self, d) result(x)
-      class(structure_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:)
-
-      x = inner_product(size(d), self%arm, d)
-   end function top_displacement
-
-   !> Largest rotation of a body in deformations, or in a change of them, in size [rad].
+   !> Largest absolute rotation of a body in deformations, or in a change of them, in size [rad].
    pure real(wp) function largest_turn(self, d) result(largest)
       class(structure_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:)
@@ -354,6 +346,14 @@ contains
       call self%rotations(d, rotation)
       largest = maxval(abs(rotation))
    end function largest_turn
+
+   !> Displacement of the top along x [m].
+   pure real(wp) function top_displacement(self, d) result(x)
+      class(structure_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+
+      x = inner_product(size(d), self%arm, d)
+   end function top_displacement
 
    !> Acceleration of the top along x, relative to the ground [m/s2].
    pure real(wp) function top_acceleration(self, d, v, a) result(acceleration)

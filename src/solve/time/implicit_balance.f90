@@ -8,9 +8,8 @@
 module rbs_solve_time_implicit_balance
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
-   use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_state, only: state_type
-   use rbs_structure_structure, only: structure_type, lateral, signals
+   use rbs_structure_structure, only: structure_type, motion_result, unknown_group, lateral, signals
    implicit none
    private
 
@@ -72,10 +71,10 @@ contains
    subroutine go_on(self)
       class(step_balance), intent(inout) :: self
 
-      self%largest = max(self%largest, self%scale)
-      self%v0 = self%v1
-      self%a0 = self%a1
-      self%g0 = self%g1
+      self%largest(:) = max(self%largest, self%scale)
+      self%v0(:) = self%v1
+      self%a0(:) = self%a1
+      self%g0(:) = self%g1
    end subroutine go_on
 
    !> Save or restore what the bodies do at the start of a step.
@@ -105,7 +104,7 @@ contains
          call balance(m, self%alpha_m, self%alpha_f, structure%inertias, self%a0, self%a1, self%g0, self%g1, &
                       self%r)
          call find_scale(structure, self%a1, self%now%f, load, self%scale)
-         relative = size_of(structure, self%r, self%scale, self%largest)
+         relative = size_of(structure, m, self%r, self%scale, self%largest)
       end associate
    end subroutine find_residual
 
@@ -151,53 +150,48 @@ contains
       !> Accelerations (unknowns), forces of springs (springs), loads
       real(wp), intent(in), contiguous :: a(:), f(:)
       real(wp), intent(in) :: load(signals)
-      real(wp), intent(out) :: scale(:)
+      real(wp), intent(out), contiguous :: scale(:)
       integer :: j
 
-      do j = 1, size(structure%group)
+      do j = 1, size(scale)
          associate (group => structure%group(j))
             scale(j) = abs(load(lateral))*group%lateral_arm
-            call find_largest(group%first_spring, group%last_spring, 1, f, scale(j))
-            call find_largest(group%first, group%last, group%step, structure%inertias, scale(j), a)
+            call find_largest_force(group, size(a), size(f), structure%inertias, a, f, scale(j))
          end associate
       end do
    end subroutine find_scale
 
-   !> The largest of some numbers, in size, or of their products with others; and of what there is.
-   pure subroutine find_largest(first, last, step, x, largest, y)
-      integer, intent(in) :: first, last, step
-      real(wp), intent(in) :: x(last)
+   pure subroutine find_largest_force(group, unknowns, springs, inertias, a, f, largest)
+      type(unknown_group), intent(in) :: group
+      integer, intent(in) :: unknowns, springs
+      real(wp), intent(in) :: inertias(unknowns), a(unknowns), f(springs)
       real(wp), intent(inout) :: largest
-      real(wp), intent(in), optional :: y(last)
-      real(wp) :: most
       integer :: i
 
-      most = largest
-      if (present(y)) then
-         do i = first, last, step
-            most = max(most, abs(x(i)*y(i)))
-         end do
-      else
-         do i = first, last, step
-            most = max(most, abs(x(i)))
-         end do
-      end if
-      largest = most
-   end subroutine find_largest
+      do i = group%first_spring, group%last_spring
+         if (abs(f(i)) > largest) largest = abs(f(i))
+      end do
+      do i = group%first, group%last, group%step
+         if (abs(inertias(i)*a(i)) > largest) largest = abs(inertias(i)*a(i))
+      end do
+   end subroutine find_largest_force
 
    !> Largest residual over the largest force of its group, at the most 1.
-   pure real(wp) function size_of(structure, r, scale, largest) result(relative)
+   pure real(wp) function size_of(structure, m, r, scale, largest) result(relative)
       class(structure_type), intent(in) :: structure
-      real(wp), intent(in), contiguous :: r(:)
-      real(wp), intent(in) :: scale(:), largest(:)
+      integer, intent(in) :: m
+      real(wp), intent(in) :: r(m)
+      real(wp), intent(in), contiguous :: scale(:), largest(:)
       real(wp) :: rest
-      integer :: j
+      integer :: i, j
 
       relative = 0.0_wp
-      do j = 1, size(structure%group)
+      do j = 1, size(scale)
          rest = 0.0_wp
          associate (group => structure%group(j))
-            call find_largest(group%first, group%last, group%step, r, rest)
+            do i = group%first, group%last, group%step
+               if (abs(r(i)) > rest) rest = abs(r(i))
+            end do
          end associate
          relative = max(relative, rest/max(scale(j), largest(j), rest, tiny(1.0_wp)))
       end do

@@ -134,8 +134,7 @@ contains
          shear = springs%f0(1) + springs%k(1)*(q(1) - springs%d0(1))
       else
          displacement = motion%structure%top_displacement(q)
-         call motion%structure%rotations(q, self%rotation(:, 1))
-         turn = maxval(abs(self%rotation(:, 1)))
+         turn = motion%structure%largest_turn(q)
          shear = motion%base_shear(springs, q, v)
       end if
       if (abs(displacement) > abs(self%peak_displacement) .or. abs(load(lateral)) > abs(self%peak_force)) then

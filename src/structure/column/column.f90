@@ -109,6 +109,7 @@ module rbs_structure_column_column
       procedure :: channels
       procedure :: fill_row
       procedure, non_overridable :: put_under
+      procedure :: largest_turn
    end type column_type
 
 contains
@@ -510,5 +511,19 @@ contains
          row(at + n + i) = rest_of(springs, self%at(flexure, i))
       end do
    end subroutine fill_row
+
+   pure real(wp) function largest_turn(self, d) result(largest)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+      real(wp) :: rotation
+      integer :: i
+
+      largest = 0.0_wp
+      rotation = 0.0_wp
+      do i = self%n + 1, 2*self%n
+         rotation = rotation + d(i)
+         largest = max(largest, abs(rotation))
+      end do
+   end function largest_turn
 
 end module rbs_structure_column_column
