@@ -166,14 +166,19 @@ contains
       integer, intent(in) :: unknowns, springs
       real(wp), intent(in) :: inertias(unknowns), a(unknowns), f(springs)
       real(wp), intent(inout) :: largest
+      real(wp) :: most, one
       integer :: i
 
+      most = largest
       do i = group%first_spring, group%last_spring
-         if (abs(f(i)) > largest) largest = abs(f(i))
+         one = abs(f(i))
+         if (one > most) most = one
       end do
       do i = group%first, group%last, group%step
-         if (abs(inertias(i)*a(i)) > largest) largest = abs(inertias(i)*a(i))
+         one = abs(inertias(i)*a(i))
+         if (one > most) most = one
       end do
+      largest = most
    end subroutine find_largest_force
 
    !> Largest residual over the largest force of its group, at the most 1.

@@ -82,7 +82,9 @@ contains
       type(motion_result), intent(inout) :: result
       integer :: m
 
-      call find_forces(self, springs, q, v, load, result, m)
+      call on_lines(springs%count, springs%d0, springs%f0, springs%k, q, result%f)
+      m = 0
+      if (.not. self%plain .or. self%second_order) call find_others(self, springs, v, load, result, m)
       call self%structure%accelerations(q, v, load, m, result)
    end subroutine acceleration
 
@@ -96,27 +98,26 @@ contains
       type(motion_result), intent(inout) :: result
       integer :: m
 
-      call find_forces(self, springs, q, v, load, result, m)
+      call on_lines(springs%count, springs%d0, springs%f0, springs%k, q, result%f)
+      m = 0
+      if (.not. self%plain .or. self%second_order) call find_others(self, springs, v, load, result, m)
       call self%structure%forces(q, load, result%axial(:m), result%f, result%force)
    end subroutine forces_on_bodies
 
-   !> Forces of the springs and of the damping, and axial forces that do second-order work.
-   subroutine find_forces(self, springs, q, v, load, result, m)
-      class(motion_type), intent(in) :: self
+   !> What else acts besides the forces of the springs on their lines.
+   subroutine find_others(self, springs, v, load, result, m)
+      type(motion_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
-      real(wp), intent(in) :: q(springs%count), v(springs%count)
-      real(wp), intent(in) :: load(signals)
+      real(wp), intent(in) :: v(springs%count), load(signals)
       type(motion_result), intent(inout) :: result
       !> Number of axial forces that do second-order work
-      integer, intent(out) :: m
+      integer, intent(inout) :: m
 
-      call on_lines(springs%count, springs%d0, springs%f0, springs%k, q, result%f)
       if (self%damped .or. springs%pressed) call add_to_springs(self, springs, v, load, result%f)
-      m = 0
       if (.not. self%second_order) return
       m = size(result%axial)
       if (self%varies) call self%structure%axial_forces(load, result%axial)
-   end subroutine find_forces
+   end subroutine find_others
 
    !> Forces of the springs on their present lines, and of the damping beside them.
    subroutine joint_forces(self, springs, q, v, load, f)
@@ -216,41 +217,36 @@ contains
 
    !> What the ground holds the structure with along x: forces of the lowest springs and of the damping, that
    !> between the bodies and the ground included [N]; asked for in every step.
-   function base_shear(self, springs, q, v) result(force)
+   real(wp) function base_shear(self, springs, q, v) result(force)
       class(motion_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
-      real(wp), intent(in), contiguous :: q(:), v(:)
-      real(wp) :: force, speed(2)
-      integer :: j
+      real(wp), intent(in) :: q(springs%count), v(springs%count)
+      real(wp) :: speed(2), damping
+      integer :: i, j
 
       force = 0.0_wp
-      do j = 1, size(self%structure%base_spring)
-         force = force + self%structure%base_factor(j)*force_at(self, springs, q, v, &
-                                                                self%structure%base_spring(j))
-      end do
-      if (.not. self%damped) return
-      if (self%structure%mass_damping > 0.0_wp) then
-         call self%structure%speeds(q, v, speed)
-         force = force - self%structure%mass_damping*speed(horizontal)
-      end if
+      associate (structure => self%structure)
+         do j = 1, size(structure%base_spring)
+            i = structure%base_spring(j)
+            force = force + structure%base_factor(j)*(springs%f0(i) + springs%k(i)*(q(i) - springs%d0(i)))
+         end do
+         if (.not. self%damped) return
+         do j = 1, size(structure%base_spring)
+            i = structure%base_spring(j)
+            if (structure%tangent_damping) then
+               damping = structure%stiffness_damping*max(springs%k(i), 0.0_wp)*v(i)
+            else
+               damping = self%joint_damping(i)*v(i)
+            end if
+            ! The matrix is symmetric: its columns lie together.
+            if (allocated(self%modal)) damping = damping + inner_product(size(v), self%modal(:, i), v)
+            force = force + structure%base_factor(j)*damping
+         end do
+         if (structure%mass_damping > 0.0_wp) then
+            call structure%speeds(q, v, speed)
+            force = force - structure%mass_damping*speed(horizontal)
+         end if
+      end associate
    end function base_shear
-
-   !> Force of a spring on its line, and of the damping beside it.
-   pure real(wp) function force_at(self, springs, q, v, i) result(force)
-      type(motion_type), intent(in) :: self
-      type(spring_array), intent(in) :: springs
-      real(wp), intent(in), contiguous :: q(:), v(:)
-      integer, intent(in) :: i
-
-      force = springs%f0(i) + springs%k(i)*(q(i) - springs%d0(i))
-      if (.not. self%damped) return
-      if (self%structure%tangent_damping) then
-         force = force + self%structure%stiffness_damping*max(springs%k(i), 0.0_wp)*v(i)
-      else
-         force = force + self%joint_damping(i)*v(i)
-      end if
-      ! The matrix is symmetric: its columns lie together.
-      if (allocated(self%modal)) force = force + inner_product(size(v), self%modal(:, i), v)
-   end function force_at
 
 end module rbs_solve_time_motion

@@ -92,6 +92,7 @@ contains
       self%of_loads = 0.0_wp
       self%of_damping = 0.0_wp
       associate (motion => state%motion, result => self%now)
+         start = 0.0_wp
          if (motion%plain) call motion%structure%speeds(state%q, state%v, start)
          speed = start
          call begin_step(m, state%q, state%v, self%stage_q, self%stage_v, self%q, self%v)

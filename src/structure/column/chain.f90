@@ -17,8 +17,8 @@ module rbs_structure_column_chain
    implicit none
    private
 
-   public :: deformations, displacements, body_forces, second_order_forces, geometric_forces
-   public :: chain_accelerations, add_joint_stiffness, add_axial_stiffness
+   public :: deformations, displacements, second_order_forces, geometric_forces
+   public :: add_joint_stiffness, add_axial_stiffness
 
 contains
 
@@ -72,68 +72,6 @@ contains
          x(i) = height
       end do
    end subroutine displacements
-
-   !> Forces and moments about the centroids from the forces of the joints and those at the top, -B' f + p.
-   pure subroutine body_forces(n, kinds, lower, upper, f, lateral, axial_load, weight, adds, g)
-      integer, intent(in) :: n
-      !> Kinds of deformations: 2, or 3 where joints open
-      integer, intent(in) :: kinds
-      real(wp), intent(in) :: lower(n), upper(n)
-      !> Shear forces [N], moments [N m] and axial forces, tension positive [N], of the joints
-      real(wp), intent(in) :: f(kinds*n)
-      !> Loads at the top, compression positive, and weight of the bodies [N]
-      real(wp), intent(in) :: lateral, axial_load, weight(n)
-      !> Whether the moments are added to those that are there (2 n or 3 n)
-      logical, intent(in) :: adds
-      real(wp), intent(inout) :: g(kinds*n)
-      real(wp) :: moment
-      integer :: i
-
-      do i = 1, n - 1
-         g(2*i - 1) = f(i + 1) - f(i)
-         moment = (f(n + i + 1) - f(n + i)) + (lower(i)*f(i) + upper(i)*f(i + 1))
-         if (adds) moment = moment + g(2*i)
-         g(2*i) = moment
-      end do
-      g(2*n - 1) = lateral - f(n)
-      moment = (lower(n)*f(n) + upper(n)*lateral) - f(2*n)
-      if (adds) moment = moment + g(2*n)
-      g(2*n) = moment
-      if (kinds < 3) return
-      do i = 1, n - 1
-         g(2*n + i) = (f(2*n + i + 1) - f(2*n + i)) - weight(i)
-      end do
-      g(3*n) = -axial_load - f(3*n) - weight(n)
-   end subroutine body_forces
-
-   !> Accelerations of the joints at once, B M^-1 (p - B' f), where joints do not open.
-   pure subroutine chain_accelerations(n, lower, upper, inverse_mass, inverse_inertia, f, moment, lateral, &
-                                       ground, along, turning, a)
-      integer, intent(in) :: n
-      real(wp), intent(in) :: lower(n), upper(n)
-      !> One over mass and rotary inertia of the bodies, forces of the joints, and second-order
-      !> moments on the bodies
-      real(wp), intent(in) :: inverse_mass(n), inverse_inertia(n), f(2*n), moment(n)
-      !> Force at the top [N] and acceleration of the ground [m/s2]
-      real(wp), intent(in) :: lateral, ground
-      !> Accelerations of the bodies relative to the ground, along x and in rotation, and of the joints
-      real(wp), intent(out) :: along(n), turning(n), a(2*n)
-      integer :: i
-
-      do i = 1, n - 1
-         along(i) = (f(i + 1) - f(i))*inverse_mass(i) - ground
-         turning(i) = (((f(n + i + 1) - f(n + i)) + (lower(i)*f(i) + upper(i)*f(i + 1))) + moment(i)) &
-                      *inverse_inertia(i)
-      end do
-      along(n) = (lateral - f(n))*inverse_mass(n) - ground
-      turning(n) = (((lower(n)*f(n) + upper(n)*lateral) - f(2*n)) + moment(n))*inverse_inertia(n)
-      a(1) = along(1) - lower(1)*turning(1)
-      a(n + 1) = turning(1)
-      do i = 2, n
-         a(i) = (along(i) - along(i - 1)) - (lower(i)*turning(i) + upper(i - 1)*turning(i - 1))
-         a(n + i) = turning(i) - turning(i - 1)
-      end do
-   end subroutine chain_accelerations
 
    !> Second-order forces of axial forces, those of the potential -sum a_k l_k th_k^2/2 - sum b_k u_k
    !> th_{k-1}: on the joints their part in u, on the bodies that in th.

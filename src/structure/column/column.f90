@@ -16,8 +16,8 @@ module rbs_structure_column_column
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_structure_channel, only: channel_type, response_type, row_contents
-   use rbs_structure_column_chain, only: deformations, displacements, body_forces, second_order_forces, &
-                               chain_accelerations, add_joint_stiffness, add_axial_stiffness
+   use rbs_structure_column_chain, only: deformations, displacements, second_order_forces, &
+                               add_joint_stiffness, add_axial_stiffness
    use rbs_hysteresis_interaction_joints, only: opening_of, rest_of
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_spring_place, only: flexure
@@ -170,6 +170,39 @@ contains
                        self%axial_load + load(top_axial), self%weight, size(axial) > 0, g)
    end subroutine forces
 
+   !> Forces and moments about the centroids from the forces of the joints and those at the top, -B' f + p.
+   pure subroutine body_forces(n, kinds, lower, upper, f, lateral, axial_load, weight, adds, g)
+      integer, intent(in) :: n
+      !> Kinds of deformations: 2, or 3 where joints open
+      integer, intent(in) :: kinds
+      real(wp), intent(in) :: lower(n), upper(n)
+      !> Shear forces [N], moments [N m] and axial forces, tension positive [N], of the joints
+      real(wp), intent(in) :: f(kinds*n)
+      !> Loads at the top, compression positive, and weight of the bodies [N]
+      real(wp), intent(in) :: lateral, axial_load, weight(n)
+      !> Whether the moments are added to those that are there (2 n or 3 n)
+      logical, intent(in) :: adds
+      real(wp), intent(inout) :: g(kinds*n)
+      real(wp) :: moment
+      integer :: i
+
+      do i = 1, n - 1
+         g(2*i - 1) = f(i + 1) - f(i)
+         moment = (f(n + i + 1) - f(n + i)) + (lower(i)*f(i) + upper(i)*f(i + 1))
+         if (adds) moment = moment + g(2*i)
+         g(2*i) = moment
+      end do
+      g(2*n - 1) = lateral - f(n)
+      moment = (lower(n)*f(n) + upper(n)*lateral) - f(2*n)
+      if (adds) moment = moment + g(2*n)
+      g(2*n) = moment
+      if (kinds < 3) return
+      do i = 1, n - 1
+         g(2*n + i) = (f(2*n + i + 1) - f(2*n + i)) - weight(i)
+      end do
+      g(3*n) = -axial_load - f(3*n) - weight(n)
+   end subroutine body_forces
+
    !> Axial forces for the rotations of the bodies, then across the slips of the joints (2 n).
    subroutine axial_forces(self, load, axial)
       class(column_type), intent(in) :: self
@@ -234,6 +267,35 @@ contains
       end associate
       if (self%mass_damping > 0.0_wp) result%a = result%a - self%mass_damping*v
    end subroutine accelerations
+
+   !> Accelerations of the joints at once, B M^-1 (p - B' f), where joints do not open.
+   pure subroutine chain_accelerations(n, lower, upper, inverse_mass, inverse_inertia, f, moment, lateral, &
+                                       ground, along, turning, a)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: lower(n), upper(n)
+      !> One over mass and rotary inertia of the bodies, forces of the joints, and second-order
+      !> moments on the bodies
+      real(wp), intent(in) :: inverse_mass(n), inverse_inertia(n), f(2*n), moment(n)
+      !> Force at the top [N] and acceleration of the ground [m/s2]
+      real(wp), intent(in) :: lateral, ground
+      !> Accelerations of the bodies relative to the ground, along x and in rotation, and of the joints
+      real(wp), intent(out) :: along(n), turning(n), a(2*n)
+      integer :: i
+
+      do i = 1, n - 1
+         along(i) = (f(i + 1) - f(i))*inverse_mass(i) - ground
+         turning(i) = (((f(n + i + 1) - f(n + i)) + (lower(i)*f(i) + upper(i)*f(i + 1))) + moment(i)) &
+                      *inverse_inertia(i)
+      end do
+      along(n) = (lateral - f(n))*inverse_mass(n) - ground
+      turning(n) = (((lower(n)*f(n) + upper(n)*lateral) - f(2*n)) + moment(n))*inverse_inertia(n)
+      a(1) = along(1) - lower(1)*turning(1)
+      a(n + 1) = turning(1)
+      do i = 2, n
+         a(i) = (along(i) - along(i - 1)) - (lower(i)*turning(i) + upper(i - 1)*turning(i - 1))
+         a(n + i) = turning(i) - turning(i - 1)
+      end do
+   end subroutine chain_accelerations
 
    pure subroutine speeds(self, d, v, speed)
       class(column_type), intent(in) :: self
