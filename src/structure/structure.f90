@@ -136,6 +136,9 @@ module rbs_structure_structure
       real(wp), allocatable :: a(:)
       !> Rates of the `speeds` of a structure, mass damping left out; where rotations are small
       real(wp) :: of_speeds(2) = 0.0_wp
+      !> Power of the loads [W], where it is found on the way
+      real(wp) :: power = 0.0_wp
+      logical :: has_power = .false.
       !> Forces of the springs with damping and, with small rotations, the second-order share of the axial
       !> forces (springs) [N, N m, N]
       real(wp), allocatable :: f(:)

@@ -4,18 +4,17 @@
 !>
 !>     d = (x_1, x_2 - x_1, x_2)
 module storeys
-   use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_spring_record, only: spring_record, make_rules
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_structure_channel, only: channel_type, response_type, row_contents
    use rbs_structure_spring_place, only: spring_place, shear
-   use rbs_structure_structure, only: structure_type, lateral, horizontal, signals
+   use rbs_structure_structure, only: structure_type, unknown_group, lateral, horizontal, signals
    implicit none
    private
 
-   public :: storeys_type, storeys_equilibrium, new_storeys, share
+   public :: storeys_type, storeys_equilibrium, new_storeys, share, mass
 
    !> Shares of the lateral load on the floors.
    real(wp), parameter :: share(2) = [0.25_wp, 0.75_wp]
@@ -29,21 +28,12 @@ module storeys
       procedure :: axial_forces
       procedure :: add_stiffness
       procedure :: add_geometric
-      procedure :: accelerations
-      procedure :: speeds
-      procedure :: power_of_loads
-      procedure :: kinetic_energy
       procedure :: potential_energy
-      procedure :: top_displacement
-      procedure :: top_acceleration
       procedure :: rotations
-      procedure :: axial_force => no_axial_force
-      procedure :: axial_rate => no_axial_force
+      procedure :: axial_rate
       procedure :: acceleration_scale
       procedure :: channels
       procedure :: fill_row
-      procedure :: check_loads
-      procedure :: check_initial
    end type storeys_type
 
    type, extends(equilibrium_type) :: storeys_equilibrium
@@ -79,6 +69,11 @@ contains
       end do
       structure%pattern(lateral)%force = share
       structure%pattern(lateral)%last = 2
+      structure%pattern(horizontal)%force = -mass
+      structure%pattern(horizontal)%last = 2
+      structure%group = [unknown_group(1, 2, 1, 1, 3, 1.0_wp)]
+      structure%base_spring = [1, 3]
+      structure%base_factor = [1.0_wp, 1.0_wp]
    end subroutine new_storeys
 
    subroutine spring_rates(self, dx, dd)
@@ -132,66 +127,12 @@ contains
       band(1, 1) = band(1, 1) + 0.0_wp*self%axial_load*sum(k)
    end subroutine add_geometric
 
-   subroutine accelerations(self, d, v, load, axial, f, work, a, of_speeds)
-      class(storeys_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:), v(:), load(:), axial(:)
-      real(wp), intent(inout), contiguous :: f(:)
-      real(wp), intent(inout), contiguous :: work(:)
-      real(wp), intent(out), contiguous :: a(:)
-      real(wp), intent(out) :: of_speeds(2)
-      real(wp) :: g(2)
-
-      call self%forces(d, load, axial, f, g)
-      g = g/mass - load(horizontal)
-      call self%spring_rates(g, a)
-      of_speeds = [dot_product(share, g), -dot_product(mass, g)] + 0.0_wp*(sum(v) + sum(work))
-   end subroutine accelerations
-
-   pure subroutine speeds(self, d, v, speed)
-      class(storeys_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:), v(:)
-      real(wp), intent(out) :: speed(2)
-
-      speed = [dot_product(self%pattern(lateral)%force, v([1, 3])), -dot_product(mass, v([1, 3]))] &
-              + 0.0_wp*sum(d)
-   end subroutine speeds
-
-   pure real(wp) function power_of_loads(self, d, v, load) result(watt)
-      class(storeys_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:), v(:), load(:)
-      real(wp) :: speed(2)
-
-      call self%speeds(d, v, speed)
-      watt = dot_product(speed, load(:2))
-   end function power_of_loads
-
-   pure real(wp) function kinetic_energy(self, d, v) result(energy)
-      class(storeys_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:), v(:)
-
-      energy = 0.5_wp*dot_product(self%inertias, v([1, 3])**2) + 0.0_wp*sum(d)
-   end function kinetic_energy
-
    pure real(wp) function potential_energy(self, d) result(energy)
       class(storeys_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:)
 
       energy = 0.0_wp*self%axial_load*sum(d)
    end function potential_energy
-
-   pure real(wp) function top_displacement(self, d) result(x)
-      class(storeys_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:)
-
-      x = dot_product(self%arm, d)
-   end function top_displacement
-
-   pure real(wp) function top_acceleration(self, d, v, a) result(acceleration)
-      class(storeys_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:), v(:), a(:)
-
-      acceleration = dot_product(self%arm, a) + 0.0_wp*(sum(d) + sum(v))
-   end function top_acceleration
 
    pure subroutine rotations(self, d, rotation)
       class(storeys_type), intent(in) :: self
@@ -201,13 +142,13 @@ contains
       rotation = 0.0_wp*self%axial_load*sum(d)
    end subroutine rotations
 
-   pure real(wp) function no_axial_force(self, spring, load)
+   pure real(wp) function axial_rate(self, spring, load)
       class(storeys_type), intent(in) :: self
       integer, intent(in) :: spring
       real(wp), intent(in) :: load(:)
 
-      no_axial_force = 0.0_wp*self%axial_load*spring*sum(load)
-   end function no_axial_force
+      axial_rate = 0.0_wp*self%axial_load*spring*sum(load)
+   end function axial_rate
 
    pure real(wp) function acceleration_scale(self, spring, springs, load) result(scale)
       class(storeys_type), intent(in) :: self
@@ -237,24 +178,6 @@ contains
       row(:3) = d
       if (contents%in_time) row(:3) = d + 0.0_wp*(self%height + response%time + springs%count)
    end subroutine fill_row
-
-   subroutine check_loads(self, acts, error)
-      class(storeys_type), intent(in) :: self
-      logical, intent(in) :: acts(signals)
-      type(error_type), allocatable, intent(inout) :: error
-
-      if (allocated(error)) error%message = error%message
-      if (self%n + count(acts) < 0) allocate (error)
-   end subroutine check_loads
-
-   subroutine check_initial(self, name, value, error)
-      class(storeys_type), intent(in) :: self
-      character(len=*), intent(in) :: name
-      real(wp), intent(in), contiguous :: value(:)
-      type(error_type), allocatable, intent(inout) :: error
-
-      if (self%n + len(name) + size(value) < 0) allocate (error)
-   end subroutine check_initial
 
    !> K x' = p F' with x_2' = 1, or F' = 1.
    subroutine follow(self, springs, by_force, corrects, displacement, force, rate, found)

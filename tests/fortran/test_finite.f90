@@ -11,6 +11,7 @@ module test_finite
    use rbs_structure_column_finite, only: finite_chain_type
    use rbs_structure_column_chain_matrices, only: symmetric_mass
    use rbs_structure_column_column_record, only: column_record
+   use rbs_structure_structure, only: motion_result
    use exact, only: point, variant, state, sample, variant_of, random_state, place, dense_mass, &
                     dense_acceleration
    use samples, only: elastic, made, random_type
@@ -47,10 +48,12 @@ contains
       class(column_type), intent(in) :: column
       type(state), intent(in) :: now
       real(wp) :: a(size(now%q))
-      real(wp) :: work(column%work_size), f(size(now%f)), of_speeds(2)
+      type(motion_result) :: result
 
-      f = now%f
-      call column%accelerations(now%q, now%v, now%load, [real(wp) ::], f, work, a, of_speeds)
+      call result%create(column)
+      result%f = now%f
+      call column%accelerations(now%q, now%v, now%load, 0, result)
+      a = result%a
    end function accelerated
 
    subroutine accelerations(error)

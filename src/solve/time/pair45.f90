@@ -66,7 +66,7 @@ contains
 
       if (.not. self%begun) then
          call reach_stage(self, state, 1, h, state%load)
-         self%load_power = state%motion%structure%power_of_loads(self%q, self%v, state%load)
+         self%load_power = state%motion%load_power(self%q, self%v, state%load, self%now)
          self%damping_power = state%motion%damping_power(state%springs, self%q, self%v)
       end if
       self%of_loads = h*row(1, stages)*self%load_power
@@ -75,7 +75,7 @@ contains
          call state%loads%at_time(state%time + place(stage)*h, load)
          call reach_stage(self, state, stage, h, load)
          self%of_loads = self%of_loads &
-                         + h*row(stage, stages)*state%motion%structure%power_of_loads(self%q, self%v, load)
+                         + h*row(stage, stages)*state%motion%load_power(self%q, self%v, load, self%now)
          self%of_damping = self%of_damping &
                            + h*row(stage, stages)*state%motion%damping_power(state%springs, self%q, self%v)
       end do

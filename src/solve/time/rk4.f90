@@ -106,7 +106,7 @@ contains
                   speed = start + h*reach(stage)*result%of_speeds
                else
                   self%of_loads = self%of_loads + h*weight(stage)* &
-                                  motion%structure%power_of_loads(self%stage_q, self%stage_v, now)
+                                  motion%load_power(self%stage_q, self%stage_v, now, result)
                   self%of_damping = self%of_damping &
                                     + h*weight(stage)*motion%damping_power(state%springs, self%stage_q, &
                                                                            self%stage_v)

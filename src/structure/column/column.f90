@@ -21,8 +21,8 @@ module rbs_structure_column_column
    use rbs_hysteresis_interaction_joints, only: opening_of, rest_of
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_spring_place, only: flexure
-   use rbs_structure_structure, only: structure_type, motion_result, accelerate_unknowns, small, pdelta, finite, lateral, &
-                                      horizontal, vertical, top_axial, signals
+   use rbs_structure_structure, only: structure_type, motion_result, accelerate_unknowns, small, pdelta, &
+                                      finite, lateral, horizontal, vertical, top_axial, signals
    implicit none
    private
 
@@ -260,8 +260,9 @@ contains
       n = self%n
       associate (f => result%f, work => result%work)
          if (pressing > 0) call second_order_forces(n, self%length, result%axial, d, f, 1, work)
-         call chain_accelerations(n, self%lower, self%upper, self%inverse_mass, self%inverse_inertia, f, work, &
-                                  load(lateral), load(horizontal), work(n + 1), work(2*n + 1), result%a)
+         call chain_accelerations(n, self%lower, self%upper, self%inverse_mass, self%inverse_inertia, f, &
+                                  work, load(lateral), load(horizontal), work(n + 1), work(2*n + 1), &
+                                  result%a)
          result%of_speeds = [work(2*n) + self%upper(n)*work(3*n), &
                              -(load(lateral) - f(1) - self%mass_above(1)*load(horizontal))]
       end associate

@@ -69,7 +69,8 @@ contains
       type(motion_result), intent(inout) :: result
 
       if (pressing == 0 .and. size(d) == 2 .and. .not. (self%axial_follows .or. self%force_follows)) then
-         call accelerate_one_body(self, d, v, result%f, load, result%a)
+         call accelerate_one_body(self, d, v, result%f, load, result%a, result%power)
+         result%has_power = .true.
       else
          call self%accelerate(d, v, result%f, load, result%work, result%a)
       end if
@@ -92,19 +93,21 @@ contains
    !>
    !>     m u'' + m s cos(th) th'' - m s sin(th) th'^2 + V = F - m a_g
    !>     m s cos(th) u'' + (I + m s^2) th'' + M = (F l - m s a_g) cos(th) + P l sin(th)
-   pure subroutine accelerate_one_body(self, d, v, f, load, a)
+   pure subroutine accelerate_one_body(self, d, v, f, load, a, power)
       class(finite_chain_type), intent(in) :: self
       real(wp), intent(in) :: d(2), v(2), f(2), load(4)
-      real(wp), intent(out) :: a(2)
-      real(wp) :: s, coupling, along, about, determinant, axial
+      !> Accelerations; power of the loads [W]
+      real(wp), intent(out) :: a(2), power
+      real(wp) :: s, c, coupling, along, about, determinant, axial
 
-      associate (m => self%mass(1), inertia => self%inertia_above(1), moment => self%moment_above(1))
+      associate (m => self%mass(1), inertia => self%inertia_above(1), moment => self%moment_above(1), &
+                 l => self%length(1))
          s = sin(d(2))
-         coupling = moment*cos(d(2))
+         c = cos(d(2))
+         coupling = moment*c
          along = load(lateral) - m*load(horizontal) - f(1) + moment*s*v(2)**2
          axial = self%axial_body(1) + load(top_axial) + load(vertical)*self%lifted_body(1)
-         about = (self%length(1)*load(lateral) - moment*load(horizontal))*cos(d(2)) &
-                 + axial*self%length(1)*s - f(2)
+         about = (l*load(lateral) - moment*load(horizontal))*c + axial*l*s - f(2)
          if (self%mass_damping > 0.0_wp) then
             along = along - self%mass_damping*(m*v(1) + coupling*v(2))
             about = about - self%mass_damping*(coupling*v(1) + inertia*v(2))
@@ -112,6 +115,8 @@ contains
          determinant = 1.0_wp/(m*inertia - coupling**2)
          a(1) = (inertia*along - coupling*about)*determinant
          a(2) = (m*about - coupling*along)*determinant
+         power = load(lateral)*(v(1) + l*c*v(2)) - load(horizontal)*(m*v(1) + coupling*v(2)) &
+                 + (l*load(top_axial) + moment*load(vertical))*s*v(2)
       end associate
    end subroutine accelerate_one_body
 
@@ -486,14 +491,6 @@ contains
       type(moving_body) :: body
       integer :: i
 
-      if (size(d) == 2 .and. .not. (self%axial_follows .or. self%force_follows)) then
-         associate (m => self%mass(1), moment => self%moment_above(1), l => self%length(1))
-            power = load(lateral)*v(1) - load(horizontal)*m*v(1) &
-                    + ((l*load(lateral) - moment*load(horizontal))*cos(d(2)) &
-                       + (l*load(top_axial) + moment*load(vertical))*sin(d(2)))*v(2)
-         end associate
-         return
-      end if
       power = 0.0_wp
       do i = 1, self%n
          call climb(self, d, v, i, body)
