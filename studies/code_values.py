@@ -19,6 +19,7 @@ import numpy as np
 
 from rbsdem import peer
 from rbsdem.checks.drifts import DRIFTS_AT_LOSS, drift_at_loss, yield_drift
+from rbsdem.codes import code_values
 
 CLASSES = ("Flexure", "Flexure-Shear", "Shear")
 
@@ -58,7 +59,7 @@ def main() -> None:
             continue
         specimen = prediction.specimen
         section = peer.draw(specimen).section
-        values = section.code_values(specimen.length, specimen.axial_load)
+        values = code_values(section, specimen.length, specimen.axial_load)
         tests.append((prediction, values))
     head = "tests | measured/calculated | sigma_ln | within 25 % (about the median) |"
     for kind in CLASSES:

@@ -8,7 +8,7 @@ import sys
 import numpy as np
 
 import rbsdem
-from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties, plot
+from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties, codes, plot
 
 HEIGHT, LOAD = 1.8, 900e3
 
@@ -35,7 +35,7 @@ print(f"\nplastic rotation {np.abs(hinge.plastic_rotation).max():.4f} rad, ", en
 print(f"curvature {np.abs(hinge.curvature).max():.3f} 1/m, ductility {hinge.ductility:.1f}")
 
 # The same column by codes and regressions.
-beside = section.code_values(HEIGHT, LOAD).compare(result)
+beside = codes.compare(codes.code_values(section, HEIGHT, LOAD), result)
 print("\ndrift at a loss of 20 %")
 for source, drift in beside["strength_loss"].items():
     print(f"{source:9s} {100 * drift:5.2f} %")

@@ -1,10 +1,18 @@
 """Values of codes and of regressions for a column, from the same drawing as the model.
 
-`Section.code_values` collects them; the functions here are the formulas one by one.
+`code_values` collects them; the functions here are the formulas one by one.
 """
 
-from rbsdem.checks.code_comparison import CodeComparison
+from rbsdem.checks.code_comparison import CodeComparison, compare
 from rbsdem.checks.code_drawing import Quantities, quantities
-from rbsdem.checks.code_values import CodeValue, CodeValues
+from rbsdem.checks.code_values import CodeValue, CodeValues, code_values
 
-__all__ = ["CodeComparison", "CodeValue", "CodeValues", "Quantities", "quantities"]
+__all__ = [
+    "CodeComparison",
+    "CodeValue",
+    "CodeValues",
+    "Quantities",
+    "code_values",
+    "compare",
+    "quantities",
+]

@@ -28,6 +28,7 @@ from rbsdem.measured.specimen import Observed, Specimen
 from rbsdem.measured.specimens import Specimens, read_specimens
 from rbsdem.section.paper import paper_columns, paper_sections
 from rbsdem.section.remote import likeness
+from rbsdem.web.gallery import gallery
 
 __all__ = [
     "FOLDER_VARIABLE",
@@ -52,6 +53,7 @@ __all__ = [
     "column",
     "draw",
     "find_history",
+    "gallery",
     "indicators",
     "likeness",
     "measured_loops",

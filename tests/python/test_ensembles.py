@@ -219,7 +219,7 @@ def test_measures_of_functions() -> None:
 def test_table() -> None:
     pytest.importorskip("pandas")
     found = rbsdem.ensemble({"a": column()}, motion(1), scales=[1.0, 2.0], method="newmark")
-    table = found.table
+    table = found.to_frame()
     assert list(table.columns) == ["column", "motion", "scale", "status", *MEASURES, "error"]
     assert list(table["column"]) == ["a", "a"]
     assert table["steps"].dtype.kind == "i"

@@ -308,7 +308,7 @@ def test_the_gallery_of_many_tests(unopened, tmp_path):
         )
         compared = rbsdem.compare(result, (result.displacement, factor * result.force))
         rows.append(rbsdem.peer.Prediction(specimen, "m", "completed", comparison=compared))
-    path = rbsdem.peer.Predictions(rows).gallery(tmp_path / "gallery.html")
+    path = rbsdem.peer.gallery(rbsdem.peer.Predictions(rows), tmp_path / "gallery.html")
     page.driver.get(path.as_uri())
     page.wait(lambda: [e.text for e in page.all("#cards b")] == ["Bad <i>", "Good"])
     Select(page.one("#mode")).select_by_value("Flexure")

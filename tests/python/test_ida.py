@@ -10,6 +10,7 @@ from rbsdem import InputError, motions
 from rbsdem.many.hazard import Hazard
 from rbsdem.many.hunt import Hunt
 from rbsdem.many.uncertain import variance_split
+from rbsdem.output.tables import write_csv, write_parquet
 from rbsdem.plot import fragilities
 from rbsdem.springs import Elastic, PeakOriented
 
@@ -302,12 +303,12 @@ def test_cloud_counts_collapses(records):
 def test_tables_and_files(hunted, tmp_path):
     pandas = pytest.importorskip("pandas")
     pytest.importorskip("pyarrow")
-    table = hunted.table
+    table = hunted.to_frame()
     assert list(table.columns[:5]) == ["column", "motion", "intensity", "scale", "status"]
     assert len(table) == len(hunted.runs)
     assert (table["intensity"].diff()[table["motion"].eq(table["motion"].shift())] >= 0).all()
-    hunted.runs.to_csv(tmp_path / "runs.csv")
-    hunted.runs.to_parquet(tmp_path / "runs.parquet")
+    write_csv(hunted.runs.to_frame(), tmp_path / "runs.csv")
+    write_parquet(hunted.runs.to_frame(), tmp_path / "runs.parquet")
     again = pandas.read_parquet(tmp_path / "runs.parquet")
     assert again["peak_drift"].to_numpy() == pytest.approx(
         hunted.runs.measures["peak_drift"], nan_ok=True
@@ -317,14 +318,16 @@ def test_tables_and_files(hunted, tmp_path):
 
 def test_figures(hunted, column, records, tmp_path):
     pytest.importorskip("matplotlib")
-    assert len(hunted.plot().get_lines()) >= 9
+    assert len(rbsdem.plot.ida(hunted).get_lines()) >= 9
     curves = hunted.fragilities({"light": 0.01, "collapse": ("collapse", None)})
     assert len(fragilities(curves, level=0).get_lines()) == 4
-    assert curves["light"].plot(color="red").get_lines()[0].get_color() == "red"
+    assert rbsdem.plot.fragility(curves["light"], color="red").get_lines()[0].get_color() == "red"
     levels = [2.0, 5.0]
-    assert rbsdem.fragility.stripes(column, records, levels, **SETTINGS).plot().get_lines()
+    assert rbsdem.plot.stripes(
+        rbsdem.fragility.stripes(column, records, levels, **SETTINGS)
+    ).get_lines()
     found = rbsdem.fragility.cloud(column, records, scales=np.geomspace(0.2, 3, 6), **SETTINGS)
-    assert len(found.plot().get_lines()) == 4
+    assert len(rbsdem.plot.cloud(found).get_lines()) == 4
 
 
 @pytest.mark.parametrize(

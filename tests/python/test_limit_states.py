@@ -217,7 +217,7 @@ def test_in_time_the_base_shear_is_drawn():
     )
     states = shaken.limit_states()
     assert "cracking" in states
-    ax = states.plot()
+    ax = rbsdem.plot.limit_states(states)
     assert ax.get_ylabel() == "Base shear (kN)"
     plt.close(ax.figure)
 
@@ -236,11 +236,11 @@ def test_openings_are_asked_for():
 def test_tables_and_figure():
     states = RESULT.limit_states()
     text = io.StringIO()
-    Console(file=text, width=200).print(states.table())
-    assert "first yield" in text.getvalue()
+    Console(file=text, width=200).print(rbsdem.plot.table(states))
+    assert "first_yield" in text.getvalue()
     assert "Goodnight" in text.getvalue()
-    assert list(states.to_pandas()["name"]) == states.names()
-    ax = states.plot()
+    assert list(states.to_frame()["name"]) == states.names()
+    ax = rbsdem.plot.limit_states(states)
     assert len(ax.get_legend().get_texts()) == len(states)
     marks = [line for line in ax.get_lines() if line.get_label() == "first yield"]
     assert marks[0].get_xdata()[0] == pytest.approx(1e3 * states["first_yield"].displacement)

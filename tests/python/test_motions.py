@@ -337,9 +337,9 @@ def test_a_motion_is_a_record():
 def test_figures_of_motion_and_spectrum():
     pytest.importorskip("matplotlib")
     motion = motions.synthetic(1)[0]
-    assert motion.plot().get_lines()
-    ax = motion.spectrum().plot(label="mine")
-    motion.scaled(2.0).spectrum().plot(ax, color="red")
+    assert rbsdem.plot.motion(motion).get_lines()
+    ax = rbsdem.plot.spectrum(motion.spectrum(), label="mine")
+    rbsdem.plot.spectrum(motion.scaled(2.0).spectrum(), ax=ax, color="red")
     assert ax.get_lines()[0].get_label() == "mine"
     assert ax.get_lines()[1].get_color() == "red"
 

@@ -20,10 +20,11 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import peer
+from rbsdem import peer, plot
 from rbsdem.cli import main
 from rbsdem.errors import InputError
 from rbsdem.measured import pictures
+from rbsdem.output import reports
 from rbsdem.springs import Bilinear, Takeda
 
 HEADER = (
@@ -302,7 +303,7 @@ def data_of(page: str) -> dict:
 
 
 def test_gallery_is_one_page_that_needs_nothing_else(table, tmp_path):
-    page = peer.predict(table, faulty).gallery(tmp_path / "new" / "page.html").read_text()
+    page = peer.gallery(peer.predict(table, faulty), tmp_path / "new" / "page.html").read_text()
     tests = data_of(page)["tests"]
     assert len(tests) == 6
     assert sum("test" in test for test in tests) == 5
@@ -319,7 +320,7 @@ def test_texts_in_the_gallery_are_data(tmp_path):
     page = peer.Predictions(
         [peer.Prediction(specimen, "m", "no history", error="</script><i>{{ title }}")]
     )
-    text = page.gallery(tmp_path / "page.html").read_text()
+    text = peer.gallery(page, tmp_path / "page.html").read_text()
     assert "<b>" not in text
     assert "<i>" not in text
     (test,) = data_of(text)["tests"]
@@ -359,7 +360,7 @@ def test_short_lines_are_not_thinned_away(m):
 
 def test_contact_sheet(table, tmp_path):
     pytest.importorskip("matplotlib")
-    file = peer.predict(table, faulty).contact_sheet(tmp_path / "loops.png")
+    file = plot.contact_sheet(peer.predict(table, faulty), tmp_path / "loops.png")
     assert file.read_bytes()[:4] == b"\x89PNG"
 
 
@@ -367,8 +368,8 @@ def test_tables(table):
     console = pytest.importorskip("rich.console")
     found = peer.predict(table, faulty)
     out = console.Console(width=200, record=True, file=io.StringIO())
-    out.print(found.table())
-    out.print(found.summary_table())
+    out.print(reports.tests_table(found))
+    out.print(reports.summary_table(found, "failure_mode"))
     text = out.export_text()
     assert "failed: section: no" in text
     assert "Me 1991 No. 1" in text

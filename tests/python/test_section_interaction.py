@@ -204,7 +204,7 @@ def test_joint_of_a_column_carries_what_its_paths_do():
     assert diagram.axial_load[0] == pytest.approx(-yielding)
     assert diagram.axial_load[-1] <= yielding + sum(layer.f_peak for layer in concrete)
     assert diagram.moment[-1] == pytest.approx(0.0, abs=1e3)
-    ax = diagram.plot()
+    ax = rbsdem.plot.interaction(diagram)
     assert ax.get_legend_handles_labels()[1] == ["joint of the model"]
     plt.close(ax.figure)
     with pytest.raises(InputError, match="rotation = 2 rad"):
@@ -236,7 +236,10 @@ def test_utilisation():
             ).interaction("ec2"),
             "90 MPa",
         ),
-        (lambda: SQUARE.interaction("ec2").plot(demand=[1.0, 2.0, 3.0]), "a row for each"),
+        (
+            lambda: rbsdem.plot.interaction(SQUARE.interaction("ec2"), demand=[1.0, 2.0, 3.0]),
+            "a row for each",
+        ),
     ],
 )
 def test_faults_are_named(call, words):
@@ -246,11 +249,11 @@ def test_faults_are_named(call, words):
 
 def test_figure_shows_both_strengths_and_the_demand():
     diagram = SQUARE.interaction("ec2")
-    ax = diagram.plot(demand=[(1e6, -2e5)])
+    ax = rbsdem.plot.interaction(diagram, demand=[(1e6, -2e5)])
     nominal, design, demand = ax.get_lines()[:3]
     assert nominal.get_ydata()[-1] == pytest.approx(1e-3 * diagram.axial_load[-1])
     assert design.get_xdata().max() == pytest.approx(1e-3 * diagram.design_moment.max())
     assert demand.get_xydata()[0] == pytest.approx([200.0, 1000.0])
-    SQUARE.interaction("aci318").plot(ax)
+    rbsdem.plot.interaction(SQUARE.interaction("aci318"), ax=ax)
     assert ax.get_xlim()[1] > 1e-3 * diagram.moment.max()
     plt.close(ax.figure)

@@ -311,7 +311,9 @@ def test_figure_of_the_diagram() -> None:
     plt = pytest.importorskip("matplotlib.pyplot")
     section, length, load = column("tanaka_park_5")
     spring = fit_shear_spring(section, length, load, 0.022)
-    ax = shear_diagram(section, length, load, furthest=0.022).plot(spring=spring)
+    ax = rbsdem.plot.shear_diagram(
+        shear_diagram(section, length, load, furthest=0.022), spring=spring
+    )
     assert ax.get_xlabel() == "Shear strain (mm/m)"
     knee = next(line for line in ax.get_lines() if line.get_label() == "Knee")
     assert knee.get_ydata()[0] == pytest.approx(spring.knee.force / 1e3)

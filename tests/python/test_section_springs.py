@@ -318,9 +318,9 @@ def test_figures():
     import matplotlib.pyplot as plt  # noqa: PLC0415
 
     paper = paper_sections()["soesianawati_1"]
-    ax = paper.section.plot()
+    ax = rbsdem.plot.section(paper.section)
     assert len(ax.patches) == 1 + 2 + 4 + 12  # concrete, hoop, legs, bars
-    ax = paper.diagram().plot()
+    ax = rbsdem.plot.moment_curvature(paper.diagram())
     assert ax.get_xlabel() == "Curvature (mrad/m)"
     assert [text.get_text() for text in ax.get_legend().get_texts()] == [
         "Cracking",

@@ -9,7 +9,7 @@ from statistics import NormalDist
 import numpy as np
 import pytest
 
-from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties
+from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties, plot
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.section.parameters import parameters
 from rbsdem.section.remote import Middle
@@ -185,7 +185,7 @@ def test_the_newest_version_has_bands() -> None:
 
 def test_figure() -> None:
     found = column().spread(PATH, scatter=NONE)
-    ax = found.plot(test=found)
+    ax = plot.spread(found, test=found)
     assert (len(ax.lines), len(ax.collections)) == (3, 1)
 
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from rbsdem import _arguments, _views
+from rbsdem import _arguments
 from rbsdem._arguments import Array
-from rbsdem._views import view_of
 from rbsdem.checks.code_drawing import Quantities, quantities
 from rbsdem.checks.code_values import CodeValues
 from rbsdem.checks.drifts import Backbone, backbones, drift_at_loss, yield_drift
@@ -25,8 +24,9 @@ from rbsdem.model.response import Response
 from rbsdem.section.model import LayeredColumn
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from rich.table import Table
+    import pandas as pd
+
+    pass
 
 __all__ = ["SOURCES", "CodeComparison", "Quantity"]
 
@@ -92,27 +92,43 @@ class CodeComparison:
     def __iter__(self) -> Iterator[Quantity]:
         return iter(self._rows.values())
 
-    def table(self) -> Table:
-        """Return a table of rich: forces in kN, stiffness in kN/mm, drifts in per cent."""
-        found: Table = _views.view(self, "table")
-        return found
+    def to_frame(self) -> pd.DataFrame:
+        """Return a DataFrame in SI: a row a quantity, a column a source that says anything."""
+        import pandas  # noqa: PLC0415
 
-    def to_pandas(self) -> Any:
-        """Return a DataFrame in SI: a row a quantity, a column a source; needs pandas."""
-        return _views.view(self, "to_pandas")
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the loop, the test if there is one, the backbones, and drifts of damage."""
-        axes: Axes = _views.view(self, "plot", ax)
-        return axes
+        rows = [{"quantity": row.name, "unit": row.unit} | row.values for row in self]
+        sources = [source for source in SOURCES if any(source in row.values for row in self)]
+        frame = pandas.DataFrame(rows, columns=["quantity", "unit", *sources])
+        return frame.set_index("quantity")
 
     def __repr__(self) -> str:
         return f"CodeComparison({', '.join(b.name for b in self.backbones)} beside {self.result})"
 
 
-@view_of(CodeValues, "compare")
-def compare(values: CodeValues, result: Response, test: Curve | None) -> CodeComparison:
-    """Return the comparison; see `CodeValues.compare`."""
+def compare(values: CodeValues, result: Response, test: Curve | None = None) -> CodeComparison:
+    """Hold a response, and a test if there is one, against the values of codes.
+
+    Parameters
+    ----------
+    values : CodeValues
+        What `code_values` returns for the same column.
+    result : Result
+        Of the same column; with a fixed top its shear span is half of its height. In time that of a
+        layered hinge needs its openings (``openings=True``).
+    test : Result, PeerTest or pair of arrays, optional
+        The measured loop [m, N].
+
+    Returns
+    -------
+    CodeComparison
+        Stiffness, yield, strength and drifts by source.
+
+    Raises
+    ------
+    InputError
+        If the column has another span, axial load or section, the openings of a layered hinge were
+        not kept in time, or the test is no loop.
+    """
     _check_same(values.quantities, result.column)
     return CodeComparison(values, result, test)
 

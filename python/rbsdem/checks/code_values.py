@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
 
-from rbsdem import _views
-from rbsdem._views import view_of
 from rbsdem.checks import asce_41, ec_8, flexure, regressions
 from rbsdem.checks.code_drawing import Quantities, quantities
 from rbsdem.errors import InputError
@@ -17,11 +15,9 @@ from rbsdem.section import strength
 from rbsdem.section.interaction import nominal_moment
 
 if TYPE_CHECKING:
-    from rich.table import Table
+    import pandas as pd
 
-    from rbsdem.checks.code_comparison import CodeComparison
-    from rbsdem.curves.curve import Curve
-    from rbsdem.model.response import Response
+    pass
 
 __all__ = ["CodeValue", "CodeValues", "code_values"]
 
@@ -87,47 +83,43 @@ class CodeValues:
         """Return the names."""
         return list(self._values)
 
-    def compare(self, result: Response, test: Curve | None = None) -> CodeComparison:
-        """Hold a response, and a test if there is one, against these values.
+    def to_frame(self) -> pd.DataFrame:
+        """Return a DataFrame, a row for each value with its unit, meaning and source."""
+        import pandas  # noqa: PLC0415
 
-        Parameters
-        ----------
-        result : Result
-            Of the same column; with a fixed top its shear span is half of its height. In time
-            that of a layered hinge needs its openings (``openings=True``).
-        test : Result, PeerTest or pair of arrays, optional
-            The measured loop [m, N].
-
-        Returns
-        -------
-        CodeComparison
-            Stiffness, yield, strength and drifts by source; its methods `table`, `plot`.
-
-        Raises
-        ------
-        InputError
-            If the column has another span, axial load or section, the openings of a layered hinge
-            were not kept in time, or the test is no loop.
-        """
-        found: CodeComparison = _views.view(self, "compare", result, test)
-        return found
-
-    def to_pandas(self) -> Any:
-        """Return a DataFrame with name, meaning, value, unit, source, confirmed; needs pandas."""
-        return _views.view(self, "to_pandas")
-
-    def table(self) -> Table:
-        """Return a table of rich; rotations and drifts in per cent, forces in kN."""
-        found: Table = _views.view(self, "table")
-        return found
+        return pandas.DataFrame([asdict(value) for value in self])
 
     def __repr__(self) -> str:
         return f"CodeValues({len(self)} values: {', '.join(self._values)})"
 
 
-@view_of(Section, "code_values")
 def code_values(section: Section, height: float, axial_load: float) -> CodeValues:
-    """Return the values of codes and regressions for a column; see `Section.code_values`."""
+    """Return what codes and regressions say of a column with a section.
+
+    Stiffness, strengths, chord and plastic rotations, drifts at failures: ASCE 41-17 (ACI 369.1),
+    EN 1998-3, Panagiotakos and Fardis, Elwood and Eberhard, Elwood and Moehle, Sezen and Moehle,
+    Haselton, Berry and Eberhard, Goodnight; each with its source, and whether its formula is
+    confirmed. Those that were made for rectangles are left out for circles.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    height : float
+        Shear span, from the foot to the point without moment [m].
+    axial_load : float
+        Compression positive [N].
+
+    Returns
+    -------
+    CodeValues
+        The values by name.
+
+    Raises
+    ------
+    InputError
+        If the section has no bars near both faces, or a number is refused.
+    """
     q = quantities(section, height, axial_load)
     moment, source = _moment(section, q)
     found = [*_yield(q, moment, source), *_asce_41(q, moment)]

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
-
-from rbsdem import _views
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from rich.table import Table
+    import pandas as pd
 
     from rbsdem.model.response import Response
 
@@ -92,19 +89,14 @@ class LimitStates:
         """Return the drift, in size, at which a state is reached; NaN if it is not."""
         return abs(self[name].drift) if name in self else float("nan")
 
-    def table(self) -> Table:
-        """Return a table of rich."""
-        found: Table = _views.view(self, "table")
-        return found
+    def to_frame(self) -> pd.DataFrame:
+        """Return a DataFrame, a row for each state: the attributes of `LimitState`."""
+        import pandas  # noqa: PLC0415
 
-    def to_pandas(self) -> Any:
-        """Return a DataFrame, a row for each state; needs pandas."""
-        return _views.view(self, "to_pandas")
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the loop with the limit states marked on it."""
-        axes: Axes = _views.view(self, "plot", ax)
-        return axes
+        names = list(LimitState.__dataclass_fields__)
+        frame = pandas.DataFrame([asdict(state) for state in self], columns=names)
+        units = {"time": "time_s", "displacement": "displacement_m", "force": "force_N"}
+        return frame.rename(columns=units)
 
     def __repr__(self) -> str:
         states = ", ".join(f"{state.name} {100 * state.drift:.2f} %" for state in self)

@@ -476,7 +476,7 @@ def _write(
     import pandas as pd  # noqa: PLC0415
 
     written = [folder / "ida.csv", folder / "fractiles.csv", folder / "fragility.csv"]
-    analysis.runs.to_csv(written[0])
+    tables.write_csv(analysis.runs.to_frame(), written[0])
     level, fractiles = analysis.fractiles()
     names = [f"peak_drift_{share}" for share in (16, 50, 84)]
     values = {"intensity_m/s2": level, **dict(zip(names, fractiles, strict=True))}
@@ -484,7 +484,7 @@ def _write(
     tables.write_csv(frame, written[2])
     if parquet:
         written.append(folder / "ida.parquet")
-        analysis.runs.to_parquet(written[-1])
+        tables.write_parquet(analysis.runs.to_frame(), written[-1])
     figures = {
         "ida.png": ensemble_figures.ida(analysis),
         "fragility.png": ensemble_figures.fragilities(dict(curves)),

@@ -26,9 +26,13 @@ from rbsdem.measured.predictions import Predictions
 from rbsdem.measured.records import loop_names
 from rbsdem.measured.specimen import Specimen
 from rbsdem.measured.specimens import Specimens, read_specimens
+from rbsdem.output import reports, tables
+from rbsdem.output.measured import band_sheet, contact_sheet
+from rbsdem.output.measured import prediction as draw_prediction
 from rbsdem.output.tables import console
 from rbsdem.section.model import DEFAULT, MODELS, model_name
 from rbsdem.solve.protocol import protocol
+from rbsdem.web.gallery import gallery
 
 #: Name of the store in the folder of `--out`, as long as the batch is not finished.
 UNFINISHED = "unfinished"
@@ -130,7 +134,7 @@ def peer(
 def _check(tests: Specimens, folder: Path | None) -> int:
     """Print which tests are doubtful."""
     checked = check_tests(tests)
-    console(168).print(checked.table())
+    console(168).print(tables.table(checked))
     sure = {doubt.specimen.name for doubt in checked.doubts if doubt.sure}
     hints = {doubt.specimen.name for doubt in checked.doubts} - sure
     print(
@@ -194,13 +198,13 @@ def _is_meant(row: Specimen, name: str) -> bool:
 def _report(found: Predictions, by: str, quiet: bool) -> None:
     out = console(168)
     if not quiet:
-        out.print(found.table())
+        out.print(reports.tests_table(found))
         out.print()
         if any(row.band is not None for row in found):
-            out.print(found.band_table())
+            out.print(reports.bands_table(found))
             out.print("* outside its interval", style="dim")
             out.print()
-    out.print(found.summary_table(by))
+    out.print(reports.summary_table(found, by))
     print(f"\nModel {found.model}: {len(found)} tests in {found.seconds:.1f} s")
     if found.resumed:
         print(f"{found.resumed} of them are from an earlier run that was interrupted")
@@ -211,14 +215,14 @@ def written(found: Predictions, folder: Path, by: str, loops: bool) -> list[str]
     files = [folder / "results.csv", folder / "summary.csv", folder / "gallery.html"]
     found.to_csv(files[0])
     found.summary_to_csv(files[1], by)
-    found.gallery(files[2])
+    gallery(found, files[2])
     banded = any(row.band is not None for row in found)
     if banded:
         files.append(folder / "bands.csv")
         found.bands_to_csv(files[-1])
-    files.append(found.contact_sheet(folder / "loops.png"))
+    files.append(contact_sheet(found, folder / "loops.png"))
     if banded:
-        files.append(found.band_sheet(folder / "bands.png"))
+        files.append(band_sheet(found, folder / "bands.png"))
     if loops:
         found.loops_to_csv(folder / "loops")
         files.append(folder / "loops")
@@ -291,7 +295,7 @@ def predict(
     lines = [] if out is None else _write_columns(Predictions(rows), out)
     terminal = console(120)
     for row in rows:
-        terminal.print(row.table())
+        terminal.print(reports.numbers_table(row))
         terminal.print()
     for line in lines:
         print(line)
@@ -323,5 +327,5 @@ def _write_columns(rows: Predictions, folder: Path) -> list[str]:
             row.band.to_csv(target)
             files.append(target)
         files.append(target.with_suffix(".png"))
-        write_figure(row.plot().savefig, files[-1], dpi=160)
+        write_figure(draw_prediction(row).savefig, files[-1], dpi=160)
     return [f"wrote {file}" for file in files]

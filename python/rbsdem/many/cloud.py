@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rbsdem import _arguments, _views
+from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 from rbsdem.many.fragile import Fragile
@@ -213,10 +213,6 @@ class Cloud(Fragile[CloudFragility]):
         found = CloudFragility(name, theta, beta, np.zeros((2, 2)), data, label)
         samples = np.array(found.samples(200))
         return replace(found, covariance=np.cov(samples))
-
-    def plot(self, ax: Any = None, **line: Any) -> Any:
-        """Draw the runs and the line through them; see `rbsdem.output.ensemble_figure`."""
-        return _views.view(self, "plot", ax, **line)
 
     def _data(self, measure: str, limit: float) -> CloudData:
         collapse = measure == "collapse"

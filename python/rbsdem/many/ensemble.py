@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rbsdem import _arguments, _views
+from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.batch.executors import (
     Cluster,
@@ -36,7 +36,7 @@ from rbsdem.many.inputs import (
     scale_array,
     states_of_columns,
 )
-from rbsdem.many.measures import STATUSES, Measure, checked_measures, limit_states_among
+from rbsdem.many.measures import COUNTS, STATUSES, Measure, checked_measures, limit_states_among
 from rbsdem.many.plan import Outcome, Piece, Plan, compute, cut, expected, one_run
 from rbsdem.many.run_store import RunStore
 from rbsdem.model.column import Column
@@ -117,10 +117,23 @@ class Ensemble:
         found = {status: int((self.status == status).sum()) for status in STATUSES}
         return {status or "not started": number for status, number in found.items() if number}
 
-    @property
-    def table(self) -> pd.DataFrame:
-        """A row for each run: column, motion, scale, status, the measures, error."""
-        return _views.view(self, "table")
+    def to_frame(self) -> pd.DataFrame:
+        """Return a DataFrame, a row for each run: what it is, its measures, its error."""
+        import pandas  # noqa: PLC0415
+
+        values = {
+            "column": pandas.Categorical.from_codes(self.column, list(self.columns)),
+            "motion": pandas.Categorical.from_codes(self.motion, list(self.motions)),
+            "scale": self.scale,
+            "status": pandas.Categorical(self.status, STATUSES),
+        }
+        for name, numbers in self.measures.items():
+            whole = name in COUNTS and not self.errors and (self.status != "").all()
+            values[name] = numbers.astype(int) if whole else numbers
+        errors = pandas.Series("", index=range(len(self)), dtype=object)
+        for run, text in self.errors.items():
+            errors[run] = text
+        return pandas.DataFrame(values | {"error": errors})
 
     def history(self, run: int) -> Result:
         """Solve one run again, with its history; the bits are those of the run.

@@ -63,7 +63,6 @@ class Fragile(ABC, Generic[Curve]):
             )
         return {name: self._fit(name, *state, stated.get(name)) for name, state in states.items()}
 
-    @property
-    def table(self) -> pd.DataFrame:
-        """A row for each run, as a DataFrame of pandas."""
-        return self.runs.table
+    def to_frame(self) -> pd.DataFrame:
+        """Return a DataFrame, a row for each run."""
+        return self.runs.to_frame()

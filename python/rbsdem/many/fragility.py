@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rbsdem import _arguments, _views
+from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.many.hazard import Hazard
@@ -249,10 +249,6 @@ class Fragility:
                 f"hazard = {hazard!r} must be a Hazard; Hazard(intensity, frequency) makes one"
             )
         return hazard.frequency_of(float(np.log(self.theta)), self.beta)
-
-    def plot(self, ax: Any = None, **line: Any) -> Any:
-        """Draw the curve with its band and its data; see `rbsdem.output.ensemble_figure`."""
-        return _views.view(self, "plot", ax, **line)
 
     def __repr__(self) -> str:
         se = np.sqrt(np.diag(self.covariance))

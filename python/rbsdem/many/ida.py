@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rbsdem import _arguments, _views
+from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 from rbsdem.many.fragile import Fragile
@@ -164,10 +164,6 @@ class IDA(Fragile[Fragility]):
     def _fit(self, name: str, measure: str, limit: float, beta: float | None) -> Fragility:
         data = self._capacities(measure, limit)
         return fit_fragility(name, data, self.runs.measure.label, beta)
-
-    def plot(self, ax: Any = None, **line: Any) -> Any:
-        """Draw all curves and their fractiles; see `rbsdem.output.ensemble_figure`."""
-        return _views.view(self, "plot", ax, **line)
 
     def _pairs(self) -> list[tuple[int, int]]:
         return list(np.ndindex(self.lower.shape))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from rbsdem import _arguments, _views
+from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import AccuracyWarning, InputError
@@ -202,18 +201,20 @@ class Runs:
             values = np.isfinite(values).astype(float)
         return np.where(self.collapsed, np.inf, np.abs(values))
 
-    @property
-    def table(self) -> pd.DataFrame:
-        """A row for each run, as a DataFrame of pandas."""
-        return _views.view(self, "table")
+    def to_frame(self) -> pd.DataFrame:
+        """Return a DataFrame, a row for each run; the intensity in the unit of its measure."""
+        import pandas  # noqa: PLC0415
 
-    def to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write a row for each run as csv."""
-        _views.view(self, "to_csv", path)
-
-    def to_parquet(self, path: str | os.PathLike[str]) -> None:
-        """Write a row for each run as Parquet; needs pyarrow."""
-        _views.view(self, "to_parquet", path)
+        return pandas.DataFrame(
+            {
+                "column": np.array(list(map(str, self.columns)), dtype=object)[self.column],
+                "motion": np.array(list(self.motions), dtype=object)[self.motion],
+                "intensity": self.intensity,
+                "scale": self.scale,
+                "status": self.status,
+                **self.measures,
+            }
+        )
 
 
 @dataclass(eq=False)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _arguments, _views
+from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 from rbsdem.many.fragile import Fragile
@@ -84,10 +84,6 @@ class Stripes(Fragile[Fragility]):
 
     def _fit(self, name: str, measure: str, limit: float, beta: float | None) -> Fragility:
         return fit_fragility(name, self._counts(measure, limit), self.runs.measure.label, beta)
-
-    def plot(self, ax: Any = None, **line: Any) -> Any:
-        """Draw the responses at the levels; see `rbsdem.output.ensemble_figure`."""
-        return _views.view(self, "plot", ax, **line)
 
     def __repr__(self) -> str:
         return (

@@ -36,7 +36,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rbsdem import _views
 from rbsdem._files import write_csv
 from rbsdem.errors import RbsdemError
 from rbsdem.measured.columns import checked_specimen
@@ -45,7 +44,9 @@ from rbsdem.measured.specimen import Specimen
 from rbsdem.measured.specimens import Specimens
 
 if TYPE_CHECKING:
-    from rich.table import Table
+    import pandas as pd
+
+    pass
 
 __all__ = ["Checked", "Doubt", "check"]
 
@@ -129,9 +130,22 @@ class Checked:
             kept.append(replace(one.specimen, pdelta_code=codes[0]) if codes else one.specimen)
         return Specimens(kept)
 
-    def table(self) -> Table:
-        """Return the doubts as a table of rich."""
-        return _views.view(self, "table")
+    def to_frame(self) -> pd.DataFrame:
+        """Return a DataFrame, a row for each doubt, the sure ones first."""
+        import pandas  # noqa: PLC0415
+
+        rows = [
+            {
+                "test": doubt.specimen.name,
+                "about": doubt.about,
+                "certainty": "sure" if doubt.sure else "hint",
+                "why": doubt.why,
+                "for_the_second_score": _remedy(doubt),
+            }
+            for doubt in sorted(self.doubts, key=lambda doubt: not doubt.sure)
+        ]
+        columns = ["test", "about", "certainty", "why", "for_the_second_score"]
+        return pandas.DataFrame(rows, columns=columns)
 
     def records(self) -> list[dict[str, Any]]:
         """Return a dict for each test: its indicators and its doubts."""
@@ -163,6 +177,12 @@ class Checked:
         rows = self.records()
         head = list(rows[0]) if rows else []
         write_csv(path, [head, *(list(row.values()) for row in rows)])
+
+
+def _remedy(doubt: Doubt) -> str:
+    if not doubt.sure:
+        return "-"
+    return "set aside" if doubt.code is None else f"code {doubt.code}"
 
 
 _NUMBERS = (

@@ -6,14 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rbsdem import _views
 from rbsdem.curves.scores import Comparison
 from rbsdem.measured.specimen import Specimen
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from rich.table import Table
-
     from rbsdem.measured.nearest import Neighbour
     from rbsdem.section.spread import Spread
 
@@ -96,11 +92,3 @@ class Prediction:
         if self.band is None or self.comparison is None:
             return math.nan
         return self.band.holds(self.comparison.test_force)
-
-    def table(self) -> Table:
-        """Return the numbers with their intervals, and the nearest tests, as a table of rich."""
-        return _views.view(self, "table")
-
-    def plot(self) -> Figure:
-        """Draw loop and band, and the test if there is one, as a figure of matplotlib."""
-        return _views.view(self, "plot")

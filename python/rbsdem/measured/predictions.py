@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from rbsdem import _views
 from rbsdem._files import whole_file, write_csv
 from rbsdem.errors import InputError
 from rbsdem.measured.pictures import Picture, picture
@@ -20,7 +19,9 @@ from rbsdem.measured.prediction import Prediction
 from rbsdem.measured.records import band_record, loop_names, score_record
 
 if TYPE_CHECKING:
-    from rich.table import Table
+    import pandas as pd
+
+    pass
 
 
 __all__ = ["SUMMARY_SCORES", "Group", "Predictions", "Quartiles"]
@@ -178,24 +179,6 @@ class Predictions(Sequence[Prediction]):
         groups = [_group(name, rows) for name, rows in parts.items()]
         return [*sorted(groups, key=lambda group: -group.tests), _group("all", self._rows)]
 
-    def table(self) -> Table:
-        """Return a table of rich, a row for each test."""
-        return _views.view(self, "table")
-
-    def band_table(self) -> Table:
-        """Return bands and intervals as a table of rich, a row for each test that has them."""
-        return _views.view(self, "band_table")
-
-    def summary_table(self, by: str = "failure_mode") -> Table:
-        """Return `summary` as a table of rich.
-
-        Parameters
-        ----------
-        by : str, optional
-            As for `summary`.
-        """
-        return _views.view(self, "summary_table", by)
-
     def records(self) -> list[dict[str, Any]]:
         """Return a dict for each test: properties that group tests, scores, times.
 
@@ -205,8 +188,8 @@ class Predictions(Sequence[Prediction]):
         states = any(row.limit_states is not None for row in self._rows)
         return [score_record(row, states) for row in self._rows]
 
-    def to_pandas(self) -> Any:
-        """Return `records` as a DataFrame; needs pandas."""
+    def to_frame(self) -> pd.DataFrame:
+        """Return `records` as a DataFrame."""
         import pandas as pd  # noqa: PLC0415
 
         return pd.DataFrame(self.records())
@@ -297,51 +280,6 @@ class Predictions(Sequence[Prediction]):
                 path.parent.mkdir(parents=True, exist_ok=True)
                 with whole_file(path) as file:
                     np.savetxt(file, rows, "%.7g", delimiter=",", header=header, comments="")
-
-    def gallery(self, path: str | os.PathLike[str]) -> Path:
-        """Write one page of html with all loops, to sort and to filter.
-
-        Parameters
-        ----------
-        path : path
-            File to write.
-
-        Returns
-        -------
-        Path
-            The file. It stands alone: styles, script and figures are in it.
-        """
-        return _views.view(self, "gallery", Path(path))
-
-    def contact_sheet(self, path: str | os.PathLike[str]) -> Path:
-        """Write one picture with all loops; needs matplotlib.
-
-        Parameters
-        ----------
-        path : path
-            File to write, by its ending as PNG, PDF or SVG.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        return _views.view(self, "contact_sheet", Path(path))
-
-    def band_sheet(self, path: str | os.PathLike[str]) -> Path:
-        """Write one picture with all bands along their paths; needs matplotlib.
-
-        Parameters
-        ----------
-        path : path
-            File to write, by its ending as PNG, PDF or SVG.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        return _views.view(self, "band_sheet", Path(path))
 
     def _some(self, rows: Iterable[Prediction]) -> Predictions:
         return Predictions(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _arguments, _core, _views
+from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import MOST_BODIES, Top
@@ -28,9 +28,6 @@ from rbsdem.section.spring_fit import SectionSprings, fit_springs
 from rbsdem.section.strength import shear_strength_mcft
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from rbsdem.checks.code_values import CodeValues
     from rbsdem.model.column import Column
 
 __all__ = ["Section"]
@@ -216,34 +213,6 @@ class Section(DrawnSection):
             If the code is not known or does not cover the section.
         """
         return interaction_diagram(self, code, points, self._confined(confined))
-
-    def code_values(self, height: float, axial_load: float) -> CodeValues:
-        """Return what codes and regressions say of a column with this section.
-
-        Stiffness, strengths, chord and plastic rotations, drifts at failures: ASCE 41-17 (ACI
-        369.1), EN 1998-3, Panagiotakos and Fardis, Elwood and Eberhard, Elwood and Moehle, Sezen
-        and Moehle, Haselton, Berry and Eberhard, Goodnight; each with its source, and whether its
-        formula is confirmed. Those that were made for rectangles are left out for circles.
-
-        Parameters
-        ----------
-        height : float
-            Shear span, from the foot to the point without moment [m].
-        axial_load : float
-            Compression positive [N].
-
-        Returns
-        -------
-        rbsdem.codes.CodeValues
-            The values by name; its method `table` prints them.
-
-        Raises
-        ------
-        InputError
-            If the section has no bars near both faces, or a number is refused.
-        """
-        found: CodeValues = _views.view(self, "code_values", height, axial_load)
-        return found
 
     def springs(self, length: float, axial_load: float, **options: Any) -> SectionSprings:
         """Return the springs of a column with this section, from its base to the lateral load.
@@ -474,21 +443,6 @@ class Section(DrawnSection):
             If a value is refused.
         """
         return shear_strength_mcft(self, length, carried_load(self._load(axial_load), self))
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the section with its bars and ties.
-
-        Parameters
-        ----------
-        ax : matplotlib Axes, optional
-            Where to draw; a new figure without it.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes, in mm, the tension face below.
-        """
-        return _views.view(self, "plot", ax)
 
     def _load(self, axial_load: Any) -> float:
         """Return an axial load; say so if it is hardly meant."""

@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _arguments, _views
+from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem._files import whole_file
 from rbsdem.errors import InputError
@@ -215,10 +214,6 @@ class GroundMotion:
         rows = zip(self.time.tolist(), self.acceleration.tolist(), strict=True)
         with whole_file(path) as file:
             file.write((head + "".join(f"{t!r},{a!r}\n" for t, a in rows)).encode())
-
-    def plot(self, ax: Any = None, **line: Any) -> Any:
-        """Draw the acceleration over time; see `rbsdem.output.motion_figure.draw_motion`."""
-        return _views.view(self, "plot", ax, **line)
 
     def _husid(self) -> Array:
         return np.pi / (2 * STANDARD_GRAVITY) * _integral(self.acceleration**2, self.dt)

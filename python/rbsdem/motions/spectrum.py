@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _arguments, _core, _views
+from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 
@@ -49,10 +48,6 @@ class Spectrum:
     def pseudo_acceleration(self) -> Array:
         """Displacement times the squared circular frequency [m/s2], shape (n,); PGA at period 0."""
         return np.where(self.period > 0, self._times_frequency(2), self.acceleration)
-
-    def plot(self, ax: Any = None, **line: Any) -> Any:
-        """Draw the pseudo-acceleration over the period."""
-        return _views.view(self, "plot", ax, **line)
 
     def _times_frequency(self, power: int) -> Array:
         moving = self.period > 0

@@ -7,14 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rbsdem import _arguments, _core, _views
+from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Tension
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from rbsdem.model.section import Section
 
 __all__ = [
@@ -140,23 +138,6 @@ class Diagram:
     events: Events
     end: Point
     lost: bool
-
-    def plot(self, ax: Axes | None = None, **line: Any) -> Axes:
-        """Draw the diagram with its events, in kN m and mrad/m.
-
-        Parameters
-        ----------
-        ax : matplotlib Axes, optional
-            Where to draw; a new figure without it.
-        **line
-            Properties of the line, as for ``Axes.plot``.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes.
-        """
-        return _views.view(self, "plot", ax, **line)
 
 
 def make_point(values: dict[str, float]) -> Point | None:

@@ -19,15 +19,13 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _arguments, _core, _views
+from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 from rbsdem.model.springs import Layered, SteelSpring
 from rbsdem.section.diagram import largest_moment
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from rbsdem.model.materials import Steel
     from rbsdem.model.section import Section
 
@@ -120,32 +118,6 @@ class InteractionDiagram:
         carried = np.isfinite(strength) & (strength > 0)
         demand = np.abs(np.asarray(moment, dtype=np.float64))
         return np.where(carried, demand / np.where(carried, strength, 1.0), np.inf)[()]
-
-    def plot(
-        self,
-        ax: Axes | None = None,
-        *,
-        demand: ArrayLike | None = None,
-        design: bool = True,
-    ) -> Axes:
-        """Draw the diagram in kN m and kN.
-
-        Parameters
-        ----------
-        ax : matplotlib Axes, optional
-            Where to draw; a new figure without it.
-        demand : array_like, shape (p, 2), optional
-            Axial loads [N] and moments [N m] to mark.
-        design : bool, optional
-            Whether to draw the design strength of a code too.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes.
-        """
-        axes: Axes = _views.view(self, "plot", ax, demand, design)
-        return axes
 
     def _curve(self, design: bool) -> tuple[Array, Array]:
         if design:

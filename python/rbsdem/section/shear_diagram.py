@@ -8,22 +8,19 @@ the secant has fallen to 0.48 of the uncracked stiffness (E_c/2) A.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _arguments, _core, _views
+from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Tension
 from rbsdem.section.ranges import column_length
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from rbsdem.model.section import Section
-    from rbsdem.section.shear_spring import ShearSpring
 
 __all__ = [
     "KNEE",
@@ -129,27 +126,6 @@ class ShearDiagram:
     def stiffness(self) -> float:
         """Shear force over strain of the uncracked concrete, (E_c/2) A [N]."""
         return 0.5 * self.section.concrete_law["ec"] * self.section.gross_area
-
-    def plot(
-        self, ax: Axes | None = None, *, spring: ShearSpring | None = None, **line: Any
-    ) -> Axes:
-        """Draw the diagram with its knee, in kN and mm/m.
-
-        Parameters
-        ----------
-        ax : matplotlib Axes, optional
-            Where to draw; a new figure without it.
-        spring : ShearSpring, optional
-            Draw the lines of this spring as well.
-        **line
-            Properties of the diagram's line, as for ``Axes.plot``.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes.
-        """
-        return _views.view(self, "plot", ax, spring=spring, **line)
 
 
 def shear_diagram(

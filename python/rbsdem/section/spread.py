@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _arguments, _views
+from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem._files import write_csv
 from rbsdem.curves.metrics import PathPoints, work
@@ -34,8 +34,6 @@ from rbsdem.section.sobol import sobol
 from rbsdem.solve.analysis import cyclic
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from rbsdem.section.model import LayeredColumn
 
 __all__ = [
@@ -209,20 +207,6 @@ class Spread:
         header = ("displacement_m", "force_N", "median_N", "lower_N", "upper_N")
         rows = np.column_stack((self.displacement, self.force, self.median, self.lower, self.upper))
         write_csv(path, [header, *rows.tolist()])
-
-    def plot(self, test: Any = None, ax: Axes | None = None, **line: Any) -> Axes:
-        """Draw band, prediction and median along the path, and a test over them.
-
-        Parameters
-        ----------
-        test : optional
-            A measured test with the same rows.
-        ax : matplotlib Axes, optional
-            Where to draw; a new figure without it.
-        **line
-            Properties of the prediction's line.
-        """
-        return _views.view(self, "plot", test, ax, **line)
 
 
 def has_bands(version: str) -> None:

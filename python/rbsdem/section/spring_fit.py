@@ -7,7 +7,7 @@ import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rbsdem import _arguments, _core, _views
+from rbsdem import _arguments, _core
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.springs import Bilinear, Takeda, for_whole_column
 from rbsdem.section.diagram import Events, make_point
@@ -15,8 +15,6 @@ from rbsdem.section.ranges import axial_load_note, column_length
 from rbsdem.section.shear_spring import ShearSpring, closed_form_shear, fit_shear_spring
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from rbsdem.model.section import Section
 
 __all__ = ["SHEAR", "YIELD_RULES", "SectionSprings", "fit_springs"]
@@ -74,17 +72,6 @@ class SectionSprings:
     d_m: float
     notes: tuple[str, ...]
     report: str
-
-    def plot(self) -> Figure:
-        """Draw the diagrams of the section and the lines of the springs (figure 2 of the paper).
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Shear force against shear strain, where there is a shear diagram, and moment against
-            curvature; `rbsdem.plot.save` writes it.
-        """
-        return _views.view(self, "plot")
 
 
 def fit_springs(

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
+from rbsdem.checks.code_values import code_values
 from rbsdem.errors import InputError, RbsdemError, SolveError
 from rbsdem.measured.nearest import nearest
 from rbsdem.measured.pictures import picture
@@ -514,7 +515,7 @@ def _codes(section: Section, span: float, load: float) -> list[dict[str, Any]]:
             "source": value.source,
             "confirmed": value.confirmed,
         }
-        for value in section.code_values(span, load)
+        for value in code_values(section, span, load)
     ]
 
 
