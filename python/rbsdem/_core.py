@@ -493,14 +493,16 @@ def protocol(
     size = max(4 * points * steps * repeats + 1, 1)
     if size > np.iinfo(np.int32).max:
         raise InputError(f"protocol: {size} points are too many; reduce cycles, repeats or points")
-    answer = _evaluate(
-        "protocol",
-        amplitudes=amplitudes,
-        negative=negative,
-        cycles=cycles,
-        repeats=repeats,
-        points=points,
-    )
+    loading = {
+        "drive": "force",
+        "source": "protocol",
+        "amplitudes": amplitudes,
+        "negative_amplitudes": negative if negative.size else None,
+        "cycles": cycles,
+        "repeats": repeats,
+        "points": points,
+    }
+    answer = _evaluate("protocol", group("loading", loading))
     return answer.values
 
 

@@ -4,42 +4,77 @@
 
 subroutine rbs_evaluate(what, statement, nn, number, names, m, input, control, answer, address, sizes)
    ! Answer a request (see `request_type`). `answer` is a pointer, for `rbs_read` and `rbs_release`, and zero
-   ! if there is nothing to read; `address` is that of its rows. `sizes`: status (0 success, 1 the analysis
-   ! failed, 2 bad input, 3 a long run that waits to be told), characters of the text, numbers of the values,
-   ! values of a row, and rows. Another thread may read and set `control`.
-   use iso_c_binding, only: c_double, c_int
-   use rbs_bindings_doors, only: open_door
+   ! if there is nothing to read; `address` is that of its rows, which may be many and are not copied: Python
+   ! looks at them in place and releases them with the last array that shows them. `sizes`: status (0 success,
+   ! 1 the analysis failed, 2 bad input, 3 a long run that waits to be told), characters of the text, numbers
+   ! of the values, values of a row, and rows. Another thread may read and set `control`.
+   use iso_c_binding, only: c_double, c_int, c_loc
+   use rbs_bindings_evaluate, only: evaluate
+   use rbs_bindings_exchange, only: request_type, answer_type
    implicit none
    character(len=*), intent(in) :: what, statement, names
    integer(c_int), intent(in) :: nn, m
-   real(c_double), intent(in) :: number(nn), input(m)
+   real(c_double), intent(in), target :: number(nn), input(m)
    integer(c_int), intent(inout) :: control(2)
    integer(c_int), intent(out) :: answer(2), address(2), sizes(5)
    !f2py threadsafe
+   type(request_type) :: request
+   type(answer_type), pointer :: found
 
-   call open_door(what, statement, number, names, input, control, answer, address, sizes)
+   request%what = what
+   request%statement = statement
+   request%number => number
+   request%names = names
+   request%input => input
+   allocate (found)
+   call evaluate(request, control, found)
+   sizes = 0
+   if (allocated(found%error)) then
+      sizes(1) = found%error%code
+      ! A run says its method before its error.
+      if (.not. allocated(found%text)) found%text = ''
+      found%text = found%text//found%error%message
+   end if
+   if (allocated(found%text)) sizes(2) = len(found%text)
+   if (allocated(found%value)) sizes(3) = size(found%value)
+   if (.not. allocated(found%rows)) allocate (found%rows(0, 0))
+   if (found%kept < 0) found%kept = size(found%rows, 2)
+   sizes(4:) = [size(found%rows, 1), found%kept]
+   address = 0
+   if (found%kept > 0) address = transfer(c_loc(found%rows), address)
+   answer = transfer(c_loc(found), answer)
+   if (any(sizes([2, 3, 5]) > 0)) return
+   deallocate (found)
+   answer = 0
 end subroutine rbs_evaluate
 
 subroutine rbs_read(answer, length, count, text, values)
    ! Text and values of an answer, of the lengths that it has. One without rows is released.
-   use iso_c_binding, only: c_double, c_int
-   use rbs_bindings_doors, only: read_answer
+   use iso_c_binding, only: c_double, c_f_pointer, c_int, c_null_ptr
+   use rbs_bindings_exchange, only: answer_type
    implicit none
    integer(c_int), intent(in) :: answer(2), length, count
    character(len=length + 1), intent(out) :: text
    real(c_double), intent(out) :: values(count)
    !f2py threadsafe
+   type(answer_type), pointer :: found
 
-   call read_answer(answer, text, values)
+   call c_f_pointer(transfer(answer, c_null_ptr), found)
+   text = ''
+   if (allocated(found%text)) text = found%text
+   if (allocated(found%value)) values = found%value
+   if (found%kept == 0) deallocate (found)
 end subroutine rbs_read
 
 subroutine rbs_release(answer)
    ! The rows of an answer are no longer needed.
-   use iso_c_binding, only: c_int
-   use rbs_bindings_doors, only: release_answer
+   use iso_c_binding, only: c_f_pointer, c_int, c_null_ptr
+   use rbs_bindings_exchange, only: answer_type
    implicit none
    integer(c_int), intent(in) :: answer(2)
    !f2py threadsafe
+   type(answer_type), pointer :: found
 
-   call release_answer(answer)
+   call c_f_pointer(transfer(answer, c_null_ptr), found)
+   deallocate (found)
 end subroutine rbs_release

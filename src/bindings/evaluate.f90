@@ -8,7 +8,7 @@ module rbs_bindings_evaluate
    use rbs_bindings_files, only: case_from_file, case_to_text, test_from_file
    use rbs_bindings_runs, only: run_analysis
    use rbs_bindings_sections, only: evaluate_section
-   use rbs_bindings_statements, only: column_from_statements, spring_from_statements
+   use rbs_bindings_statements, only: case_from_statements, column_from_statements, spring_from_statements
    use rbs_case_case_record, only: case_record
    use rbs_case_key_list, only: keys_as_json
    use rbs_case_methods, only: method_rows
@@ -16,7 +16,6 @@ module rbs_bindings_evaluate
    use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: follow_path
-   use rbs_loading_loading_record, only: loading_record
    use rbs_loading_named_protocols, only: named_protocol
    use rbs_loading_protocol, only: protocol_values
    use rbs_loading_spectrum, only: response_spectrum
@@ -146,29 +145,20 @@ contains
       end select
    end subroutine evaluate_column
 
-   !> Points of a cyclic protocol, in the unit of the amplitudes.
+   !> Points of a cyclic protocol, the only loading of a case, in the unit of the amplitudes.
    subroutine make_protocol(request, answer)
       type(request_type), intent(in) :: request
       type(answer_type), intent(inout) :: answer
-      type(loading_record) :: spec
+      type(case_record) :: case
       type(message_list) :: messages
-      real(c_double), pointer, contiguous :: amplitude(:), negative(:)
       real(c_double), allocatable :: time(:)
 
-      amplitude => request%array('amplitudes')
-      ! Those of the other side; empty: the same.
-      negative => request%array('negative')
-      spec%drive = 'force'
-      spec%source = 'protocol'
-      spec%amplitudes = amplitude
-      if (size(negative) > 0) spec%negative_amplitudes = negative
-      spec%cycles = nint(request%array('cycles'))
-      spec%repeats = request%whole('repeats')
-      spec%points = request%whole('points')
-      call spec%validate(.false., messages)
+      call case_from_statements(request%statement, request%number, case, answer%error)
+      if (allocated(answer%error)) return
+      call case%loading(1)%validate(.false., messages)
       call messages%raise(answer%error)
       if (allocated(answer%error)) return
-      call protocol_values(spec, 1.0_c_double, time, answer%value, answer%error)
+      call protocol_values(case%loading(1), 1.0_c_double, time, answer%value, answer%error)
    end subroutine make_protocol
 
    !> Amplitudes and cycles of a protocol of the literature.

@@ -12,9 +12,8 @@ module rbs_hysteresis_interaction_joints
    implicit none
    private
 
-   public :: vary_axial_loads, fall_of, opening_of, rest_of, choose_lines, nearest_layer, &
-        moment_on_plane
-   public :: least_forward_rate, put_on_plane, go_under
+   public :: vary_axial_loads, fall_of, opening_of, rest_of, choose_lines, nearest_layer
+   public :: moment_on_plane, least_forward_rate, put_on_plane, go_under
 
 contains
 
@@ -27,8 +26,7 @@ contains
       if (.not. springs%pressed) return
       springs%on_plane(springs%layered) = .true.
       allocate (springs%press_to(springs%count), springs%press_at(springs%count), &
-                springs%centre(springs%count), &
-                source=0.0_wp)
+                springs%centre(springs%count), source=0.0_wp)
       call springs%fit_planes()
       springs%press_to(:) = springs%press_at
    end subroutine vary_axial_loads

@@ -452,8 +452,7 @@ contains
          if (d(1) <= self%last(1) .and. d(1) >= self%first(1) .and. &
              d(2) <= self%last(2) .and. d(2) >= self%first(2)) then
             call advance_pair(d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
-                              self%first, &
-                           self%last)
+                              self%first, self%last)
             return
          end if
       end if
@@ -465,8 +464,7 @@ contains
       end if
       ! Springs that have arrived do not move any more.
       call advance_all(self%count, d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
-                       self%first, &
-                    self%last)
+                       self%first, self%last)
    end subroutine move_all
 
    !> Whether all springs can go to new deformations on their present lines.
@@ -491,8 +489,7 @@ contains
          return
       end if
       call advance_all(self%count, d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
-                       self%first, &
-                    self%last)
+                       self%first, self%last)
    end subroutine carry_to
 
    pure logical function are_within(n, d, first, last)

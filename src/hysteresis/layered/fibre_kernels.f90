@@ -41,8 +41,7 @@ contains
    !>
    !> Written without branches. Of the ways to both ends divided by the rate, the larger one leads ahead.
    pure subroutine look_along(n, y, k, lo, hi, slack, unload_on_reversal, both_ways, w, phi, open, turn, &
-                              least_rate, &
-                              room, ahead, nearest, least_room, any_one_way, stiffness)
+                              least_rate, room, ahead, nearest, least_room, any_one_way, stiffness)
       integer, intent(in) :: n
       !> Distances, slopes and ends of the lines; finite, so that quotients do not overflow
       real(wp), intent(in) :: y(n), k(n), lo(n), hi(n)

@@ -81,10 +81,9 @@ contains
             ! A layer that unloads on a reversal is an event of its own, see `least_forward_rate`.
             call look_along(n, self%y(begin:finish), self%k(begin:finish), self%lo(begin:finish), &
                             self%hi(begin:finish), self%slack(begin:finish), &
-                                 self%unload_on_reversal(begin:finish), &
-                            self%both_ways(begin:finish), opening, turned, open, turn, &
-                            self%least_rate(open, turn), 0.0_wp, ahead, nearest, least_room, &
-                            unload_on_reversal, stiffness)
+                            self%unload_on_reversal(begin:finish), self%both_ways(begin:finish), opening, &
+                            turned, open, turn, self%least_rate(open, turn), 0.0_wp, ahead, nearest, &
+                            least_room, unload_on_reversal, stiffness)
          end associate
          if (.not. nearest < min(way, beyond)) cycle
          do i = 1, n

@@ -130,7 +130,6 @@ module rbs_hysteresis_layered_fibre_section
       procedure :: forget
       procedure :: save_layer
       procedure :: restore_layer
-      procedure :: copy
       procedure :: serialize
    end type fibre_section
 
@@ -440,23 +439,6 @@ contains
       self%number_kept = 0
       self%section_state = self%kept_state
    end subroutine restore
-
-   !> Become a copy of another section with the same layers.
-   pure subroutine copy(self, other)
-      class(fibre_section), intent(inout) :: self
-      class(rule_memory), intent(in) :: other
-      integer :: i
-
-      select type (other)
-      type is (fibre_section)
-         self%section_state = other%section_state
-         do i = 1, self%count
-            self%branch(i) = other%branch(i)
-            call self%slot(i)%memory%copy(other%slot(i)%memory)
-            call put_branch(self, i)
-         end do
-      end select
-   end subroutine copy
 
    pure subroutine serialize(self, stream)
       class(fibre_section), intent(inout) :: self
