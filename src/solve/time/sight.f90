@@ -98,11 +98,11 @@ contains
                    self%openings(size(self%watch)), self%openings_now(size(self%watch)), &
                    self%inner_openings(size(self%watch), 4), self%rotation(motion%structure%n, 4), &
                    source=0.0_wp)
-         do i = 1, size(self%watch)
-            self%watch(i)%slips = motion%structure%spring_of(shear, self%watch(i)%joint)
-            self%watch(i)%turns = motion%structure%spring_of(flexure, self%watch(i)%joint)
-         end do
       end if
+      do i = 1, size(self%watch)
+         self%watch(i)%slips = motion%structure%spring_of(shear, self%watch(i)%joint)
+         self%watch(i)%turns = motion%structure%spring_of(flexure, self%watch(i)%joint)
+      end do
       self%peaks_type = peaks_type()
       self%collapsed = .false.
       call set_bounds(self)
