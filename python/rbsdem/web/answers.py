@@ -278,7 +278,10 @@ class Answers:
         found = self.solved(given, loading)
         if found.result is None or found.case is None:
             return {"faults": found.faults}
-        text = exports.exported(form, found.case, found.result, given, loading)
+        if form == "csv":
+            text = exports.csv_of(found.result)
+        else:
+            text = exports.exported(form, found.case, found.drawn, given, loading)
         return {"text": text, "name": f"column_{'ab'[which]}"}
 
     def open(self, asked: Asked, pause: Pause) -> dict[str, Any]:

@@ -18,11 +18,13 @@ from typing import Any
 
 from rbsdem._files import whole_file
 from rbsdem.errors import InputError
+from rbsdem.model.derived import Derived
+from rbsdem.model.section import Section
 from rbsdem.results.case import Case, read_case
 from rbsdem.results.result import Result
-from rbsdem.web.state import ENDS, SHAPES, Faults, RefusedError, drawn_case, state_of
+from rbsdem.web.state import ENDS, Drawn, Faults, RefusedError, drawn_case, state_of
 
-__all__ = ["case_of_text", "drawing_in", "exported", "opened", "text_file"]
+__all__ = ["case_of_text", "csv_of", "drawing_in", "exported", "opened", "text_file"]
 
 _MARK = "! rbsdem explore: "
 #: Letters of the drawing on a line of its comment.
@@ -137,28 +139,23 @@ def _refuse_files(text: str) -> None:
 def exported(
     form: str,
     case: Case,
-    result: Result,
+    drawn: Drawn | None,
     given: Mapping[str, Any],
     loading: Mapping[str, Any],
 ) -> str:
-    """Return a column that was solved as "namelist", "python" or "csv".
+    """Return a column as a case file ("namelist") or as a program ("python").
 
     Parameters
     ----------
     form : str
         Which.
-    case, result
-        The column as a case, and its result.
+    case, drawn
+        The column as a case, and as it was drawn.
     given, loading : mapping
         Column and loading of the state that it was made from.
     """
-    if form == "csv":
-        with tempfile.TemporaryDirectory(prefix="rbsdem-") as folder:
-            rows = Path(folder) / "rows.csv"
-            result.to_csv(rows)
-            return rows.read_text(encoding="utf-8")
-    if form == "python" and "case" not in given:
-        return _python(given, loading)
+    if form == "python" and drawn is not None and "case" not in given:
+        return _python(drawn.section, given["column"], loading)
     if form == "python":
         return (
             'import rbsdem\n\ncase = rbsdem.read_case("case.nml")\n'
@@ -169,41 +166,23 @@ def exported(
     return _namelist(case, {"columns": [given], "loading": loading} if known else None)
 
 
-def _python(given: Mapping[str, Any], loading: Mapping[str, Any]) -> str:
-    """Return a program that computes the loop of a drawn column.
+def csv_of(result: Result) -> str:
+    """Return the rows of a result as the executable writes them."""
+    with tempfile.TemporaryDirectory(prefix="rbsdem-") as folder:
+        rows = Path(folder) / "rows.csv"
+        result.to_csv(rows)
+        return rows.read_text(encoding="utf-8")
 
-    Parameters
-    ----------
-    given, loading : mapping
-        A column and the loading of a state that was computed without an error.
-    """
-    shape = given["section"]["shape"]
-    round_ = "circle" in shape
-    made, names = SHAPES[shape]
-    kind = made.__name__
-    hoops = "Spiral" if round_ else "Ties"
-    bars, ties, frame = given["bars"], given["ties"], given["column"]
-    sizes = [f"{name}={given['section'][name]!r}" for name in names]
+
+def _python(section: Section, frame: Mapping[str, Any], loading: Mapping[str, Any]) -> str:
+    """Return a program that computes the loop of a drawn column."""
     half = ENDS[frame.get("ends", "cantilever")]
-    moved = loading["kind"] in ("synthetic", "record")
     lines = [
-        *(["import dataclasses", ""] if moved and half == 1.0 else []),
-        "import rbsdem",
-        f"from rbsdem import Concrete, {kind}, Layout, Steel, {hoops}",
-        "",
-        f"bars = Layout({bars['number']!r}, {bars['diameter']!r}, {_steel(bars)}"
-        + ("" if round_ or bars.get("face") is None else f", face={bars['face']!r}")
-        + ")",
-        f"{'spiral' if round_ else 'ties'} = {hoops}({ties['diameter']!r}, {ties['spacing']!r}, "
-        f"{_steel(ties)}{_options(ties, ('hoops',) if round_ else ('legs', 'legs_across'))})",
-        f"section = {kind}(",
-        *[f"    {size}," for size in sizes],
-        f"    concrete=Concrete({given['concrete']['fc']!r}),",
-        "    layout=bars,",
-        f"    {'spiral=spiral' if round_ else 'ties=ties'},",
-        f"    cover={given['section']['cover']!r},",
+        f"section = {type(section).__name__}(",
+        *(f"    {name}={_code(value)}," for name, value in _stated(section)),
         ")",
     ]
+    moved = loading["kind"] in ("synthetic", "record")
     height = repr(frame["height"])
     if half != 1.0:
         lines.append(
@@ -212,49 +191,49 @@ def _python(given: Mapping[str, Any], loading: Mapping[str, Any]) -> str:
         )
         height += f" / {half:g}"
     lines.append(f"column = section.column({height}, axial_load={frame['axial_load']!r})")
-    lines += _loaded(loading, frame, half)
-    lines += ["print(result)", "print(result.limit_states())", ""]
-    return "\n".join(lines)
-
-
-def _loaded(loading: Mapping[str, Any], frame: Mapping[str, Any], half: float) -> list[str]:
-    kind = loading["kind"]
-    if kind in ("amplitudes", "named"):
-        if kind == "amplitudes":
-            asked = f"{loading['amplitudes']!r}, cycles={loading['cycles']!r}"
-        else:
-            asked = repr(loading["name"]) + _options(loading, ("reference", "largest"))
-        return [
-            f"drifts = rbsdem.protocol({asked})",
-            "path = column.height * drifts",
-            "result = rbsdem.cyclic(column, displacement=path)",
+    if moved:
+        mass = frame.get("top_mass")
+        mass = f"{frame['axial_load']!r} / 9.80665" if mass is None else repr(mass)
+        record = f"read_motion({loading.get('name')!r})"
+        if loading["kind"] == "synthetic":
+            record = f"synthetic(1, seed={loading.get('seed', 1)!r}, dt=0.01)[0]"
+        change = "dataclasses.replace" if half == 1.0 else "rbsdem.double_curvature"
+        lines += [
+            f"motion = rbsdem.motions.{record}.scaled({loading.get('scale', 1.0)!r})",
+            f"column = {change}(column, top_mass={mass})",
+            "result = rbsdem.time_history(",
+            "    column, ground_acceleration=motion, collapse_drift=0.2, openings=True",
+            ")",
         ]
-    mass = frame.get("top_mass")
-    mass = f"{frame['axial_load']!r} / 9.80665" if mass is None else repr(mass)
-    read = (
-        f"rbsdem.motions.synthetic(1, seed={loading.get('seed', 1)!r})[0]"
-        if kind == "synthetic"
-        else f"rbsdem.motions.read_motion({loading.get('name')!r})"
-    )
+    else:
+        names = ("name", "amplitudes", "cycles", "reference", "largest")
+        values = [(n, loading[n]) for n in names if loading.get(n) is not None]
+        asked = [f"{n}={v!r}" if i else repr(v) for i, (n, v) in enumerate(values)]
+        lines += [
+            f"drifts = rbsdem.protocol({', '.join(asked)})",
+            "result = rbsdem.cyclic(column, displacement=column.height * drifts)",
+        ]
+    lines += ["print(result)", "print(result.limit_states())", ""]
+    text = "\n".join(lines)
+    classes = ", ".join(sorted(set(re.findall(r"\b([A-Z]\w+)\(", text))))
+    head = "import dataclasses\n\n" if "dataclasses." in text else ""
+    return f"{head}import rbsdem\nfrom rbsdem import {classes}\n\n{text}"
+
+
+def _code(value: Any) -> str:
+    """Return a record as Python, with the values that were given."""
+    if not dataclasses.is_dataclass(value):
+        return repr(value)
+    given = ", ".join(f"{name}={_code(part)}" for name, part in _stated(value))
+    return f"{type(value).__name__}({given})"
+
+
+def _stated(record: Any) -> list[tuple[str, Any]]:
+    """Return the values of a record that do not follow from others."""
+    values = [(field, getattr(record, field.name)) for field in dataclasses.fields(record)]
     return [
-        f"motion = {read}.scaled({loading.get('scale', 1.0)!r})",
-        f"column = dataclasses.replace(column, top_mass={mass})"
-        if half == 1.0
-        else f"column = rbsdem.double_curvature(column, top_mass={mass})",
-        "result = rbsdem.time_history(",
-        "    column,",
-        "    motion.time,",
-        "    ground_acceleration=motion.acceleration,",
-        "    collapse_drift=0.2,",
-        "    openings=True,",
-        ")",
+        (field.name, value)
+        for field, value in values
+        # The bars of a section follow from its layout.
+        if value is not None and value != field.default and not isinstance(value, Derived | tuple)
     ]
-
-
-def _steel(given: Mapping[str, Any]) -> str:
-    ultimate = "" if given.get("fu") is None else f", {given['fu']!r}"
-    return f"Steel({given['fy']!r}{ultimate})"
-
-
-def _options(given: Mapping[str, Any], names: tuple[str, ...]) -> str:
-    return "".join(f", {name}={given[name]!r}" for name in names if given.get(name) is not None)
