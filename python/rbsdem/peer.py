@@ -12,9 +12,9 @@ from rbsdem.measured.file import PeerTest, read_peer
 from rbsdem.measured.indicators import Indicators, indicators
 from rbsdem.measured.laboratory import read_test
 from rbsdem.measured.measured import PDELTA_CODES, MeasuredTest, net_force
-from rbsdem.measured.nearest import Neighbour, nearest
+from rbsdem.measured.nearest import nearest
 from rbsdem.measured.predict import predict, predict_one
-from rbsdem.measured.prediction import Prediction
+from rbsdem.measured.prediction import Neighbour, Prediction
 from rbsdem.measured.predictions import Group, Predictions, Quartiles
 from rbsdem.measured.shipped import (
     FOLDER_VARIABLE,

@@ -264,7 +264,7 @@ def test_values_of_a_drawing():
     text = io.StringIO()
     Console(file=text, width=200).print(plot.table(values))
     assert "2.42" in text.getvalue()
-    assert "not confirmed" in text.getvalue()
+    assert "False" in text.getvalue()  # not confirmed
 
 
 def test_backbones_have_their_corners():

@@ -5,44 +5,23 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import lru_cache
 
 from rbsdem import _arguments
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.measured.columns import checked_specimen
 from rbsdem.measured.drawing import draw
-from rbsdem.measured.prediction import Prediction
+from rbsdem.measured.prediction import Neighbour
 from rbsdem.measured.specimen import Specimen
 from rbsdem.model.circular import CircularSection
 from rbsdem.model.section import Section
 from rbsdem.section.remote import place_of
 
-__all__ = ["Neighbour", "nearest"]
+__all__ = ["nearest"]
 
 #: Differences that count as 1: of the axial load ratio, and of the logarithms of the shear span
 #: over the depth, the concrete strength, and the mechanical ratios of bars and ties.
 _SCALES = (0.15, 0.4, 0.35, 0.4, 0.6)
-
-
-@dataclass(frozen=True, slots=True)
-class Neighbour:
-    """A test that is like another.
-
-    Attributes
-    ----------
-    specimen : Specimen
-        The test.
-    distance : float
-        0 for the same column; 1 is a difference of 0.15 in the axial load ratio, or of 40 % in the
-        shear span or in the mechanical ratio of the bars.
-    prediction : Prediction or None
-        Its prediction, with its errors; None if it was not predicted.
-    """
-
-    specimen: Specimen
-    distance: float
-    prediction: Prediction | None = None
 
 
 def nearest(

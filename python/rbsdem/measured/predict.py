@@ -26,8 +26,8 @@ from rbsdem.errors import AccuracyWarning, InputError, RbsdemError, SolveError
 from rbsdem.measured.columns import check_options, checked_specimen
 from rbsdem.measured.columns import column as column_of
 from rbsdem.measured.drawing import draw
-from rbsdem.measured.nearest import Neighbour, nearest
-from rbsdem.measured.prediction import Prediction
+from rbsdem.measured.nearest import nearest
+from rbsdem.measured.prediction import Neighbour, Prediction
 from rbsdem.measured.prediction_store import PredictionStore
 from rbsdem.measured.predictions import Predictions
 from rbsdem.measured.specimen import Specimen

@@ -10,10 +10,29 @@ from rbsdem.curves.scores import Comparison
 from rbsdem.measured.specimen import Specimen
 
 if TYPE_CHECKING:
-    from rbsdem.measured.nearest import Neighbour
     from rbsdem.section.spread import Spread
 
-__all__ = ["Prediction"]
+__all__ = ["Neighbour", "Prediction"]
+
+
+@dataclass(frozen=True, slots=True)
+class Neighbour:
+    """A test that is like another.
+
+    Attributes
+    ----------
+    specimen : Specimen
+        The test.
+    distance : float
+        0 for the same column; 1 is a difference of 0.15 in the axial load ratio, or of 40 % in the
+        shear span or in the mechanical ratio of the bars.
+    prediction : Prediction or None
+        Its prediction, with its errors; None if it was not predicted.
+    """
+
+    specimen: Specimen
+    distance: float
+    prediction: Prediction | None = None
 
 
 @dataclass(frozen=True, slots=True)
