@@ -1,4 +1,4 @@
-"""Imports between the rooms of the package go down, in no circle: the contracts of pyproject.toml."""
+"""Imports between the rooms of the package keep the contracts of pyproject.toml."""
 
 from __future__ import annotations
 
