@@ -8,7 +8,7 @@ import io
 import math
 import os
 import stat
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from itertools import count
 from pathlib import Path
@@ -17,7 +17,7 @@ from typing import IO, Any
 from rbsdem import _arguments
 from rbsdem.errors import InputError
 
-__all__ = ["harmless", "whole_file", "write_csv", "write_figure"]
+__all__ = ["escape_formula", "whole_file", "write_csv", "write_figure"]
 
 #: Bytes of a name that go into the temporary name, so that this does not become too long.
 _LONGEST = 180
@@ -88,7 +88,7 @@ def write_csv(path: str | os.PathLike[str], rows: Iterable[Sequence[object]]) ->
         File to write.
     rows : iterable of sequences
         Cells: numbers are written with six digits, None and numbers that are not finite as blanks,
-        texts as `harmless` returns them.
+        texts as `escape_formula` returns them.
     """
     text = io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\n")
@@ -97,13 +97,13 @@ def write_csv(path: str | os.PathLike[str], rows: Iterable[Sequence[object]]) ->
         file.write(text.getvalue().encode())
 
 
-def write_figure(save: Callable[..., Any], path: str | os.PathLike[str], **options: Any) -> None:
+def write_figure(drawn: Any, path: str | os.PathLike[str], **options: Any) -> None:
     """Write a figure of matplotlib, whole or not at all.
 
     Parameters
     ----------
-    save : callable
-        `savefig` of the figure.
+    drawn : matplotlib Figure or Axes
+        The figure, or axes of it.
     path : path
         File to write; its ending says in which format.
     **options
@@ -111,10 +111,10 @@ def write_figure(save: Callable[..., Any], path: str | os.PathLike[str], **optio
     """
     ending = Path(path).suffix.lower().lstrip(".")
     with whole_file(path) as file:
-        save(file, format=ending or "png", **options)
+        drawn.figure.savefig(file, format=ending or "png", **options)
 
 
-def harmless(text: str) -> str:
+def escape_formula(text: str) -> str:
     """Return a text that a spreadsheet does not take for a formula.
 
     Parameters
@@ -134,7 +134,7 @@ def harmless(text: str) -> str:
 
 def _cell(value: object) -> str:
     if isinstance(value, str):
-        return harmless(value)
+        return escape_formula(value)
     if value is None or (isinstance(value, float) and not math.isfinite(value)):
         return ""
     return f"{value:.6g}" if isinstance(value, float) else str(value)

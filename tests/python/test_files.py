@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from rbsdem._files import harmless, whole_file, write_csv
+from rbsdem._files import escape_formula, whole_file, write_csv
 from rbsdem.errors import InputError
 
 SOURCES = Path(__file__).resolve().parents[2] / "python" / "rbsdem"
@@ -122,4 +122,4 @@ def test_cells_of_a_table(tmp_path):
         first, second = csv.reader(file)
     assert first == ["'=1+1", "'+1", "'-1", "'@SUM(A1)", "'\t=1", "'\n=1", "a=b", "5", ""]
     assert second == ["-1.5", "2", "", "", "", "True", "0.333333"]
-    assert [harmless(text) for text in texts] == first
+    assert [escape_formula(text) for text in texts] == first

@@ -167,7 +167,7 @@ def test_a_fault_is_found(line: str) -> None:
 def test_only_one_module_knows_the_extension() -> None:
     knows = re.compile(r"import _rbsdem|import .*, _rbsdem|rbsdem\._rbsdem\b")
     files = [path for path in (ROOT / "python").rglob("*.py") if knows.search(path.read_text())]
-    assert {path.name for path in files} <= {"_core.py", "_code.py"}
+    assert {path.name for path in files} <= {"_core.py", "_package.py"}
 
 
 def test_texts_name_no_path_of_the_machine_that_they_were_written_on() -> None:

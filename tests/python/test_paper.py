@@ -13,7 +13,7 @@ import pytest
 import rbsdem
 from rbsdem import curves as comparison
 from rbsdem import peer
-from rbsdem._data import text as data_text
+from rbsdem._package import text as data_text
 from rbsdem.errors import InputError
 from rbsdem.section.model import CONCRETE_DENSITY
 from rbsdem.section.paper import KEYS, paper_columns, paper_sections

@@ -491,7 +491,7 @@ def _write(
     }
     for name, ax in figures.items():
         written.append(folder / name)
-        write_figure(ax.figure.savefig, written[-1], dpi=150)
+        write_figure(ax, written[-1], dpi=150)
     return written
 
 

@@ -327,5 +327,5 @@ def _write_columns(rows: Predictions, folder: Path) -> list[str]:
             row.band.to_csv(target)
             files.append(target)
         files.append(target.with_suffix(".png"))
-        write_figure(draw_prediction(row).savefig, files[-1], dpi=160)
+        write_figure(draw_prediction(row), files[-1], dpi=160)
     return [f"wrote {file}" for file in files]

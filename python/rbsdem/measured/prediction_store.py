@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from rbsdem._arguments import Array
-from rbsdem._code import code_digest
+from rbsdem._package import code_digest
 from rbsdem.batch.store import JSON_LINES, Store, digest
 from rbsdem.curves.scores import compare
 from rbsdem.errors import RbsdemError

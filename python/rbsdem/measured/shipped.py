@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rbsdem import _data
+from rbsdem import _package
 from rbsdem.curves.metrics import Loop
 from rbsdem.errors import InputError
 
@@ -125,7 +125,7 @@ def shipped_reversals(key: str) -> Reversals:
     if key not in HISTORY_FILES:
         raise InputError(f"no reversal points for {key!r}; there are {', '.join(HISTORY_FILES)}")
     name = f"reversals_{key}.csv"
-    rows, notes = _data.rows(name), _data.notes(name)
+    rows, notes = _package.rows(name), _package.notes(name)
     displacement, force = (
         np.array([float(row[column]) for row in rows]) for column in ("displacement_mm", "force_kN")
     )
@@ -155,5 +155,5 @@ def measured_loops() -> dict[str, Loop]:
             energy=float(row["energy_kJ"]) * 1000,
             stiffness=float(row["stiffness_kN_per_mm"]) * 1e6,
         )
-        for row in _data.rows("measured_loops.csv")
+        for row in _package.rows("measured_loops.csv")
     }

@@ -176,7 +176,7 @@ def band_sheet(predictions: Predictions, path: str | os.PathLike[str]) -> Path:
         ax.add_collection(LineCollection(tests, colors="0.45", linewidths=0.4))
         ax.add_collection(LineCollection(models, colors="#c2410c", linewidths=0.4))
         path.parent.mkdir(parents=True, exist_ok=True)
-        write_figure(figure.savefig, path, dpi=160)
+        write_figure(figure, path, dpi=160)
     return path
 
 
@@ -228,7 +228,7 @@ def contact_sheet(predictions: Predictions, path: str | os.PathLike[str]) -> Pat
         ax.add_collection(LineCollection(models, colors="#c2410c", linewidths=0.4))
         # Of many thin lines a png hardly gets smaller by trying hard.
         fast = {"pil_kwargs": {"compress_level": 3}} if path.suffix.lower() == ".png" else {}
-        write_figure(figure.savefig, path, dpi=200, **fast)
+        write_figure(figure, path, dpi=200, **fast)
     return path
 
 

@@ -160,7 +160,7 @@ def save(study: MethodStudy, path: Path, title: str) -> Path | None:
 
     with style():
         ax.set_title(title, loc="left")
-        write_figure(ax.figure.savefig, path, dpi=200)
+        write_figure(ax, path, dpi=200)
     plt.close(ax.figure)
     return path
 

@@ -178,7 +178,7 @@ def save(figure: Figure, path: str | os.PathLike[str], *, pdf: bool = False) -> 
     files = [target, target.with_suffix(".pdf")] if pdf else [target]
     with style():
         for file in files:
-            write_figure(figure.savefig, file, dpi=DPI)
+            write_figure(figure, file, dpi=DPI)
     return files
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from rbsdem import _data
+from rbsdem import _package
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column, without_notes
@@ -238,7 +238,7 @@ def paper_sections() -> dict[str, PaperSection]:
     1010000.0
     """
     fields: dict[str, dict[str, Any]] = {key: {} for key in KEYS}
-    for row in _data.rows("paper_table_2.csv"):
+    for row in _package.rows("paper_table_2.csv"):
         name = row["property"]
         if row["group"] != "column" and name != "shear_legs":
             name = f"{row['group']}_{name}"
@@ -280,7 +280,7 @@ def paper_columns(kinematics: str = "small", **changes: Any) -> dict[str, Column
     1.65
     """
     springs: dict[str, dict[tuple[str, str], float]] = {key: {} for key in KEYS}
-    for row in _data.rows("paper_table_3.csv"):
+    for row in _package.rows("paper_table_3.csv"):
         for key in KEYS:
             springs[key][row["spring"], row["parameter"]] = float(row[key])
     sections = paper_sections()

@@ -1,9 +1,13 @@
-"""The files of the folder `data`, which are installed with the package."""
+"""What is installed: the files of the folder `data`, and a digest of the code."""
 
 from __future__ import annotations
 
 import csv
+import hashlib
+import importlib.util
+from functools import cache
 from importlib import resources
+from pathlib import Path
 
 from rbsdem.errors import InputError
 
@@ -38,3 +42,17 @@ def rows(name: str) -> list[dict[str, str]]:
     """Return the rows of a csv file as mappings from the names in its header."""
     lines = [line for line in text(name).splitlines() if not line.startswith("#")]
     return list(csv.DictReader(lines))
+
+
+@cache
+def code_digest() -> bytes:
+    """Return the digest of Python files and extension, by which kept results know their maker."""
+    root = Path(__file__).resolve().parent
+    files = sorted(root.rglob("*.py"))
+    extension = importlib.util.find_spec("rbsdem._rbsdem")
+    if extension is not None and extension.origin is not None:
+        files.append(Path(extension.origin))
+    digest = hashlib.sha256()
+    for file in files:
+        digest.update(hashlib.sha256(file.read_bytes()).digest())
+    return digest.digest()
