@@ -70,6 +70,7 @@ contains
                unit_test('openings do not move and have no other effect', openings), &
                unit_test('height of the top, largest rotation', height_of_top), &
                unit_test('collapse ends the path', collapse), &
+               unit_test('a force that is that of yield but for its last digits', nearly_yield), &
                unit_test('another structure: indeterminate, loaded elsewhere than driven', &
                          other_structure), &
                unit_test('another structure is cut and goes on with the same bits', cut_structure)]
@@ -778,6 +779,25 @@ contains
       call check_passed(error, outcome, 'static path')
       call check_true(error, rows(row_force, 3) < rows(row_force, 2), 'the force falls')
    end subroutine long_chain
+
+   !> The spring stands on the end of its line, so that the joints move the top a little farther.
+   subroutine nearly_yield(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: outcome
+      type(column_record) :: spec
+      real(wp), allocatable :: rows(:, :)
+      real(wp), parameter :: nearly = 1.0_wp - 5.0e-12_wp
+
+      spec = column_1('small')
+      spec%shear(1) = elastic(s_k)
+      spec%flexure(1) = bilinear(k_c, d_y, k_u)
+      call run(spec, .true., [0.5_wp, nearly]*k_c*d_y/height_1, rows, outcome)
+      call check_passed(error, outcome, 'path to yield')
+      if (allocated(error)) return
+      call check_close(error, rows(row_displacement, 2), &
+                       nearly*k_c*d_y*(height_1/k_c + 1.0_wp/(s_k*height_1)), 1.0e-12_wp, 0.0_wp, &
+                       'displacement')
+   end subroutine nearly_yield
 
    !> Yielding springs of the two storeys and the brace of `storeys`.
    subroutine trace_storeys(by_force, target, task, recorder, outcome)

@@ -245,7 +245,7 @@ contains
                call task%summary%see_energies(self%energies())
             end if
          else if (ends .or. .not. self%is_straight) then
-            call self%look(target(i), self%unbalance(), .false., failure)
+            call self%look(target(i), self%unbalance(), self%by_force .and. self%direction == 0, failure)
          end if
          if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message
          ! What is no state of the structure is no row.
