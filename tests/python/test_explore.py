@@ -298,7 +298,7 @@ def test_an_error_that_is_no_input_error_is_a_defect_and_says_so(post, monkeypat
     def broken(*_, **__):
         raise ZeroDivisionError("by zero")
 
-    monkeypatch.setattr(rbsdem.RectangularSection, "code_values", broken)
+    monkeypatch.setattr("rbsdem.web.answers.code_values", broken)
     (answer,) = post("sections", state=state(), code="aci318")["columns"]
     assert "A defect of rbsdem, not of the input (ZeroDivisionError" in answer["codes"]["fault"]
     assert answer["code"]["moment"]  # the other panels stand
