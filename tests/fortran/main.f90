@@ -9,6 +9,7 @@ program unit_tests
    use test_column, only: collect_column
    use test_concrete, only: collect_concrete
    use test_finite, only: collect_finite
+   use test_frame, only: collect_frame
    use test_history, only: collect_history
    use test_implicit, only: collect_implicit
    use test_implicit_finite, only: collect_implicit_finite
@@ -51,7 +52,7 @@ program unit_tests
       procedure(collect_interface), pointer, nopass :: collect => null()
    end type suite_type
 
-   type(suite_type) :: suites(33)
+   type(suite_type) :: suites(34)
    character(len=80) :: wanted, pattern
    integer :: i, run, failed, found
 
@@ -68,7 +69,7 @@ program unit_tests
              suite_type('springs', collect_springs), suite_type('column', collect_column), &
              suite_type('chain', collect_chain), &
              suite_type('band', collect_band), &
-             suite_type('finite', collect_finite), &
+             suite_type('finite', collect_finite), suite_type('frame', collect_frame), &
              suite_type('protocol', collect_protocol), suite_type('signal', collect_signal), &
              suite_type('results', collect_results), suite_type('time_plan', collect_time_plan), &
              suite_type('modal', collect_modal), suite_type('static', collect_static), &

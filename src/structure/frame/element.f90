@@ -1,0 +1,210 @@
+!> An element of a frame: what lies between two nodes, condensed to its ends.
+!>
+!> Elongation and rotations of the ends against the chord, q, follow from the displacements of the nodes, and
+!> work with axial force and end moments, s. By equilibrium the springs in the element carry f = p . s, so
+!> that their deformations add up to q = sum p d, and the element is its flexibility F = sum p p'/k. Springs
+!> at the points of a Gauss-Lobatto rule, each with the stiffness of its share of the length, make the
+!> force-based beam-column element (Neuenhofer and Filippou, J. Struct. Eng. 123 (1997) 958-966).
+!>
+!> Springs may have no stiffness, so that nothing is divided by one. With p = (p_a, p_b), r = (-p_b, p_a) and
+!> p x p' = p_a p'_b - p_b p'_a, by the theorem of Cauchy and Binet and K = F^-1,
+!>
+!>     det F = sum_(i<j) (p_i x p_j)^2/(k_i k_j),   K = sum r_i r_i'/k_i / det F,
+!>     dd_j/dq = K p_j/k_j = sum_i (p_i x p_j) r_i/(k_i k_j) / det F
+!>
+!> where the product of all k is taken into numerator and denominator. Forces f that are not in equilibrium
+!> are brought there by deformations -H f,
+!>
+!>     H_ij = delta_ij/k_i - p_i' K p_j/(k_i k_j)
+module rbs_structure_frame_element
+   use rbs_base_constants, only: no_stiffness
+   use rbs_base_kinds, only: wp
+   implicit none
+   private
+
+   public :: frame_element, tangent_size, find_tangent
+
+   !> Springs without stiffness share a motion as if each had this part of its initial one.
+   real(wp), parameter :: shared = 1.0e-9_wp
+
+   type :: frame_element
+      !> The nodes at its ends
+      integer :: node(2) = 0
+      !> Elongation and rotations against the chord from the displacements of the nodes, (x, y, theta) each
+      real(wp) :: to_basic(3, 6) = 0.0_wp
+      !> Springs of the frame before its first; how many bend or slip, and how many open behind these
+      integer :: before = 0, bending = 0, opening = 0
+      !> Moments of the ends per force of a spring, p, of those that bend, then of the elastic rest
+      !> (2, bending + rest)
+      real(wp), allocatable :: share(:, :)
+      !> Stiffness of the elastic rest in its two directions, and along the axis; none, if it is rigid
+      real(wp), allocatable :: rest(:)
+      real(wp) :: rest_along = 0.0_wp
+      !> Where its tangent begins in the work array of the frame
+      integer :: at = 1
+   end type frame_element
+
+contains
+
+   !> Numbers of a tangent: K (3, 3), dd/dq (3, springs), H of those that bend and of those that open.
+   pure integer function tangent_size(element) result(numbers)
+      type(frame_element), intent(in) :: element
+
+      associate (m => element%bending, n => element%opening)
+         numbers = 9 + 3*(m + n) + m**2 + n**2
+      end associate
+   end function tangent_size
+
+   !> Stiffness and rates on lines of the springs.
+   pure subroutine find_tangent(element, m, n, k, k0, stiffness, rate, bent, opened, stable)
+      type(frame_element), intent(in) :: element
+      !> Numbers of springs that bend, and that open
+      integer, intent(in) :: m, n
+      !> Present and initial stiffness of the springs of the element, those that bend first
+      real(wp), intent(in) :: k(m + n), k0(m + n)
+      !> K, dd/dq, and H of both
+      real(wp), intent(out) :: stiffness(3, 3), rate(3, m + n), bent(m, m), opened(n, n)
+      !> Whether the motion of the ends determines that inside: the element does not snap back
+      logical, intent(out) :: stable
+      real(wp) :: of_ends(2, 2), turn(2, m), open_up(n)
+      logical :: stable_along
+
+      call bend(size(element%share, 2), m, element%share, [k0(:m), rest_of(element)], &
+                [k(:m), rest_of(element)], of_ends, turn, bent, stable)
+      call elongate(n, element%rest_along, k0(m + 1:), k(m + 1:), stiffness(1, 1), open_up, opened, &
+                   stable_along)
+      stiffness(2:, 1) = 0.0_wp
+      stiffness(1, 2:) = 0.0_wp
+      stiffness(2:, 2:) = of_ends
+      rate = 0.0_wp
+      rate(2:, :m) = turn
+      rate(1, m + 1:) = open_up
+      stable = stable .and. stable_along
+   end subroutine find_tangent
+
+   pure function rest_of(element) result(rest)
+      type(frame_element), intent(in) :: element
+      real(wp) :: rest(size(element%share, 2) - element%bending)
+
+      if (size(rest) > 0) rest = element%rest
+   end function rest_of
+
+   pure subroutine bend(all, m, p, k0, k, stiffness, rate, bent, stable)
+      !> Springs with the elastic rest, springs
+      integer, intent(in) :: all, m
+      real(wp), intent(in) :: p(2, all), k0(all), k(all)
+      real(wp), intent(out) :: stiffness(2, 2), rate(2, m), bent(m, m)
+      logical, intent(out) :: stable
+      !> Moments over roots of the initial stiffness, and stiffness over the initial one
+      real(wp) :: share(2, all), soft(all), across(2, all), determinant, initial, root(all)
+      integer :: i, j, l
+
+      root = sqrt(k0)
+      do i = 1, all
+         share(:, i) = p(:, i)/root(i)
+         across(:, i) = [-share(2, i), share(1, i)]
+      end do
+      soft = k/k0
+      initial = determinant_of(spread(1.0_wp, 1, all))
+      determinant = determinant_of(soft)
+      stable = determinant > -no_stiffness*initial
+      stiffness = 0.0_wp
+      do i = 1, all
+         do j = 1, 2
+            stiffness(:, j) = stiffness(:, j) + others([i])*across(:, i)*across(j, i)
+         end do
+      end do
+      if (abs(determinant) <= no_stiffness*initial) then
+         ! More springs than the ends determine have no stiffness.
+         soft = merge(shared, soft, abs(soft) < shared)
+         determinant = determinant_of(soft)
+      end if
+      stiffness = stiffness/determinant
+      rate = 0.0_wp
+      bent = 0.0_wp
+      do j = 1, m
+         do i = 1, all
+            if (i /= j) rate(:, j) = rate(:, j) + cross(i, j)*others([i, j])*across(:, i)
+         end do
+         rate(:, j) = rate(:, j)/(determinant*root(j))
+         do i = 1, m
+            do l = 1, all
+               if (l /= i .and. l /= j .and. i /= j) then
+                  bent(i, j) = bent(i, j) - cross(l, i)*cross(l, j)*others([i, j, l])
+               end if
+            end do
+         end do
+         do i = 1, all
+            do l = i + 1, all
+               if (i /= j .and. l /= j) bent(j, j) = bent(j, j) + cross(i, l)**2*others([i, j, l])
+            end do
+         end do
+         bent(:, j) = bent(:, j)/(determinant*root(j)*root(:m))
+      end do
+
+   contains
+
+      pure real(wp) function cross(a, b)
+         integer, intent(in) :: a, b
+
+         cross = share(1, a)*share(2, b) - share(2, a)*share(1, b)
+      end function cross
+
+      !> Product of the stiffness of all but some.
+      pure real(wp) function others(some)
+         integer, intent(in) :: some(:)
+         integer :: a
+
+         others = 1.0_wp
+         do a = 1, all
+            if (.not. any(some == a)) others = others*soft(a)
+         end do
+      end function others
+
+      pure real(wp) function determinant_of(stiff) result(total)
+         real(wp), intent(in) :: stiff(all)
+         integer :: a, b, c
+         real(wp) :: product_of_others
+
+         total = 0.0_wp
+         do b = 2, all
+            do a = 1, b - 1
+               product_of_others = 1.0_wp
+               do c = 1, all
+                  if (c /= a .and. c /= b) product_of_others = product_of_others*stiff(c)
+               end do
+               total = total + cross(a, b)**2*product_of_others
+            end do
+         end do
+      end function determinant_of
+
+   end subroutine bend
+
+   !> Springs that open, one behind the other, and the elastic rest.
+   pure subroutine elongate(n, rest, k0, k, stiffness, rate, opened, stable)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: rest, k0(n), k(n)
+      real(wp), intent(out) :: stiffness, rate(n), opened(n, n)
+      logical, intent(out) :: stable
+      real(wp) :: flexible
+      integer :: i, j
+
+      stable = .true.
+      stiffness = rest
+      if (n == 0) return
+      associate (least => shared*no_stiffness*k0)
+         flexible = sum(1.0_wp/sign(max(abs(k), least), k))
+         if (rest > 0.0_wp) flexible = flexible + 1.0_wp/rest
+         stable = flexible > 0.0_wp
+         stiffness = 1.0_wp/flexible
+         rate = 1.0_wp/(sign(max(abs(k), least), k)*flexible)
+         do j = 1, n
+            do i = 1, n
+               opened(i, j) = -rate(i)*rate(j)*flexible
+            end do
+            opened(j, j) = opened(j, j) + rate(j)*flexible
+         end do
+      end associate
+   end subroutine elongate
+
+end module rbs_structure_frame_element

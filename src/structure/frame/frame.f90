@@ -1,0 +1,771 @@
+!> A planar frame: nodes with displacements along x and upward and clockwise rotations, and elements between
+!> them, whose inside is condensed to their ends.
+!>
+!> The springs of the elements come first, then one from the ground to each unknown: soil, a brace, a
+!> bearing, or one of no account, whose deformation is the displacement.
+module rbs_structure_frame_frame
+   use rbs_base_kinds, only: wp
+   use rbs_hysteresis_spring_record, only: spring_record, make_rules
+   use rbs_hysteresis_springs, only: spring_array
+   use rbs_structure_channel, only: channel_type, response_type, row_contents
+   use rbs_structure_frame_element, only: frame_element, find_tangent, tangent_size
+   use rbs_structure_frame_numbering, only: order_nodes
+   use rbs_structure_spring_place, only: spring_place, shear, flexure, axial
+   use rbs_structure_structure, only: structure_type, unknown_group, pdelta, lateral, horizontal, vertical, &
+                                      signals
+   implicit none
+   private
+
+   public :: frame_type, frame_node, frame_member, new_frame
+
+   !> Stiffness of a spring of no account [N/m, N m].
+   real(wp), parameter :: of_no_account = 1.0e-30_wp
+
+   !> A node: place [m], what supports hold (x, y, theta), mass [kg, kg, kg m2], dead load [N, N, N m].
+   type :: frame_node
+      real(wp) :: x = 0.0_wp, y = 0.0_wp
+      logical :: held(3) = .false.
+      real(wp) :: mass(3) = 0.0_wp, load(3) = 0.0_wp
+      !> Share of the lateral load
+      real(wp) :: push = 0.0_wp
+      !> The node whose displacement along x this one shares, as along a floor; 0: none
+      integer :: like = 0
+   end type frame_node
+
+   !> A member from node to node: rigid ends, and springs in what is elastic otherwise.
+   type :: frame_member
+      integer :: node(2) = 0
+      !> Lengths of the rigid ends [m]
+      real(wp) :: rigid(2) = 0.0_wp
+      !> E A [N], E I [N m2] and G A_s [N] of the elastic rest; 0 where it is rigid
+      real(wp) :: axial = 0.0_wp, bending = 0.0_wp, sliding = 0.0_wp
+      !> Springs: kind, place in shares of the clear length, parameters; those that open come last
+      integer, allocatable :: kind(:)
+      real(wp), allocatable :: place(:)
+      type(spring_record), allocatable :: spring(:)
+      !> Dead load downward per length along x [N/m]
+      real(wp) :: load = 0.0_wp
+   end type frame_member
+
+   type, extends(structure_type) :: frame_type
+      type(frame_element), allocatable :: element(:)
+      !> Number of the unknown of each displacement, 0 where a support holds it (3, nodes)
+      integer, allocatable :: number(:, :)
+      !> Number of springs in elements, and of numbers in their tangents and one more
+      integer :: inside = 0, tangent_numbers = 0
+      !> Dead loads on the unknowns (unknowns), and on the springs of elements whose ends do not move (inside)
+      real(wp), allocatable :: dead(:), dead_force(:)
+      !> Rotations of the ends of the elastic rest under dead load (2, elements)
+      real(wp), allocatable :: dead_rotation(:, :)
+      !> Compression of the elements under dead load [N] (elements)
+      real(wp), allocatable :: compression(:)
+      !> Rigid ends and clear length (3, elements) [m]
+      real(wp), allocatable :: lengths(:, :)
+      !> Tangents of the elements whose springs have their initial stiffness (tangent_numbers)
+      real(wp), allocatable :: initial_tangent(:)
+      !> Height for moments, 1 for forces: what brings them to one unit (unknowns)
+      real(wp), allocatable :: reach(:)
+   contains
+      procedure :: linearise
+      procedure :: add_tangent
+      procedure :: rates
+      procedure :: unknown_forces
+      procedure :: way_of_load
+      procedure :: is_loaded
+      procedure :: take_load_off
+      procedure :: set_compression
+      procedure :: basic
+      procedure :: end_forces
+      procedure :: add_element
+      procedure :: spring_rates
+      procedure :: unknown_rates
+      procedure :: forces
+      procedure :: axial_forces
+      procedure :: add_stiffness
+      procedure :: add_geometric
+      procedure :: rotations
+      procedure :: potential_energy
+      procedure :: axial_rate
+      procedure :: acceleration_scale
+      procedure :: channels
+      procedure :: fill_row
+   end type frame_type
+
+contains
+
+   !> Make a frame of nodes and members that have been checked.
+   subroutine new_frame(frame, node, member, kinematics, top)
+      type(frame_type), intent(out) :: frame
+      type(frame_node), intent(in) :: node(:)
+      type(frame_member), intent(in) :: member(:)
+      integer, intent(in) :: kinematics
+      !> The node whose displacement along x is that of the top
+      integer, intent(in) :: top
+      integer :: i, springs
+
+      frame%kinematics = kinematics
+      frame%n = size(node)
+      frame%length = [(0.0_wp, i=1, size(node))]
+      frame%height = maxval(node%y) - minval(node%y)
+      frame%total_height = frame%height
+      frame%inside = 0
+      do i = 1, size(member)
+         frame%inside = frame%inside + size(member(i)%kind)
+      end do
+      call number_unknowns(frame, node, member)
+      springs = frame%inside + frame%unknowns
+      allocate (frame%spring(springs), frame%place(springs), frame%arm(springs))
+      frame%arm = 0.0_wp
+      frame%arm(frame%inside + frame%number(1, top)) = 1.0_wp
+      call set_ground(frame, node)
+      call set_elements(frame, node, member)
+      call make_rules(frame%spring, frame%rules)
+      frame%initial_stiffness = frame%rules%initial_stiffness()
+      allocate (frame%initial_tangent(frame%tangent_numbers))
+      call frame%linearise(frame%initial_stiffness, frame%initial_tangent, i)
+      frame%axially_loaded = kinematics == pdelta
+      frame%axial_count = merge(size(member), 0, frame%axially_loaded)
+      frame%group = [unknown_group(1, frame%unknowns, 1, 1, frame%inside, 1.0_wp)]
+   end subroutine new_frame
+
+   !> Number the unknowns along the order of the nodes.
+   subroutine number_unknowns(frame, node, member)
+      type(frame_type), intent(inout) :: frame
+      type(frame_node), intent(in) :: node(:)
+      type(frame_member), intent(in) :: member(:)
+      integer :: pair(2, size(member) + size(node)), order(size(node)), leader(size(node))
+      integer :: i, j, number(6)
+
+      do i = 1, size(member)
+         pair(:, i) = member(i)%node
+      end do
+      do i = 1, size(node)
+         leader(i) = merge(node(i)%like, i, node(i)%like > 0)
+         pair(:, size(member) + i) = [i, leader(i)]
+      end do
+      call order_nodes(size(node), pair, order)
+      allocate (frame%number(3, size(node)), source=0)
+      do i = 1, size(node)
+         do j = 1, 3
+            associate (of => merge(leader(order(i)), order(i), j == 1))
+               if (node(of)%held(j)) cycle
+               if (frame%number(j, of) == 0) then
+                  frame%unknowns = frame%unknowns + 1
+                  frame%number(j, of) = frame%unknowns
+               end if
+               frame%number(j, order(i)) = frame%number(j, of)
+            end associate
+         end do
+      end do
+      do i = 1, size(member)
+         number = reshape(frame%number(:, member(i)%node), [6])
+         if (any(number > 0)) frame%half_width = max(frame%half_width, maxval(number) &
+                                                     - minval(number, mask=number > 0))
+      end do
+   end subroutine number_unknowns
+
+   !> Masses and loads of the nodes, and the springs from the ground.
+   subroutine set_ground(frame, node)
+      type(frame_type), intent(inout) :: frame
+      type(frame_node), intent(in) :: node(:)
+      integer, parameter :: kind_of(3) = [shear, axial, flexure]
+      integer :: i, j
+
+      allocate (frame%inertias(frame%unknowns), frame%dead(frame%unknowns), source=0.0_wp)
+      allocate (frame%is_held(frame%unknowns), source=.false.)
+      allocate (frame%reach(frame%unknowns), source=1.0_wp)
+      allocate (frame%part(frame%unknowns), source=0)
+      do j = 1, signals
+         allocate (frame%pattern(j)%force(frame%unknowns), source=0.0_wp)
+      end do
+      do i = 1, size(node)
+         do j = 1, 3
+            associate (at => frame%number(j, i))
+               if (at == 0) cycle
+               frame%inertias(at) = frame%inertias(at) + node(i)%mass(j)
+               frame%dead(at) = frame%dead(at) + node(i)%load(j)
+               frame%part(at) = i
+               if (j == 3) frame%reach(at) = frame%total_height
+               frame%place(frame%inside + at) = spring_place(kind_of(j), 0, i, index=i)
+               frame%spring(frame%inside + at)%rule = 'elastic'
+               frame%spring(frame%inside + at)%value(1) = of_no_account
+               if (j == 1) frame%pattern(lateral)%force(at) = frame%pattern(lateral)%force(at) + node(i)%push
+               if (j == 1) frame%pattern(horizontal)%force(at) = -frame%inertias(at)
+               if (j == 2) frame%pattern(vertical)%force(at) = -frame%inertias(at)
+            end associate
+         end do
+      end do
+      frame%pattern%last = frame%unknowns
+   end subroutine set_ground
+
+   !> Geometry of the elements, their springs, and what dead load does in them.
+   subroutine set_elements(frame, node, member)
+      type(frame_type), intent(inout) :: frame
+      type(frame_node), intent(in) :: node(:)
+      type(frame_member), intent(in) :: member(:)
+      real(wp) :: axis(2), across(2), chord(6)
+      integer :: i, j, before, at
+
+      allocate (frame%element(size(member)))
+      allocate (frame%dead_force(frame%inside), frame%compression(size(member)), &
+                frame%dead_rotation(2, size(member)), frame%lengths(3, size(member)), source=0.0_wp)
+      before = 0
+      at = 1
+      do i = 1, size(member)
+         associate (m => member(i), e => frame%element(i), a => node(member(i)%node(1)), &
+                    b => node(member(i)%node(2)))
+            axis = [b%x - a%x, b%y - a%y]
+            associate (whole => norm2(axis))
+               axis = axis/whole
+               frame%lengths(:, i) = [m%rigid, whole - sum(m%rigid)]
+            end associate
+            across = [axis(2), -axis(1)]
+            associate (clear => frame%lengths(3, i))
+               e%node = m%node
+               e%to_basic(1, :) = [-axis, 0.0_wp, axis, 0.0_wp]
+               ! The chord turns clockwise as its end moves across.
+               chord = [-across, -m%rigid(1), across, -m%rigid(2)]/clear
+               e%to_basic(2, :) = [0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp] - chord
+               e%to_basic(3, :) = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp] - chord
+               e%before = before
+               e%opening = count(m%kind == axial)
+               e%bending = size(m%kind) - e%opening
+               e%rest_along = m%axial/clear
+               call set_rest(e, m, clear)
+               do j = 1, size(m%kind)
+                  frame%spring(before + j) = m%spring(j)
+                  frame%place(before + j) = spring_place(m%kind(j), i, j, index=i)
+                  if (m%kind(j) == flexure) e%share(:, j) = [m%place(j) - 1.0_wp, m%place(j)]
+                  if (m%kind(j) == shear) e%share(:, j) = -1.0_wp/clear
+               end do
+               call put_load(frame, m, i, axis, clear)
+               e%at = at
+               at = at + tangent_size(e)
+               before = before + size(m%kind)
+            end associate
+         end associate
+      end do
+      frame%tangent_numbers = at
+   end subroutine set_elements
+
+   !> The elastic rest bends as a beam that is supported at its ends: alike or against each other.
+   subroutine set_rest(e, m, clear)
+      type(frame_element), intent(inout) :: e
+      type(frame_member), intent(in) :: m
+      real(wp), intent(in) :: clear
+      integer :: rest
+
+      rest = merge(2, 0, m%bending > 0.0_wp)
+      allocate (e%share(2, e%bending + rest), source=0.0_wp)
+      if (rest == 0) return
+      e%share(:, e%bending + 1) = [1.0_wp, 1.0_wp]
+      e%share(:, e%bending + 2) = [1.0_wp, -1.0_wp]
+      ! Moments (M, M) turn both ends by M l/6EI + 2M/(l GA), moments (M, -M) by M l/2EI.
+      e%rest = [12.0_wp, 4.0_wp]*m%bending/clear
+      if (m%sliding > 0.0_wp) e%rest(1) = 1.0_wp/(1.0_wp/e%rest(1) + 1.0_wp/(clear*m%sliding))
+   end subroutine set_rest
+
+   !> Dead load on a member: it is carried to the nodes as by a beam on two supports, with moments in between.
+   subroutine put_load(frame, m, i, axis, clear)
+      type(frame_type), intent(inout) :: frame
+      type(frame_member), intent(in) :: m
+      integer, intent(in) :: i
+      real(wp), intent(in) :: axis(2), clear
+      real(wp) :: down, all, share, lever
+      integer :: j, k, at
+
+      if (.not. abs(m%load) > 0.0_wp) return
+      ! Downward, and its part across the member per length of it.
+      all = m%load*clear*abs(axis(1))
+      down = all*axis(1)/clear
+      do j = 1, size(m%kind)
+         share = m%place(j)
+         at = frame%element(i)%before + j
+         if (m%kind(j) == flexure) frame%dead_force(at) = -down*clear**2*share*(1.0_wp - share)/2.0_wp
+         if (m%kind(j) == shear) frame%dead_force(at) = down*clear*(0.5_wp - share)
+      end do
+      if (m%bending > 0.0_wp) then
+         frame%dead_rotation(:, i) = [1.0_wp, -1.0_wp]*down*clear**3/(24.0_wp*m%bending)
+      end if
+      do k = 1, 2
+         at = frame%number(2, m%node(k))
+         if (at > 0) frame%dead(at) = frame%dead(at) - all/2.0_wp
+         at = frame%number(3, m%node(k))
+         lever = merge(1.0_wp, -1.0_wp, k == 1)*m%rigid(k)*axis(1)
+         if (at > 0) frame%dead(at) = frame%dead(at) + lever*all/2.0_wp
+      end do
+   end subroutine put_load
+
+   !> Tangents of the elements on lines of the springs.
+   subroutine linearise(self, k, tangent, unstable)
+      class(frame_type), intent(in) :: self
+      !> Stiffness of the springs (springs)
+      real(wp), intent(in), contiguous :: k(:)
+      !> (tangent_numbers)
+      real(wp), intent(inout), contiguous :: tangent(:)
+      !> An element that snaps back; 0: none
+      integer, intent(out) :: unstable
+
+      call find_tangents(self, self%inside, k, self%initial_stiffness, tangent, unstable)
+   end subroutine linearise
+
+   subroutine find_tangents(frame, springs, k, k0, tangent, unstable)
+      type(frame_type), intent(in) :: frame
+      integer, intent(in) :: springs
+      real(wp), intent(in) :: k(springs + 1), k0(springs + 1)
+      real(wp), intent(inout) :: tangent(frame%tangent_numbers)
+      integer, intent(out) :: unstable
+      integer :: i, at, first
+      logical :: stable
+
+      unstable = 0
+      do i = 1, size(frame%element)
+         associate (e => frame%element(i), m => frame%element(i)%bending, n => frame%element(i)%opening)
+            at = e%at + 9 + 3*(m + n)
+            first = e%before + 1
+            call find_tangent(e, m, n, k(first), k0(first), tangent(e%at), tangent(e%at + 9), tangent(at), &
+                              tangent(at + m**2), stable)
+         end associate
+         if (.not. stable) unstable = i
+      end do
+   end subroutine find_tangents
+
+   !> Elongation and rotations of an element from the unknowns, or changes of them.
+   pure function basic(self, element, x) result(q)
+      class(frame_type), intent(in) :: self
+      integer, intent(in) :: element
+      real(wp), intent(in) :: x(:)
+      real(wp) :: q(3)
+      integer :: i, j
+
+      q = 0.0_wp
+      associate (e => self%element(element))
+         do j = 1, 2
+            do i = 1, 3
+               associate (at => self%number(i, e%node(j)))
+                  if (at > 0) q = q + e%to_basic(:, 3*j - 3 + i)*x(at)
+               end associate
+            end do
+         end do
+      end associate
+   end function basic
+
+   !> Add what axial force and moments of the ends of an element do on the unknowns.
+   pure subroutine add_element(self, element, s, g)
+      class(frame_type), intent(in) :: self
+      integer, intent(in) :: element
+      real(wp), intent(in) :: s(3)
+      real(wp), intent(inout) :: g(:)
+      integer :: i, j
+
+      associate (e => self%element(element))
+         do j = 1, 2
+            do i = 1, 3
+               associate (at => self%number(i, e%node(j)))
+                  if (at > 0) g(at) = g(at) + sum(s*e%to_basic(:, 3*j - 3 + i))
+               end associate
+            end do
+         end do
+      end associate
+   end subroutine add_element
+
+   !> What the springs of an element miss to add up to the motion of its ends.
+   pure function gap_of(frame, element, q, d, dead) result(gap)
+      type(frame_type), intent(in) :: frame
+      integer, intent(in) :: element
+      real(wp), intent(in) :: q(3), d(:), dead
+      real(wp) :: gap(3)
+      integer :: j
+
+      gap = q
+      associate (e => frame%element(element))
+         gap(2:) = gap(2:) - dead*frame%dead_rotation(:, element)
+         do j = 1, e%bending
+            gap(2:) = gap(2:) - e%share(:, j)*d(e%before + j)
+         end do
+         do j = e%bending + 1, e%bending + e%opening
+            gap(1) = gap(1) - d(e%before + j)
+         end do
+      end associate
+   end function gap_of
+
+   !> Forces of the ends of an element in equilibrium with its springs, and the corrections that these need.
+   pure subroutine end_forces(self, element, q, d, f, dead, tangent, s, correction)
+      class(frame_type), intent(in) :: self
+      integer, intent(in) :: element
+      !> Elongation and rotations of the ends; deformations and forces of all springs
+      real(wp), intent(in) :: q(3), d(:), f(:)
+      !> Share of the dead load that acts
+      real(wp), intent(in) :: dead
+      real(wp), intent(in), contiguous :: tangent(:)
+      real(wp), intent(out) :: s(3)
+      !> Of the deformations of all springs (springs)
+      real(wp), intent(inout) :: correction(:)
+      real(wp) :: gap(3), rest
+      integer :: i, j, h, m, n
+
+      gap = gap_of(self, element, q, d, dead)
+      associate (e => self%element(element))
+         m = e%bending
+         n = e%opening
+         s = matmul(reshape(tangent(e%at:e%at + 8), [3, 3]), gap)
+         h = e%at + 9 + 3*(m + n)
+         do j = 1, m + n
+            rest = f(e%before + j) - dead*self%dead_force(e%before + j)
+            i = e%at + 6 + 3*j
+            s = s + tangent(i:i + 2)*rest
+            correction(e%before + j) = sum(tangent(i:i + 2)*gap)
+         end do
+         do j = 1, m
+            rest = f(e%before + j) - dead*self%dead_force(e%before + j)
+            i = h + (j - 1)*m
+            correction(e%before + 1:e%before + m) = correction(e%before + 1:e%before + m) &
+                                                    - tangent(i:i + m - 1)*rest
+         end do
+         do j = 1, n
+            i = h + m**2 + (j - 1)*n
+            correction(e%before + m + 1:e%before + m + n) = correction(e%before + m + 1:e%before + m + n) &
+                                                            - tangent(i:i + n - 1)*f(e%before + m + j)
+         end do
+      end associate
+   end subroutine end_forces
+
+   pure logical function is_loaded(self)
+      class(frame_type), intent(in) :: self
+
+      is_loaded = any(abs(self%dead) > 0.0_wp) .or. any(abs(self%dead_force) > 0.0_wp) .or. &
+                  any(abs(self%dead_rotation) > 0.0_wp)
+   end function is_loaded
+
+   pure subroutine take_load_off(self)
+      class(frame_type), intent(inout) :: self
+
+      self%dead = 0.0_wp
+      self%dead_force = 0.0_wp
+      self%dead_rotation = 0.0_wp
+   end subroutine take_load_off
+
+   !> Take the axial forces of the elements under dead load.
+   subroutine set_compression(self, d, f)
+      class(frame_type), intent(inout) :: self
+      !> Deformations and forces of the springs (springs)
+      real(wp), intent(in), contiguous :: d(:), f(:)
+      real(wp) :: s(3), correction(size(d))
+      integer :: i
+
+      do i = 1, size(self%element)
+         call self%end_forces(i, self%basic(i, d(self%inside + 1:)), d, f, 1.0_wp, self%initial_tangent, s, &
+                              correction)
+         self%compression(i) = -s(1)
+         associate (e => self%element(i))
+            self%spring(e%before + 1:e%before + e%bending + e%opening)%axial_load = -s(1)
+         end associate
+      end do
+   end subroutine set_compression
+
+   !> What the load does work on: of the lateral one, or of the dead one.
+   pure real(wp) function way_of_load(self, of_dead_load, d) result(way)
+      class(frame_type), intent(in) :: self
+      logical, intent(in) :: of_dead_load
+      !> Deformations of the springs, or changes of them (springs)
+      real(wp), intent(in), contiguous :: d(:)
+      real(wp) :: gap(3), turned(2)
+      integer :: i
+
+      associate (x => d(self%inside + 1:))
+         if (.not. of_dead_load) then
+            way = sum(self%pattern(lateral)%force*x)
+            return
+         end if
+         way = sum(self%dead*x) + sum(self%dead_force*d(:self%inside))
+         do i = 1, size(self%element)
+            associate (e => self%element(i))
+               if (.not. allocated(e%rest)) cycle
+               gap = gap_of(self, i, self%basic(i, x), d, 0.0_wp)
+               turned = self%dead_rotation(:, i)
+               way = way + 0.25_wp*(e%rest(1)*sum(turned)*sum(gap(2:)) &
+                                    + e%rest(2)*(turned(1) - turned(2))*(gap(2) - gap(3)))
+            end associate
+         end do
+      end associate
+   end function way_of_load
+
+   !> Stiffness of the elements, from their tangents, and of the ground.
+   subroutine add_tangent(self, k, tangent, band)
+      class(frame_type), intent(in) :: self
+      !> Of the springs (springs)
+      real(wp), intent(in), contiguous :: k(:), tangent(:)
+      real(wp), intent(inout), contiguous :: band(:, :)
+      integer :: i
+
+      do i = 1, size(self%element)
+         associate (at => self%element(i)%at)
+            call add_product(self, i, reshape(tangent(at:at + 8), [3, 3]), band)
+         end associate
+      end do
+      band(1, :) = band(1, :) + k(self%inside + 1:)
+   end subroutine add_tangent
+
+   !> Add B' A B of an element, B its elongation and rotations per unknown.
+   pure subroutine add_product(self, element, a, band)
+      type(frame_type), intent(in) :: self
+      integer, intent(in) :: element
+      real(wp), intent(in) :: a(3, 3)
+      real(wp), intent(inout) :: band(:, :)
+      real(wp) :: row(3)
+      integer :: number(6), i, j
+
+      associate (e => self%element(element))
+         number = reshape(self%number(:, e%node), [6])
+         do j = 1, 6
+            if (number(j) == 0) cycle
+            row = matmul(a, e%to_basic(:, j))
+            do i = 1, 6
+               if (number(i) < number(j)) cycle
+               band(1 + number(i) - number(j), number(j)) = band(1 + number(i) - number(j), number(j)) &
+                                                            + sum(e%to_basic(:, i)*row)
+            end do
+         end do
+      end associate
+   end subroutine add_product
+
+   subroutine spring_rates(self, dx, dd)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: dx(:)
+      real(wp), intent(out), contiguous :: dd(:)
+
+      call self%rates(self%initial_tangent, dx, dd)
+   end subroutine spring_rates
+
+   !> Changes of the deformations from those of the unknowns.
+   subroutine rates(self, tangent, dx, dd)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: tangent(:), dx(:)
+      real(wp), intent(out), contiguous :: dd(:)
+      real(wp) :: q(3)
+      integer :: i, j, at
+
+      do i = 1, size(self%element)
+         q = self%basic(i, dx)
+         associate (e => self%element(i))
+            do j = 1, e%bending + e%opening
+               at = e%at + 6 + 3*j
+               dd(e%before + j) = sum(tangent(at:at + 2)*q)
+            end do
+         end associate
+      end do
+      dd(self%inside + 1:) = dx
+   end subroutine rates
+
+   pure subroutine unknown_rates(self, dd, dx)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: dd(:)
+      real(wp), intent(out), contiguous :: dx(:)
+
+      dx = dd(self%inside + 1:)
+   end subroutine unknown_rates
+
+   subroutine forces(self, d, load, axial, f, g)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), load(:), axial(:)
+      real(wp), intent(inout), contiguous :: f(:)
+      real(wp), intent(out), contiguous :: g(:)
+      real(wp) :: correction(size(d))
+
+      call self%unknown_forces(d, f, 1.0_wp, self%initial_tangent, g, correction)
+      g = g + load(lateral)*self%pattern(lateral)%force
+      if (size(axial) < 0) g = 0.0_wp
+   end subroutine forces
+
+   !> Forces on the unknowns: dead load less what springs and elastic rest carry, and second-order forces;
+   !> corrections of the deformations that bring the inside of the elements to equilibrium.
+   subroutine unknown_forces(self, d, f, dead, tangent, g, correction)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), f(:)
+      !> Share of the dead load that acts
+      real(wp), intent(in) :: dead
+      real(wp), intent(in), contiguous :: tangent(:)
+      real(wp), intent(out), contiguous :: g(:), correction(:)
+      real(wp) :: s(3), q(3)
+      integer :: i
+
+      associate (x => d(self%inside + 1:))
+         g = dead*self%dead - f(self%inside + 1:)
+         correction = 0.0_wp
+         do i = 1, size(self%element)
+            q = self%basic(i, x)
+            call self%end_forces(i, q, d, f, dead, tangent, s, correction)
+            call self%add_element(i, -s, g)
+            if (self%axially_loaded) call add_second_order(self, i, x, g)
+         end do
+      end associate
+   end subroutine unknown_forces
+
+   !> The compression of an element works on the squares of the rotations of its chord and its rigid ends.
+   pure subroutine add_second_order(self, element, x, g)
+      type(frame_type), intent(in) :: self
+      integer, intent(in) :: element
+      real(wp), intent(in) :: x(:)
+      real(wp), intent(inout) :: g(:)
+      real(wp) :: row(6, 3), press, turn
+      integer :: number(6), i, j
+
+      call second_order_rows(self, element, row)
+      press = self%compression(element)
+      number = reshape(self%number(:, self%element(element)%node), [6])
+      do i = 1, 3
+         turn = 0.0_wp
+         do j = 1, 6
+            if (number(j) > 0) turn = turn + row(j, i)*x(number(j))
+         end do
+         do j = 1, 6
+            if (number(j) > 0) g(number(j)) = g(number(j)) + press*self%lengths(i, element)*turn*row(j, i)
+         end do
+      end do
+   end subroutine add_second_order
+
+   !> Rotations of the rigid ends and of the chord per displacement of the nodes.
+   pure subroutine second_order_rows(self, element, row)
+      type(frame_type), intent(in) :: self
+      integer, intent(in) :: element
+      real(wp), intent(out) :: row(6, 3)
+
+      row = 0.0_wp
+      row(3, 1) = 1.0_wp
+      row(6, 2) = 1.0_wp
+      row(:, 3) = -self%element(element)%to_basic(2, :)
+      row(3, 3) = row(3, 3) + 1.0_wp
+   end subroutine second_order_rows
+
+   subroutine axial_forces(self, load, axial)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: load(:)
+      real(wp), intent(out), contiguous :: axial(:)
+
+      axial = self%compression(:size(axial))
+      if (size(load) < 0) axial = 0.0_wp
+   end subroutine axial_forces
+
+   subroutine add_stiffness(self, k, band)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: k(:)
+      real(wp), intent(inout), contiguous :: band(:, :)
+      real(wp) :: tangent(self%tangent_numbers)
+      integer :: unstable
+
+      call self%linearise(k, tangent, unstable)
+      call self%add_tangent(k, tangent, band)
+   end subroutine add_stiffness
+
+   subroutine add_geometric(self, k, band)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: k(:)
+      real(wp), intent(inout), contiguous :: band(:, :)
+      real(wp) :: row(6, 3)
+      integer :: number(6), e, i, j, l
+
+      do e = 1, size(self%element)
+         call second_order_rows(self, e, row)
+         number = reshape(self%number(:, self%element(e)%node), [6])
+         do l = 1, 3
+            do j = 1, 6
+               if (number(j) == 0) cycle
+               do i = 1, 6
+                  if (number(i) < number(j)) cycle
+                  band(1 + number(i) - number(j), number(j)) = band(1 + number(i) - number(j), number(j)) &
+                     - k(e)*self%lengths(l, e)*row(i, l)*row(j, l)
+               end do
+            end do
+         end do
+      end do
+   end subroutine add_geometric
+
+   pure subroutine rotations(self, d, rotation)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+      real(wp), intent(out), contiguous :: rotation(:)
+      integer :: i
+
+      do i = 1, self%n
+         rotation(i) = 0.0_wp
+         if (self%number(3, i) > 0) rotation(i) = d(self%inside + self%number(3, i))
+      end do
+   end subroutine rotations
+
+   !> Of dead load and second-order work, and energy of what is elastic.
+   pure real(wp) function potential_energy(self, d) result(energy)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+      real(wp) :: gap(3), g(self%unknowns)
+      integer :: i
+
+      associate (x => d(self%inside + 1:))
+         g = 0.0_wp
+         energy = -sum(self%dead*x) - sum(self%dead_force*d(:self%inside))
+         do i = 1, size(self%element)
+            associate (e => self%element(i))
+               gap = gap_of(self, i, self%basic(i, x), d, 1.0_wp)
+               if (allocated(e%rest)) energy = energy + 0.125_wp*(e%rest(1)*(gap(2) + gap(3))**2 &
+                                                                  + e%rest(2)*(gap(2) - gap(3))**2)
+               energy = energy + 0.5_wp*e%rest_along*gap(1)**2
+            end associate
+            if (self%axially_loaded) call add_second_order(self, i, x, g)
+         end do
+         energy = energy - 0.5_wp*sum(g*x)
+      end associate
+   end function potential_energy
+
+   pure real(wp) function axial_rate(self, spring, load)
+      class(frame_type), intent(in) :: self
+      integer, intent(in) :: spring
+      real(wp), intent(in) :: load(:)
+
+      axial_rate = 0.0_wp*(self%height + spring + sum(load))
+   end function axial_rate
+
+   pure real(wp) function acceleration_scale(self, spring, springs, load) result(scale)
+      class(frame_type), intent(in) :: self
+      integer, intent(in) :: spring
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(in) :: load(:)
+
+      scale = abs(springs%force(spring))/maxval(self%inertias) + abs(load(horizontal))
+   end function acceleration_scale
+
+   !> Displacements of the nodes, then deformations and forces of the springs in the elements.
+   pure subroutine channels(self, contents, channel)
+      class(frame_type), intent(in) :: self
+      type(row_contents), intent(in) :: contents
+      type(channel_type), allocatable, intent(out) :: channel(:)
+
+      allocate (channel(merge(5, 5, contents%in_time)))
+      channel(1) = channel_type('x', 'm', self%n)
+      channel(2) = channel_type('y', 'm', self%n)
+      channel(3) = channel_type('rotation', 'rad', self%n)
+      channel(4) = channel_type('deformation', '', self%inside)
+      channel(5) = channel_type('spring_force', '', self%inside)
+   end subroutine channels
+
+   pure subroutine fill_row(self, contents, response, springs, d, row)
+      class(frame_type), intent(in) :: self
+      type(row_contents), intent(in) :: contents
+      type(response_type), intent(in) :: response
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(in), contiguous :: d(:)
+      real(wp), intent(out), contiguous :: row(:)
+      integer :: i, j
+
+      row = 0.0_wp
+      do i = 1, self%n
+         do j = 1, 3
+            if (self%number(j, i) > 0) row((j - 1)*self%n + i) = d(self%inside + self%number(j, i))
+         end do
+      end do
+      do i = 1, self%inside
+         row(3*self%n + i) = d(i)
+         row(3*self%n + self%inside + i) = springs%force(i)
+      end do
+      if (contents%in_time) row(3*self%n + self%inside + 1:) = response%f(:self%inside)
+   end subroutine fill_row
+
+end module rbs_structure_frame_frame
