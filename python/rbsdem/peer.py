@@ -14,8 +14,7 @@ from rbsdem.measured.laboratory import read_test
 from rbsdem.measured.measured import PDELTA_CODES, MeasuredTest, net_force
 from rbsdem.measured.nearest import nearest
 from rbsdem.measured.predict import predict, predict_one
-from rbsdem.measured.prediction import Neighbour, Prediction
-from rbsdem.measured.predictions import Group, Predictions, Quartiles
+from rbsdem.measured.predictions import Neighbour, Prediction, Predictions
 from rbsdem.measured.shipped import (
     FOLDER_VARIABLE,
     HISTORY_FILES,
@@ -37,7 +36,6 @@ __all__ = [
     "Checked",
     "Doubt",
     "DrawnSpecimen",
-    "Group",
     "Indicators",
     "MeasuredTest",
     "Neighbour",
@@ -45,7 +43,6 @@ __all__ = [
     "PeerTest",
     "Prediction",
     "Predictions",
-    "Quartiles",
     "Reversals",
     "Specimen",
     "Specimens",

@@ -16,6 +16,7 @@ from rbsdem import peer, plot
 from rbsdem.cli import main
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.output import reports
+from rbsdem.output.tables import write_csv
 
 HEADER = (
     "peer_id,file,name,author,year,section,L_mm,b_mm,h_mm,cover_mm,fc_MPa,axial_kN,n_long,"
@@ -133,7 +134,7 @@ def test_folder_goes_on_with_the_same_bits(folder: Path, tmp_path: Path) -> None
     # Another number of samples is another prediction.
     assert peer.predict(tests[:1], bands=True, samples=9, store=store).resumed == 0
     for number, found in enumerate((whole, rest)):
-        found.bands_to_csv(tmp_path / f"{number}.csv")
+        write_csv(found.bands(), tmp_path / f"{number}.csv")
         found.paths_to_csv(tmp_path / f"bands{number}")
     assert (tmp_path / "0.csv").read_text() == (tmp_path / "1.csv").read_text()
     assert (tmp_path / "bands0/T3.csv").read_text() == (tmp_path / "bands1/T3.csv").read_text()

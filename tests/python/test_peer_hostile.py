@@ -156,7 +156,7 @@ def tests(tmp_path) -> peer.Specimens:
 
 
 def same(one: peer.Prediction, other: peer.Prediction) -> bool:
-    a, b = (peer.Predictions([row]).records()[0] for row in (one, other))
+    a, b = (peer.Predictions([row]).to_frame().iloc[0].to_dict() for row in (one, other))
     return repr(a) == repr(b)
 
 

@@ -25,6 +25,7 @@ from rbsdem.cli import main
 from rbsdem.errors import InputError
 from rbsdem.measured import pictures
 from rbsdem.output import reports
+from rbsdem.output.tables import write_csv
 from rbsdem.springs import Bilinear, Takeda
 
 HEADER = (
@@ -129,10 +130,10 @@ def test_limit_states_are_columns(table, tmp_path):
             assert row.limit_states == states
             assert {"cracking", "first_yield"} <= states.keys()
     assert found.resumed == 6
-    record = found.records()[0]
+    record = found.to_frame().iloc[0]
     assert record["drift_first_yield"] == found[0].limit_states["first_yield"]
     assert math.isnan(record["drift_axial_failure"])
-    assert "drift_first_yield" not in peer.predict(table[:1]).records()[0]
+    assert "drift_first_yield" not in peer.predict(table[:1]).to_frame()
 
 
 def test_scores_of_a_model_that_is_a_factor_off(table):
@@ -155,8 +156,8 @@ def test_what_goes_wrong_is_a_row(table):
     # Nothing was reached: as wrong as can be, and counted.
     assert [row.nrmse for row in found[:2]] == [1.0, 1.0]
     assert not found.all_completed
-    (both,) = [group for group in found.summary() if group.name == "all"]
-    assert (both.tests, both.failed, both.stopped) == (4, 2, 0)
+    both = found.summary().loc["all"]
+    assert (both["tests"], both["failed"], both["stopped"]) == (4, 2, 0)
 
 
 def test_an_early_end_keeps_what_was_reached(table, monkeypatch):
@@ -209,7 +210,7 @@ def test_a_process_that_dies_is_rows_too(folder):
     assert [row.status for row in found] == ["failed", *4 * ["completed"], "no history"]
     assert "process died" in found[0].error
     assert found[0].nrmse == 1.0
-    assert found.summary()[-1].failed == 1
+    assert found.summary().loc["all", "failed"] == 1
 
 
 def test_a_model_that_cannot_be_sent_is_refused(table):
@@ -256,16 +257,12 @@ def test_the_papers_model_by_name(table):
 
 def test_summary_by_groups(table):
     found = peer.predict(table, good)
-    groups = {group.name: group for group in found.summary()}
-    assert {name: group.tests for name, group in groups.items()} == {
-        "Flexure": 3,
-        "Shear": 2,
-        "all": 5,
-    }
-    peaks = groups["Flexure"].quartiles["peak_ratio"]
-    assert peaks.median == pytest.approx(1 / 1.2, rel=1e-6)
-    assert peaks.lower == pytest.approx((1 / 1.2 + 1 / 1.3) / 2, rel=1e-6)
-    assert [group.name for group in found.summary("series")] == ["Me 1991", "Me 1990", "all"]
+    groups = found.summary()
+    assert dict(groups["tests"]) == {"Flexure": 3, "Shear": 2, "all": 5}
+    flexure = groups.loc["Flexure"]
+    assert flexure["peak_ratio_median"] == pytest.approx(1 / 1.2, rel=1e-6)
+    assert flexure["peak_ratio_lower"] == pytest.approx((1 / 1.2 + 1 / 1.3) / 2, rel=1e-6)
+    assert list(found.summary("series").index) == ["Me 1991", "Me 1990", "all"]
     with pytest.raises(InputError, match="by = 'colour'"):
         found.summary("colour")
 
@@ -280,8 +277,8 @@ def test_worst_and_names(table):
 
 def test_csv_files(table, tmp_path):
     found = peer.predict(table, good)
-    found.to_csv(tmp_path / "results.csv")
-    found.summary_to_csv(tmp_path / "summary.csv")
+    write_csv(found.to_frame(), tmp_path / "results.csv")
+    write_csv(found.summary().reset_index(), tmp_path / "summary.csv")
     found.loops_to_csv(tmp_path / "loops")
     with (tmp_path / "results.csv").open() as file:
         rows = list(csv.DictReader(file))

@@ -23,14 +23,14 @@ def progress_bar(
     if not wanted or not sys.stderr.isatty():
         yield lambda done, text: None
         return
-    import rich.progress  # noqa: PLC0415
+    from rich import progress  # noqa: PLC0415
     from rich.console import Console  # noqa: PLC0415
 
-    bar = rich.progress.Progress(
-        rich.progress.BarColumn(bar_width=24),
-        rich.progress.MofNCompleteColumn(),
-        rich.progress.TextColumn("{task.description}", markup=False),
-        rich.progress.TimeRemainingColumn(),
+    bar = progress.Progress(
+        progress.BarColumn(bar_width=24),
+        progress.MofNCompleteColumn(),
+        progress.TextColumn("{task.description}", markup=False),
+        progress.TimeRemainingColumn(),
         console=Console(stderr=True),
         transient=True,
     )

@@ -22,8 +22,7 @@ from rbsdem.measured.doubts import check as check_tests
 from rbsdem.measured.predict import PredictionOptions
 from rbsdem.measured.predict import predict as run_predictions
 from rbsdem.measured.prediction_store import PredictionStore
-from rbsdem.measured.predictions import Predictions
-from rbsdem.measured.records import loop_names
+from rbsdem.measured.predictions import Predictions, loop_names
 from rbsdem.measured.specimen import Specimen
 from rbsdem.measured.specimens import Specimens, read_specimens
 from rbsdem.output import reports, tables
@@ -143,7 +142,7 @@ def _check(tests: Specimens, folder: Path | None) -> int:
     )
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
-        checked.to_csv(folder / "check.csv")
+        tables.write_csv(checked.by_test(), folder / "check.csv")
         print(f"wrote {folder / 'check.csv'}")
     return 0
 
@@ -213,13 +212,13 @@ def _report(found: Predictions, by: str, quiet: bool) -> None:
 def written(found: Predictions, folder: Path, by: str, loops: bool) -> list[str]:
     """Write the files; return lines that say which."""
     files = [folder / "results.csv", folder / "summary.csv", folder / "gallery.html"]
-    found.to_csv(files[0])
-    found.summary_to_csv(files[1], by)
+    tables.write_csv(found.to_frame(), files[0])
+    tables.write_csv(found.summary(by).reset_index(), files[1])
     gallery(found, files[2])
     banded = any(row.band is not None for row in found)
     if banded:
         files.append(folder / "bands.csv")
-        found.bands_to_csv(files[-1])
+        tables.write_csv(found.bands(), files[-1])
     files.append(contact_sheet(found, folder / "loops.png"))
     if banded:
         files.append(band_sheet(found, folder / "bands.png"))
@@ -320,7 +319,7 @@ def _write_columns(rows: Predictions, folder: Path) -> list[str]:
     """Write the files; return lines that say which."""
     folder.mkdir(parents=True, exist_ok=True)
     files = [folder / "numbers.csv"]
-    rows.bands_to_csv(files[0])
+    tables.write_csv(rows.bands(), files[0])
     for row, name in zip(rows, loop_names([row.specimen.name for row in rows]), strict=True):
         target = folder / name.name
         if row.band is not None:

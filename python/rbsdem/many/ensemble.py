@@ -141,7 +141,7 @@ class Ensemble:
         Parameters
         ----------
         run : int
-            Its number, that of its row in the table, from 0.
+            Its number, that of its row in `to_frame`, from 0.
 
         Returns
         -------
@@ -246,7 +246,7 @@ def ensemble(
     Returns
     -------
     Ensemble
-        Its `table` has a row for each run.
+        Its `to_frame` has a row for each run.
 
     Raises
     ------

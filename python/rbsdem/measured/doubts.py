@@ -30,13 +30,11 @@ cannot be, or softer than a tenth. **Symmetry** (hint): one side 1.25 times the 
 from __future__ import annotations
 
 import math
-import os
 import statistics
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from rbsdem._files import write_csv
 from rbsdem.errors import RbsdemError
 from rbsdem.measured.columns import checked_specimen
 from rbsdem.measured.indicators import Indicators, indicators
@@ -45,8 +43,6 @@ from rbsdem.measured.specimens import Specimens
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    pass
 
 __all__ = ["Checked", "Doubt", "check"]
 
@@ -147,8 +143,10 @@ class Checked:
         columns = ["test", "about", "certainty", "why", "for_the_second_score"]
         return pandas.DataFrame(rows, columns=columns)
 
-    def records(self) -> list[dict[str, Any]]:
-        """Return a dict for each test: its indicators and its doubts."""
+    def by_test(self) -> pd.DataFrame:
+        """Return a DataFrame, a row for each test: its indicators and its doubts."""
+        import pandas  # noqa: PLC0415
+
         rows = []
         for one in self.indicators:
             s, doubts = one.specimen, self.of(one.specimen)
@@ -164,19 +162,7 @@ class Checked:
                     "code_instead": next((d.code for d in doubts if d.sure and d.code), None),
                 }
             )
-        return rows
-
-    def to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write `records` as csv, whole or not at all.
-
-        Parameters
-        ----------
-        path : path
-            File to write.
-        """
-        rows = self.records()
-        head = list(rows[0]) if rows else []
-        write_csv(path, [head, *(list(row.values()) for row in rows)])
+        return pandas.DataFrame(rows)
 
 
 def _remedy(doubt: Doubt) -> str:

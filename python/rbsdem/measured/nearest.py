@@ -11,7 +11,7 @@ from rbsdem import _arguments
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.measured.columns import checked_specimen
 from rbsdem.measured.drawing import draw
-from rbsdem.measured.prediction import Neighbour, Prediction
+from rbsdem.measured.predictions import Neighbour, Prediction
 from rbsdem.measured.specimen import Specimen
 from rbsdem.model.circular import CircularSection
 from rbsdem.model.section import Section

@@ -27,9 +27,8 @@ from rbsdem.measured.columns import check_options, checked_specimen
 from rbsdem.measured.columns import column as column_of
 from rbsdem.measured.drawing import draw
 from rbsdem.measured.nearest import nearest
-from rbsdem.measured.prediction import Neighbour, Prediction
 from rbsdem.measured.prediction_store import PredictionStore
-from rbsdem.measured.predictions import Predictions
+from rbsdem.measured.predictions import Neighbour, Prediction, Predictions
 from rbsdem.measured.specimen import Specimen
 from rbsdem.measured.specimens import TABLE, read_specimens
 from rbsdem.model.column import Column

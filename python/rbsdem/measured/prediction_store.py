@@ -18,7 +18,7 @@ from rbsdem._package import code_digest
 from rbsdem.batch.store import JSON_LINES, Store, digest
 from rbsdem.curves.scores import compare
 from rbsdem.errors import RbsdemError
-from rbsdem.measured.prediction import Prediction
+from rbsdem.measured.predictions import Prediction
 from rbsdem.measured.specimen import Specimen
 from rbsdem.section.spread import Interval, Spread
 

@@ -1,76 +1,138 @@
-"""Predicted tests: a row for each, medians and quartiles of groups, files."""
+"""Predicted tests: a row for each, with scores, band and neighbours; their tables and files."""
 
 from __future__ import annotations
 
+import hashlib
 import math
 import os
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from rbsdem._files import whole_file, write_csv
+from rbsdem._files import whole_file
+from rbsdem.checks.criteria import WATCHED
+from rbsdem.curves.scores import SCORES, Comparison
 from rbsdem.errors import InputError
 from rbsdem.measured.pictures import Picture, picture
-from rbsdem.measured.prediction import Prediction
-from rbsdem.measured.records import band_record, loop_names, score_record
+from rbsdem.measured.specimen import Specimen
+from rbsdem.section.spread import Spread, numbers
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    pass
-
-
-__all__ = ["SUMMARY_SCORES", "Group", "Predictions", "Quartiles"]
+__all__ = ["SUMMARY_SCORES", "Neighbour", "Prediction", "Predictions", "loop_names"]
 
 SUMMARY_SCORES = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio", "end_ratio", "rms_best")
 """Scores of which groups have quartiles."""
 
-_NOT_RUN = ("failed", "no history")
+#: Limit states that have a column.
+_STATES = (*WATCHED, "strength_loss", "axial_failure")
+
+#: Bytes of the longest part of a path that is written.
+_LONGEST_NAME = 120
 
 
 @dataclass(frozen=True, slots=True)
-class Quartiles:
-    """Median and quartiles of a score over tests.
+class Neighbour:
+    """A test that is like another.
 
     Attributes
     ----------
-    lower, median, upper : float
-        25, 50 and 75 % of the tests are below; NaN if no test has the score.
+    specimen : Specimen
+        The test.
+    distance : float
+        0 for the same column; 1 is a difference of 0.15 in the axial load ratio, or of 40 % in the
+        shear span or in the mechanical ratio of the bars.
+    prediction : Prediction or None
+        Its prediction, with its errors; None if it was not predicted.
     """
 
-    lower: float
-    median: float
-    upper: float
+    specimen: Specimen
+    distance: float
+    prediction: Prediction | None = None
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
-    """Statistics of tests that have something in common.
+class Prediction:
+    """One test with the scores of its prediction.
 
     Attributes
     ----------
-    name : str
-        What they have in common; "all" for all.
-    tests : int
-        Tests with a history.
-    stopped, failed : int
-        How many of them ended early, and how many could not be analysed.
-    quartiles : dict of str to Quartiles
-        For each of `SUMMARY_SCORES`.
-    seconds : Quartiles
-        Wall time for the column and its analysis [s].
+    specimen : Specimen
+        The test.
+    model : str
+        Name of the model with the version of its parameters, as "layered 2026.2".
+    status : str
+        "completed", "stopped" (the analysis ended before the test did), "failed" (there is no
+        analysis), or "no history" (there is nothing to compare with; not counted).
+    error : str
+        Text of the exception.
+    note : str
+        Warnings.
+    seconds_model : float
+        Wall time for building the column [s].
+    seconds_analysis : float
+        Wall time of the analysis [s].
+    comparison : Comparison or None
+        Scores; None without a history, along another path than that of the test, or where the
+        process died. A test that failed has an nrmse of 1.
+    band : Spread or None
+        The prediction with its 80 % band and intervals; None unless bands were asked for.
+    nearest : tuple of Neighbour
+        The tests that are most like it, with the errors of their predictions; with bands only.
+    remarks : tuple of str
+        Where the column is outside the range of the tests that the model was fitted to.
+    limit_states : dict of str to float, or None
+        Drifts at which limit states are reached, in the order in which they are, by the names of
+        `rbsdem.checks.LimitState`; None unless they were asked for and there is an analysis.
     """
 
-    name: str
-    tests: int
-    stopped: int
-    failed: int
-    quartiles: dict[str, Quartiles]
-    seconds: Quartiles
+    specimen: Specimen
+    model: str
+    status: str
+    error: str = ""
+    note: str = ""
+    seconds_model: float = 0.0
+    seconds_analysis: float = 0.0
+    comparison: Comparison | None = None
+    band: Spread | None = None
+    nearest: tuple[Neighbour, ...] = ()
+    remarks: tuple[str, ...] = ()
+    limit_states: dict[str, float] | None = None
+
+    @property
+    def seconds(self) -> float:
+        """Wall time for the column and its analysis [s]."""
+        return self.seconds_model + self.seconds_analysis
+
+    @property
+    def nrmse(self) -> float:
+        """The error, as in `Comparison`; NaN without a history."""
+        return self.score("nrmse")
+
+    def score(self, name: str) -> float:
+        """Return a score of `Comparison` by name; NaN without a history.
+
+        Parameters
+        ----------
+        name : str
+            One of `rbsdem.curves.SCORES`, "test_drift_at_loss" or "model_drift_at_loss".
+        """
+        if self.comparison is not None:
+            return float(getattr(self.comparison, name))
+        return 1.0 if name == "nrmse" and self.status == "failed" else math.nan
+
+    @property
+    def points_within(self) -> float:
+        """Share of the test that lies within the band; NaN without one of both."""
+        if self.band is None or self.comparison is None:
+            return math.nan
+        return self.band.holds(self.comparison.test_force)
 
 
 class Predictions(Sequence[Prediction]):
@@ -154,19 +216,28 @@ class Predictions(Sequence[Prediction]):
         counted = [row for row in self._rows if row.status != "no history"]
         return self._some(sorted(counted, key=lambda row: -row.nrmse)[:n])
 
-    def summary(self, by: str = "failure_mode") -> list[Group]:
-        """Return medians and quartiles of groups, the last one that of all tests.
+    def summary(self, by: str = "failure_mode") -> pd.DataFrame:
+        """Return medians and quartiles of groups, a row for each, the last one that of all tests.
 
         Parameters
         ----------
         by : str, optional
             Attribute of `Specimen` whose values make the groups, as "section" or "series".
 
+        Returns
+        -------
+        DataFrame
+            By the name of the group: ``tests`` with a history, of which ``stopped`` ended early and
+            ``failed`` could not be analysed; of each of `SUMMARY_SCORES` and of ``seconds`` the
+            quartiles, as ``nrmse_lower``, ``nrmse_median``, ``nrmse_upper``, NaN if no test has it.
+
         Raises
         ------
         InputError
             If specimens have no such attribute.
         """
+        import pandas as pd  # noqa: PLC0415
+
         parts: dict[str, list[Prediction]] = {}
         for row in self._rows:
             try:
@@ -176,45 +247,26 @@ class Predictions(Sequence[Prediction]):
                     f"by = {by!r} is no attribute of a specimen, as failure_mode, section, series"
                 ) from None
             parts.setdefault("not known" if value is None else str(value), []).append(row)
-        groups = [_group(name, rows) for name, rows in parts.items()]
-        return [*sorted(groups, key=lambda group: -group.tests), _group("all", self._rows)]
+        groups = [{by: name} | _statistics(rows) for name, rows in parts.items()]
+        groups.sort(key=lambda group: -group["tests"])
+        return pd.DataFrame([*groups, {by: "all"} | _statistics(self._rows)]).set_index(by)
 
-    def records(self) -> list[dict[str, Any]]:
-        """Return a dict for each test: properties that group tests, scores, times.
+    def to_frame(self) -> pd.DataFrame:
+        """Return a row for each test: properties that group tests, scores, times.
 
         If limit states were asked for, "drift_first_yield", "drift_spalling", ... are the drifts at
         which they are reached; NaN where they are not.
         """
-        states = any(row.limit_states is not None for row in self._rows)
-        return [score_record(row, states) for row in self._rows]
-
-    def to_frame(self) -> pd.DataFrame:
-        """Return `records` as a DataFrame."""
         import pandas as pd  # noqa: PLC0415
 
-        return pd.DataFrame(self.records())
+        states = any(row.limit_states is not None for row in self._rows)
+        return pd.DataFrame([_scores(row, states) for row in self._rows])
 
-    def to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write `records` as csv, whole or not at all.
+    def bands(self) -> pd.DataFrame:
+        """Return a row for each test that has a band: intervals, and what its test was."""
+        import pandas as pd  # noqa: PLC0415
 
-        Texts that a spreadsheet would take for a formula get an apostrophe in front.
-
-        Parameters
-        ----------
-        path : path
-            File to write.
-        """
-        _write(path, self.records())
-
-    def bands_to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write bands as csv: a row for each test with its intervals and what its test was.
-
-        Parameters
-        ----------
-        path : path
-            File to write.
-        """
-        _write(path, [band_record(row) for row in self._rows if row.band is not None])
+        return pd.DataFrame([band_record(row) for row in self._rows if row.band is not None])
 
     def paths_to_csv(self, folder: str | os.PathLike[str]) -> None:
         """Write the bands along the paths, a file for each test that has one.
@@ -224,39 +276,10 @@ class Predictions(Sequence[Prediction]):
         folder : path
             Folder, which is made; its files are called as those of `loops_to_csv`.
         """
-        files = [row.specimen.file or f"test_{i + 1}" for i, row in enumerate(self._rows)]
-        for row, name in zip(self._rows, loop_names(files), strict=True):
+        for row, path in self._files(folder):
             if row.band is not None:
-                target = Path(folder) / name
-                target.parent.mkdir(parents=True, exist_ok=True)
-                row.band.to_csv(target)
-
-    def summary_to_csv(self, path: str | os.PathLike[str], by: str = "failure_mode") -> None:
-        """Write `summary` as csv.
-
-        Parameters
-        ----------
-        path : path
-            File to write.
-        by : str, optional
-            As for `summary`.
-        """
-        rows = []
-        for group in self.summary(by):
-            row: dict[str, Any] = {
-                by: group.name,
-                "tests": group.tests,
-                "stopped": group.stopped,
-                "failed": group.failed,
-            }
-            for name, q in {**group.quartiles, "seconds": group.seconds}.items():
-                row |= {
-                    f"{name}_lower": q.lower,
-                    f"{name}_median": q.median,
-                    f"{name}_upper": q.upper,
-                }
-            rows.append(row)
-        _write(path, rows)
+                path.parent.mkdir(parents=True, exist_ok=True)
+                row.band.to_csv(path)
 
     def loops_to_csv(self, folder: str | os.PathLike[str]) -> None:
         """Write the loops, a file for each test with displacement and both forces in SI.
@@ -268,18 +291,21 @@ class Predictions(Sequence[Prediction]):
             folder; two that would be the same get a number. The files hold the measured forces,
             which belong to the database.
         """
-        where = Path(folder)
-        where.mkdir(parents=True, exist_ok=True)
+        Path(folder).mkdir(parents=True, exist_ok=True)
         header = "displacement_m,test_force_N,model_force_N"
-        files = [row.specimen.file or f"test_{i + 1}" for i, row in enumerate(self._rows)]
-        for row, name in zip(self._rows, loop_names(files), strict=True):
+        for row, path in self._files(folder):
             if row.comparison is not None:
                 c = row.comparison
                 rows = np.column_stack((c.displacement, c.test_force, c.model_force))
-                path = where / name
                 path.parent.mkdir(parents=True, exist_ok=True)
                 with whole_file(path) as file:
                     np.savetxt(file, rows, "%.7g", delimiter=",", header=header, comments="")
+
+    def _files(self, folder: str | os.PathLike[str]) -> Iterator[tuple[Prediction, Path]]:
+        """Return each row with the file in a folder that it is written to."""
+        files = [row.specimen.file or f"test_{i + 1}" for i, row in enumerate(self._rows)]
+        for row, name in zip(self._rows, loop_names(files), strict=True):
+            yield row, Path(folder) / name
 
     def _some(self, rows: Iterable[Prediction]) -> Predictions:
         return Predictions(
@@ -287,27 +313,101 @@ class Predictions(Sequence[Prediction]):
         )
 
 
-def _group(name: str, rows: Iterable[Prediction]) -> Group:
+def _statistics(rows: Iterable[Prediction]) -> dict[str, Any]:
     counted = [row for row in rows if row.status != "no history"]
-    return Group(
-        name=name,
-        tests=len(counted),
-        stopped=sum(row.status == "stopped" for row in counted),
-        failed=sum(row.status == "failed" for row in counted),
-        quartiles={
-            score: _quartiles([row.score(score) for row in counted]) for score in SUMMARY_SCORES
-        },
-        seconds=_quartiles([row.seconds for row in counted if row.status not in _NOT_RUN]),
-    )
+    found: dict[str, Any] = {
+        "tests": len(counted),
+        "stopped": sum(row.status == "stopped" for row in counted),
+        "failed": sum(row.status == "failed" for row in counted),
+    }
+    values = {name: [row.score(name) for row in counted] for name in SUMMARY_SCORES}
+    values["seconds"] = [row.seconds for row in counted if row.status != "failed"]
+    for name, scores in values.items():
+        known = [number for number in scores if math.isfinite(number)]
+        quartiles = np.percentile(known, (25, 50, 75)).tolist() if known else 3 * [math.nan]
+        ends = ("lower", "median", "upper")
+        found |= {f"{name}_{end}": q for end, q in zip(ends, quartiles, strict=True)}
+    return found
 
 
-def _quartiles(values: Sequence[float]) -> Quartiles:
-    known = np.array([value for value in values if math.isfinite(value)])
-    if not known.size:
-        return Quartiles(math.nan, math.nan, math.nan)
-    return Quartiles(*np.percentile(known, (25, 50, 75)).tolist())
+def _scores(row: Prediction, limit_states: bool) -> dict[str, Any]:
+    """Return properties that group tests, scores and times by the names of the columns."""
+    s = row.specimen
+    drifts = row.limit_states or {}
+    reached = {f"drift_{name}": drifts.get(name, math.nan) for name in _STATES}
+    return {
+        "name": s.name,
+        "file": s.file or "",
+        "peer_id": s.peer_id,
+        "series": s.series,
+        "section": s.section,
+        "failure_mode": s.failure_mode,
+        "axial_load_ratio": s.axial_load_ratio,
+        "span_depth_ratio": s.span_depth_ratio,
+        "model": row.model,
+        "status": row.status,
+        **{name: row.score(name) for name in SCORES},
+        "test_drift_at_loss": row.score("test_drift_at_loss"),
+        "model_drift_at_loss": row.score("model_drift_at_loss"),
+        **(reached if limit_states else {}),
+        "seconds_model": row.seconds_model,
+        "seconds_analysis": row.seconds_analysis,
+        "error": row.error,
+        "note": row.note,
+        "outside": "; ".join(row.remarks),
+    }
 
 
-def _write(path: str | os.PathLike[str], rows: list[dict[str, Any]]) -> None:
-    header = list(dict.fromkeys(name for row in rows for name in row))
-    write_csv(path, [header, *([row.get(name) for name in header] for row in rows)])
+def band_record(row: Prediction) -> dict[str, Any]:
+    """Return band and intervals of a prediction by the names of the columns of their csv."""
+    found, test = row.band, row.comparison
+    assert found is not None
+    known = {
+        "peak_force_N": found.peak_force,
+        "energy_J": found.energy,
+        "drift_at_loss": found.drift_at_loss,
+    }
+    measured = [math.nan, math.nan, math.nan]
+    if test is not None:
+        measured = list(numbers(test.displacement, test.test_force, test.height).values())
+    record: dict[str, Any] = {"name": row.specimen.name, "model": row.model}
+    record |= {"points_within": row.points_within, "width": found.width}
+    for (name, number), of_test in zip(known.items(), measured, strict=True):
+        record |= {
+            f"{name}_lower": number.lower,
+            name: number.value,
+            f"{name}_upper": number.upper,
+            f"{name}_test": of_test,
+        }
+    for place, one in enumerate(row.nearest, 1):
+        record |= {
+            f"nearest_{place}": one.specimen.name,
+            f"distance_{place}": one.distance,
+            f"nrmse_{place}": one.prediction.nrmse if one.prediction else math.nan,
+        }
+    return record | {"outside": "; ".join(row.remarks)}
+
+
+def loop_names(files: Sequence[str]) -> list[PurePath]:
+    """Return a csv for each history: its path below the folder, in letters that any disk takes."""
+    taken: set[str] = set()
+    names = []
+    for file in files:
+        parts = [_safe(part) for part in PurePath(file).parts if part not in ("..", "/", "")]
+        stem = re.sub(r"\.(csv|txt)$", "", parts.pop() if parts else "test", flags=re.IGNORECASE)
+        number, name = 1, PurePath(*parts, f"{stem}.csv")
+        while str(name).casefold() in taken:
+            number += 1
+            name = PurePath(*parts, f"{stem}_{number}.csv")
+        taken.add(str(name).casefold())
+        names.append(name)
+    return names
+
+
+def _safe(part: str) -> str:
+    """Return a part of a path without letters that a disk may refuse, and not too long."""
+    kept = "".join(c if c.isprintable() and c not in '\\:*?"<>|' else "_" for c in part)
+    if len(kept.encode()) <= _LONGEST_NAME:
+        return kept
+    digest = hashlib.sha256(kept.encode()).hexdigest()[:12]
+    return f"{kept.encode()[: _LONGEST_NAME - 13].decode(errors='ignore')}_{digest}"

@@ -10,11 +10,14 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, overload
+from typing import TYPE_CHECKING, Any, overload
 
 from rbsdem import _arguments
 from rbsdem.errors import InputError
 from rbsdem.measured.specimen import Observed, Specimen
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 __all__ = ["TABLE", "Specimens", "read_specimens"]
 
@@ -222,11 +225,11 @@ class Specimens(Sequence[Specimen]):
             parts.setdefault(row.series, []).append(row)
         return {key: Specimens(rows) for key, rows in parts.items()}
 
-    def to_pandas(self) -> Any:
-        """Return a DataFrame, a row for each test; needs pandas."""
-        rows = [asdict(row) for row in self._rows]
+    def to_frame(self) -> pd.DataFrame:
+        """Return a row for each test."""
         import pandas as pd  # noqa: PLC0415
 
+        rows = [asdict(row) for row in self._rows]
         return pd.DataFrame([{**row, **row.pop("observed")} for row in rows])
 
     def _named(self, key: str) -> Specimen:

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rbsdem._files import write_figure
-from rbsdem.measured.prediction import Prediction
-from rbsdem.measured.predictions import Predictions
+from rbsdem.measured.predictions import Prediction, Predictions
 from rbsdem.measured.specimen import Specimen
 from rbsdem.output.style import (
     MODEL_LINE,

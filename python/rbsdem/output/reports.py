@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rbsdem.measured.prediction import Prediction
-from rbsdem.measured.predictions import Predictions, Quartiles
-from rbsdem.measured.records import band_record
+from rbsdem.measured.predictions import Prediction, Predictions, band_record
 from rbsdem.output.tables import table
 
 if TYPE_CHECKING:
@@ -59,17 +57,17 @@ def summary_table(predictions: Predictions, by: str) -> Table:
     groups = predictions.summary(by)
     rows = [
         {
-            "Median (quartiles)": group.name,
-            "Tests": group.tests,
-            "Early end": group.stopped,
-            "Failed": group.failed,
-            "NRMSE": _three(group.quartiles["nrmse"], 3),
-            **{title: _three(group.quartiles[name], 2) for title, name in _RATIOS.items()},
-            "Time, ms": _three(group.seconds, 1, 1e3),
+            "Median (quartiles)": name,
+            "Tests": int(group["tests"]),
+            "Early end": int(group["stopped"]),
+            "Failed": int(group["failed"]),
+            "NRMSE": _three(group, "nrmse", 3),
+            **{title: _three(group, score, 2) for title, score in _RATIOS.items()},
+            "Time, ms": _three(group, "seconds", 1, 1e3),
         }
-        for group in groups
+        for name, group in groups.iterrows()
     ]
-    return _table(rows, styles=["bold" if group.name == "all" else None for group in groups])
+    return _table(rows, styles=["bold" if name == "all" else None for name in groups.index])
 
 
 def bands_table(predictions: Predictions) -> Table:
@@ -135,10 +133,11 @@ def _table(rows: list[dict[str, Any]], **options: Any) -> Table:
     return table(pandas.DataFrame(rows), **options)
 
 
-def _three(q: Quartiles, digits: int, unit: float = 1.0) -> str:
-    if not math.isfinite(q.median):
+def _three(group: Any, name: str, digits: int, unit: float = 1.0) -> str:
+    values = [unit * group[f"{name}_{end}"] for end in ("median", "lower", "upper")]
+    if not math.isfinite(values[0]):
         return "-"
-    median, low, high = (f"{unit * value:.{digits}f}" for value in (q.median, q.lower, q.upper))
+    median, low, high = (f"{value:.{digits}f}" for value in values)
     return f"{median} ({low} {high})"
 
 

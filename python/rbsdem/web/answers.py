@@ -27,7 +27,7 @@ from rbsdem.errors import InputError, RbsdemError, SolveError
 from rbsdem.measured.nearest import nearest
 from rbsdem.measured.pictures import picture
 from rbsdem.measured.predict import predict_one
-from rbsdem.measured.prediction import Prediction
+from rbsdem.measured.predictions import Prediction
 from rbsdem.measured.specimen import Specimen
 from rbsdem.measured.specimens import read_specimens
 from rbsdem.model.section import Section

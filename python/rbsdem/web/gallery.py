@@ -12,8 +12,7 @@ import numpy as np
 from rbsdem._arguments import Array
 from rbsdem._files import whole_file
 from rbsdem.measured.pictures import Picture
-from rbsdem.measured.prediction import Prediction
-from rbsdem.measured.predictions import Group, Predictions
+from rbsdem.measured.predictions import Prediction, Predictions
 from rbsdem.web.parts import GALLERY, one_file
 
 __all__ = ["SCORES", "card", "finite", "gallery"]
@@ -91,7 +90,7 @@ def gallery(predictions: Predictions, path: str | os.PathLike[str]) -> Path:
     data = {
         "title": title,
         "digits": SCORES,
-        "groups": [_group(group) for group in predictions.summary()],
+        "groups": _groups(predictions),
         "tests": [
             card(row, drawn) for row, drawn in zip(predictions, predictions.pictures, strict=True)
         ],
@@ -103,15 +102,19 @@ def gallery(predictions: Predictions, path: str | os.PathLike[str]) -> Path:
     return path
 
 
-def _group(group: Group) -> dict[str, object]:
-    quartiles = {name: group.quartiles[name] for name in SCORES}
-    return {
-        "name": group.name,
-        "tests": group.tests,
-        "stopped": group.stopped,
-        "failed": group.failed,
-        "scores": {
-            name: [finite(value, digits) for value in (q.median, q.lower, q.upper)]
-            for (name, q), digits in zip(quartiles.items(), SCORES.values(), strict=True)
-        },
-    }
+def _groups(predictions: Predictions) -> list[dict[str, object]]:
+    summary = predictions.summary()
+    return [
+        {
+            "name": name,
+            **{count: int(row[count]) for count in ("tests", "stopped", "failed")},
+            "scores": {
+                score: [
+                    finite(float(row[f"{score}_{end}"]), digits)
+                    for end in ("median", "lower", "upper")
+                ]
+                for score, digits in SCORES.items()
+            },
+        }
+        for name, row in summary.iterrows()
+    ]
