@@ -24,7 +24,7 @@ _FIELD = re.compile(
 
 
 class RbsdemError(Exception):
-    """Base of every error that rbsdem raises on purpose."""
+    """Base class of the errors of rbsdem."""
 
 
 class InputError(RbsdemError, ValueError):
@@ -91,9 +91,9 @@ class SolveError(RbsdemError, RuntimeError):
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C ended work of many runs before all of them were done.
+    """Ctrl-C ended an analysis of many runs before all of them were done.
 
-    It is a `KeyboardInterrupt`: a program that does not ask for it ends.
+    It is a `KeyboardInterrupt`: a program that does not catch it ends.
 
     Parameters
     ----------
@@ -126,4 +126,4 @@ class AccuracyWarning(UserWarning):
 
 
 class RepairWarning(UserWarning):
-    """A file was not in order and has been mended: the message says what is missing, and where."""
+    """A file was repaired while it was read: the message says what was missing, and where."""

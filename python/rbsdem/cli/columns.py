@@ -16,10 +16,9 @@ import click
 import numpy as np
 
 from rbsdem._extras import extra
-from rbsdem._files import write_csv, write_figure
+from rbsdem._files import write_figure
 from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
 from rbsdem.errors import InputError, RepairWarning
-from rbsdem.many.ensemble import Ensemble
 from rbsdem.many.ensemble import ensemble as run_ensemble
 from rbsdem.many.fragility import Fragility
 from rbsdem.many.hazard import Hazard
@@ -218,7 +217,7 @@ def ensemble(
         allow_partial=True,
     )
     if "" not in runs.status:
-        write_csv(out / "runs.csv", _rows(runs))
+        tables.write_csv(runs.to_frame(), out / "runs.csv")
     if not quiet:
         counts = ", ".join(f"{number} {status}" for status, number in runs.counts.items())
         resumed = f", {runs.resumed} of them from the store" if runs.resumed else ""
@@ -253,17 +252,6 @@ def _part(text: str) -> tuple[int, int]:
         return int(part), int(parts)
     except ValueError:
         raise InputError(f"--shard {text}: give part and number of parts, as 3/20") from None
-
-
-def _rows(runs: Ensemble) -> list[list[object]]:
-    columns, motions = list(runs.columns), list(runs.motions)
-    rows: list[list[object]] = [["column", "motion", "scale", "status", *runs.measures, "error"]]
-    for run in range(len(runs)):
-        numbers = [float(values[run]) for values in runs.measures.values()]
-        names = str(columns[runs.column[run]]), str(motions[runs.motion[run]])
-        status = str(runs.status[run])
-        rows.append([*names, float(runs.scale[run]), status, *numbers, runs.errors.get(run, "")])
-    return rows
 
 
 # ---- incremental dynamic analysis ---------------------------------------------------------------
