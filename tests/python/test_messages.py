@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import subprocess
 import sys
 import warnings
@@ -231,3 +232,29 @@ def test_an_area_is_no_diameter():
     bars = Layout(12, 314e-6, STEEL)
     with pytest.raises(InputError, match=r"bar_diameter = 0.000314 m is thinner .* 20 mm is 0.02"):
         RectangularSection(0.4, 0.4, Concrete(46.5e6), layout=bars, cover=0.013)
+
+
+@pytest.mark.parametrize(
+    ("call", "field"),
+    [
+        (lambda: rbsdem.Concrete(46.5), "concrete.fc"),
+        (lambda: Elastic(-1.0), "elastic spring.k"),
+        (lambda: rbsdem.Layout("many", 0.016, rbsdem.Steel(446e6)), "layout.number"),
+        (lambda: rbsdem.protocol([]), "protocol.amplitudes"),
+        (lambda: rbsdem.protocol([0.01, "x"]), "amplitudes"),
+        (lambda: rbsdem.protocol([0.01, -0.02]), "loading.amplitudes"),
+    ],
+)
+def test_an_input_error_knows_its_field(call, field):
+    with pytest.raises(rbsdem.InputError) as caught:
+        call()
+    assert caught.value.field == field
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert (again.faults, str(again)) == (caught.value.faults, str(caught.value))
+
+
+def test_each_line_of_an_input_error_has_its_field():
+    lines = "a b.nml line 4: k = 1 must be 2\nties: legs_across = 9 do not fit\nthere is no column"
+    error = rbsdem.InputError(lines)
+    assert [field for field, _ in error.faults] == ["k", "ties.legs_across", ""]
+    assert rbsdem.InputError("no core is left", "section: cover").field == "section.cover"
