@@ -128,7 +128,7 @@ contains
                - springs%centre(i)*(axial_load - springs%press_at(i))
    end function moment_on_plane
 
-   !> The least forward rate of the layers of a joint on one-way lines, see `fibre_section`.
+   !> The least forward rate of the layers of a joint that would unload on reversal, see `fibre_section`.
    pure real(wp) function least_forward_rate(springs, i, turn, press, digits) result(least)
       type(spring_array), intent(in) :: springs
       integer, intent(in) :: i

@@ -93,7 +93,7 @@ contains
       end select
    end subroutine first_layer_exit
 
-   !> A layer whose motion has come to a stand goes back from its one-way line. Its joint chooses its lines
+   !> A layer whose motion has come to a stand unloads. Its joint chooses its branches
    !> afterwards.
    subroutine turn_layer(springs, i, layer, way)
       type(spring_array), intent(inout) :: springs

@@ -1,4 +1,4 @@
-!> How a motion leaves a line within a step in time: it passes an end, or turns back on a one-way line. The
+!> How a motion leaves a line within a step in time: it passes an end, or unloads on a reversal. The
 !> motion is known at both ends of the step, and taken as the parabola through both velocities.
 module rbs_hysteresis_line_exit
    use rbs_base_kinds, only: wp
@@ -23,7 +23,7 @@ contains
 
    !> The exit from a line within a step.
    pure subroutine find_exit(ends, unload_on_reversal, d, v, h, digits, exit)
-      !> The ends of the line, from below and from above, and whether it is one-way
+      !> The ends of the line, from below and from above, and whether it unloads on reversal
       real(wp), intent(in) :: ends(2)
       integer, intent(in) :: unload_on_reversal
       !> Deformation and velocity at the start of the step and at its end
@@ -68,7 +68,7 @@ contains
       end function end_of
 
       !> Whether a deformation is beyond the end of the line in a direction, by more than the last digits. The
-      !> rear end of a one-way line does not count.
+      !> rear end of one that unloads on reversal does not count.
       pure logical function is_beyond(at, side)
          real(wp), intent(in) :: at
          integer, intent(in) :: side

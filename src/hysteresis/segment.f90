@@ -23,8 +23,8 @@ module rbs_hysteresis_segment
       !> Whether the point at the end still belongs to this line. An open end belongs to the line that
       !> follows: a spring that arrives there is on that line. Only a crossing of zero force is closed.
       logical :: includes_lower_end = .false., includes_upper_end = .false.
-      !> A one-way line is left at once when the motion turns back: its rear end moves with the spring.
-      !> +1: one-way upward, lo moves; -1: one-way downward, hi moves; 0: both ways.
+      !> Whether the branch is left at once when the motion turns back, so that its rear end moves with the
+      !> spring. +1: it leads upward, and lo moves; -1: downward, and hi moves; 0: it leads both ways.
       integer :: unload_on_reversal = 0
    contains
       procedure :: force

@@ -34,7 +34,7 @@ module rbs_hysteresis_springs
       real(wp), allocatable :: first(:), last(:)
       !> Whether the ends themselves belong to the line (count), see `segment`
       logical, allocatable :: includes_lower_end(:), includes_upper_end(:)
-      !> One-way lines (count), see `segment`
+      !> Direction of a branch that unloads on reversal, else 0 (count), see `segment`
       integer, allocatable :: unload_on_reversal(:)
       !> Work done on each spring along its path, exact (count) [J]
       real(wp), allocatable :: work(:)
@@ -189,8 +189,8 @@ contains
       force = self%f0(i) + self%k(i)*(self%d(i) - self%d0(i))
    end function force
 
-   !> The end of the present line in a direction, +1 or -1 [m or rad]. The rear end of a one-way line is the
-   !> present deformation.
+   !> The end of the present line in a direction, +1 or -1 [m or rad]. The rear end of one that unloads on
+   !> reversal is the present deformation.
    pure real(wp) function end_toward(self, i, direction)
       class(spring_array), intent(in) :: self
       integer, intent(in) :: i, direction
@@ -225,7 +225,7 @@ contains
       self%stuck = .true.
    end subroutine advance_to
 
-   !> Move along the present line to d; the rear end of a one-way line follows.
+   !> Move along the present line to d; the rear end of one that unloads on reversal follows.
    pure subroutine advance_on_branch(self, i, d)
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i
@@ -244,7 +244,7 @@ contains
    end subroutine advance_on_branch
 
    !> Move to the end of the present line and get the line that follows from the rule. When the motion turns
-   !> back, a one-way line ends at the present deformation.
+   !> back, one that unloads on reversal ends at the present deformation.
    subroutine change_line(self, i, direction)
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i, direction
@@ -273,7 +273,7 @@ contains
       integer, intent(in) :: direction
 
       call change_line(self, i, direction)
-      ! A new one-way line starts at the present deformation, to the last bit.
+      ! A branch that unloads on reversal starts at the present deformation, to the last bit.
       if (self%unload_on_reversal(i) > 0) self%first(i) = self%d(i)
       if (self%unload_on_reversal(i) < 0) self%last(i) = self%d(i)
    end subroutine leave
@@ -582,7 +582,7 @@ contains
       real(wp), intent(in) :: way
       !> Springs that come closer than this to an end of their line, in shares of the end, are near it
       real(wp), intent(in) :: slack
-      !> Whether any is near an end, or on a one-way line
+      !> Whether any is near an end, or would unload on a reversal
       logical, intent(out) :: near
 
       call advance_along(size(q), q, rate, way, slack, self%d0, self%f0, self%k, self%unload_on_reversal, &

@@ -41,7 +41,7 @@ contains
    !>
    !> Written without branches. Of the ways to both ends divided by the rate, the larger one leads ahead.
    pure subroutine look_along(n, y, k, lo, hi, slack, unload_on_reversal, both_ways, w, phi, open, turn, &
-                              least_rate, room, ahead, nearest, least_room, any_one_way, stiffness)
+                              least_rate, room, ahead, nearest, least_room, any_unloads, stiffness)
       integer, intent(in) :: n
       !> Distances, slopes and ends of the lines; finite, so that quotients do not overflow
       real(wp), intent(in) :: y(n), k(n), lo(n), hi(n)
@@ -54,10 +54,10 @@ contains
       real(wp), intent(in) :: least_rate, room
       !> Ways to the ends, in units of the rates, and the least of them
       real(wp), intent(out) :: ahead(n), nearest
-      !> Not above zero if a layer is on the end that it goes to, or goes back on a one-way line
+      !> Not above zero if a layer is on the end that it goes to, or unloads on a reversal
       real(wp), intent(out) :: least_room
-      !> Whether any layer is on a one-way line
-      logical, intent(out) :: any_one_way
+      !> Whether any layer is on a branch that unloads on reversal
+      logical, intent(out) :: any_unloads
       !> sum k v**2
       real(wp), intent(out) :: stiffness
       real(wp) :: least_both, v, size_v, d, per_v, to_lo, to_hi, still, per_least
@@ -86,7 +86,7 @@ contains
                                           unload_on_reversal(i)*v + both_ways(i) + still))
          least_both = min(least_both, both_ways(i))
       end do
-      any_one_way = least_both < 0.5_wp
+      any_unloads = least_both < 0.5_wp
    end subroutine look_along
 
    !> When a layer was last at the end of its line behind: the ways back, as in `look_along`.

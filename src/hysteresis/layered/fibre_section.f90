@@ -330,7 +330,7 @@ contains
       if (abs(stiffness) <= no_stiffness*self%turning) stiffness = 0.0_wp
    end subroutine read_plane
 
-   !> The least forward rate of layers on one-way lines on the first of three paths on the present lines, in
+   !> The least forward rate of layers that would unload on reversal on the first of three paths, in
    !> shares of their largest on the other two; below zero a layer goes back.
    pure real(wp) function least_forward_rate(self, turn, press, digits) result(least)
       class(fibre_section), intent(in) :: self

@@ -151,7 +151,7 @@ contains
       slope = (self%f(i + 1) - self%f(i))/(self%d(i + 1) - self%d(i))
    end function slope_after
 
-   !> The line of the backbone on side s that starts at, or contains, a deformation; one-way outward.
+   !> The line of the backbone on side s that starts at, or contains, a deformation; it unloads on reversal.
    pure type(segment) function line_from(self, s, d) result(line)
       class(backbone_side), intent(in) :: self
       !> Side, +1 or -1

@@ -239,7 +239,7 @@ contains
             if (c_next > c*(1.0_wp + 1.0e-9_wp)) then
                f_next = now%strength*curve(self, c_next)
                branch = chord(c, f, c_next, f_next)
-               call set_one_way(branch)
+               call set_unloading(branch)
                return
             end if
          end do
@@ -249,7 +249,7 @@ contains
          else
             branch = segment(d0=-c, f0=-f, lo=-unbounded, hi=-c)
          end if
-         call set_one_way(branch)
+         call set_unloading(branch)
       end subroutine follow_envelope
 
       !> The motion has turned back on the envelope at (c, f), f without wear.
@@ -280,7 +280,7 @@ contains
          call full_closing(c_closed, f_closed)
          branch = chord(c_closed, f_closed, now%c_u, now%strength*now%f_u)
          if (self%rubs) then
-            call set_one_way(branch)
+            call set_unloading(branch)
          else
             branch%includes_upper_end = .not. now%gap > 0.0_wp
          end if
@@ -297,7 +297,7 @@ contains
             branch = chord(now%c_p - now%gap, 0.0_wp, c_closed, f_closed)
             branch%includes_lower_end = .true.
             branch%includes_upper_end = .true.
-            if (self%rubs) call set_one_way(branch)
+            if (self%rubs) call set_unloading(branch)
          else if (now%kind == closing) then
             call unload()
          else
@@ -386,7 +386,7 @@ contains
             now%kind = contact
             branch = chord(now%c_p - now%gap, 0.0_wp, c_closed, f_closed)
             branch%hi = -c
-            call set_one_way(branch)
+            call set_unloading(branch)
          end if
       end subroutine close_on
 
@@ -441,7 +441,7 @@ contains
          now%kind = closing
          branch = chord(c, 0.0_wp, now%c_p - now%gap, 0.0_wp)
          ! Openings are added up only if they have an effect.
-         if (self%wear > 0.0_wp) call set_one_way(branch)
+         if (self%wear > 0.0_wp) call set_unloading(branch)
       end subroutine close_up
 
       !> The crack has opened to a closing c: the wider it was, the earlier its faces touch, and the
@@ -496,13 +496,13 @@ contains
       if (c_2 > c_1) branch%k = (f_2 - f_1)/(c_2 - c_1)
    end function chord
 
-   !> Make a line of the envelope one-way: it is left when the motion turns back.
-   pure subroutine set_one_way(branch)
+   !> Let a branch of the envelope unload on reversal.
+   pure subroutine set_unloading(branch)
       type(segment), intent(inout) :: branch
 
       branch%includes_upper_end = .true.
       branch%unload_on_reversal = -1
-   end subroutine set_one_way
+   end subroutine set_unloading
 
    pure subroutine copy(self, other)
       class(concrete_memory), intent(inout) :: self

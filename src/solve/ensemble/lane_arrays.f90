@@ -82,7 +82,7 @@ module rbs_solve_ensemble_lane_arrays
       !> limit state is reached for the first time
       real(wp), pointer, contiguous :: q(:, :) => null(), v(:, :) => null(), from(:, :) => null(), &
                                        lowest(:, :) => null(), highest(:, :) => null()
-      !> Lines of the springs, as in `spring_lines`; the way is +1 or -1 for one-way lines
+      !> Branches of the springs, as in `spring_array`; the way is +1 or -1 for those that unload on reversal
       real(wp), pointer, contiguous :: d0(:, :) => null(), f0(:, :) => null(), k(:, :) => null(), &
                                        first(:, :) => null(), last(:, :) => null(), way(:, :) => null(), &
                                        work(:, :) => null()

@@ -116,7 +116,8 @@ contains
       end associate
    end subroutine springs_to_lane
 
-   !> Works of the springs, and rear ends of one-way lines; their lines have not changed.
+   !> Works of the springs, and rear ends of those that unload on reversal; their branches have not
+   !> changed.
    subroutine springs_from_lane(b, i, d, state)
       type(lane_block), intent(in) :: b
       integer, intent(in) :: i
