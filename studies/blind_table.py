@@ -3,9 +3,8 @@
     python studies/blind_table.py FOLDER [--jobs 2]
 
 FOLDER holds the histories and the table of the tests. Scores are those of `rbsdem.compare`. The
-parameters of the model were fitted to flexural tests of rectangular columns (studies/fit_hinge.py)
-and to shear failures (studies/fit_shear.py): those scripts print the scores on the series that
-were left out.
+parameters of the model were fitted to the same tests (studies/fit_model.py): that script prints the
+scores on the series that were left out.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ import numpy as np
 
 import rbsdem
 from rbsdem import peer
-from rbsdem.section.model import MODELS
+from rbsdem.section.columns import MODELS
 
 SCORES = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio")
 CLASSES = (-1.0, 0.05, 0.15, 0.3, 0.45, 1.0)

@@ -23,13 +23,13 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from rbsdem.section.directions import ENDS
 from scipy.optimize import least_squares
 
 import rbsdem
 from rbsdem import peer
 from rbsdem.calibration.misfit import Target, forces
 from rbsdem.errors import RbsdemError
-from rbsdem.section.directions import ENDS
 
 # Bounds as factors of the value, or as values where it may be zero.
 FACTORS = {
@@ -53,13 +53,12 @@ EVERY = 4
 _cases: list[tuple[Any, Target]] = []
 
 
-def begin(folder: str, model_version: str | None, choice: slice) -> None:
+def begin(folder: str, choice: slice) -> None:
     """Load the tests."""
     warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
     tests = peer.read_specimens(folder).where(section="rectangular", failure_mode="Flexure")
-    options = {} if model_version is None else {"version": model_version}
     for specimen in [test for test in tests if test.path][choice]:
-        _cases.append((peer.column(specimen, **options), Target(specimen.test())))
+        _cases.append((peer.column(specimen), Target(specimen.test())))
 
 
 def made(column: Any, factors: dict[str, float]) -> Any:
@@ -124,12 +123,11 @@ def main() -> None:
     parser.add_argument("--steps", type=int, default=6)
     parser.add_argument("--swaps", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--model-version")
     parser.add_argument("--start", nargs="*", default=[], metavar="NAME", help="set to begin with")
     parser.add_argument("--among", nargs="*", metavar="NAME", help="candidates; all by default")
     parser.add_argument("--floor", action="store_true", help="all parameters at once")
     given = parser.parse_args()
-    source = given.folder, given.model_version, slice(0, None, 2 * given.every)
+    source = given.folder, slice(0, None, 2 * given.every)
     begin(*source)
     count = len(_cases)
     with ProcessPoolExecutor(given.jobs, initializer=begin, initargs=source) as pool:

@@ -14,7 +14,7 @@ alternating least squares. A test counts by the logarithm of its error, and goin
 slopes were taken is paid for. It begins at the six parameters of `calibration_choice.py`. STATE
 keeps the directions between starts, also for other tests.
 
-`--write` puts the exponents into python/rbsdem/section/directions.py. A unit of a direction is a
+`--write` puts the exponents into data/layered_directions.csv. A unit of a direction is a
 standard deviation of its places over the tests, so that the factor e is a usual one.
 """
 
@@ -22,7 +22,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import re
 import time
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
@@ -33,13 +32,14 @@ from calibration_choice import TOGETHER
 
 from rbsdem.calibration.misfit import forces
 from rbsdem.errors import RbsdemError
-from rbsdem.section.directions import ENDS
+from rbsdem.section.parameters import table
 
 ROOT = Path(__file__).resolve().parents[1]
-NAMES = list(ENDS)
+ROWS = {name: row for name, row in table().items() if row.low == row.low}
+NAMES = list(ROWS)
 #: Where the search begins.
 START = ("strength", "lengths", "softening", "r0", "core_softening", "plastic")
-LOW, HIGH = (np.log([ends[side] for ends in ENDS.values()]) for side in (0, 1))
+LOW, HIGH = (np.log([getattr(row, side) for row in ROWS.values()]) for side in ("low", "high"))
 #: What a parameter counts in: a sixth of its range, as logarithms, or less.
 UNIT = np.minimum((HIGH - LOW) / 6, 0.5)
 EVERY = 4
@@ -154,12 +154,14 @@ def exponents(directions: np.ndarray, at: np.ndarray) -> list[dict[str, float]]:
 
 
 def write(found: list[dict[str, float]]) -> None:
-    """Put the exponents into their module."""
-    path = ROOT / "python/rbsdem/section/directions.py"
-    lines = "".join(f"    'direction_{k}': {one!r},\n" for k, one in enumerate(found, 1))
-    body = re.compile(r"^(DIRECTIONS: [^\n]* = ).*?^}", re.S | re.M)
-    text = path.read_text("utf-8")
-    text = body.sub(lambda match: f"{match.group(1)}{{\n{lines}}}", text, count=1)
+    """Put the exponents into their table."""
+    path = ROOT / "data/layered_directions.csv"
+    kept = [line for line in path.read_text("utf-8").splitlines() if line.startswith("#")]
+    rows = [["parameter", *(f"direction_{k}" for k in range(1, len(found) + 1))]]
+    for name in NAMES:
+        if any(name in one for one in found):
+            rows.append([name, *(str(one.get(name, "")) for one in found)])
+    text = "\n".join([*kept, *(",".join(row) for row in rows)]) + "\n"
     path.write_text(text, "utf-8")
 
 
@@ -173,7 +175,7 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--write", action="store_true")
     given = parser.parse_args()
-    source = given.folder, None, slice(0, None, 2 * given.every)
+    source = given.folder, slice(0, None, 2 * given.every)
     choice.begin(*source)
     tests = range(len(choice._cases))
     directions, at = start(), np.zeros((len(tests), len(START)))

@@ -63,7 +63,7 @@ def columns() -> Iterator[tuple[str, rbsdem.Column]]:
         yield name, dataclasses.replace(paper, flexure=hinge)
     yield "damped", dataclasses.replace(paper, damping=rbsdem.Damping(stiffness=5e-4))
     section = rbsdem.peer.paper_sections()["soesianawati_1"].section
-    layered = section.column(1.6, axial_load=744e3)
+    layered = rbsdem.section.column(section, 1.6, axial_load=744e3)
     yield "layered", dataclasses.replace(layered, top_mass=75.9e3)
     for n in (2, 6):
         flexure = [paper.flexure, *[Elastic(2.5e8 * n)] * (n - 1)]

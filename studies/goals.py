@@ -15,11 +15,9 @@ import statistics
 import warnings
 from pathlib import Path
 
-import numpy as np
-from blind_table import NOT_FITTED
-
 import rbsdem
 from rbsdem import peer
+from rbsdem.section import parameters
 
 GOALS = {
     "rectangular, Flexure": 0.105,
@@ -29,8 +27,7 @@ GOALS = {
     "round, Flexure-Shear": 0.12,
     "round, Shear": 0.12,
 }
-VERSIONS = ("2026.2", "2026.3", "2026.4", "2026.5")
-NEW = VERSIONS[-1]
+NEW = parameters().version
 
 
 def series_scores(rows: list[tuple[str, float]]) -> tuple[float, float]:
@@ -60,14 +57,12 @@ def main() -> None:
     warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
     left_out = {NEW: read(given.left_out)}
     if given.before:
-        left_out = {VERSIONS[-2]: read(given.before), **left_out}
+        left_out = {"before": read(given.before), **left_out}
     tests = peer.read_specimens(given.folder).with_history()
     mended = peer.check(tests).mended()
     found = {
-        f"{version}, {what}": peer.predict(chosen, version=version, jobs=given.jobs)
-        for version in VERSIONS
+        f"{NEW}, {what}": peer.predict(chosen, jobs=given.jobs)
         for what, chosen in (("labelled", tests), ("mended", mended))
-        if what == "mended" or version == NEW
     }
     # Columns of the table: rows of (kind, series, nrmse).
     columns = {
@@ -101,7 +96,6 @@ def main() -> None:
     ):
         cells = [f"{pair[i]:.4f}" for pair in pairs]
         print(f"| {text} | {len(newest)} | {' | '.join(cells)} | {goal} | |")
-    unseen(found[f"{VERSIONS[0]}, mended"], left_out)
     for key, rows in found.items():
         ended = sum(row.status == "completed" for row in rows)
         each = statistics.median(1e3 * row.seconds for row in rows)
@@ -113,30 +107,6 @@ def main() -> None:
             f"{row['nrmse']} {name} ({row['kind']}), peak {row['peak_ratio']}, "
             f"energy {row['energy_ratio']}"
         )
-
-
-def unseen(oldest: peer.Predictions, left_out: dict[str, dict[str, dict[str, str]]]) -> None:
-    """Print scores of the tests that the oldest version was not fitted to, and of the others."""
-    names = [VERSIONS[0], *(f"{version}, left out" for version in left_out)]
-    print(f"\n| tests that {VERSIONS[0]} was not fitted to | number | {' | '.join(names)} |")
-    print("| --- |" + " ---: |" * (len(names) + 1))
-    for known, text in ((False, "not in its fit"), (True, "in its fit")):
-        for kind in (*GOALS, "all"):
-            rows = [
-                (
-                    row.nrmse,
-                    *(float(part[row.specimen.name]["nrmse"]) for part in left_out.values()),
-                )
-                for row in oldest
-                if kind in (row.specimen.kind, "all")
-                and (row.specimen.file or "").startswith(NOT_FITTED) != known
-            ]
-            if rows:
-                cells = [
-                    f"{np.median(side):.3f} ({np.mean(side):.3f})"
-                    for side in zip(*rows, strict=True)
-                ]
-                print(f"| {text}: {kind} | {len(rows)} | {' | '.join(cells)} |")
 
 
 if __name__ == "__main__":

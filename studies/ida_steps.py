@@ -69,7 +69,9 @@ def predicted() -> rbsdem.Column:
         ties=rbsdem.Ties(0.007, 0.085, rbsdem.Steel(364e6), legs=4),
         cover=0.013,
     )
-    return replace(section.column(1.6, axial_load=744e3), top_mass=75e3, damping=0.05)
+    return replace(
+        rbsdem.section.column(section, 1.6, axial_load=744e3), top_mass=75e3, damping=0.05
+    )
 
 
 def collapses(column: rbsdem.Column, records, **settings) -> tuple[np.ndarray, float]:

@@ -14,8 +14,10 @@ from typing import Any
 
 import numpy as np
 
+import rbsdem
 from rbsdem.errors import AccuracyWarning
-from rbsdem.section.paper import paper_columns, paper_sections
+from rbsdem.section.paper import PaperSection, paper_columns, paper_sections
+from rbsdem.section.paper_springs import SectionSprings
 
 # K_c, D_c, K_y, D_y, K_u, B_1 of the flexural spring; K_y, D_y, K_u of the shear spring.
 REFERENCE = {
@@ -48,12 +50,17 @@ def numbers(springs: Any) -> list[float]:
     return [f.k_c, f.d_c, f.k_y, f.d_y, f.k_u, f.b1, v.k, v.d_y, v.k_post]
 
 
+def of_paper(paper: PaperSection, **options: Any) -> SectionSprings:
+    """Return the springs of a column of table 2, of its own length and axial load."""
+    return rbsdem.section.springs(paper.section, paper.length, paper.axial_load, **options)
+
+
 def table() -> None:
     """Print every number of every column."""
     printed = paper_columns()
     print("| parameter | column | table 3 | computed | over table 3 | over the reference |")
     print("| --- | --- | ---: | ---: | ---: | ---: |")
-    found = {key: numbers(paper.springs()) for key, paper in paper_sections().items()}
+    found = {key: numbers(of_paper(paper)) for key, paper in paper_sections().items()}
     for i, row in enumerate(ROWS):
         for key, paper in paper_sections().items():
             value = found[key][i]
@@ -82,7 +89,10 @@ def sensitivity() -> None:
     for name, options in choices.items():
         ratios = []
         for key, paper in paper_sections().items():
-            springs = [paper.springs(shear="none", **options).flexure, printed[key].flexure]
+            springs = [
+                of_paper(paper, shear="none", **options).flexure,
+                printed[key].flexure,
+            ]
             m_y = [s.k_c * s.d_c + s.k_y * (s.d_y - s.d_c) for s in springs]
             f, t = springs
             ratios.append((f.d_y / t.d_y, m_y[0] / m_y[1], f.k_y / t.k_y, f.k_u / t.k_u))

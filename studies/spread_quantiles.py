@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rbsdem.section.remote import Middle
+from rbsdem.section.spread import Middle
 
 #: What bands and intervals are to hold.
 LEVEL = 0.8

@@ -13,7 +13,7 @@ series alike. There are two sets of numbers: for columns far from their shear st
 at it, as far as the model says, whatever the test said.
 
 **Distance.** Left-out tests are the farther from their prediction the farther they are from the
-middle of the tests that were not left out, in five properties (`rbsdem.section.remote`). The band
+middle of the tests that were not left out, in five properties (`rbsdem.section.spread.likeness`). The band
 grows with this distance, by the slope of the logarithm of the distance that holds 80 % of a test's
 points. How much of the band is there without samples (`SHAPE`) is what makes the interval score of
 left-out tests least (Winkler 1972: the width, and ten times what a point is beyond); the table of
@@ -32,7 +32,7 @@ This takes nine times the predictions of all tests with their samples. `--once` 
 of the scatter of all groups, and parameters that the judged group was left out of for its own tests
 alone. The numbers that are shipped are the same, and what is judged hardly differs.
 
-`--write` puts the tables into docs/peer.md and the numbers into python/rbsdem/section/scatter.py.
+`--write` puts the tables into docs/peer.md and the numbers into data/layered_spread.json.
 """
 
 from __future__ import annotations
@@ -40,7 +40,6 @@ from __future__ import annotations
 import argparse
 import json
 import math
-import re
 import time
 import warnings
 from collections.abc import Callable, Iterator
@@ -55,10 +54,15 @@ from spread_quantiles import LEVEL, Growth, Numbers, Points, Ratios, between, gr
 import rbsdem
 from rbsdem import peer
 from rbsdem.curves.metrics import PathPoints, secant_stiffness
-from rbsdem.section.parameters import parameters
-from rbsdem.section.remote import place_of
-from rbsdem.section.scatter import Scatter
-from rbsdem.section.spread import half_band, near_shear, numbers, path_force, sample
+from rbsdem.section.spread import (
+    Scatter,
+    half_band,
+    near_shear,
+    numbers,
+    path_force,
+    place_of,
+    sample,
+)
 
 #: What the band has without samples, over the largest force; and what else was tried.
 SHAPE = 0.15
@@ -345,17 +349,13 @@ def by_chance(inside: dict[str, np.ndarray], series: np.ndarray) -> list[str]:
     return lines
 
 
-def write(version: str, scatter: Scatter, tables: dict[str, list[str]]) -> None:
+def write(scatter: Scatter, tables: dict[str, list[str]]) -> None:
     """Put numbers and tables where they belong."""
-    path = ROOT / "python/rbsdem/section/scatter.py"
-    text = path.read_text("utf-8")
-    names = (*NAMES.values(), "shape", "force", *NUMBERS, "growth", "middle")
-    values = "".join(f"        {name}={getattr(scatter, name)!r},\n" for name in names)
-    entry = f'    "{version}": Scatter(\n{values}    ),\n'
-    text = re.sub(rf'    "{re.escape(version)}": Scatter\(\n.*?\n    \),\n', "", text, flags=re.S)
-    start = "SCATTER: dict[str, Scatter] = {\n"
-    end = text.index("\n}\n", text.index(start)) + 1
-    path.write_text(text[:end] + entry + text[end:], "utf-8")
+    names = (*NAMES.values(), "shape", "force", *NUMBERS, "growth")
+    values = {name: getattr(scatter, name) for name in names}
+    values["middle"] = {"mean": scatter.middle.mean, "axes": scatter.middle.axes}
+    text = json.dumps(values, indent=2) + "\n"
+    (ROOT / "data/layered_spread.json").write_text(text, "utf-8")
     path = ROOT / "docs/peer.md"
     text = path.read_text("utf-8")
     for name, lines in tables.items():
@@ -374,9 +374,8 @@ def main() -> None:
     parser.add_argument("--samples", type=int, default=16)
     parser.add_argument("--groups", type=int, default=8)
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--version", default=parameters().version, help="of STATE; the newest")
     parser.add_argument("--once", action="store_true", help="samples of each test once")
-    parser.add_argument("--write", action="store_true", help="into docs and scatter.py")
+    parser.add_argument("--write", action="store_true", help="into docs and data")
     given = parser.parse_args()
 
     began = time.perf_counter()
@@ -424,7 +423,7 @@ def main() -> None:
         print("\n" + "\n".join(lines))
     print(f"\n{given.version}: {shipped!r}\n{time.perf_counter() - began:.0f} s")
     if given.write:
-        write(given.version, shipped, tables)
+        write(shipped, tables)
 
 
 if __name__ == "__main__":

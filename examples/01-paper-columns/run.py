@@ -167,7 +167,7 @@ def from_drawing(drive: Drive, section: rbsdem.PaperSection) -> tuple[Run, float
     Returns the run and the seconds that the model and the analysis took.
     """
     start = time.perf_counter()
-    column = section.section.column(section.length, axial_load=section.axial_load)
+    column = rbsdem.section.column(section.section, section.length, axial_load=section.axial_load)
     seconds = time.perf_counter() - start
     run, taken = by_displacement(drive, column)
     return run, seconds + taken

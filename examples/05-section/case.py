@@ -18,7 +18,7 @@ section = RectangularSection(
 )
 length, axial_load = 1.6, 744e3
 
-springs = section.springs(length, axial_load)
+springs = rbsdem.section.springs(section, length, axial_load)
 print(springs.report)
 
 column = rbsdem.Column(
@@ -33,7 +33,7 @@ loop = rbsdem.cyclic(column, displacement=length * rbsdem.protocol([0.005, 0.01,
 print(f"\npeak force of the column {loop.summary['peak_force'] / 1e3:.0f} kN")
 
 core = section.confinement
-confined = section.diagram(axial_load, confined=True, ultimate="mander")
+confined = rbsdem.section.diagram(section, axial_load, confined=True, ultimate="mander")
 print(f"core {core.fcc / 1e6:.1f} MPa, hoop fracture at a strain of {core.eps_cu:.4f}")
 print(f"ultimate curvature {1e3 * confined.events.ultimate.curvature:.0f} mrad/m, confined")
 
@@ -46,7 +46,7 @@ pier = CircularSection(
     cover=0.03,
 )
 curvature = np.linspace(0.0, 0.05, 6)
-moment = pier.moment_curvature(2.5e6, curvature, confined=True)
+moment = rbsdem.section.moment_curvature(pier, 2.5e6, curvature, confined=True)
 print("pier, kN m at 0, 10, ... 50 mrad/m:", *(f"{value / 1e3:.0f}" for value in moment))
 
 if "--no-plot" not in sys.argv:

@@ -36,7 +36,7 @@ def make(concrete, steel, mass):
         ties=Ties(0.007, 0.085, Steel(364e6), legs=4),
         cover=0.013,
     )
-    column = section.column(1.6, axial_load=9.81 * mass, model="paper")
+    column = rbsdem.section.column(section, 1.6, axial_load=9.81 * mass, model="paper")
     return replace(column, top_mass=mass, kinematics="pdelta", damping=0.05)
 
 

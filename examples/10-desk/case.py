@@ -20,7 +20,7 @@ section = RectangularSection(
     ties=Ties(0.010, 0.100, Steel(420e6), legs=4),
     cover=0.030,
 )
-column = section.column(HEIGHT, axial_load=LOAD)
+column = rbsdem.section.column(section, HEIGHT, axial_load=LOAD)
 drifts = rbsdem.protocol([0.0025, 0.005, 0.01, 0.02, 0.03, 0.045, 0.06, 0.075], cycles=2)
 result = rbsdem.cyclic(column, displacement=HEIGHT * drifts, openings=True)
 
@@ -41,7 +41,7 @@ for source, drift in beside["strength_loss"].items():
     print(f"{source:9s} {100 * drift:5.2f} %")
 
 # What the section carries, and what the code asks for.
-strength = section.interaction("aci318")
+strength = rbsdem.section.interaction(section, "aci318")
 demand = abs(result.base_moment).max()
 print(
     f"\nlargest moment {1e-3 * demand:.0f} kNm, nominal {1e-3 * strength.moment_at(LOAD):.0f} kNm"

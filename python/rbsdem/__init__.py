@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rbsdem._core import version as _version
 
 if TYPE_CHECKING:
-    from rbsdem import codes, fragility, peer, plot, springs
+    from rbsdem import codes, fragility, peer, plot, section, springs
     from rbsdem import curves as curves
     from rbsdem import errors as errors
     from rbsdem import motions as motions
@@ -20,15 +20,12 @@ if TYPE_CHECKING:
     from rbsdem.many.ida import ida
     from rbsdem.measured.laboratory import read_test
     from rbsdem.methods.measure import compare_methods
-    from rbsdem.model.circular import CircularSection
     from rbsdem.model.column import Column
     from rbsdem.model.damping import Damping
-    from rbsdem.model.ends import double_curvature
     from rbsdem.model.footing import Footing
-    from rbsdem.model.hollow import HollowCircularSection, HollowRectangularSection
     from rbsdem.model.materials import Concrete, Steel
-    from rbsdem.model.rectangular import RectangularSection
     from rbsdem.model.reinforcement import Layout, Spiral, Ties
+    from rbsdem.model.shape import CircularSection, RectangularSection
     from rbsdem.motions.motion import GroundMotion
     from rbsdem.motions.read import read_motions
     from rbsdem.results.case import read_case
@@ -48,15 +45,12 @@ _HOMES = {
     "many.ida": ("ida",),
     "measured.laboratory": ("read_test",),
     "methods.measure": ("compare_methods",),
-    "model.circular": ("CircularSection",),
     "model.column": ("Column",),
     "model.damping": ("Damping",),
-    "model.ends": ("double_curvature",),
     "model.footing": ("Footing",),
-    "model.hollow": ("HollowCircularSection", "HollowRectangularSection"),
     "model.materials": ("Concrete", "Steel"),
-    "model.rectangular": ("RectangularSection",),
     "model.reinforcement": ("Layout", "Spiral", "Ties"),
+    "model.shape": ("CircularSection", "RectangularSection"),
     "motions.motion": ("GroundMotion",),
     "motions.read": ("read_motions",),
     "results.case": ("read_case",),
@@ -67,7 +61,17 @@ _HOMES = {
 }
 _MODULE_OF = {name: home for home, names in _HOMES.items() for name in names}
 #: Public modules; curves, errors and motions hold what the names above return, raise or read.
-_MODULES = ("codes", "curves", "errors", "fragility", "motions", "peer", "plot", "springs")
+_MODULES = (
+    "codes",
+    "curves",
+    "errors",
+    "fragility",
+    "motions",
+    "peer",
+    "plot",
+    "section",
+    "springs",
+)
 
 __all__ = [
     "CircularSection",
@@ -76,8 +80,6 @@ __all__ = [
     "Damping",
     "Footing",
     "GroundMotion",
-    "HollowCircularSection",
-    "HollowRectangularSection",
     "InputError",
     "Interrupted",
     "Layout",
@@ -92,7 +94,6 @@ __all__ = [
     "compare",
     "compare_methods",
     "cyclic",
-    "double_curvature",
     "ensemble",
     "fragility",
     "ida",
@@ -105,6 +106,7 @@ __all__ = [
     "read_motions",
     "read_result",
     "read_test",
+    "section",
     "springs",
     "time_history",
 ]

@@ -26,7 +26,7 @@ from rbsdem.measured.shipped import (
 from rbsdem.measured.specimen import Observed, Specimen
 from rbsdem.measured.specimens import Specimens, read_specimens
 from rbsdem.section.paper import paper_columns, paper_sections
-from rbsdem.section.remote import likeness
+from rbsdem.section.spread import likeness
 from rbsdem.web.gallery import gallery
 
 __all__ = [

@@ -17,7 +17,7 @@ def solve(of: Drawing, displacement: np.ndarray) -> np.ndarray:
         ties=Ties(of.tie, of.spacing, Steel(of.tie_yield), legs=of.legs),
         cover=of.cover,
     )
-    column = section.column(of.height, axial_load=of.axial_load)
+    column = rbsdem.section.column(section, of.height, axial_load=of.axial_load)
     return rbsdem.cyclic(column, displacement=displacement).force
 
 

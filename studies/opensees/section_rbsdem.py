@@ -2,6 +2,7 @@
 
 import numpy as np
 
+import rbsdem
 from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties
 
 CURVATURE = np.linspace(0.0, 0.06, 121)  # 1/m
@@ -18,7 +19,7 @@ def solve() -> dict[str, float | np.ndarray]:
         ties=Ties(0.010, 0.15, Steel(420e6)),
         cover=0.03,
     )
-    moment = section.moment_curvature(AXIAL_LOAD, CURVATURE, tension="zero")
+    moment = rbsdem.section.moment_curvature(section, AXIAL_LOAD, CURVATURE, tension="zero")
     return {
         "initial stiffness": moment[1] / CURVATURE[1],
         "moment at 0.01/m": moment[20],

@@ -108,8 +108,13 @@ def through_python(repeats: int) -> list[Row]:
     paper = rbsdem.peer.paper_sections()["tanaka_park_5"]
     section, load = paper.section, paper.axial_load
     curvature = np.linspace(0.0, 0.1, 100)
-    moments = seconds(lambda: section.moment_curvature(load, curvature), 3 * repeats)
-    shear = seconds(lambda: section.shear_diagram(paper.length, load, furthest=0.022), 3 * repeats)
+    moments = seconds(
+        lambda: rbsdem.section.moment_curvature(section, load, curvature), 3 * repeats
+    )
+    shear = seconds(
+        lambda: rbsdem.section.shear_diagram(section, paper.length, load, furthest=0.022),
+        3 * repeats,
+    )
     return [
         Row("static, N = 1, 20 000 points", "ms", 10, [1e3 * t for t in static]),
         Row("Takeda spring, 20 000 points", "ms", None, [1e3 * t for t in response]),
@@ -138,7 +143,7 @@ def predicted_column(repeats: int) -> list[Row]:
     paper = rbsdem.peer.paper_sections()["soesianawati_1"]
 
     def make() -> rbsdem.Column:
-        return paper.section.column(paper.length, axial_load=paper.axial_load)
+        return rbsdem.section.column(paper.section, paper.length, axial_load=paper.axial_load)
 
     column = make()
     loaded = dataclasses.replace(column, top_mass=paper.axial_load / 9.81)
@@ -172,7 +177,7 @@ def crossing(repeats: int) -> list[Row]:
     """Time the way of a column, from Python or from its file, to a solver ready to start."""
     one = rbsdem.peer.paper_columns()["soesianawati_1"]
     paper = rbsdem.peer.paper_sections()["tanaka_park_5"]
-    predicted = paper.section.column(paper.length, axial_load=paper.axial_load)
+    predicted = rbsdem.section.column(paper.section, paper.length, axial_load=paper.axial_load)
     text = predicted.to_namelist() + "&loading drive = 'displacement', values = 0.001 /\n"
     calls: list[tuple[str, float, Callable[[], Any]]] = [
         ("one body, crossing", 0.05, lambda: _core.check_column(one._statement)),

@@ -41,7 +41,7 @@ def pier() -> rbsdem.Column:
 def predicted() -> rbsdem.Column:
     """Return the layered column that is predicted from its drawing, with its mass."""
     paper = rbsdem.peer.paper_sections()["soesianawati_1"]
-    column = paper.section.column(paper.length, axial_load=paper.axial_load)
+    column = rbsdem.section.column(paper.section, paper.length, axial_load=paper.axial_load)
     return dataclasses.replace(column, top_mass=paper.axial_load / 9.81)
 
 

@@ -38,7 +38,6 @@ def test_script_asks_the_program(shell, capsys):
         ("rbsdem keys peak", ["plain,peak_oriented"]),
         ("rbsdem run --out", ["plain,--output"]),
         ("rbsdem check a", ["file,a"]),
-        ("rbsdem peer --model-v", ["plain,--model-version"]),
         ("rbsdem ida --out ", ["dir,"]),
     ],
 )

@@ -65,7 +65,7 @@ def test_double_curvature_is_two_cantilevers(kinematics, flexure):
     """
     shear = [Elastic(2e7), RIGID, RIGID]
     half = cantilever(flexure, kinematics=kinematics, n=3, shear=shear)
-    whole = rbsdem.double_curvature(half)
+    whole = half.double_curvature()
     assert (whole.n, whole.height) == (5, 3.2)
     assert list(whole.joint_numbers) == [1, 2, 3, 4, 5, 6]
     one = rbsdem.cyclic(half, displacement=PATH)
@@ -88,7 +88,7 @@ def test_double_curvature_under_axial_load_that_varies(kinematics):
     half = cantilever(UNEVEN, kinematics=kinematics, n=2)
     load = 4e5 + 2e5 * np.sin(np.arange(PATH.size))
     one = rbsdem.cyclic(half, displacement=PATH, axial_load=load)
-    both = rbsdem.cyclic(rbsdem.double_curvature(half), displacement=2 * PATH, axial_load=load)
+    both = rbsdem.cyclic(half.double_curvature(), displacement=2 * PATH, axial_load=load)
     np.testing.assert_allclose(both.force, one.force, rtol=0, atol=1e-8 * np.abs(one.force).max())
 
 
@@ -229,7 +229,7 @@ def test_double_curvature_in_time_with_the_mass_at_the_top():
     """A cantilever with 2 m under F(t) is the lower half of the column with m under F(t)."""
     half = cantilever(TAKEDA, top_mass=4e4)
     half = dataclasses.replace(half, mass=1e-4, shear=Elastic(1e12))
-    whole = rbsdem.double_curvature(dataclasses.replace(half, top_mass=0.0), top_mass=2e4)
+    whole = dataclasses.replace(half, top_mass=0.0).double_curvature(top_mass=2e4)
     force = 1.3e5 * np.sin(15 * TIME)
     one, both = (shaken(column, "newmark", force=force) for column in (half, whole))
     peak = np.abs(one.displacement).max()
@@ -464,7 +464,7 @@ def test_other_refusals():
     with pytest.raises(rbsdem.InputError, match="must be a Footing"):
         rbsdem.Column(2.0, 9.0, SPRING, SPRING, footing=SPRING)
     with pytest.raises(rbsdem.InputError, match="plain cantilever, without top_mass"):
-        rbsdem.double_curvature(rbsdem.Column(2.0, 9.0, SPRING, SPRING, top_mass=1.0))
+        rbsdem.Column(2.0, 9.0, SPRING, SPRING, top_mass=1.0).double_curvature()
 
 
 def test_footing_keys_need_a_footing(tmp_path: Path):
@@ -554,8 +554,8 @@ def test_column_of_a_section_with_its_ends():
         0.4, 0.4, rbsdem.Concrete(46.5e6), layout=bars, ties=ties, cover=0.013
     )
     footing = Footing(Elastic(1e9), Elastic(5e8))
-    column = section.column(3.2, axial_load=744e3, top="fixed", footing=footing)
-    half = section.column(1.6, axial_load=744e3)
+    column = rbsdem.section.column(section, 3.2, axial_load=744e3, top="fixed", footing=footing)
+    half = rbsdem.section.column(section, 1.6, axial_load=744e3)
     assert column.joints("flexure")[1] == half.joints("flexure")[0]
     assert column.mass == pytest.approx(2 * half.mass)
     assert column.outside == half.outside

@@ -19,7 +19,9 @@ NEWMARK = {"method": "newmark"}
 
 def layered() -> rbsdem.Column:
     section = rbsdem.peer.paper_sections()["zahn_7"].section
-    return replace(section.column(1.6, axial_load=1.01e6), top_mass=1.01e5, damping=0.02)
+    return replace(
+        rbsdem.section.column(section, 1.6, axial_load=1.01e6), top_mass=1.01e5, damping=0.02
+    )
 
 
 def shaken(of: rbsdem.Column, scale: float = 2.0, seed: int = 1, **more: object) -> rbsdem.Result:

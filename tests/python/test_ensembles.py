@@ -133,7 +133,9 @@ def test_first_yield_is_that_of_the_history() -> None:
 def test_limit_states_are_those_of_the_history() -> None:
     """Of a layered hinge, a spring with a cap, and a spring in lanes."""
     section = rbsdem.peer.paper_sections()["zahn_7"].section
-    layered = replace(section.column(1.6, axial_load=1.01e6), top_mass=1.01e5, damping=0.02)
+    layered = replace(
+        rbsdem.section.column(section, 1.6, axial_load=1.01e6), top_mass=1.01e5, damping=0.02
+    )
     peaked = PeakOriented(d_y=0.003, f_y=2e5, d_cap=0.01, f_cap=2.2e5, d_pc=0.1)
     capped = replace(column(), flexure=peaked)
     time, acceleration = motion(1)

@@ -179,7 +179,7 @@ def test_a_port_that_is_taken(server, capsys):
 
 def test_loops_are_those_of_the_functions(post):
     (answer,) = post("loops", state=state())["columns"]
-    column = section().column(1.6, axial_load=744e3)
+    column = rbsdem.section.column(section(), 1.6, axial_load=744e3)
     path = 1.6 * rbsdem.protocol([0.005, 0.02])
     result = rbsdem.cyclic(column, displacement=path, openings=True)
     np.testing.assert_allclose(answer["force"], result.force, rtol=1e-5)
@@ -201,19 +201,19 @@ def test_two_columns_and_double_curvature(post):
 
 def test_section_and_band_are_those_of_the_functions(post):
     (answer,) = post("sections", state=state(), code="ec2")["columns"]
-    diagram = section().diagram(744e3)
+    diagram = rbsdem.section.diagram(section(), 744e3)
     np.testing.assert_allclose(answer["curvature"][0]["moment"], diagram.moment, rtol=1e-5)
-    strength = section().interaction("ec2", points=60)
+    strength = rbsdem.section.interaction(section(), "ec2", points=60)
     np.testing.assert_allclose(answer["code"]["design_moment"], strength.design_moment, rtol=1e-5)
     values = {one["name"]: one["value"] for one in answer["codes"]}
     assert values["asce_41.a"] == pytest.approx(
         code_values(section(), 1.6, 744e3)["asce_41.a"], rel=1e-5
     )
     (own,) = post("own", state=state())["columns"]
-    column = section().column(1.6, axial_load=744e3)
+    column = rbsdem.section.column(section(), 1.6, axial_load=744e3)
     joint = column.interaction(points=24)
     np.testing.assert_allclose(own["joint"]["moment"], joint.moment, rtol=1e-5, atol=1e-3)
-    laws = section().interaction(points=24)
+    laws = rbsdem.section.interaction(section(), points=24)
     np.testing.assert_allclose(own["section"]["moment"], laws.moment, rtol=1e-5, atol=1e-3)
     # The moment of the loop, which the section by its own laws does not carry, is the joint's.
     (answer,) = post("loops", state=state())["columns"]
@@ -221,7 +221,10 @@ def test_section_and_band_are_those_of_the_functions(post):
     assert peak > 1.05 * laws.moment_at(744e3)
     assert peak < 1.02 * joint.moment_at(744e3)
     (band,) = post("bands", state=state())["columns"]
-    spread = section().column(1.6, axial_load=744e3).spread(1.6 * rbsdem.protocol([0.005, 0.02]))
+    spread = rbsdem.section.spread(
+        rbsdem.section.column(section(), 1.6, axial_load=744e3),
+        1.6 * rbsdem.protocol([0.005, 0.02]),
+    )
     np.testing.assert_allclose(band["upper"], spread.upper, rtol=1e-5)
 
 
@@ -230,7 +233,7 @@ def test_double_curvature_in_time_is_the_whole_column(post):
     given = state(column_ends="double", column_height=3.2)
     given["loading"] = {"kind": "synthetic", "seed": 3, "scale": 0.8}
     (answer,) = post("loops", state=given)["columns"]
-    column = section().column(3.2, axial_load=744e3, top="fixed")
+    column = rbsdem.section.column(section(), 3.2, axial_load=744e3, top="fixed")
     motion = rbsdem.motions.synthetic(1, 3, dt=0.01)[0].scaled(0.8)
     result = rbsdem.time_history(
         replace(column, top_mass=744e3 / 9.80665),
@@ -329,7 +332,7 @@ def test_records_are_texts_and_scales_follow(post):
     given["loading"] = {"kind": "record", "id": opened["id"], "name": opened["name"], "scale": 1.5}
     (answer,) = post("loops", state=given)["columns"]
     assert answer["dynamic"]
-    column = section().column(1.6, axial_load=744e3)
+    column = rbsdem.section.column(section(), 1.6, axial_load=744e3)
     result = rbsdem.time_history(
         replace(column, top_mass=744e3 / 9.80665),
         motion.time[:400],
@@ -377,8 +380,8 @@ def test_a_namelist_comes_back_and_runs(post, tmp_path, run_cli):
 
 
 def test_a_case_with_a_drawing_keeps_what_belongs_to_it(post):
-    """As `section.column(...).to_namelist()` writes it, without the page."""
-    column = section().column(1.6, axial_load=744e3)
+    """As `rbsdem.section.column(section, ...).to_namelist()` writes it, without the page."""
+    column = rbsdem.section.column(section(), 1.6, axial_load=744e3)
     text = column.to_namelist() + "&loading drive = 'displacement', amplitudes = 0.005, 0.02 /\n"
     given = post("open", text=text)["state"]
     (answer,) = post("loops", state=given)["columns"]

@@ -27,7 +27,7 @@ def layered() -> rbsdem.Column:
         ties=rbsdem.Ties(0.01, 0.08, rbsdem.Steel(400e6), legs=3),
         cover=0.02,
     )
-    return section.column(1.6, axial_load=7e5)
+    return rbsdem.section.column(section, 1.6, axial_load=7e5)
 
 
 def results() -> dict[str, rbsdem.Result]:

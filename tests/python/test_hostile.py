@@ -112,7 +112,7 @@ MOTION = rbsdem.GroundMotion(SHAKEN, 0.02, name="m")
 TEST = SimpleNamespace(displacement=RESULT.displacement, force=RESULT.force)
 ENSEMBLE = rbsdem.ensemble(COLUMN, MOTION, method="newmark")
 LAYERED = rbsdem.cyclic(
-    SECTION.column(1.6, axial_load=5e5), displacement=[0.0, 0.01], openings=True
+    rbsdem.section.column(SECTION, 1.6, axial_load=5e5), displacement=[0.0, 0.01], openings=True
 )
 COUNTS = fragility.Counts(
     np.array([1.0, 2.0, 3.0]), np.array([[0, 0, 1, 0], [0, 1, 1, 0], [1, 0, 1, 1]]), True
@@ -153,7 +153,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Column": (rbsdem.Column, {"height": 1.6, "mass": 614.4, "shear": SPRING, "flexure": SPRING}),
     "Column.joints": (COLUMN.joints, {"name": "shear"}),
     "Column.place_of": (COLUMN.place_of, {"joint": 1}),
-    "double_curvature": (rbsdem.double_curvature, {"column": COLUMN}),
+    "double_curvature": (COLUMN.double_curvature, {}),
     "cyclic": (rbsdem.cyclic, {"column": COLUMN, "displacement": PATH}),
     "cyclic by force": (rbsdem.cyclic, {"column": COLUMN, "force": PATH}),
     "time_history": (rbsdem.time_history, {"column": COLUMN} | HISTORY),
@@ -209,7 +209,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         {"diameter": 0.4, "concrete": CONCRETE, "layout": LAYOUT, "cover": 0.03},
     ),
     "HollowRectangularSection": (
-        rbsdem.HollowRectangularSection,
+        rbsdem.RectangularSection,
         {
             "width": 1.0,
             "depth": 1.0,
@@ -221,21 +221,39 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         },
     ),
     "HollowCircularSection": (
-        rbsdem.HollowCircularSection,
+        rbsdem.CircularSection,
         {"diameter": 1.0, "concrete": CONCRETE, "layout": LAYOUT, "cover": 0.03, "wall": 0.2},
     ),
-    "Section.diagram": (SECTION.diagram, {"axial_load": 5e5}),
-    "Section.moment_curvature": (
-        SECTION.moment_curvature,
-        {"curvature": [0.001], "axial_load": 5e5},
+    "section.diagram": (rbsdem.section.curvature, {"section": SECTION, "axial_load": 5e5}),
+    "section.moment_curvature": (
+        rbsdem.section.moment_curvature,
+        {"section": SECTION, "curvature": [0.001], "axial_load": 5e5},
     ),
-    "Section.strains": (SECTION.strains, {"curvature": [0.001], "axial_load": 5e5}),
-    "Section.interaction": (SECTION.interaction, {"points": 5}),
-    "Section.code_values": (SECTION.code_values, {"height": 1.6, "axial_load": 5e5}),
-    "Section.springs": (SECTION.springs, {"length": 1.6, "axial_load": 5e5}),
-    "Section.column": (SECTION.column, {"height": 1.6, "axial_load": 5e5}),
-    "Section.shear_diagram": (SECTION.shear_diagram, {"length": 1.6, "axial_load": 5e5}),
-    "Section.shear_strength": (SECTION.shear_strength, {"length": 1.6, "axial_load": 5e5}),
+    "section.strains": (
+        rbsdem.section.strains,
+        {"section": SECTION, "curvature": [0.001], "axial_load": 5e5},
+    ),
+    "section.interaction": (rbsdem.section.interaction, {"section": SECTION, "points": 5}),
+    "codes.code_values": (
+        rbsdem.codes.code_values,
+        {"section": SECTION, "height": 1.6, "axial_load": 5e5},
+    ),
+    "section.springs": (
+        rbsdem.section.springs,
+        {"section": SECTION, "length": 1.6, "axial_load": 5e5},
+    ),
+    "section.column": (
+        rbsdem.section.column,
+        {"section": SECTION, "height": 1.6, "axial_load": 5e5},
+    ),
+    "section.shear_diagram": (
+        rbsdem.section.shear,
+        {"section": SECTION, "length": 1.6, "axial_load": 5e5},
+    ),
+    "section.shear_strength": (
+        rbsdem.section.shear_strength,
+        {"section": SECTION, "length": 1.6, "axial_load": 5e5},
+    ),
     "GroundMotion": (rbsdem.GroundMotion, {"acceleration": SHAKEN, "dt": 0.02}),
     "GroundMotion.scaled": (MOTION.scaled, {"factor": 2.0}),
     "GroundMotion.spectrum": (MOTION.spectrum, {}),

@@ -343,9 +343,9 @@ def test_high_axial_load_ends_the_path() -> None:
         0.4, 0.4, rbsdem.Concrete(46.5e6), layout=bars, ties=ties, cover=0.013
     )
     path = 1.6 * rbsdem.protocol([0.0025, 0.005, 0.01, 0.02], cycles=2)
-    columns = {0.1: section.column(1.6, axial_load=0.1 * 46.5e6 * 0.16)}
+    columns = {0.1: rbsdem.section.column(section, 1.6, axial_load=0.1 * 46.5e6 * 0.16)}
     with pytest.warns(rbsdem.errors.AccuracyWarning, match="axial load ratio = 0.9 is outside"):
-        columns[0.9] = section.column(1.6, axial_load=0.9 * 46.5e6 * 0.16)
+        columns[0.9] = rbsdem.section.column(section, 1.6, axial_load=0.9 * 46.5e6 * 0.16)
     ends = {}
     for share in (0.1, 0.9):
         column = columns[share]

@@ -143,7 +143,7 @@ def test_a_joint_cut_from_a_section() -> None:
     ]
     for y, bar, steel in section.bars:
         layers.append((y, Bilinear(k=steel.es * bar, d_y=steel.fy / steel.es, k_post=0.0)))
-    diagram = section.interaction()
+    diagram = rbsdem.section.interaction(section)
     for share in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7):
         load = share * 30e6 * 0.16
         about = column(Layered(layers), axial_load=load)

@@ -142,7 +142,9 @@ def test_a_layered_joint_at_rest_begins_to_move(method: dict[str, str]) -> None:
     section = rbsdem.RectangularSection(
         0.4, 0.4, rbsdem.Concrete(46.5e6), layout=bars, ties=ties, cover=0.013
     )
-    about = dataclasses.replace(section.column(1.6, axial_load=744e3), top_mass=75.9e3)
+    about = dataclasses.replace(
+        rbsdem.section.column(section, 1.6, axial_load=744e3), top_mass=75.9e3
+    )
     time = np.linspace(0, 0.06, 4)
     found = rbsdem.time_history(about, time, ground_acceleration=[0, 2e-5, 2e-4, 6e-4], **method)
     assert found.summary["status"] == "completed"

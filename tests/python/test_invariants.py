@@ -33,7 +33,6 @@ import rbsdem
 from rbsdem import _core
 from rbsdem.many.inputs import Motion
 from rbsdem.many.plan import Plan, compute
-from rbsdem.model.ends import turned
 from rbsdem.springs import Elastic, Layered, Spring
 
 TIMES = float(os.environ.get("RBSDEM_CASES", "1"))
@@ -208,16 +207,18 @@ def mirrored(column: rbsdem.Column) -> rbsdem.Column:
 
     def sides(name: str) -> list[Spring] | None:
         springs = column.joints(name)[column.footing is not None :]
-        return None if not springs else [turned(one) for one in springs]
+        return None if not springs else [one.mirrored() for one in springs]
 
     beneath = column.footing
     if beneath is not None:
-        beneath = replace(beneath, shear=turned(beneath.shear), flexure=turned(beneath.flexure))
+        beneath = replace(
+            beneath, shear=beneath.shear.mirrored(), flexure=beneath.flexure.mirrored()
+        )
     return replace(column, shear=sides("shear"), flexure=sides("flexure"), footing=beneath)
 
 
 def turns(column: rbsdem.Column) -> rbsdem.Column:
-    """Return the mirrored column, where its springs can be turned."""
+    """Return the mirrored column, where its springs can be mirrored."""
     try:
         return mirrored(column)
     except rbsdem.InputError as error:
@@ -676,7 +677,7 @@ def test_double_curvature_is_two_cantilevers(rng: Rng) -> None:
     if "force" in loading:
         raise Discard
     try:
-        both = rbsdem.double_curvature(column)
+        both = column.double_curvature()
     except rbsdem.InputError:
         raise Discard from None
     n = column.n

@@ -14,8 +14,7 @@ import pytest
 import rbsdem
 from rbsdem import peer
 from rbsdem.errors import InputError
-from rbsdem.section.directions import DIRECTIONS
-from rbsdem.section.parameters import FACTORS, VERSIONS, parameters, versions
+from rbsdem.section.parameters import FACTORS, directions, parameters, table
 from rbsdem.springs import Elastic
 
 SPECIMEN = peer.Specimen(
@@ -80,7 +79,7 @@ def test_elastic_stiffness_of_the_layered_model_in_closed_form(n):
 def test_more_bodies_in_the_papers_model_add_the_flexibility_above_the_hinge(n):
     bare = replace(SPECIMEN, axial_load=0.0)
     one, column = peer.column(bare, "paper"), peer.column(bare, "paper", n=n)
-    springs = peer.draw(bare).section.springs(bare.length, 0.0, yield_rule="first")
+    springs = rbsdem.section.springs(peer.draw(bare).section, bare.length, 0.0, yield_rule="first")
     bending = springs.flexure.k_c * springs.hinge_length
     above = (bare.length - springs.hinge_length) ** 3 / (3 * bending)
     expected = 1 / stiffness_at_first(one, 0.0) + above
@@ -102,10 +101,12 @@ def test_strength_of_the_hinge_is_that_of_the_section():
     )
     spring = peer.column(SPECIMEN, "layered", model_parameters=plain).flexure[0]
     largest = np.max(spring.response(np.linspace(0, 0.04, 200)[1:], axial_load=1.2e6))
-    moment = (
-        peer.draw(SPECIMEN)
-        .section()
-        .moment_curvature(1.2e6, np.linspace(0, 0.15, 100)[1:], tension="zero", confined=True)
+    moment = rbsdem.section.moment_curvature(
+        peer.draw(SPECIMEN).section,
+        1.2e6,
+        np.linspace(0, 0.15, 100)[1:],
+        tension="zero",
+        confined=True,
     )
     assert largest == pytest.approx(np.max(moment), rel=0.1)
 
@@ -193,7 +194,9 @@ def test_the_column_above_cracks_as_a_continuous_one(n, error):
 
 def test_parameters_of_bond_and_of_cracked_shear_are_factors():
     """Off, on, and by how much: exponents of B/0.12 and of n - 0.1, factors of stiffness."""
-    off = parameters("2026.2")
+    off = parameters().with_values(
+        r0_bond=0.0, isotropic_bond=0.0, shear_pinch_axial=0.0, shear_b0=0.0, cracked_above=0.0
+    )
     on = off.with_values(
         r0_bond=0.5, isotropic_bond=0.3, shear_pinch_axial=2.0, shear_cracked=0.5, shear_b0=0.3
     )
@@ -227,7 +230,7 @@ SECTION = rbsdem.RectangularSection(
 @pytest.mark.parametrize("model", ["layered", "paper"])
 def test_a_section_makes_the_column_of_the_specimen(model):
     """What a section does not tell follows from it: restrained bars, mass."""
-    column = SECTION.column(1.6, axial_load=1.2e6, model=model)
+    column = rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6, model=model)
     drawn = peer.column(SPECIMEN, model)
     assert (column.height, column.n, column.kinematics) == (1.6, drawn.n, "pdelta")
     assert column.model == {"layered": "layered 2026.5", "paper": "paper"}[model]
@@ -250,7 +253,9 @@ def test_a_circular_section_makes_both_models():
     peaks = [
         np.max(np.abs(rbsdem.cyclic(column, displacement=[0.0, 0.03, -0.03]).force))
         for model in ("layered", "paper")
-        for column in [section.column(1.8, axial_load=900e3, model=model, mass=800.0)]
+        for column in [
+            rbsdem.section.column(section, 1.8, axial_load=900e3, model=model, mass=800.0)
+        ]
     ]
     assert peaks[0] == pytest.approx(peaks[1], rel=0.3)
 
@@ -259,10 +264,7 @@ def test_a_circular_section_makes_both_models():
     ("options", "text"),
     [
         ({"height": 1600.0}, "height = 1600 m must be between .*; 1600 mm is 1.6"),
-        ({"version": "1999.1"}, "version = '1999.1' .* there are 2026.2, 2026.3, 2026.4, 2026.5"),
-        ({"version": "2026.1"}, "version = .2026.1. .* is gone: .* take 2026.2"),
-        ({"version": "2026.2", "model_parameters": parameters()}, "not both"),
-        ({"model": "paper", "version": "2026.2"}, "version is for model = 'layered'; remove it"),
+        ({"model": "paper", "model_parameters": parameters()}, "is for model = 'layered'"),
         ({"model": "paper", "round_core": True}, "round_core is for model = 'layered'"),
         ({"axial_height": 0.0}, "axial_height = 0 m must be above zero"),
         ({"axial_load": 9e6}, r"axial_load = 9e\+06 N is more compression"),
@@ -270,56 +272,37 @@ def test_a_circular_section_makes_both_models():
 )
 def test_arguments_that_a_section_refuses(options, text):
     with pytest.raises(InputError, match=text):
-        SECTION.column(**{"height": 1.6, "axial_load": 1.2e6} | options)
+        rbsdem.section.column(SECTION, **{"height": 1.6, "axial_load": 1.2e6} | options)
 
 
 # ---- versions of the parameters ------------------------------------------------------------------
 
 
-def test_a_refit_does_not_change_an_older_version(monkeypatch):
-    """A new entry is the default from then on; the older one gives what it gave."""
-    before = SECTION.column(1.6, axial_load=1.2e6)
-    newer = replace(parameters().with_values(steel_strength=1.3), version="2099.1")
-    monkeypatch.setitem(VERSIONS, "2099.1", newer)
-    assert versions()[-1] == "2099.1"
-    assert SECTION.column(1.6, axial_load=1.2e6).version == "2099.1"
-    again = SECTION.column(1.6, axial_load=1.2e6, version=before.version)
-    assert again == before
-    assert peer.column(SPECIMEN, version="2099.1").version == "2099.1"
+def test_parameters_of_another_fit_name_themselves():
+    """They are meant for all columns: what a column limits is limited, and not refused."""
+    own = replace(parameters().with_values(steel_strength=1.3, stiffness=3.0), version="2099.1")
+    column = rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6, model_parameters=own)
+    assert (column.version, column.model) == ("2099.1", "layered 2099.1")
+    assert len(column.recipe.parameters.own) == len(table())
 
 
-def test_the_first_version_stands():
-    """Its values are part of every answer that names it: a refit is a new version."""
-    values = parameters("2026.2").values
-    # Mechanisms that came later are off.
-    later = {
-        "r0_stress": 0.0,
-        "buckling": 0.0,
-        "friction": 0.0,
-        "shear_decay": 0.0,
-        "shear_snap_back": 0.0,
-        "shear_endurance_ties": 0.0,
-        "r0_bond": 0.0,
-        "isotropic_bond": 0.0,
-        "cracked_above": 0.0,
-        "shear_round_strength": 1.0,
-        "shear_pinch_axial": 0.0,
-        "shear_cracked": 1.0,
-        "shear_b0": 0.0,
-        "seating": 0.0,
-        "shear_fade": 0.0,
-        "shear_round_ties": 2.5,
-    }
-    assert {name: values.pop(name) for name in later} == later
-    # Of no effect without them.
-    for name in ("buckling_strain", "shear_decay_shelter", "shear_decay_ties", "shear_decay_strut"):
-        values.pop(name)
+def test_the_table_of_parameters():
+    """Its values are part of every answer that names the version: a refit is a new version."""
+    values = parameters().values
     digest = hashlib.sha256(repr(sorted(values.items())).encode()).hexdigest()
-    assert (len(values), digest[:16]) == (37, "8aa4cba40dcbe0e8")
+    assert (parameters().version, len(values), digest[:16]) == ("2026.5", 55, "09009baa4585df66")
+    for name, row in table().items():
+        assert row.meaning, name
+        assert not row.low > 1, name
+        assert not row.high < 1, name
+    ranks = sorted(row.rank for row in table().values() if row.rank)
+    assert ranks == list(range(1, len(ranks) + 1))
+    for along in directions().values():
+        assert all(math.isfinite(table()[name].high) for name in along)
 
 
 def test_changed_parameters_are_named_as_changed():
-    column = SECTION.column(1.6, axial_load=1.2e6)
+    column = rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6)
     changed = column.with_parameters(steel_strength=1.0)
     assert (column.version, changed.version) == ("2026.5", "2026.5 changed")
     assert (column.model, changed.model) == ("layered 2026.5", "layered 2026.5 changed")
@@ -327,21 +310,21 @@ def test_changed_parameters_are_named_as_changed():
     assert repr(column) == (
         "LayeredColumn(height=1.6, n=2, axial_load=1.2e+06, model='layered 2026.5')"
     )
-    back = changed.with_parameters(steel_strength=parameters().hinge.steel_strength)
+    back = changed.with_parameters(steel_strength=parameters().steel_strength)
     assert back == column
 
 
 def test_directions_are_factors_to_exponents():
     """Two factors along one direction are their product; no parameter goes beyond its end."""
-    column = SECTION.column(1.6, axial_load=1.2e6)
-    assert list(column.parameters)[:6] == list(DIRECTIONS)
+    column = rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6)
+    assert list(column.parameters)[:6] == list(directions())
     there = column.with_parameters(direction_2=1.1, direction_5=0.9)
     for name, value in there.recipe.parameters.values.items():
-        power = 1.1 ** DIRECTIONS["direction_2"].get(name, 0.0)
-        power *= 0.9 ** DIRECTIONS["direction_5"].get(name, 0.0)
+        power = 1.1 ** directions()["direction_2"].get(name, 0.0)
+        power *= 0.9 ** directions()["direction_5"].get(name, 0.0)
         assert value == pytest.approx(power * parameters().values[name], rel=1e-12)
     for end in (1e-6, 1e6):
-        far = column.with_parameters(**dict.fromkeys(DIRECTIONS, end))
+        far = column.with_parameters(**dict.fromkeys(directions(), end))
         assert all(math.isfinite(x) for x in far.recipe.parameters.values.values())
     with pytest.raises(InputError, match="direction_1 = 0 is a factor; it must be above zero"):
         column.with_parameters(direction_1=0.0)
@@ -355,7 +338,7 @@ def test_directions_are_factors_to_exponents():
     ("values", "text"),
     [
         ({"steel_strenght": 1.0}, "did you mean 'steel_strength'"),
-        ({"wear": math.nan}, "hinge: wear = nan must be a finite number"),
+        ({"wear": math.nan}, "parameters: wear = nan must be a finite number"),
     ],
 )
 def test_values_that_parameters_refuse(values, text):
@@ -374,12 +357,12 @@ def test_values_that_parameters_refuse(values, text):
 def test_the_spring_that_refuses_a_parameter_says_so(values, text):
     # The springs of a model are checked with their column, all at once.
     with pytest.raises(InputError, match=text):
-        SECTION.column(1.6, axial_load=1.2e6).with_parameters(**values)
+        rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6).with_parameters(**values)
 
 
 # ---- what a change of parameters keeps -----------------------------------------------------------
 
-LAYERED = SECTION.column(1.6, axial_load=1.2e6)
+LAYERED = rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6)
 KEPT = {
     "mass": {"mass": 5e3},
     "axial_load": {"axial_load": 1.1e6},
@@ -456,7 +439,7 @@ def test_a_layered_column_comes_back_from_pickle_and_copy():
 
 # ---- bounds end where the model does -------------------------------------------------------------
 
-STOCKY = SECTION.column(0.7, axial_load=3.5e6)
+STOCKY = rbsdem.section.column(SECTION, 0.7, axial_load=3.5e6)
 
 
 @pytest.mark.parametrize("column", [LAYERED, STOCKY], ids=["slender", "stocky"])
@@ -489,19 +472,19 @@ def test_each_parameter_has_its_say_up_to_its_bounds(column):
 def test_parameters_of_another_model_are_held_to_the_same_limits():
     changed = parameters().with_values(hinge_length=3.9)
     with pytest.raises(InputError, match=r"hinge_length = 3.9 is above .* changes nothing"):
-        SECTION.column(1.6, axial_load=1.2e6, model_parameters=changed)
+        rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6, model_parameters=changed)
     for name, value in (("shear_hardening", 0.9), ("fatigue", -0.1)):
         changed = parameters().with_values(**{name: value})
         with pytest.raises(InputError, match=f"{name} = {value:g} is below"):
-            SECTION.column(1.6, axial_load=1.2e6, model_parameters=changed)
+            rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6, model_parameters=changed)
 
 
 def test_a_parameter_beyond_its_limit_starts_at_the_limit():
     """The version's stiffness above a stocky hinge of high axial load would be above 2."""
     with pytest.warns(rbsdem.errors.AccuracyWarning, match="axial load ratio"):
-        column = SECTION.column(1.6, axial_load=5e6)
+        column = rbsdem.section.column(SECTION, 1.6, axial_load=5e6)
     stiffness = column.parameters["stiffness"]
-    assert column.recipe.parameters.hinge.stiffness > column.recipe.limits["stiffness"][1]
+    assert column.recipe.parameters.stiffness > column.recipe.limits["stiffness"][1]
     assert stiffness.value == stiffness.high == column.recipe.limits["stiffness"][1]
     same = column.with_parameters(stiffness=stiffness.value)
     assert same.flexure[1].k_c == pytest.approx(column.joints("flexure")[1].k_c)
@@ -510,7 +493,9 @@ def test_a_parameter_beyond_its_limit_starts_at_the_limit():
 def test_another_axial_load_draws_the_springs_again():
     """`dataclasses.replace` gives the column that the section makes for that load, bit for bit."""
     section = rbsdem.peer.paper_sections()["zahn_7"].section
-    column, other = (section.column(1.6, axial_load=load) for load in (0.5e6, 1.0e6))
+    column, other = (
+        rbsdem.section.column(section, 1.6, axial_load=load) for load in (0.5e6, 1.0e6)
+    )
     again = replace(column, axial_load=1.0e6)
     assert again == other
     assert again.recipe == other.recipe
@@ -526,12 +511,12 @@ def test_another_axial_load_draws_the_springs_again():
 
 def test_sizes_that_the_springs_are_made_for_are_not_changed_alone():
     section = rbsdem.peer.paper_sections()["zahn_7"].section
-    column = section.column(1.6, axial_load=0.5e6)
+    column = rbsdem.section.column(section, 1.6, axial_load=0.5e6)
     for change in ({"height": 2.0}, {"n": 3}):
         with pytest.raises(rbsdem.InputError, match="make the column anew"):
             replace(column, **change)
-    twice = rbsdem.double_curvature(column)
-    other = rbsdem.double_curvature(replace(column, axial_load=1e6))
+    twice = column.double_curvature()
+    other = replace(column, axial_load=1e6).double_curvature()
     assert replace(twice, axial_load=1e6) == other
     # Springs of the user's own suit any size.
     own = Elastic(1e9)

@@ -17,7 +17,7 @@ from rbsdem import InputError, plot
 from rbsdem.springs import Bilinear, Elastic, Layered, PeakOriented, SteelSpring
 
 SECTION = rbsdem.peer.paper_sections()["zahn_7"].section
-COLUMN = SECTION.column(1.6, axial_load=1.01e6)
+COLUMN = rbsdem.section.column(SECTION, 1.6, axial_load=1.01e6)
 PATH = 1.6 * rbsdem.protocol([0.0025, 0.005, 0.01, 0.02, 0.03, 0.05, 0.07], cycles=2)
 RESULT = rbsdem.cyclic(COLUMN, displacement=PATH, openings=True)
 
@@ -36,7 +36,7 @@ def test_states_of_springs_are_where_their_lines_end():
 @pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
 def test_what_codes_are_not_for_does_not_hide_the_rest():
     """No relation for bar buckling is for tension; cracking and yield are strains all the same."""
-    column = SECTION.column(1.6, axial_load=-0.3e6)
+    column = rbsdem.section.column(SECTION, 1.6, axial_load=-0.3e6)
     states = rbsdem.cyclic(column, displacement=[0.0, 0.01, 0.03]).limit_states()
     assert {"cracking", "first_yield"} <= set(states.names())
 
@@ -76,7 +76,9 @@ def test_a_spring_without_a_cracking_point_does_not_crack():
     assert states.names() == ["cracking", "first_yield", "cap"]
     # Nor does concrete without tensile strength, under no load, crack at time 0.
     plain = replace(SECTION, concrete=rbsdem.Concrete(SECTION.concrete.fc, ft=0.0))
-    rest = rbsdem.cyclic(plain.column(1.6, axial_load=0.0), displacement=[0.0, 1e-4], openings=True)
+    rest = rbsdem.cyclic(
+        rbsdem.section.column(plain, 1.6, axial_load=0.0), displacement=[0.0, 1e-4], openings=True
+    )
     assert "cracking" not in rest.limit_states()
 
 
@@ -172,7 +174,9 @@ def test_bars_of_two_steels_in_a_row_yield_each_at_its_strain():
     listed = {"layout": None, "bar_diameter": 0.02}
     found = []
     for bars in (section.bars, section.bars[::-1]):
-        column = replace(section, **listed, bars=list(bars)).column(1.6, axial_load=0.5e6)
+        column = rbsdem.section.column(
+            replace(section, **listed, bars=list(bars)), 1.6, axial_load=0.5e6
+        )
         result = rbsdem.cyclic(column, displacement=[0.02 * 1.6])
         state = result.limit_states()["first_yield"]
         assert state.threshold == soft.fy / soft.es
@@ -203,7 +207,9 @@ def test_ends_of_a_path_are_states():
     # Near the squash load the layers lose the axial load under a small drift.
     other = rbsdem.peer.paper_sections()["soesianawati_1"].section
     with pytest.warns(rbsdem.errors.AccuracyWarning, match="axial load ratio"):
-        heavy = other.column(1.6, axial_load=0.9 * other.concrete.fc * other.gross_area)
+        heavy = rbsdem.section.column(
+            other, 1.6, axial_load=0.9 * other.concrete.fc * other.gross_area
+        )
     lost = rbsdem.cyclic(heavy, displacement=np.linspace(0.0, 0.1, 200), openings=True)
     assert lost.summary["status"] == "axial_failure"
     assert lost.limit_states()["axial_failure"].row == lost.time.size - 1

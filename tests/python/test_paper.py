@@ -15,7 +15,7 @@ from rbsdem import curves as comparison
 from rbsdem import peer
 from rbsdem._package import text as data_text
 from rbsdem.errors import InputError
-from rbsdem.section.model import CONCRETE_DENSITY
+from rbsdem.section.columns import CONCRETE_DENSITY
 from rbsdem.section.paper import KEYS, paper_columns, paper_sections
 
 ROOT = Path(__file__).resolve().parents[2]

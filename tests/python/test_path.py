@@ -51,7 +51,7 @@ def random_case(seed: int) -> tuple[rbsdem.Column, Array]:
     path = 1.6 * np.ravel(np.column_stack((peaks, -peaks * rng.uniform(0.5, 1.2, 5))))
     if seed % 4 == 3:
         load = 1e6 * rng.uniform(0.3, 1.0)
-        return SECTION.column(1.6, axial_load=load, n=int(rng.integers(2, 4))), path
+        return rbsdem.section.column(SECTION, 1.6, axial_load=load, n=int(rng.integers(2, 4))), path
     column = rbsdem.Column(
         1.6,
         1e3,

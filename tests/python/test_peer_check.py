@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import rbsdem
 from rbsdem import peer
 from rbsdem.cli import main
 
@@ -64,7 +65,7 @@ def made(
         **(given | changes),  # type: ignore[arg-type]
     )
     section = peer.draw(specimen).section
-    peak = section.diagram(load).events.peak
+    peak = rbsdem.section.diagram(section, load).events.peak
     assert peak is not None
     gross = 3 * section.concrete_law["ec"] * section.width * section.depth**3 / 12 / LENGTH**3
     turns = LENGTH * np.repeat([0.005, 0.01, 0.02, 0.03, 0.04, 0.06], 2) * np.tile([1, -1], 6)

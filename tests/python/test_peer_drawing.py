@@ -178,7 +178,7 @@ def test_the_section_can_be_analysed(specimen):
     section = peer.draw(specimen).section
     assert section.gross_area == pytest.approx(specimen.gross_area)
     assert section.confinement is not None
-    moments = section.moment_curvature(1e6, [-0.01, 0.01])
+    moments = rbsdem.section.moment_curvature(section, 1e6, [-0.01, 0.01])
     assert moments[0] == pytest.approx(-moments[1], rel=1e-6)
 
 

@@ -229,10 +229,7 @@ def test_broken_off_keeps_what_is_done(table):
     ("arguments", "words"),
     [
         ({"model": "nonsense"}, "'nonsense' is not known; it is one of layered, paper"),
-        (
-            {"version": "1.0"},
-            "version = '1.0' of the layered model is not known; there are 2026.2, 2026.3, 2026.4",
-        ),
+        ({"model_parameters": "1.0"}, "model_parameters = '1.0' must be a ModelParameters"),
         ({"jobs": 0}, "jobs = 0"),
     ],
 )

@@ -10,7 +10,8 @@ import pytest
 
 import rbsdem
 from rbsdem import peer
-from rbsdem.section.strips import Strip, Strips
+from rbsdem.section import hinge
+from rbsdem.section.hinge import Strip, Strips
 from rbsdem.springs import ConcreteSpring
 
 SQUARE = peer.Specimen(
@@ -43,8 +44,13 @@ DISC = math.pi / 4 * 0.44**2
 
 
 def cut(specimen: peer.Specimen, number: int) -> Strips:
-    drawn = peer.draw(specimen)
-    return drawn.section.cut(number, restrained=drawn.restrained, round_core=drawn.round_core)
+    drawing = peer.draw(specimen)
+    return hinge.cut(
+        drawing.section,
+        number,
+        restrained=drawing.restrained,
+        round_core=drawing.round_core,
+    )
 
 
 def total(strips: tuple[Strip, ...], power: int = 0) -> float:
@@ -134,7 +140,9 @@ def test_a_column_with_a_spiral(specimen):
     assert rbsdem.cyclic(column, displacement=-d).force == pytest.approx(-force, abs=1.0)
     section = peer.draw(specimen).section
     curvature = np.linspace(0, 0.1, 60)[1:]
-    moment = section.moment_curvature(specimen.axial_load, curvature, tension="zero")
+    moment = rbsdem.section.moment_curvature(
+        section, specimen.axial_load, curvature, tension="zero"
+    )
     rotation = curvature * 0.2
     assert np.max(
         column.joints("flexure")[0].response(rotation, specimen.axial_load)

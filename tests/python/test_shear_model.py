@@ -10,10 +10,11 @@ import pytest
 
 import rbsdem
 from rbsdem import peer
+from rbsdem.model.shape import Section
 from rbsdem.section.parameters import parameters
-from rbsdem.section.shear_model import cracked_shear_stiffness, shear_spring
+from rbsdem.section.shear import cracked_shear_stiffness, shear_spring
 from rbsdem.section.strength import shear_strength_mcft, shear_strength_sezen
-from rbsdem.springs import Elastic, Pinching
+from rbsdem.springs import Elastic
 
 # Slender and well tied; the same squat, with few ties and much steel.
 SLENDER = peer.Specimen(
@@ -44,12 +45,12 @@ SQUAT = replace(
 STIFFNESS = 7e8
 
 
-def section(specimen: peer.Specimen) -> rbsdem.model.section.Section:
+def section(specimen: peer.Specimen) -> Section:
     return peer.draw(specimen).section
 
 
-def spring(specimen: peer.Specimen, **numbers: float) -> Pinching:
-    given = replace(parameters().shear, **numbers)
+def spring(specimen: peer.Specimen, **numbers: float) -> rbsdem.springs.Pinching:
+    given = parameters().with_values(**{f"shear_{name}": v for name, v in numbers.items()})
     s = specimen
     return shear_spring(section(s), s.length, s.axial_load, STIFFNESS, given)
 
@@ -90,7 +91,7 @@ def test_lines_up_to_the_largest_force(specimen):
     assert one.f_cap == pytest.approx(1.2 * v_n)
     assert one.f_c / one.d_c == pytest.approx(STIFFNESS / specimen.length)
     cracked = (one.f_y - one.f_c) / (one.d_y - one.d_c)
-    truss = parameters().shear.cracked * cracked_shear_stiffness(drawn)
+    truss = parameters().shear_cracked * cracked_shear_stiffness(drawn)
     assert cracked == pytest.approx(truss / specimen.length)
 
 
@@ -124,7 +125,7 @@ def test_a_slender_column_does_not_know_of_shear_failure():
     force = rbsdem.cyclic(column, displacement=d).force
     assert np.max(np.abs(force)) < 0.7 * column.joints("shear")[0].f_y
     other = column.with_parameters(shear_endurance=10.0, shear_pinch_force=0.05)
-    assert other.recipe.parameters.shear.endurance == 10.0
+    assert other.recipe.parameters.shear_endurance == 10.0
     assert np.array_equal(rbsdem.cyclic(other, displacement=d).force, force)
 
 
@@ -156,15 +157,15 @@ def test_the_number_of_bodies_does_not_matter(specimen):
 
 
 def test_parameters_of_the_shear_spring_can_be_calibrated():
-    def values(column: rbsdem.section.model.LayeredColumn) -> tuple[float, float]:
+    def values(column: rbsdem.section.layered.LayeredColumn) -> tuple[float, float]:
         given = column.recipe.parameters
-        return given.shear.strength, given.hinge.steel_strength
+        return given.shear_strength, given.steel_strength
 
     column = peer.column(SQUAT, "layered")
     found = column.parameters
-    assert found["shear_strength"].value == parameters().shear.strength
+    assert found["shear_strength"].value == parameters().shear_strength
     changed = column.with_parameters(shear_strength=1.5, steel_strength=1.2)
-    at_one = column.joints("shear")[0].f_y / parameters().shear.strength
+    at_one = column.joints("shear")[0].f_y / parameters().shear_strength
     assert changed.shear[0].f_y == pytest.approx(1.5 * at_one)
     assert values(changed) == (1.5, 1.2)
     # Both stay as the next ones change.

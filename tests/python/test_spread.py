@@ -9,13 +9,18 @@ from statistics import NormalDist
 import numpy as np
 import pytest
 
-from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties, plot
+import rbsdem
+from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.section.parameters import parameters
-from rbsdem.section.remote import Middle
-from rbsdem.section.scatter import SCATTER, Scatter
-from rbsdem.section.sobol import sobol
-from rbsdem.section.spread import Interval, near_shear, path_force
+from rbsdem.section.spread import (
+    Interval,
+    Middle,
+    Scatter,
+    _normal_points,
+    near_shear,
+    path_force,
+)
 from rbsdem.solve.protocol import protocol
 
 SECTION = RectangularSection(
@@ -40,14 +45,14 @@ NONE = Scatter(
 
 
 def column(**changes: float):
-    return SECTION.column(1.6, axial_load=1.2e6).with_parameters(**changes)
+    return rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6).with_parameters(**changes)
 
 
 @pytest.mark.parametrize("number", [8, 16, 64])
 def test_sobol_points_are_spread_evenly(number: int) -> None:
     """Each of n equal slices of every axis has one point, each of n equal boxes of two axes too."""
     normal = NormalDist()
-    share = np.vectorize(normal.cdf)(sobol(number))
+    share = np.vectorize(normal.cdf)(_normal_points(number))
     for place in range(3):
         assert sorted(np.floor(number * share[:, place]).astype(int)) == list(range(number))
     bits = number.bit_length() - 1
@@ -59,7 +64,7 @@ def test_sobol_points_are_spread_evenly(number: int) -> None:
 
 
 def test_without_scatter_the_band_is_that_of_the_shape() -> None:
-    found = column().spread(PATH, scatter=NONE)
+    found = rbsdem.section.spread(column(), PATH, scatter=NONE)
     peak = np.max(np.abs(found.force))
     np.testing.assert_allclose(found.upper - found.force, 2 * 0.05 * peak, rtol=1e-9)
     np.testing.assert_allclose(found.force - found.lower, 2 * 0.05 * peak, rtol=1e-9)
@@ -74,19 +79,19 @@ def test_the_band_grows_with_the_distance_from_the_tests() -> None:
     axes = np.linalg.inv(np.linalg.cholesky(covariance))
     mean = (0.2, 1.2, 0.3, -1.5, -3.0)
     middle = Middle(mean, tuple(tuple(row[: i + 1]) for i, row in enumerate(axes.tolist())))
-    found = column().spread(PATH, scatter=replace(NONE, growth=0.3, middle=middle))
+    found = rbsdem.section.spread(column(), PATH, scatter=replace(NONE, growth=0.3, middle=middle))
     bars, ties = 8 * np.pi / 4 * 0.02**2 * 450 / 40, 3 * np.pi / 4 * 0.01**2 / 0.08 * 400 / 40
     logs = np.log([1.6 / 0.4, 40 / 30, bars / 0.16, ties / 0.4])
     way = np.array([1.2e6 / (0.16 * 40e6), *logs]) - mean
     distance = math.sqrt(way @ np.linalg.solve(covariance, way))
     assert found.distance == pytest.approx(distance, rel=1e-12)
     assert found.width == pytest.approx(0.2 * math.exp(0.3 * distance))
-    assert math.isnan(column().spread(PATH, scatter=NONE).distance)
+    assert math.isnan(rbsdem.section.spread(column(), PATH, scatter=NONE).distance)
 
 
 def test_scatter_of_strength_is_a_factor() -> None:
-    found = column().spread(PATH, scatter=replace(NONE, strength=(0.06, 0.08)))
-    factors = np.exp(0.1 * sobol(16)[:, 0])
+    found = rbsdem.section.spread(column(), PATH, scatter=replace(NONE, strength=(0.06, 0.08)))
+    factors = np.exp(0.1 * _normal_points(16)[:, 0])
     np.testing.assert_allclose(found.samples, np.outer(factors, found.force), rtol=1e-12)
     at = int(np.argmax(found.force))
     top, peak = found.force[at], np.max(np.abs(found.force))
@@ -95,14 +100,14 @@ def test_scatter_of_strength_is_a_factor() -> None:
 
 
 def test_a_softer_column_is_where_the_other_is_at_a_smaller_displacement() -> None:
-    found = column().spread(PATH[:2], scatter=replace(NONE, stiffness=(0.0, 0.3)))
-    path = PATH[:2, None] * np.exp(0.3 * sobol(16)[:, 1])
+    found = rbsdem.section.spread(column(), PATH[:2], scatter=replace(NONE, stiffness=(0.0, 0.3)))
+    path = PATH[:2, None] * np.exp(0.3 * _normal_points(16)[:, 1])
     again = [path_force(column(), row) for row in path.T]
     np.testing.assert_allclose(found.samples, again, rtol=1e-12)
 
 
 def test_degradation_changes_late_cycles_only() -> None:
-    found = column().spread(PATH, scatter=replace(NONE, degradation=(0.7, 0.0)))
+    found = rbsdem.section.spread(column(), PATH, scatter=replace(NONE, degradation=(0.7, 0.0)))
     range_of = np.ptp(found.samples, axis=0) / np.max(np.abs(found.force))
     assert range_of[: PATH.size // 6].max() < 0.02 < range_of[PATH.size // 2 :].max()
 
@@ -110,7 +115,7 @@ def test_degradation_changes_late_cycles_only() -> None:
 def test_an_energy_near_zero_has_a_width() -> None:
     """A loop that gives back nearly all that it took: 0.5 and 1.5 times 0.15 of what F moved."""
     push = np.append(np.linspace(0.0, 0.003, 20), np.linspace(0.003, 0.0, 400))
-    found = column().spread(push, scatter=NONE)
+    found = rbsdem.section.spread(column(), push, scatter=NONE)
     moved = np.abs(np.diff(push)) @ np.abs(0.5 * (found.force[1:] + found.force[:-1]))
     energy = found.energy
     assert abs(energy.value) < 0.15 * moved
@@ -119,7 +124,7 @@ def test_an_energy_near_zero_has_a_width() -> None:
 
 
 def test_intervals() -> None:
-    found = column().spread(PATH, scatter=NONE)
+    found = rbsdem.section.spread(column(), PATH, scatter=NONE)
     assert found.peak_force.value == np.max(np.abs(found.force))
     assert found.peak_force.upper == pytest.approx(1.2 * found.peak_force.value)
     assert found.energy.lower == pytest.approx(0.5 * found.energy.value)
@@ -142,7 +147,7 @@ def test_outside_the_range_of_the_tests_it_says_so() -> None:
         cover=0.02,
     )
     with pytest.warns(AccuracyWarning, match="is outside") as caught:
-        far = section.column(4.0, axial_load=-1e5)
+        far = rbsdem.section.column(section, 4.0, axial_load=-1e5)
     names = [
         "axial load ratio",
         "concrete strength",
@@ -156,48 +161,50 @@ def test_outside_the_range_of_the_tests_it_says_so() -> None:
     assert said.startswith("axial_load = -100000 N is tension; compression is positive")
     assert said.endswith("; ".join(far.outside))
     with pytest.warns(AccuracyWarning, match="concrete strength = 140 MPa is outside"):
-        found = far.spread(PATH[:3], scatter=NONE)
+        found = rbsdem.section.spread(far, PATH[:3], scatter=NONE)
     assert found.remarks == far.outside
     with pytest.warns(AccuracyWarning, match="there are no ties"):
-        replace(SECTION, ties=None, layout=None).column(1.6, axial_load=1.2e6)
+        rbsdem.section.column(replace(SECTION, ties=None, layout=None), 1.6, axial_load=1.2e6)
 
 
 def test_wrong_arguments() -> None:
     with pytest.raises(InputError, match="must be 8 to 4096"):
-        column().spread(PATH, samples=4)
+        rbsdem.section.spread(column(), PATH, samples=4)
     with pytest.raises(InputError, match="does not change"):
-        column().spread([0.0, 0.0])
+        rbsdem.section.spread(column(), [0.0, 0.0])
     other = replace(column(), flexure=column().flexure[1])
     with pytest.raises(InputError, match="flexure of this column is not that of its model"):
-        other.spread(PATH)
-    older = SECTION.column(1.6, axial_load=1.2e6, version="2026.2")
-    with pytest.raises(InputError, match="nobody has left tests out of version"):
-        older.spread(PATH)
+        rbsdem.section.spread(other, PATH)
+    with pytest.raises(InputError, match="column = a Column must be a LayeredColumn"):
+        rbsdem.section.spread(rbsdem.peer.paper_columns()["zahn_7"], PATH)
+    own = replace(parameters(), version="mine")
+    mine = rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6, model_parameters=own)
+    with pytest.raises(InputError, match="no tests were left out of the fit of version 'mine'"):
+        rbsdem.section.spread(mine, PATH)
 
 
-def test_the_newest_version_has_bands() -> None:
-    assert parameters().version in SCATTER
-    found = column().spread(PATH)
+def test_the_parameters_have_bands() -> None:
+    found = rbsdem.section.spread(column(), PATH)
     assert np.all(found.lower < found.force)
     assert np.all(found.force < found.upper)
     assert 0.1 < found.width < 0.6
 
 
 def test_figure() -> None:
-    found = column().spread(PATH, scatter=NONE)
-    ax = plot.spread(found, test=found)
+    found = rbsdem.section.spread(column(), PATH, scatter=NONE)
+    ax = rbsdem.plot.spread(found, test=found)
     assert (len(ax.lines), len(ax.collections)) == (3, 1)
 
 
 def test_near_the_shear_strength_the_band_is_wider() -> None:
     """Halfway from 0.7 to 0.95 of it the widening is halfway between its two numbers."""
-    peak = np.max(np.abs(column().spread(PATH, scatter=NONE).force))
+    peak = np.max(np.abs(rbsdem.section.spread(column(), PATH, scatter=NONE).force))
     strength = column().shear[0].f_y
     assert near_shear(column(), 0.7 * strength) == pytest.approx(0.0)
     assert near_shear(column(), 0.825 * strength) == pytest.approx(0.5)
     assert near_shear(column(), 2.0 * strength) == 1.0
-    weak = column(shear_strength=parameters().shear.strength * peak / strength / 0.825)
-    found = weak.spread(PATH, scatter=NONE)
+    weak = column(shear_strength=parameters().shear_strength * peak / strength / 0.825)
+    found = rbsdem.section.spread(weak, PATH, scatter=NONE)
     share = near_shear(weak, np.max(np.abs(found.force)))
     assert 0.3 < share < 0.6
     assert found.width == pytest.approx(2 * 0.05 * (2 + 2 * share))
@@ -205,7 +212,7 @@ def test_near_the_shear_strength_the_band_is_wider() -> None:
 
 
 def test_what_a_band_holds() -> None:
-    found = column().spread(PATH, scatter=NONE)
+    found = rbsdem.section.spread(column(), PATH, scatter=NONE)
     assert found.holds(found.force) == 1.0
     assert found.holds(found.upper + 1.0) == 0.0
     # Far off along the second half of the path.

@@ -24,7 +24,7 @@ def made() -> rbsdem.Column:
     section = rbsdem.RectangularSection(
         0.4, 0.4, rbsdem.Concrete(46.5e6), layout=bars, ties=ties, cover=0.013
     )
-    return section.column(1.6, axial_load=744e3)
+    return rbsdem.section.column(section, 1.6, axial_load=744e3)
 
 
 def test_elastic_layers_have_the_strains_of_a_plane_section() -> None:

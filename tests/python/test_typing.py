@@ -64,10 +64,11 @@ section = rbsdem.RectangularSection(
     ties=rbsdem.Ties(0.007, 0.085, rbsdem.Steel(fy=364e6), legs=4),
     cover=0.013,
 )
-springs = section.springs(1.6, axial_load=744e3)
+springs = rbsdem.section.springs(section, 1.6, axial_load=744e3)
 assert springs.shear is not None
 made = rbsdem.Column(1.6, 614.4, springs.shear, springs.flexure)
-print(pushed(made).summary["status"], pushed(section.column(1.6, axial_load=744e3)).force[-1])
+drawn = rbsdem.section.column(section, 1.6, axial_load=744e3)
+print(pushed(made).summary["status"], pushed(drawn).force[-1])
 
 record = rbsdem.motions.synthetic(2)[0]
 quake = rbsdem.GroundMotion(record.acceleration[:500], record.dt, "part").scaled(pga=2.0)

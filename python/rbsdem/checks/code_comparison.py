@@ -21,7 +21,7 @@ from rbsdem.curves.strength import strength_loss
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
 from rbsdem.model.response import Response
-from rbsdem.section.model import LayeredColumn
+from rbsdem.section.layered import LayeredColumn
 
 if TYPE_CHECKING:
     import pandas as pd

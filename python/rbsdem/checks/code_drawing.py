@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from rbsdem.errors import InputError
 from rbsdem.model.reinforcement import Bar
-from rbsdem.model.section import Section
+from rbsdem.model.shape import Section
 from rbsdem.section.ranges import carried_load, column_length
 
 __all__ = ["Quantities", "quantities"]

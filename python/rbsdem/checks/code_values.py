@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from rbsdem.checks import asce_41, ec_8, flexure, regressions
 from rbsdem.checks.code_drawing import Quantities, quantities
 from rbsdem.errors import InputError
-from rbsdem.model.section import Section
+from rbsdem.model.shape import Section
 from rbsdem.section import strength
-from rbsdem.section.interaction import nominal_moment
+from rbsdem.section.axial_moment import nominal_moment
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -19,10 +19,10 @@ from rbsdem.checks.regressions import goodnight_buckling_strain
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
 from rbsdem.model.response import Response
-from rbsdem.model.section import Section
+from rbsdem.model.shape import Section
 from rbsdem.model.springs import Layered, Spring
 from rbsdem.model.strains import Gauge
-from rbsdem.section.model import LayeredColumn
+from rbsdem.section.layered import LayeredColumn
 
 __all__ = ["WATCHED", "Criterion", "buckling_strain", "criteria", "watches"]
 

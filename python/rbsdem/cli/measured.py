@@ -8,7 +8,6 @@ import warnings
 from collections.abc import Sequence
 from fnmatch import fnmatch
 from pathlib import Path
-from typing import Any
 
 import click
 import numpy as np
@@ -29,7 +28,7 @@ from rbsdem.output import reports, tables
 from rbsdem.output.measured import band_sheet, contact_sheet
 from rbsdem.output.measured import prediction as draw_prediction
 from rbsdem.output.tables import console
-from rbsdem.section.model import DEFAULT, MODELS, model_name
+from rbsdem.section.columns import DEFAULT, MODELS, model_name
 from rbsdem.solve.protocol import protocol
 from rbsdem.web.gallery import gallery
 
@@ -37,7 +36,6 @@ from rbsdem.web.gallery import gallery
 UNFINISHED = "unfinished"
 
 _SECTIONS = click.Choice(["rectangular", "circular", "all"])
-_version = click.option("--model-version", metavar="VERSION", help="of the parameters; the newest")
 _out = click.option("--out", type=FOLDER, metavar="DIR", help="write files into this folder")
 
 
@@ -47,7 +45,6 @@ _out = click.option("--out", type=FOLDER, metavar="DIR", help="write files into 
 @click.command("peer", cls=Command)
 @click.argument("folder", type=FILE, metavar="DIR")
 @click.option("--model", default=DEFAULT, help=f"{', '.join(MODELS)}; default {DEFAULT}")
-@_version
 @click.option("--section", type=_SECTIONS, default="all", help="circular: octagons and spirals too")
 @click.option("--failure", cls=Values, metavar="MODE ...", help="Flexure, Flexure-Shear, Shear")
 @click.option("--only", cls=Values, metavar="NAME ...", help="names, files, numbers; * is any text")
@@ -63,7 +60,6 @@ _out = click.option("--out", type=FOLDER, metavar="DIR", help="write files into 
 def peer(
     folder: Path,
     model: str,
-    model_version: str | None,
     section: str,
     failure: tuple[str, ...],
     only: tuple[str, ...],
@@ -99,8 +95,7 @@ def peer(
         tests = _mended(tests, check_tests(read_specimens(folder).with_history()))
     if not hasattr(tests[0], by):
         raise InputError(f"--by {by} is no property, as failure_mode, section, series")
-    options: dict[str, Any] = {} if model_version is None else {"version": model_version}
-    model_name(model, **options)
+    model_name(model)
     if loops and out is None:
         raise InputError("--loops writes files; give their folder with --out DIR")
     if out is not None:
@@ -114,13 +109,12 @@ def peer(
         progress=not quiet and sys.stderr.isatty(),
         store=store,
         limit_states=limit_states,
-        **options,
     )
     # The files come first: whoever reads the report may stop reading.
     lines = [] if out is None else written(predictions, out, by, loops)
     if store is not None and not predictions.interrupted:
         how = PredictionOptions(bands=bands, limit_states=limit_states)
-        PredictionStore(store, tests, predictions.model, how.given(options)).forget()
+        PredictionStore(store, tests, predictions.model, how.given({})).forget()
     _report(predictions, by, quiet)
     for line in lines:
         print(line)
@@ -239,7 +233,6 @@ def written(found: Predictions, folder: Path, by: str, loops: bool) -> list[str]
 @click.argument("only", nargs=-1, metavar="[NAME]...")
 @click.option("--drifts", cls=Values, type=float, metavar="X ...", help="drift ratios of cycles")
 @click.option("--cycles", type=int, default=2, metavar="N", help="at each drift; 2")
-@_version
 @click.option("--samples", type=int, default=16, metavar="N", help="of a band; 16")
 @click.option("--near", type=FILE, metavar="DIR", help="folder of tests, for the nearest ones")
 @_out
@@ -248,7 +241,6 @@ def predict(
     only: tuple[str, ...],
     drifts: tuple[float, ...],
     cycles: int,
-    model_version: str | None,
     samples: int,
     near: Path | None,
     out: Path | None,
@@ -269,7 +261,6 @@ def predict(
     if not tests:
         raise InputError(f"{table} has no rows; write one for each column")
     path = protocol(drifts, cycles=cycles) if drifts else None
-    options: dict[str, Any] = {} if model_version is None else {"version": model_version}
     others = None if near is None else read_specimens(near).with_history()
     rows, errors = [], []
     for specimen in tests:
@@ -283,7 +274,6 @@ def predict(
                     samples=samples,
                     displacement=_path(specimen, path),
                     near=others,
-                    **options,
                 )
         except InputError as error:
             if len(tests) == 1:

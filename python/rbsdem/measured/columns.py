@@ -6,15 +6,19 @@ from collections.abc import Mapping
 from difflib import get_close_matches
 from typing import Any, Literal, get_args, overload
 
+from rbsdem import _arguments
 from rbsdem.errors import InputError
 from rbsdem.measured.drawing import draw
 from rbsdem.measured.specimen import Specimen
 from rbsdem.model.column import Column
-from rbsdem.section.model import DEFAULT, LayeredColumn, Model, check_model
+from rbsdem.model.shape import Section
+from rbsdem.section.columns import DEFAULT, MODELS, Model
+from rbsdem.section.columns import column as column_of
+from rbsdem.section.layered import LayeredColumn
 
 __all__ = ["column"]
 
-_OPTIONS = ("n", "version", "model_parameters", "restrained", "round_core", "ends", "footing")
+_OPTIONS = ("n", "model_parameters", "restrained", "round_core", "ends", "footing")
 
 #: The equivalent cantilever of the table, or the form of the test.
 Ends = Literal["equivalent", "tested"]
@@ -34,9 +38,9 @@ def column(specimen: Specimen, model: Model = DEFAULT, **options: Any) -> Column
     specimen : Specimen
         The test; only its properties are looked at.
     model : {"layered", "paper"}, optional
-        As for `rbsdem.model.section.Section.column`.
+        As for `rbsdem.section.column`.
     **options
-        As there: ``n``, ``version``, ``model_parameters``. ``ends="tested"`` makes a double
+        As there: ``n``, ``model_parameters``. ``ends="tested"`` makes a double
         curvature specimen (config DC) what it is, twice as long with a hinge at each end: its top
         moves twice as far as the displacement of the test. The default, ``"equivalent"``, is the
         cantilever that all lengths and displacements of the table belong to and the model was
@@ -55,7 +59,7 @@ def column(specimen: Specimen, model: Model = DEFAULT, **options: Any) -> Column
         If the model is not known, if the section cannot be analysed, or if the table does not say
         enough of the ends of the test.
     """
-    check_model(model)
+    _arguments.choice(model, "model", MODELS)
     checked_specimen(specimen)
     check_options(options)
     tested = _tested(specimen, options.pop("ends", "equivalent"), options.get("footing"))
@@ -67,7 +71,8 @@ def column(specimen: Specimen, model: Model = DEFAULT, **options: Any) -> Column
             **options,
         }
     halves = 2 if tested and specimen.config == "DC" else 1
-    return drawn.section.column(
+    return column_of(
+        drawn.section,
         halves * specimen.length,
         axial_load=specimen.axial_load,
         mass=halves * specimen.mass,
@@ -105,13 +110,15 @@ def checked_specimen(specimen: object) -> Specimen:
     if len(given) > 60:
         given = f"a {type(specimen).__name__}"
     remedy = "rbsdem.peer.read_specimens reads them from a table"
-    if hasattr(specimen, "column"):
-        remedy = "a section makes its column itself: section.column(height, axial_load=...)"
+    if isinstance(specimen, Section):
+        remedy = (
+            "of a section, rbsdem.section.column(section, height, axial_load=...) makes a column"
+        )
     raise InputError(f"specimen = {given} must be a Specimen; {remedy}")
 
 
 def check_options(options: Mapping[str, object]) -> None:
-    """Raise `InputError` for options that `rbsdem.model.section.Section.column` does not have."""
+    """Raise `InputError` for options that `rbsdem.section.column` does not have."""
     for name in options:
         if name not in _OPTIONS:
             near = get_close_matches(name, _OPTIONS, 1)

@@ -22,11 +22,9 @@ from typing import Any, TypeAlias
 
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.measured.specimen import Specimen
-from rbsdem.model.circular import CircularSection
 from rbsdem.model.materials import Concrete, Steel
-from rbsdem.model.rectangular import RectangularSection
 from rbsdem.model.reinforcement import Spiral, Ties
-from rbsdem.model.section import Section
+from rbsdem.model.shape import CircularSection, RectangularSection, Section
 
 __all__ = ["DEFAULT_YIELD_STRESS", "ULTIMATE_OVER_YIELD", "DrawnSpecimen", "draw"]
 
@@ -50,7 +48,7 @@ class DrawnSpecimen:
 
     Attributes
     ----------
-    section : rbsdem.model.section.Section
+    section : rbsdem.model.shape.Section
         Laws by the strengths. The table has the legs of hoops in the direction of loading only;
         those across are taken as the same. A square section with a spiral has it as hoops.
     restrained : int

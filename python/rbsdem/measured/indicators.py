@@ -18,6 +18,7 @@ from rbsdem.errors import AccuracyWarning, RbsdemError
 from rbsdem.measured.drawing import draw
 from rbsdem.measured.measured import MeasuredTest
 from rbsdem.measured.specimen import Specimen
+from rbsdem.section.curvature import diagram
 
 __all__ = ["Indicators", "indicators"]
 
@@ -162,7 +163,7 @@ def _strength(specimen: Specimen, test: MeasuredTest) -> float:
     """Return the largest base moment over the strength of the section, both sides alike."""
     try:
         section = draw(specimen).section
-        peak = section.diagram(specimen.axial_load).events.peak
+        peak = diagram(section, specimen.axial_load).events.peak
     except RbsdemError:
         return math.nan
     if peak is None or not peak.moment > 0:
@@ -178,7 +179,7 @@ def _stiffness(specimen: Specimen, test: MeasuredTest) -> float:
     if not d * f > 0:
         return math.nan
     section = draw(specimen).section
-    gross = 3 * section.concrete_law["ec"] * section.cut(2).inertia / specimen.length**3
+    gross = 3 * section.concrete_law["ec"] * section.inertia / specimen.length**3
     return f / d / gross
 
 

@@ -13,9 +13,8 @@ from rbsdem.measured.columns import checked_specimen
 from rbsdem.measured.drawing import draw
 from rbsdem.measured.predictions import Neighbour, Prediction
 from rbsdem.measured.specimen import Specimen
-from rbsdem.model.circular import CircularSection
-from rbsdem.model.section import Section
-from rbsdem.section.remote import place_of
+from rbsdem.model.shape import CircularSection, Section
+from rbsdem.section.spread import place_of
 
 __all__ = ["nearest"]
 

@@ -33,10 +33,9 @@ from rbsdem.measured.specimen import Specimen
 from rbsdem.measured.specimens import TABLE, read_specimens
 from rbsdem.model.column import Column
 from rbsdem.results.result import Result, cyclic
-from rbsdem.section.model import DEFAULT, model_name
+from rbsdem.section.columns import DEFAULT, model_name
 from rbsdem.section.parameters import parameters
-from rbsdem.section.scatter import SCATTER
-from rbsdem.section.spread import Spread, has_bands
+from rbsdem.section.spread import Spread, has_bands, spread
 
 __all__ = ["PredictionOptions", "name_of", "predict", "predict_one"]
 
@@ -114,7 +113,7 @@ def predict(
         most like it with their errors. By default for one specimen by the layered model. A band
         takes the time of `samples` predictions more.
     samples : int, optional
-        Samples of a band, as for `rbsdem.section.model.LayeredColumn.spread`.
+        Samples of a band, as for `rbsdem.section.spread`.
     displacement : array_like, shape (m,), optional
         Path of the top [m], for columns that nobody tested; with bands. Without it, that of each
         test.
@@ -312,13 +311,10 @@ def _bands(given: bool | None, single: bool, model: Model, options: dict[str, An
         return False
     if given is None and not single:
         return False
-    own = options.get("model_parameters")
-    version = (own or parameters(options.get("version"))).version
-    if given is None:
-        return version in SCATTER
-    if given:
-        has_bands(version)
-    return given
+    version = (options.get("model_parameters") or parameters()).version
+    if given and not has_bands(version):
+        raise InputError(f"bands = True: there are no bands of version {version!r}")
+    return has_bands(version) if given is None else given
 
 
 def _path(displacement: ArrayLike) -> list[float]:
@@ -475,7 +471,7 @@ def _analyse(
         states = {state.name: abs(state.drift) for state in result.limit_states()}
     end = time.perf_counter()
     if how.bands and status != "failed":
-        band = column.spread(path, samples=how.samples)
+        band = spread(column, path, samples=how.samples)
     built = max(built, begin)
     return _Analysed(status, error, result, (built - begin, end - built), band, remarks, states)
 
@@ -484,4 +480,4 @@ def name_of(model: Model, options: dict[str, Any]) -> str:
     """Return the name of the model, with the version of its parameters."""
     if callable(model):
         return getattr(model, "__name__", repr(model))
-    return model_name(model, options.get("version"), options.get("model_parameters"))
+    return model_name(model, options.get("model_parameters"))

@@ -10,7 +10,7 @@ from pathlib import Path, PurePath
 from rbsdem.errors import InputError
 from rbsdem.measured.file import PeerTest, read_peer
 from rbsdem.measured.measured import MeasuredTest, net_force, top_displacement
-from rbsdem.section.model import CONCRETE_DENSITY
+from rbsdem.section.columns import CONCRETE_DENSITY
 
 __all__ = ["Observed", "Specimen"]
 
@@ -214,7 +214,7 @@ class Specimen:
 
     @property
     def mass(self) -> float:
-        """Mass from the gross volume and `rbsdem.section.model.CONCRETE_DENSITY` [kg]."""
+        """Mass from the gross volume and `rbsdem.section.columns.CONCRETE_DENSITY` [kg]."""
         return self.gross_area * self.length * CONCRETE_DENSITY
 
     @property

@@ -6,8 +6,8 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
-from typing import Any, Literal
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal
 
 from numpy.typing import ArrayLike
 
@@ -15,8 +15,12 @@ from rbsdem import _arguments, _core
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.damping import Damping
 from rbsdem.model.footing import Footing
+from rbsdem.model.shape import Section
 from rbsdem.model.springs import Layered, Spring, classes_for, layer_springs, whole_column
 from rbsdem.model.strains import Gauge
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 #: Standard acceleration of gravity [m/s2].
 STANDARD_GRAVITY = 9.80665
@@ -277,6 +281,81 @@ class Column:
         """
         return None
 
+    def double_curvature(self, *, top_mass: float = 0.0, prismatic: bool | None = None) -> Self:
+        """Return the column in double curvature whose lower half is this cantilever.
+
+        The cantilever has a free top, no footing and no mass at its top. The upper half is the
+        lower one turned about the middle, where the moment is zero: 2 n - 1 bodies of twice the
+        height, on 2 n joints, the last one at a top that is fixed against rotation. At equal shear
+        and axial load its top moves twice as far as that of the cantilever, as long as both halves
+        do the same.
+
+        Parameters
+        ----------
+        top_mass : float, optional
+            Mass that moves with the top [kg]; a dynamic analysis needs it.
+        prismatic : bool, optional
+            Whether the sections of the upper half are not mirrored: the same face of the column is
+            in tension at one end and in compression at the other. It matters for springs whose
+            sides differ. The default is what a column knows that was made from a section that is
+            not symmetric, else no.
+
+        Returns
+        -------
+        Column
+            Of the same class, with all that is not said above as it was.
+
+        Raises
+        ------
+        InputError
+            If the column is no such cantilever, or a spring cannot be mirrored.
+        """
+        if prismatic is None:
+            prismatic = self._prismatic
+        prismatic = _arguments.switch(prismatic, "double_curvature: prismatic")
+        refused = {
+            "top": self.top != "free",
+            "footing": self.footing is not None,
+            "top_mass": bool(self.top_mass or self.top_inertia),
+            "axial_height": self.axial_height is not None,
+            "axial_follows or force_follows": self.axial_follows or self.force_follows,
+        }
+        for name, given in refused.items():
+            if given:
+                raise InputError(
+                    f"double_curvature: the column must be a plain cantilever, without {name}; "
+                    "give the ends of the whole column afterwards, with dataclasses.replace"
+                )
+        n = 2 * self.n - 1
+        lengths = list(self.lengths or [self.height / self.n] * self.n)
+        changes: dict[str, Any] = {
+            "height": 2 * self.height,
+            "n": n,
+            "lengths": _doubled(lengths),
+            "top": "fixed",
+            "top_mass": _arguments.number(top_mass, "double_curvature: top_mass"),
+        }
+        if self.mass is not None:
+            changes["mass"] = 2 * self.mass
+        if self.masses is not None:
+            changes["masses"] = _doubled(list(self.masses))
+        inertia = self.rotary_inertia
+        if inertia is not None:
+            parts = list(inertia) * self.n if len(inertia) == 1 else list(inertia)
+            masses = list(self.masses or [self.mass * part / self.height for part in lengths])
+            # Two halves side by side, each half its length from the middle of their body.
+            middle = 2 * (parts[-1] + masses[-1] * (lengths[-1] / 2) ** 2)
+            changes["rotary_inertia"] = [*parts[:-1], middle, *parts[-2::-1]]
+        for name in ("shear", "flexure", "axial_spring"):
+            # The spring of a whole cantilever is one of each half here.
+            springs = [part.split(1) if whole_column(part) else part for part in self.joints(name)]
+            if springs:
+                # Turned about the middle, a slip keeps its sign, a rotation does not.
+                of_the_half = name == ("shear" if prismatic else "flexure")
+                upper = [part.mirrored() for part in springs] if of_the_half else springs
+                changes[name] = (*springs, *reversed(upper))
+        return replace(self, **changes)
+
     def to_namelist(self) -> str:
         """Return the column as groups of a case file, from which the same column comes back."""
         return _core.to_namelist(self._groups())
@@ -304,6 +383,11 @@ class Column:
             parts.append(layer_springs(ids))
         numbers = [number for part in parts for number in part.numbers]
         return _core.Statement("\n".join(part.text for part in parts), numbers)
+
+
+def _doubled(parts: list[float]) -> list[float]:
+    """Return the parts of both halves; the two at the middle are one."""
+    return [*parts[:-1], 2 * parts[-1], *parts[-2::-1]]
 
 
 def _springs_statement(
@@ -352,8 +436,8 @@ def _refuse_whole(springs: Spring | Sequence[Spring], name: str, n: int) -> None
         split = f", or give {name}.split({n})" if name == "shear" else ""
         raise InputError(
             f"column: {name} is the spring of a whole column, from section.springs, but stands in "
-            f"{number} joints; section.column(height, axial_load=..., model='paper', n={n}) "
-            f"shares it among them{split}"
+            f"{number} joints; rbsdem.section.column(section, height, axial_load=..., "
+            f"model='paper', n={n}) shares it among them{split}"
         )
 
 
@@ -398,8 +482,8 @@ def checked_column(column: object, who: str = "") -> Column:
         return column
     given = _arguments.shown(column)
     remedy = ""
-    if hasattr(column, "column"):
-        remedy = "; its method column(height, axial_load=...) makes one"
+    if isinstance(column, Section):
+        remedy = "; rbsdem.section.column(section, height, axial_load=...) makes one"
     elif hasattr(column, "flexure") and hasattr(column, "shear"):
         remedy = "; Column(height, mass, springs.shear, springs.flexure) makes one of springs"
     raise InputError(f"{who}column = {given} must be a Column{remedy}")

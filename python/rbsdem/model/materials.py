@@ -10,12 +10,24 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
-from rbsdem.model.derived import Derived, given
 
-__all__ = ["Concrete", "Steel", "Tension"]
+__all__ = ["Concrete", "Derived", "Steel", "Tension", "given"]
 
 Tension = Literal["ts", "bare", "zero"]
 """Tension laws of concrete: with tension stiffening beyond f_t; up to f_t only; no tension."""
+
+
+# `dataclasses.replace` hands on what an object holds, whether it was given or not: a number that
+# followed from another must be known as such, or it would stay behind when the other changes.
+class Derived(float):
+    """A number that was not given."""
+
+    __slots__ = ()
+
+
+def given(value: float | None) -> float | None:
+    """Return a value if somebody gave it, else None."""
+    return None if isinstance(value, Derived) else value
 
 
 @dataclass(frozen=True)

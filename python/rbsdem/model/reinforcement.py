@@ -11,8 +11,7 @@ import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem.errors import InputError
-from rbsdem.model.derived import Derived, given
-from rbsdem.model.materials import Steel
+from rbsdem.model.materials import Derived, Steel, given
 
 __all__ = ["Bar", "Layout", "Spiral", "Ties", "share_in_tension"]
 

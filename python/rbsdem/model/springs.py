@@ -29,6 +29,9 @@ SPRINGS: dict[str, type[Spring]] = {}
 
 LandmarkName = Literal["cracking", "yield", "cap"]
 
+#: A deformation that no spring reaches [m or rad].
+_NEVER = 1e30
+
 _SIDES: tuple[Literal[1, -1], ...] = (1, -1)
 
 
@@ -117,14 +120,41 @@ class Spring:
         """
         if _arguments.whole(n, "split: n") < 1:
             raise InputError(f"split: n = {n} must be 1 or more")
+        return self.scaled(n)
+
+    def scaled(self, parts: float) -> Self:
+        """Return the spring of a part of the length: `parts` times as stiff, 1/`parts` as far."""
         keys = _core.keys()["rules"][self.rule]["keys"]
         changes: dict[str, Any] = {}
         for key in keys:
             value = getattr(self, key["name"])
             if value is not None and key.get("unit") == "stiffness":
-                changes[key["name"]] = value * n
+                changes[key["name"]] = value * parts
             elif value is not None and key.get("unit") == "deformation":
-                changes[key["name"]] = value / n
+                changes[key["name"]] = value / parts
+        return replace(self, **changes)
+
+    def mirrored(self) -> Self:
+        """Return the spring that does for negative deformations what this one does for positive.
+
+        Raises
+        ------
+        InputError
+            If its rule has no such spring.
+        """
+        sides = [part.name for part in fields(self) if part.name.endswith("_neg")]
+        own = {name: getattr(self, name) for name in sides}
+        if all(value is None for value in own.values()):
+            return self
+        changes: dict[str, Any] = {}
+        for name, value in own.items():
+            plain = name.removesuffix("_neg")
+            changes[name] = getattr(self, plain)
+            if value is not None:
+                changes[plain] = value
+        if changes["d_u_neg"] is None and "d_u" in changes:
+            # What is not given would be that of the positive side, which has an end now.
+            changes["d_u_neg"] = _NEVER
         return replace(self, **changes)
 
     def response(self, deformation: ArrayLike) -> Array:
@@ -622,6 +652,15 @@ class SteelSpring(Spring):
         """Return yield; where hardening ends, the force does not fall."""
         return _both_sides("yield", self.f_y / self.k, "f_y/k")
 
+    def mirrored(self) -> Self:
+        """Return the same spring, unless it buckles on one side only, which is refused."""
+        if self.d_buckle is not None:
+            raise InputError(
+                "double_curvature: a flexural SteelSpring with d_buckle buckles on one side only, "
+                "and cannot be mirrored; give it no d_buckle"
+            )
+        return self
+
 
 @dataclass(frozen=True, repr=False)
 class Layered(Spring):
@@ -705,6 +744,10 @@ class Layered(Spring):
     def split(self, n: int) -> Self:
         """Return one of n equal springs in series: the layers are split and keep their places."""
         return replace(self, layers=tuple((y, spring.split(n)) for y, spring in self.layers))
+
+    def mirrored(self) -> Self:
+        """Return the joint upside down: layers at y are at -y."""
+        return replace(self, layers=tuple((-y, layer) for y, layer in self.layers))
 
     def response(self, deformation: ArrayLike, axial_load: float = 0.0) -> Array:
         """Return the moment along a path of rotation under a constant axial load.

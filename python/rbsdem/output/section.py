@@ -13,7 +13,7 @@ from rbsdem._arguments import Array
 from rbsdem.checks.criteria import buckling_strain
 from rbsdem.errors import InputError
 from rbsdem.model.response import Response
-from rbsdem.model.section import Section
+from rbsdem.model.shape import Section
 from rbsdem.output.style import (
     MODEL_LINE,
     TEST_LINE,
@@ -25,12 +25,12 @@ from rbsdem.output.style import (
     style,
     style_of,
 )
-from rbsdem.section.diagram import Diagram, Events
-from rbsdem.section.interaction import Code, InteractionDiagram
-from rbsdem.section.model import LayeredColumn
-from rbsdem.section.shear_diagram import ShearDiagram
-from rbsdem.section.shear_spring import ShearSpring
-from rbsdem.section.spring_fit import SectionSprings
+from rbsdem.section import shear
+from rbsdem.section.axial_moment import Code, InteractionDiagram
+from rbsdem.section.curvature import Diagram, Events, strains
+from rbsdem.section.layered import LayeredColumn
+from rbsdem.section.paper_springs import SectionSprings
+from rbsdem.section.shear import ShearDiagram, ShearSpring
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -138,7 +138,7 @@ def section_springs(springs: SectionSprings) -> Figure:
     Parameters
     ----------
     springs : SectionSprings
-        What `Section.springs` returns.
+        What `rbsdem.section.springs` returns.
 
     Returns
     -------
@@ -154,7 +154,8 @@ def section_springs(springs: SectionSprings) -> Figure:
         figure = Figure(figsize=(3.5 * panels, 2.9), layout="constrained")
         axes = figure.subplots(1, panels, squeeze=False)[0]
         if springs.shear_fit is not None:
-            found = drawing.shear_diagram(
+            found = shear.shear_diagram(
+                drawing,
                 springs.length,
                 springs.axial_load,
                 furthest=events.ultimate.curvature,
@@ -171,8 +172,8 @@ def section_springs(springs: SectionSprings) -> Figure:
             ("ts", {**MODEL_LINE, "color": "0.6"}, "Tension stiffening"),
             ("bare", MODEL_LINE, "No stiffening"),
         ):
-            moment = drawing.moment_curvature(load, curvature, tension, springs.confined)
-            ax.plot(1e3 * curvature, moment / 1e3, **look, label=label)
+            moments, _ = strains(drawing, load, curvature, tension, springs.confined)
+            ax.plot(1e3 * curvature, moments / 1e3, **look, label=label)
         _draw_events(events, last, ax, ("cracking", "yielding", "ultimate"))
         _dress(ax)
     return figure

@@ -16,7 +16,7 @@ from rbsdem.model.damping import Damping
 from rbsdem.model.footing import Footing
 from rbsdem.model.springs import SPRINGS, Spring
 from rbsdem.results.result import Result, cyclic, time_history
-from rbsdem.section.reading import Groups, layered_column, recipe_of
+from rbsdem.section.drawing import Groups, layered_column, recipe_of
 
 _DRIVES = ("displacement", "force", "ground_acceleration", "vertical_acceleration", "axial_load")
 

@@ -9,18 +9,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING
 
+from rbsdem import _core
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Steel
+from rbsdem.model.shape import Section
 from rbsdem.model.springs import ConcreteSpring, Layered, SteelSpring, unchecked
 from rbsdem.model.strains import Gauge
+from rbsdem.section.parameters import ModelParameters
 
-if TYPE_CHECKING:
-    from rbsdem.model.section import Section
-    from rbsdem.section.parameters import HingeParameters
-
-__all__ = ["HingeJoint", "hinge_joint"]
+__all__ = ["HingeJoint", "Strip", "Strips", "cut", "hinge_joint"]
 
 _STRIPS = 14
 # The hinge is lumped at the foot, where it turns the whole length, not that above its middle: the
@@ -34,6 +32,170 @@ _LEAST_SOFTENING, _LEAST_HARDENING = 1e6, 0.0005
 # Bars endure at least as much as the widest limit of their elements may be (docs/rules.md).
 _LEAST_ENDURANCE = 103.4
 _ES = 200e9
+
+
+@dataclass(frozen=True, slots=True)
+class Strip:
+    """Concrete at one depth.
+
+    Attributes
+    ----------
+    y : float
+        Of its centroid from mid-depth [m].
+    area : float
+        [m2].
+    """
+
+    y: float
+    area: float
+
+
+@dataclass(frozen=True, slots=True)
+class Strips:
+    """A section in strips.
+
+    Attributes
+    ----------
+    core, cover : tuple of Strip
+        Concrete within the centre lines of the transverse bars, and around them; bars are not
+        deducted.
+    area : float
+        Of the whole section [m2].
+    inertia : float
+        Second moment of the whole section [m4].
+    shear_area : float
+        [m2].
+    confining_stress : float
+        Effective, along and across the loading alike, as the transverse bars yield [Pa].
+    tie_ratio : float
+        Volume of transverse bars over that of the core.
+    """
+
+    core: tuple[Strip, ...]
+    cover: tuple[Strip, ...]
+    area: float
+    inertia: float
+    shear_area: float
+    confining_stress: float
+    tie_ratio: float
+
+
+def cut(
+    section: Section, number: int, *, restrained: int | None = None, round_core: bool = False
+) -> Strips:
+    """Cut a section into strips of equal thickness across the direction of loading.
+
+    The strips are those of the Fortran part (`src/section/strips.f90`). The confinement is that of
+    Mander, Priestley and Park (1988), ASCE Journal of Structural Engineering 114(8), as the layered
+    hinge takes it: the confining stress of the direction of loading alone, and the bars that the
+    legs hold spread evenly around the core. `src/section/confinement.f90`, which the
+    moment-curvature diagram uses, takes the mean of both directions and the arches between the bars
+    of each face. For a spiral the two differ only in the cap on the share of the bars (8 % here,
+    50 % there), and single round hoops count as a spiral here. They stay apart because the
+    parameters of the hinge are fitted with the form used here.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    number : int
+        Number of strips.
+    restrained : int, optional
+        Longitudinal bars that are held in a corner of a hoop or by a tie. By default the four
+        corners, and four more for each leg beyond two (in proportion for a part of one), up to the
+        number of bars.
+    round_core : bool, optional
+        Whether the ties stand for a spiral around a round core.
+
+    Returns
+    -------
+    Strips
+        In order of y; in each strip core and cover have centroids of their own.
+    """
+    tie = section.ties.diameter if section.ties else 0.0
+    # By how much the core, between the centre lines of the hoops, is smaller than the outline.
+    less = [2 * float(section.side_cover or 0.0) + tie, 2 * section.cover + tie]
+    round_core = round_core or (section.ties is not None and section.ties.is_round)
+    core, cover = _core.section_strips(section._statement, round_core, number)
+    if round_core:
+        confinement = _spiral(section, section.depth - less[1])
+    else:
+        confinement = _hoops(section, section.width - less[0], section.depth - less[1], restrained)
+    if section.hollow:
+        # The inner hoops bow into the void.
+        confinement = 0.0, confinement[1]
+    # Slivers along the rim of the core are round-off.
+    least = 1e-9 * section.gross_area
+    return Strips(
+        core=tuple(Strip(y, part) for y, part in core.T.tolist() if part > least),
+        cover=tuple(Strip(y, part) for y, part in cover.T.tolist() if part > least),
+        area=section.gross_area,
+        inertia=section.inertia,
+        shear_area=section.shear_area,
+        confining_stress=confinement[0],
+        tie_ratio=confinement[1],
+    )
+
+
+def _hoops(
+    section: Section, core_width: float, core_depth: float, restrained: int | None
+) -> tuple[float, float]:
+    """Return the confining stress of rectangular hoops [Pa] and their volume ratio.
+
+    Effectiveness by the parabolas between the bars around the perimeter and between the hoops.
+    """
+    ties, bar = section.ties, section.bar_diameter or 0.0
+    if ties is None:
+        return 0.0, 0.0
+    ratio = ties.legs * math.pi / 4 * ties.diameter**2
+    ratio /= ties.spacing * core_width
+    area = core_width * core_depth
+    # With two legs the four corners alone are held; from three on the bars stand for all of them.
+    corners = min(max(3.0 - ties.legs, 0.0), 1.0)
+    clear = core_width - bar, core_depth - bar
+    parabolas = corners * 2 * (clear[0] ** 2 + clear[1] ** 2) / 6
+    bars = max(4, _restrained(section) if restrained is None else restrained)
+    clear_one = max(0.0, 2 * (core_width + core_depth) / bars - bar)
+    parabolas += (1 - corners) * bars * clear_one**2 / 6
+    gap = ties.spacing - ties.diameter
+    effective = max(0.0, 1 - parabolas / area) / (1 - _bars(section, area))
+    effective *= max(0.0, 1 - gap / (2 * core_width)) * max(0.0, 1 - gap / (2 * core_depth))
+    return effective * ratio * ties.steel.fy, 2 * ratio
+
+
+def _restrained(section: Section) -> float:
+    """Return how many bars the legs hold: the corners, and four for each leg beyond two.
+
+    A diagonal leg is a part of one, and holds that part of four bars.
+    """
+    if section.layout is not None:
+        number = section.layout.number
+    elif not section.bars:
+        number = 0
+    else:
+        # An entry of `bars` may be a row of them.
+        number = section.steel_area / (math.pi / 4 * section.bar_diameter**2)
+    return min(number, 4 + 4 * (section.ties.legs - 2))
+
+
+def _spiral(section: Section, diameter: float) -> tuple[float, float]:
+    """Return the confining stress of a spiral [Pa] and its volume ratio.
+
+    Effectiveness by the parabola between two turns: (1 - s'/(2 d_s))/(1 - rho_cc).
+    """
+    ties = section.ties
+    if ties is None:
+        return 0.0, 0.0
+    ratio = math.pi * ties.diameter**2 / (diameter * ties.spacing)
+    gap = ties.spacing - ties.diameter
+    effective = max(0.0, 1 - gap / (2 * diameter))
+    effective /= 1 - _bars(section, math.pi / 4 * diameter**2)
+    return 0.5 * effective * ratio * ties.steel.fy, ratio
+
+
+def _bars(section: Section, core_area: float) -> float:
+    """Return the share of longitudinal bars in the core, up to the 8 % that codes allow."""
+    return min(0.08, section.steel_area / core_area)
 
 
 @dataclass(frozen=True)
@@ -78,7 +240,7 @@ def hinge_joint(
     section: Section,
     length: float,
     axial_load: float,
-    hinge: HingeParameters,
+    given: ModelParameters,
     *,
     restrained: int | None = None,
     round_core: bool = False,
@@ -93,10 +255,10 @@ def hinge_joint(
         From the foot to the lateral load [m].
     axial_load : float
         Compression positive [N].
-    hinge : HingeParameters
+    given : ModelParameters
         Parameters of the model.
     restrained, round_core
-        As for `rbsdem.RectangularSection.cut`.
+        As for `cut`.
 
     Returns
     -------
@@ -112,15 +274,15 @@ def hinge_joint(
     if not section.bars:
         raise InputError("the layered model needs a section with longitudinal bars; give bars")
     depth, cylinder = section.depth, section.concrete.fc
-    strips = section.cut(_STRIPS, restrained=restrained, round_core=round_core)
+    strips = cut(section, _STRIPS, restrained=restrained, round_core=round_core)
     modulus = section.concrete_law["ec"]
-    strength = hinge.concrete_strength * cylinder * (cylinder / 40e6) ** -hinge.concrete_size
-    peak = 0.002 * hinge.peak_strain
-    relative = hinge.confinement * strips.confining_stress / cylinder
+    strength = given.concrete_strength * cylinder * (cylinder / 40e6) ** -given.concrete_size
+    peak = 0.002 * given.peak_strain
+    relative = given.confinement * strips.confining_stress / cylinder
     gain = -1.254 + 2.254 * math.sqrt(1 + 7.94 * relative) - 2 * relative
     core = gain * strength
     # Beyond what the section carries the exponentials below have no meaning.
-    bars = sum(hinge.steel_strength * steel.fy * area for _, area, steel in section.bars)
+    bars = sum(given.steel_strength * steel.fy * area for _, area, steel in section.bars)
     of_core = core * sum(strip.area for strip in strips.core)
     of_cover = strength * sum(strip.area for strip in strips.cover)
     _check(axial_load, bars, bars + of_core + of_cover)
@@ -134,11 +296,11 @@ def hinge_joint(
     core_ultimate = 0.004 + 0.14 * strips.tie_ratio * tie_yield / core
     yield_stress = max(steel.fy for _, _, steel in section.bars)
     bond = yield_stress / 1e6 * section.bar_diameter
-    one_length = by_axial(1.0, hinge.hinge_axial) * (0.08 * length + 0.022 * bond)
-    steel_length = by_axial(hinge.hinge_length, hinge.hinge_axial) * (0.08 * length + 0.022 * bond)
-    steel_length = min(steel_length + hinge.hinge_depth * depth, _LONGEST_STEEL * length)
-    concrete_length = min(hinge.compression_length * steel_length, _LONGEST_CONCRETE * length)
-    contact = min(_LARGEST_CONTACT, by_axial(hinge.contact, hinge.contact_axial))
+    one_length = by_axial(1.0, given.hinge_axial) * (0.08 * length + 0.022 * bond)
+    steel_length = by_axial(given.hinge_length, given.hinge_axial) * (0.08 * length + 0.022 * bond)
+    steel_length = min(steel_length + given.hinge_depth * depth, _LONGEST_STEEL * length)
+    concrete_length = min(given.compression_length * steel_length, _LONGEST_CONCRETE * length)
+    contact = min(_LARGEST_CONTACT, given.contact)
 
     # Most strips are alike, and so are most bars: what is the same to 1e-6 mm2 is made once.
     @cache
@@ -153,48 +315,48 @@ def hinge_joint(
             d_peak=strain * concrete_length,
             k_soft=max(softening, _LEAST_SOFTENING) * area / concrete_length,
             f_res=rest * area,
-            plastic=hinge.plastic,
+            plastic=given.plastic,
             contact=contact,
-            misfit=hinge.misfit,
-            wear=hinge.wear,
-            friction=hinge.friction,
-            seating=hinge.seating,
+            misfit=given.misfit,
+            wear=given.wear,
+            friction=given.friction,
+            seating=given.seating,
         )
 
     layers: list[tuple[float, ConcreteSpring | SteelSpring]] = []
     core_slope = 0.2 * core / max(core_ultimate - core_peak, 0.002)
-    softening = hinge.core_softening * core_slope
+    softening = given.core_softening * core_slope
     for strip in strips.core:
-        spring = concrete(round(strip.area, 12), core, core_peak, softening, hinge.residual * core)
+        spring = concrete(round(strip.area, 12), core, core_peak, softening, given.residual * core)
         layers.append((strip.y, spring))
     cover_slope = 0.8 * strength / 0.004
-    softening = hinge.cover_softening * cover_slope
+    softening = given.cover_softening * cover_slope
     for strip in strips.cover:
         layers.append((strip.y, concrete(round(strip.area, 12), strength, peak, softening, 0.0)))
-    slip = by_axial(hinge.slip_length, hinge.slip_axial) * bond
+    slip = by_axial(given.slip_length, given.slip_axial) * bond
     stress = min(axial_load / strips.area / 40e6, 1.5)
     anchored = _bond_demand(bond, cylinder, length)
-    by_stress = math.exp(hinge.r0_stress * (stress - 0.15)) * anchored**-hinge.r0_bond
-    buckles = hinge.buckling > 0 and hinge.fatigue > 0
-    bows = _buckling_strain(strips.tie_ratio * tie_yield, ratio) * hinge.buckling_strain
+    by_stress = math.exp(given.r0_stress * (stress - 0.15)) * anchored**-given.r0_bond
+    buckles = given.buckling > 0 and given.fatigue > 0
+    bows = _buckling_strain(strips.tie_ratio * tie_yield, ratio) * given.buckling_strain
     bows *= steel_length + slip
 
     @cache
     def bar(area: float, steel: Steel) -> SteelSpring:
-        fy, fu = hinge.steel_strength * steel.fy, hinge.steel_strength * steel.fu
+        fy, fu = given.steel_strength * steel.fy, given.steel_strength * steel.fu
         stiffness = steel.es * area / (steel_length + slip)
         return unchecked(
             SteelSpring,
             k=stiffness,
             f_y=fy * area,
-            k_post=stiffness * max(_LEAST_HARDENING, hinge.hardening * (fu - fy) / 0.08 / steel.es),
-            r0=by_axial(hinge.r0, hinge.r0_axial) * by_stress,
-            cr1=hinge.cr1,
-            cr2=hinge.cr2,
-            isotropic_hardening=hinge.isotropic_hardening * anchored**hinge.isotropic_bond,
-            endurance=max(1 / hinge.fatigue, _LEAST_ENDURANCE) if hinge.fatigue > 0 else 0.0,
+            k_post=stiffness * max(_LEAST_HARDENING, given.hardening * (fu - fy) / 0.08 / steel.es),
+            r0=given.r0 * by_stress,
+            cr1=given.cr1,
+            cr2=given.cr2,
+            isotropic_hardening=given.isotropic_hardening * anchored**given.isotropic_bond,
+            endurance=max(1 / given.fatigue, _LEAST_ENDURANCE) if given.fatigue > 0 else 0.0,
             d_buckle=bows if buckles else None,
-            buckling=hinge.buckling if buckles else 0.0,
+            buckling=given.buckling if buckles else 0.0,
         )
 
     layers += [(y, bar(area, steel)) for y, area, steel in section.bars]
@@ -203,9 +365,9 @@ def hinge_joint(
     return HingeJoint(
         unchecked(Layered, layers=tuple(layers)),
         concrete_length,
-        min(_STIFFEST, by_axial(hinge.stiffness, hinge.stiffness_axial))
+        min(_STIFFEST, by_axial(given.stiffness, given.stiffness_axial))
         * (modulus * strips.inertia + of_bars),
-        hinge.shear_stiffness * modulus / 2.4 * strips.shear_area,
+        given.shear_stiffness * modulus / 2.4 * strips.shear_area,
         moment,
         moment * _yield_curvature(section, yield_stress) * (steel_length + slip),
         strips.confining_stress / cylinder,
@@ -219,18 +381,18 @@ def hinge_joint(
         {
             "hinge_length": (
                 0.0,
-                (_LONGEST_STEEL * length - hinge.hinge_depth * depth) / one_length,
+                (_LONGEST_STEEL * length - given.hinge_depth * depth) / one_length,
             ),
             "hinge_depth": (
                 -math.inf,
-                (_LONGEST_STEEL * length - hinge.hinge_length * one_length) / depth,
+                (_LONGEST_STEEL * length - given.hinge_length * one_length) / depth,
             ),
             "compression_length": (0.0, _LONGEST_CONCRETE * length / steel_length),
-            "stiffness": (0.0, _STIFFEST / by_axial(1.0, hinge.stiffness_axial)),
-            "contact": (0.0, _LARGEST_CONTACT / by_axial(1.0, hinge.contact_axial)),
+            "stiffness": (0.0, _STIFFEST / by_axial(1.0, given.stiffness_axial)),
+            "contact": (0.0, _LARGEST_CONTACT),
             "core_softening": (_LEAST_SOFTENING / core_slope, math.inf),
             "cover_softening": (_LEAST_SOFTENING / cover_slope, math.inf),
-            "hardening": (_least_hardening(section, hinge), math.inf),
+            "hardening": (_least_hardening(section, given), math.inf),
             "fatigue": (0.0, 1 / _LEAST_ENDURANCE),
         },
     )
@@ -260,13 +422,13 @@ def _yield_moment(section: Section, axial_load: float, ratio: float, stress: flo
 
 def _yield_curvature(section: Section, stress: float) -> float:
     """Return the curvature at yield, about, the mean of both directions [1/m]."""
-    depth = 0.5 * (section.effective_depth + section.turned.effective_depth)
+    depth = 0.5 * (section.effective_depth + section.mirrored.effective_depth)
     return stress / _ES / (0.65 * depth)
 
 
-def _least_hardening(section: Section, hinge: HingeParameters) -> float:
+def _least_hardening(section: Section, given: ModelParameters) -> float:
     """Return the factor below which no bar hardens less."""
-    rises = [hinge.steel_strength * (steel.fu - steel.fy) / steel.es for *_, steel in section.bars]
+    rises = [given.steel_strength * (steel.fu - steel.fy) / steel.es for *_, steel in section.bars]
     return _LEAST_HARDENING * 0.08 / max(rises) if max(rises) > 0 else math.inf
 
 

@@ -9,19 +9,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from numpy.typing import ArrayLike
-
 from rbsdem import _package
-from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column, without_notes
 from rbsdem.model.materials import Concrete, Steel
-from rbsdem.model.rectangular import RectangularSection
 from rbsdem.model.reinforcement import Layout, Ties
+from rbsdem.model.shape import RectangularSection
 from rbsdem.model.springs import Bilinear, Takeda
-from rbsdem.section.diagram import Diagram
-from rbsdem.section.model import CONCRETE_DENSITY
-from rbsdem.section.spring_fit import SectionSprings
+from rbsdem.section.columns import CONCRETE_DENSITY
 
 __all__ = [
     "KEYS",
@@ -140,87 +135,6 @@ class PaperSection:
                 legs=self.shear_legs,
             ),
             cover=self.cover,
-        )
-
-    def moment_curvature(
-        self,
-        axial_load: float | None,
-        curvature: ArrayLike,
-        tension: str = "ts",
-        confined: bool = False,
-    ) -> Array:
-        """Return the moments of its section; as `rbsdem.RectangularSection.moment_curvature`.
-
-        Parameters
-        ----------
-        axial_load : float or None
-            Compression positive [N]; None is the load of the column.
-        curvature, tension, confined
-            As there.
-
-        Returns
-        -------
-        ndarray, shape of `curvature`
-            Moments about mid-depth [N m].
-
-        Raises
-        ------
-        InputError, SolveError
-            As there.
-        """
-        load = self.axial_load if axial_load is None else axial_load
-        return self.section.moment_curvature(load, curvature, tension, confined)
-
-    def diagram(self, axial_load: float | None = None, **options: Any) -> Diagram:
-        """Return the diagram of its section; as `rbsdem.RectangularSection.diagram`.
-
-        Parameters
-        ----------
-        axial_load : float, optional
-            Compression positive [N]; by default that of the column.
-        **options
-            As there.
-
-        Returns
-        -------
-        Diagram
-            Curvatures, moments, events.
-
-        Raises
-        ------
-        InputError, SolveError
-            As there.
-        """
-        return self.section.diagram(
-            self.axial_load if axial_load is None else axial_load, **options
-        )
-
-    def springs(
-        self, length: float | None = None, axial_load: float | None = None, **options: Any
-    ) -> SectionSprings:
-        """Return the springs of the column; as `rbsdem.RectangularSection.springs`.
-
-        Parameters
-        ----------
-        length, axial_load : float, optional
-            Length [m] and axial load [N]; by default those of the column.
-        **options
-            As there.
-
-        Returns
-        -------
-        SectionSprings
-            Flexural and shear spring, events, report.
-
-        Raises
-        ------
-        InputError
-            As there.
-        """
-        return self.section.springs(
-            self.length if length is None else length,
-            self.axial_load if axial_load is None else axial_load,
-            **options,
         )
 
 

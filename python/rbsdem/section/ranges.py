@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+import warnings
+from typing import Any
 
 from rbsdem import _arguments
-from rbsdem.errors import InputError
+from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.model.shape import Section, checked_section
 
-if TYPE_CHECKING:
-    from rbsdem.model.section import Section
-
-__all__ = ["RANGE", "axial_load_note", "carried_load", "column_length", "outside"]
+__all__ = [
+    "RANGE",
+    "axial_load_note",
+    "carried_load",
+    "checked_load",
+    "column_length",
+    "is_confined",
+    "outside",
+]
 
 #: Least and largest length of a column [m]: a number in millimetres is outside.
 _SHORTEST, _LONGEST = 0.05, 100.0
@@ -90,6 +97,28 @@ def axial_load_note(axial_load: float, section: Section) -> str:
         f"axial_load = {axial_load:g} N is only {ratio:.1e} of f'c A; loads are in N: 744 kN is "
         "744e3"
     )
+
+
+def checked_load(section: Section, axial_load: Any) -> float:
+    """Return an axial load as a number [N]; warn the caller's caller if it is hardly meant."""
+    checked_section(section)
+    value = _arguments.number(axial_load, "axial_load")
+    if not math.isfinite(value):
+        raise InputError(f"axial_load = {value} N must be a finite number")
+    note = axial_load_note(value, section)
+    if note:
+        warnings.warn(note, AccuracyWarning, stacklevel=3)
+    return value
+
+
+def is_confined(section: Section, confined: Any) -> bool:
+    """Return whether the core is taken as confined; refuse it without transverse bars."""
+    wanted = _arguments.switch(confined, "confined")
+    if wanted and section.ties is None:
+        raise InputError(
+            f"confined = True needs transverse bars that confine: give the section {section.hoops}"
+        )
+    return wanted
 
 
 def carried_load(value: Any, section: Section, *, tension: bool = True) -> float:

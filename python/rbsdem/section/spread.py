@@ -12,42 +12,47 @@ of the tests: both are predicted worse.
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import warnings
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rbsdem import _arguments
+from rbsdem import _arguments, _package
 from rbsdem._arguments import Array
 from rbsdem._files import write_csv
 from rbsdem.curves.metrics import PathPoints, work
 from rbsdem.curves.strength import strength_loss
 from rbsdem.errors import AccuracyWarning, InputError, SolveError
 from rbsdem.model.column import Column
-from rbsdem.section.remote import place_of
-from rbsdem.section.scatter import SCATTER, Scatter
-from rbsdem.section.sobol import sobol
+from rbsdem.model.shape import Section
+from rbsdem.section.layered import LayeredColumn
+from rbsdem.section.parameters import VERSION
+from rbsdem.section.strength import shear_sizes
 from rbsdem.solve.analysis import cyclic
-
-if TYPE_CHECKING:
-    from rbsdem.section.model import LayeredColumn
 
 __all__ = [
     "LEAST",
     "MOST",
     "Interval",
+    "Middle",
+    "Scatter",
     "Spread",
     "between",
     "half_band",
     "has_bands",
+    "likeness",
     "near_shear",
     "numbers",
     "path_force",
+    "place_of",
     "sample",
+    "scatter_of_tests",
     "spread",
 ]
 
@@ -64,6 +69,9 @@ _NEAR = 0.7, 0.95
 #: its work is in proportion: that of the tests is 0.17 and more.
 _LEAST_WORK = 0.15
 
+#: Below this a ratio of bars or ties is none.
+_NONE = 1e-3
+
 #: Parameters of degradation, and whether more of them is more of it.
 _DEGRADATION = {
     "fatigue": 1,
@@ -73,6 +81,93 @@ _DEGRADATION = {
     "core_softening": 1,
     "cover_softening": 1,
 }
+
+
+@dataclass(frozen=True, slots=True)
+class Middle:
+    """The middle of some tests, and how they are spread around it.
+
+    The distance from it is that of Mahalanobis: in standard deviations of the tests, correlations
+    allowed for. Left-out tests are predicted the worse the farther they are from the others.
+
+    Attributes
+    ----------
+    mean : tuple of float
+        Their mean properties.
+    axes : tuple of tuple of float
+        Lower triangle A, a row for each property, of which A' A is the inverse of their covariance.
+    """
+
+    mean: tuple[float, ...]
+    axes: tuple[tuple[float, ...], ...]
+
+    def distance(self, place: tuple[float, ...]) -> float:
+        """Return the distance of a column; it is below 3 for nearly all of the tests.
+
+        Parameters
+        ----------
+        place : tuple of float
+            Its properties, see `place_of`.
+        """
+        way = [value - mean for value, mean in zip(place, self.mean, strict=True)]
+        # The rows of a triangle are shorter than the way.
+        sums = [sum(a * x for a, x in zip(row, way, strict=False)) for row in self.axes]
+        return math.hypot(*sums)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scatter:
+    """Scatter of left-out tests about the model.
+
+    Attributes
+    ----------
+    strength, stiffness, degradation : (float, float)
+        Standard deviations of logarithms from laboratory to laboratory, and from test to test
+        within one: force, flexibility of the whole column, rate of degradation.
+    shape : float
+        What the band has above and below the samples before it is widened, over the largest force:
+        nominally equal specimens differ, and loops have a shape of their own.
+    force : (float, float)
+        By what the band is widened: far from the shear strength, and at it.
+    peak, energy, drift : ((float, float), (float, float))
+        Ends of the 80 % intervals of largest force, work and drift at 20 % loss, over what is
+        predicted: far from the shear strength, and at it.
+    growth : float, optional
+        By what the band grows with the distance from the middle of the tests: a factor exp(growth
+        distance), in which `force` is that at the middle.
+    middle : Middle, optional
+        The middle of the tests; without it nothing grows.
+    """
+
+    strength: tuple[float, float]
+    stiffness: tuple[float, float]
+    degradation: tuple[float, float]
+    shape: float
+    force: tuple[float, float]
+    peak: tuple[tuple[float, float], tuple[float, float]]
+    energy: tuple[tuple[float, float], tuple[float, float]]
+    drift: tuple[tuple[float, float], tuple[float, float]]
+    growth: float = 0.0
+    middle: Middle | None = None
+
+
+@cache
+def scatter_of_tests() -> Scatter:
+    """Return the scatter of tests about the model with the parameters of its version.
+
+    `studies/spread_table.py` finds the numbers on tests that the fit did not see, and prints how
+    many points of such tests lie within the bands.
+    """
+    given = json.loads(_package.text("layered_spread.json"))
+    middle = given.pop("middle")
+    return Scatter(
+        **{name: _frozen(value) for name, value in given.items()},
+        middle=Middle(_frozen(middle["mean"]), _frozen(middle["axes"])),
+    )
+
+
+def _frozen(value: Any) -> Any:
+    return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,13 +304,54 @@ class Spread:
         write_csv(path, [header, *rows.tolist()])
 
 
-def has_bands(version: str) -> None:
-    """Raise `InputError` if nobody knows the scatter of tests about a version."""
-    if version not in SCATTER:
-        raise InputError(
-            f"spread: nobody has left tests out of version {version!r}; there are bands for "
-            f"{', '.join(SCATTER)}"
-        )
+def likeness(section: Section, height: float, axial_load: float) -> dict[str, float]:
+    """Return the properties by which columns are compared.
+
+    Parameters
+    ----------
+    section : Section
+        Of the column.
+    height : float
+        From the base to the lateral load [m].
+    axial_load : float
+        Compression positive [N].
+
+    Returns
+    -------
+    dict of str to float
+        ``axial_load_ratio``, ``span_depth_ratio``, ``concrete_strength`` [Pa], and the mechanical
+        ratios of the longitudinal bars, ``bar_ratio`` = A_s f_y/(A_g f'c), and of the ties in the
+        direction of loading, ``tie_ratio`` = A_v f_yt/(b s f'c).
+    """
+    strength, sizes = section.concrete.fc, shear_sizes(section)
+    bars = sum(area * steel.fy for _, area, steel in section.bars)
+    return {
+        "axial_load_ratio": axial_load / (section.gross_area * strength),
+        "span_depth_ratio": height / section.depth,
+        "concrete_strength": strength,
+        "bar_ratio": bars / (section.gross_area * strength),
+        "tie_ratio": sizes.tie_ratio * sizes.tie_yield / strength,
+    }
+
+
+def place_of(section: Section, height: float, axial_load: float) -> tuple[float, ...]:
+    """Return the properties of `likeness` as the distance from the tests takes them.
+
+    The axial load ratio, and logarithms of the others: of the concrete strength over 30 MPa.
+    """
+    axial, span, strength, bars, ties = likeness(section, height, axial_load).values()
+    return (
+        axial,
+        math.log(span),
+        math.log(strength / 30e6),
+        math.log(max(bars, _NONE)),
+        math.log(max(ties, _NONE)),
+    )
+
+
+def has_bands(version: str) -> bool:
+    """Return whether the scatter of tests about a version of the parameters is known."""
+    return version == VERSION
 
 
 def spread(
@@ -225,23 +361,57 @@ def spread(
     samples: int = 16,
     scatter: Scatter | None = None,
 ) -> Spread:
-    """Predict a path with its band; see `rbsdem.section.model.LayeredColumn.spread`."""
+    """Predict the force along a path, with the band that holds 80 % of left-out tests.
+
+    Parameters
+    ----------
+    column : LayeredColumn
+        The column.
+    displacement : array_like, shape (m,)
+        Displacement of the top [m].
+    samples : int, optional
+        How many samples of strength, stiffness and degradation go through the model; 8 or more,
+        best a power of 2.
+    scatter : Scatter, optional
+        Another scatter than that of the version.
+
+    Returns
+    -------
+    Spread
+        Prediction, band, intervals of largest force, work and drift at 20 % loss, remarks;
+        `rbsdem.plot.spread` draws it.
+
+    Raises
+    ------
+    InputError
+        If the column is not one of the layered model, the path does not change, or the scatter of
+        its version is not known.
+
+    Warns
+    -----
+    AccuracyWarning
+        Where the column is outside the range of the tests.
+    """
+    remedy = "a column of rbsdem.section.column has bands; of other columns no tests are known"
+    _arguments.instance(column, "spread: column", LayeredColumn, remedy)
     number = _arguments.whole(samples, "samples")
     if not LEAST <= number <= MOST:
         raise InputError(f"samples = {samples} must be {LEAST} to {MOST}; 16 are enough")
     remarks = column.outside
     if scatter is None:
-        found = column.recipe.parameters if column.recipe else None
-        has_bands(found.version if found else "")
-        assert found is not None
-        scatter = SCATTER[found.version]
-        if found.changed:
-            remarks = (*remarks, f"the band is that of {found.version}, whose parameters changed")
+        scatter, made = scatter_of_tests(), column._recipe.parameters
+        if not has_bands(made.version):
+            raise InputError(
+                f"spread: no tests were left out of the fit of version {made.version!r}; there are "
+                f"bands for {VERSION}, or give scatter="
+            )
+        if made.own:
+            remarks = (*remarks, f"the band is that of {VERSION}, whose parameters changed")
     d = _arguments.finite_vector(displacement, "displacement")
     if d.size < 2 or not np.any(np.diff(d)):
         raise InputError("spread: the displacement does not change; give a path")
     if remarks:
-        warnings.warn(f"spread: {'; '.join(remarks)}", AccuracyWarning, stacklevel=3)
+        warnings.warn(f"spread: {'; '.join(remarks)}", AccuracyWarning, stacklevel=2)
     force = path_force(column, d)
     sampled = sample(column, d, scatter, number)
     peak = float(np.max(np.abs(force)))
@@ -285,8 +455,7 @@ def sample(column: LayeredColumn, displacement: Array, scatter: Scatter, number:
     number : int
         How many.
     """
-    recipe = column.recipe
-    assert recipe is not None
+    recipe = column._recipe
     for name, made in recipe.made.items():
         if getattr(column, name) != made:
             raise InputError(
@@ -298,12 +467,24 @@ def sample(column: LayeredColumn, displacement: Array, scatter: Scatter, number:
         for name in ("strength", "stiffness", "degradation")
     }
     rows = np.empty((number, displacement.size))
-    for row, (strength, stiffness, degradation) in zip(rows, sobol(number), strict=True):
+    for row, (strength, stiffness, degradation) in zip(rows, _normal_points(number), strict=True):
         other = _degraded(column, math.exp(size["degradation"] * degradation))
         # A column that is softer by a factor is where the other is at a smaller displacement.
         path = displacement * math.exp(size["stiffness"] * stiffness)
         row[:] = math.exp(size["strength"] * strength) * path_force(other, path)
     return rows
+
+
+def _normal_points(number: int) -> Array:
+    """Return standard normal numbers from the first Sobol points in three dimensions.
+
+    Each point is in the middle of its cell; powers of two fill the space evenly.
+    """
+    from scipy.stats import norm, qmc  # noqa: PLC0415
+
+    bits = (number - 1).bit_length()
+    points = qmc.Sobol(3, scramble=False).random_base2(bits)[:number]
+    return np.asarray(norm.ppf(points + 0.5 / 2**bits))
 
 
 def half_band(force: Array, samples: Array, scatter: Scatter) -> tuple[Array, Array]:
@@ -359,8 +540,8 @@ def near_shear(column: Column, peak: float) -> float:
 
 def _distance(column: LayeredColumn, scatter: Scatter) -> float:
     """Return how far a column is from the middle of the tests; NaN where that is not known."""
-    recipe = column.recipe
-    if scatter.middle is None or recipe is None:
+    recipe = column._recipe
+    if scatter.middle is None:
         return math.nan
     return scatter.middle.distance(place_of(recipe.section, recipe.height, column.axial_load))
 
@@ -392,8 +573,7 @@ def _interval(
 
 def _degraded(column: LayeredColumn, factor: float) -> Column:
     """Return the column with faster degradation; what a column limits is limited, not refused."""
-    recipe = column.recipe
-    assert recipe is not None
+    recipe = column._recipe
     now = recipe.parameters.values
     values = {name: now[name] * factor**way for name, way in _DEGRADATION.items()}
     other = replace(recipe, parameters=recipe.parameters.with_values(**values))

@@ -10,20 +10,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from rbsdem.errors import InputError
 from rbsdem.model.reinforcement import share_in_tension
-from rbsdem.section.ranges import column_length
-
-if TYPE_CHECKING:
-    from rbsdem.model.section import Section
+from rbsdem.model.shape import Section
+from rbsdem.section.ranges import carried_load, checked_load, column_length
 
 __all__ = [
     "ShearSizes",
     "axial_failure_drift",
     "shear_failure_drift",
     "shear_sizes",
+    "shear_strength",
     "shear_strength_aci",
     "shear_strength_mcft",
     "shear_strength_sezen",
@@ -111,6 +109,27 @@ def shear_sizes(section: Section) -> ShearSizes:
         tie_yield,
         core,
     )
+
+
+def shear_strength(section: Section, length: float, axial_load: float) -> float:
+    """Return the shear strength of the simplified modified compression field theory [N].
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    length : float
+        Shear span [m].
+    axial_load : float
+        Compression positive, within the capacity of the section [N].
+
+    Raises
+    ------
+    InputError
+        If a value is refused.
+    """
+    load = carried_load(checked_load(section, axial_load), section)
+    return shear_strength_mcft(section, length, load)
 
 
 def shear_strength_mcft(

@@ -30,13 +30,15 @@ from rbsdem.measured.predict import predict_one
 from rbsdem.measured.predictions import Prediction
 from rbsdem.measured.specimen import Specimen
 from rbsdem.measured.specimens import read_specimens
-from rbsdem.model.section import Section
+from rbsdem.model.shape import Section
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.read import read_motion
 from rbsdem.results.case import Case
 from rbsdem.results.result import Result
-from rbsdem.section.interaction import InteractionDiagram
-from rbsdem.section.model import LayeredColumn
+from rbsdem.section.axial_moment import InteractionDiagram, interaction
+from rbsdem.section.curvature import diagram as diagram_of
+from rbsdem.section.layered import LayeredColumn
+from rbsdem.section.spread import spread as spread_of
 from rbsdem.web import exports
 from rbsdem.web.gallery import card
 from rbsdem.web.state import (
@@ -408,7 +410,7 @@ def _band(found: Answered) -> dict[str, Any]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            spread = column.spread(result.displacement)
+            spread = spread_of(column, result.displacement)
         except InputError as error:
             return {"none": str(error)}
     return {
@@ -481,7 +483,7 @@ def _figure(section: Section) -> dict[str, Any]:
 
 def _curvature(section: Section, load: float, confined: bool) -> dict[str, Any]:
     options: dict[str, Any] = {"ultimate": "mander"} if confined else {}
-    diagram = section.diagram(load, confined=confined, **options)
+    diagram = diagram_of(section, load, confined=confined, **options)
     events = {
         name: [number(point.curvature), number(point.moment)]
         for name in ("cracking", "yielding", "peak", "ultimate")
@@ -496,7 +498,7 @@ def _curvature(section: Section, load: float, confined: bool) -> dict[str, Any]:
 
 def _interaction(section: Section, code: str | None) -> dict[str, Any]:
     points = _POINTS if code is None else 60
-    diagram = section.interaction(code, points=points)  # type: ignore[arg-type]
+    diagram = interaction(section, code, points=points)  # type: ignore[arg-type]
     found = _curve(diagram) | {"code": code}
     if code is not None:
         found["design_axial_load"] = numbers(diagram.design_axial_load)

@@ -18,8 +18,8 @@ from typing import Any
 
 from rbsdem._files import whole_file
 from rbsdem.errors import InputError
-from rbsdem.model.derived import Derived
-from rbsdem.model.section import Section
+from rbsdem.model.materials import Derived
+from rbsdem.model.shape import Section
 from rbsdem.results.case import Case, read_case
 from rbsdem.results.result import Result
 from rbsdem.web.state import ENDS, Drawn, Faults, RefusedError, drawn_case, state_of
@@ -190,17 +190,18 @@ def _python(section: Section, frame: Mapping[str, Any], loading: Mapping[str, An
             + ("." if moved else "; it moves by half of what the ends do.")
         )
         height += f" / {half:g}"
-    lines.append(f"column = section.column({height}, axial_load={frame['axial_load']!r})")
+    load = repr(frame["axial_load"])
+    lines.append(f"column = rbsdem.section.column(section, {height}, axial_load={load})")
     if moved:
         mass = frame.get("top_mass")
         mass = f"{frame['axial_load']!r} / 9.80665" if mass is None else repr(mass)
         record = f"read_motion({loading.get('name')!r})"
         if loading["kind"] == "synthetic":
             record = f"synthetic(1, seed={loading.get('seed', 1)!r}, dt=0.01)[0]"
-        change = "dataclasses.replace" if half == 1.0 else "rbsdem.double_curvature"
+        change = "dataclasses.replace(column, " if half == 1.0 else "column.double_curvature("
         lines += [
             f"motion = rbsdem.motions.{record}.scaled({loading.get('scale', 1.0)!r})",
-            f"column = {change}(column, top_mass={mass})",
+            f"column = {change}top_mass={mass})",
             "result = rbsdem.time_history(",
             "    column, ground_acceleration=motion, collapse_drift=0.2, openings=True",
             ")",

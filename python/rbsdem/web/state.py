@@ -19,17 +19,18 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import AccuracyWarning, InputError
-from rbsdem.model.circular import CircularSection
 from rbsdem.model.column import STANDARD_GRAVITY, Column
-from rbsdem.model.ends import double_curvature
-from rbsdem.model.hollow import HollowCircularSection, HollowRectangularSection
 from rbsdem.model.materials import Concrete, Steel
-from rbsdem.model.rectangular import RectangularSection
 from rbsdem.model.reinforcement import Layout, Spiral, Ties
-from rbsdem.model.section import Section
+from rbsdem.model.shape import (
+    CircularSection,
+    RectangularSection,
+    Section,
+)
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.synthetic import synthetic
 from rbsdem.results.case import Case
+from rbsdem.section import columns
 from rbsdem.section.ranges import column_length
 from rbsdem.solve.protocol import protocol
 
@@ -63,9 +64,9 @@ _MOST_COLUMNS, _MOST_CYCLES, MOST_VALUES = 2, 200, 60_000
 #: Shapes with the names of their sizes.
 SHAPES: dict[str, tuple[Callable[..., Section], tuple[str, ...]]] = {
     "rectangle": (RectangularSection, ("width", "depth")),
-    "hollow_rectangle": (HollowRectangularSection, ("width", "depth", "wall")),
+    "hollow_rectangle": (RectangularSection, ("width", "depth", "wall")),
     "circle": (CircularSection, ("diameter",)),
-    "hollow_circle": (HollowCircularSection, ("diameter", "wall")),
+    "hollow_circle": (CircularSection, ("diameter", "wall")),
 }
 
 #: Groups of the form by the objects that errors name; others belong to the part that is made.
@@ -214,7 +215,7 @@ def column_of(given: Mapping[str, Any], faults: Faults) -> tuple[Drawn | None, l
             return None, []
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always")
-            column: Column = section.column(height / ENDS[ends], axial_load=load)
+            column: Column = columns.column(section, height / ENDS[ends], axial_load=load)
         notes = [str(one.message) for one in told if issubclass(one.category, AccuracyWarning)]
         return Drawn(column, section, column.height, ENDS[ends]), notes
     return None, []
@@ -234,7 +235,7 @@ def _in_motion(drawn: Drawn, given: Mapping[str, Any], faults: Faults) -> Drawn 
         if drawn.factor == 1.0:
             column = dataclasses.replace(drawn.column, top_mass=mass)
         else:
-            column = double_curvature(drawn.column, top_mass=mass)
+            column = drawn.column.double_curvature(top_mass=mass)
         return dataclasses.replace(drawn, column=column, factor=1.0)
     return None
 

@@ -14,7 +14,7 @@ import math
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,17 +22,16 @@ from numpy.typing import ArrayLike
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
+from rbsdem.model.materials import Steel
+from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Layered, SteelSpring
-from rbsdem.section.diagram import largest_moment
-
-if TYPE_CHECKING:
-    from rbsdem.model.materials import Steel
-    from rbsdem.model.section import Section
+from rbsdem.section.curvature import largest_moment
+from rbsdem.section.ranges import is_confined
 
 __all__ = [
     "Code",
     "InteractionDiagram",
-    "interaction_diagram",
+    "interaction",
     "joint_interaction",
     "joint_loads",
     "nominal_moment",
@@ -193,11 +192,38 @@ def _points(points: int) -> int:
     return count
 
 
-def interaction_diagram(
-    section: Section, code: Code | None = None, points: int = 60, confined: bool = False
+def interaction(
+    section: Section, code: Code | None = None, *, points: int = 60, confined: bool = False
 ) -> InteractionDiagram:
-    """Return the interaction diagram of a section; see `Section.interaction`."""
-    count = _points(points)
+    """Return the interaction diagram of axial load and moment, y > 0 in tension.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    code : {"aci318", "ec2"}, optional
+        "aci318": ACI 318-19 with its factors phi and its limit of the axial load. "ec2":
+        EN 1992-1-1 with gamma_c = 1.5, gamma_s = 1.15 and alpha_cc = 1, without a least
+        eccentricity. None: the largest moments of `moment_curvature` at each axial load, with a
+        confined core until its hoops break.
+    points : int, optional
+        About how many points.
+    confined : bool, optional
+        For the section's own laws: whether the core is confined and the cover spalls.
+
+    Returns
+    -------
+    InteractionDiagram
+        Nominal and design strength; `rbsdem.plot.interaction` draws them with
+        demands.
+
+    Raises
+    ------
+    InputError
+        If the code is not known or does not cover the section.
+    """
+    checked_section(section)
+    count, confined = _points(points), is_confined(section, confined)
     if code is None:
         return _own(section, count, confined)
     _arguments.choice(code, "interaction: code", get_args(Code))
@@ -285,7 +311,7 @@ def _aci_strains(section: Section, axis: float) -> Callable[[Array], Array]:
 def nominal_moment(section: Section, axial_load: float) -> float:
     """Return the moment of ACI 318-19, without phi, that goes with an axial load [N m].
 
-    A point of `interaction_diagram`, to the last digits. NaN for an axial load that the block does
+    A point of `interaction`, to the last digits. NaN for an axial load that the block does
     not carry.
 
     Parameters

@@ -9,15 +9,12 @@ from typing import Any
 
 from rbsdem import _core
 from rbsdem.errors import AccuracyWarning, InputError
-from rbsdem.model.circular import CircularSection
 from rbsdem.model.column import Column
-from rbsdem.model.hollow import HollowCircularSection, HollowRectangularSection
 from rbsdem.model.materials import Concrete, Steel
-from rbsdem.model.rectangular import RectangularSection
 from rbsdem.model.reinforcement import Layout, Spiral, Ties
-from rbsdem.model.section import Section
-from rbsdem.section.model import LayeredColumn, LayeredModel
-from rbsdem.section.parameters import VERSIONS, ModelParameters, parameters
+from rbsdem.model.shape import CircularSection, RectangularSection, Section
+from rbsdem.section.layered import LayeredColumn, LayeredModel
+from rbsdem.section.parameters import VERSION, ModelParameters, parameters
 
 __all__ = ["SHAPES", "Groups", "layered_column", "recipe_of"]
 
@@ -26,13 +23,10 @@ Groups = Mapping[str, list[dict[str, Any]]]
 
 #: The classes of the shapes.
 SHAPES: dict[str, type[Section]] = {
-    kind.shape: kind
-    for kind in (
-        RectangularSection,
-        CircularSection,
-        HollowRectangularSection,
-        HollowCircularSection,
-    )
+    "rectangle": RectangularSection,
+    "circle": CircularSection,
+    "hollow_rectangle": RectangularSection,
+    "hollow_circle": CircularSection,
 }
 
 #: What groups with steels stand for.
@@ -108,14 +102,13 @@ def recipe_of(groups: Groups) -> LayeredModel:
 
 
 def _parameters(version: str, changes: dict[str, float]) -> ModelParameters:
-    if version in VERSIONS:
-        return parameters(version).with_values(**changes)
-    base = parameters()
-    if set(base.values) - set(changes):
+    made = parameters().with_values(**changes)
+    if version != VERSION and set(made.values) - set(changes):
         raise InputError(
-            f"drawing: version = {version!r} is not known; there are {', '.join(VERSIONS)}"
+            f"drawing: version = {version!r} is not known; this program has {VERSION}, and takes "
+            "another one with all of its parameters"
         )
-    return replace(base.with_values(**changes), version=version)
+    return replace(made, version=version)
 
 
 def _section(groups: Groups) -> Section:
@@ -125,7 +118,8 @@ def _section(groups: Groups) -> Section:
         number = values.pop("id", None)
         steels.setdefault(number, Steel(**values))
     sizes = _one(groups, "section")
-    kind = SHAPES[sizes.pop("shape")]
+    shape = sizes.pop("shape")
+    kind = SHAPES[shape]
     parts: dict[str, Any] = {"concrete": Concrete(**_one(groups, "concrete"))}
     if "bars" in groups:
         bars = _one(groups, "bars")
@@ -138,8 +132,9 @@ def _section(groups: Groups) -> Section:
             parts[name] = part(**values | used)
     known = {field.name for field in fields(kind)}
     for name in (*sizes, *parts):
-        if name not in known:
-            raise InputError(f"section: {name} is not for shape = {kind.shape!r}; remove it")
+        solid = not shape.startswith("hollow")
+        if name not in known or (solid and name in ("wall", "side_wall", "inner_layout")):
+            raise InputError(f"section: {name} is not for shape = {shape!r}; remove it")
     return kind(**sizes, **parts)
 
 

@@ -1,6 +1,6 @@
-"""Columns from a section: the layered model and that of the paper.
+"""The layered model of a column: how its springs are made, and the column that remembers it.
 
-Both stand on the section alone; no number of a test at hand enters.
+The model stands on the section alone; no number of a test at hand enters.
 """
 
 from __future__ import annotations
@@ -11,185 +11,28 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
-
-from numpy.typing import ArrayLike
+from typing import Any
 
 from rbsdem import _arguments, _core
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import Column, without_notes
-from rbsdem.model.ends import double_curvature, turned
 from rbsdem.model.parameter import Parameter
+from rbsdem.model.shape import Section
 from rbsdem.model.springs import Elastic, Layered, Spring, Takeda, check_springs, unchecked
 from rbsdem.model.strains import Gauge
-from rbsdem.section.directions import DIRECTIONS
+from rbsdem.section.axial_moment import InteractionDiagram, joint_interaction
 from rbsdem.section.hinge import HingeJoint, hinge_joint
-from rbsdem.section.interaction import InteractionDiagram, joint_interaction
-from rbsdem.section.parameters import FACTORS, ModelParameters, parameters
-from rbsdem.section.ranges import axial_load_note, column_length, outside
-from rbsdem.section.scatter import Scatter
-from rbsdem.section.shear_model import shear_limits, shear_spring
-from rbsdem.section.spread import Spread, spread
-from rbsdem.section.spring_fit import fit_springs
+from rbsdem.section.parameters import FACTORS, ModelParameters, directions, table
+from rbsdem.section.ranges import axial_load_note, outside
+from rbsdem.section.shear import shear_limits, shear_spring
 
-if TYPE_CHECKING:
-    from rbsdem.model.section import Section
-
-__all__ = [
-    "CONCRETE_DENSITY",
-    "DEFAULT",
-    "MODELS",
-    "LayeredColumn",
-    "LayeredModel",
-    "Model",
-    "check_model",
-    "make_column",
-    "model_name",
-]
-
-Model: TypeAlias = Literal["layered", "paper"]
-"""Name of a model."""
-
-MODELS: tuple[str, ...] = get_args(Model)
-"""Names of the models."""
-
-DEFAULT: Model = "layered"
-"""The model that is taken if none is named."""
+__all__ = ["LayeredColumn", "LayeredModel", "body_lengths", "lumping"]
 
 #: Strain at which all concrete is crushed.
 _CRUSHED = 0.02
 
-CONCRETE_DENSITY = 2400.0
-"""Density of reinforced concrete for the mass of a column [kg/m3]."""
 
-
-def check_model(model: str) -> None:
-    """Raise `InputError` if there is no model of this name."""
-    _arguments.choice(model, "model", MODELS)
-
-
-def model_name(
-    model: str, version: str | None = None, model_parameters: ModelParameters | None = None
-) -> str:
-    """Return the name of a model with the version of its parameters, as "layered 2026.2".
-
-    Parameters
-    ----------
-    model : str
-        "layered" or "paper", which has no fitted parameters.
-    version, model_parameters
-        As for `Section.column`.
-
-    Raises
-    ------
-    InputError
-        If there is no such model or version.
-    """
-    check_model(model)
-    if model != "layered":
-        return model
-    return f"{model} {(model_parameters or parameters(version)).label}"
-
-
-def make_column(
-    section: Section,
-    height: float,
-    *,
-    axial_load: float,
-    mass: float | None = None,
-    n: int | None = None,
-    model: Model = DEFAULT,
-    version: str | None = None,
-    model_parameters: ModelParameters | None = None,
-    axial_height: float | None = None,
-    restrained: int | None = None,
-    round_core: bool = False,
-) -> Column:
-    """Make the column of a section; `Section.column` says what the arguments are."""
-    check_model(model)
-    height = column_length(height, "height")
-    axial_load = _arguments.number(axial_load, "axial_load")
-    if mass is None:
-        mass = section.gross_area * height * CONCRETE_DENSITY
-    common = {
-        "mass": mass,
-        "axial_load": axial_load,
-        # At the top it needs no height, so that the column can be given other kinematics.
-        "axial_height": None if axial_height == height else axial_height,
-        "kinematics": "pdelta",
-    }
-    if model == "paper":
-        given = {
-            "version": version,
-            "model_parameters": model_parameters,
-            "restrained": restrained,
-            "round_core": round_core or None,
-        }
-        for name, value in given.items():
-            if value is not None:
-                raise InputError(f"{name} is for model = 'layered'; remove it")
-        return _paper(section, height, axial_load, _count(1 if n is None else n, 1), common)
-    if version is not None and model_parameters is not None:
-        raise InputError("give version or model_parameters, not both")
-    recipe = LayeredModel(
-        section=section,
-        height=height,
-        axial_load=axial_load,
-        n=_count(2 if n is None else n, 2),
-        parameters=model_parameters or parameters(version),
-        restrained=restrained,
-        round_core=round_core,
-    )
-    if model_parameters is not None:
-        recipe.check(model_parameters.own)
-    column = LayeredColumn(height, n=recipe.n, recipe=recipe, **recipe.made, **common)
-    note = axial_load_note(axial_load, section)
-    remarks = [note, *column.outside] if note else column.outside
-    if remarks:
-        warnings.warn("; ".join(remarks), AccuracyWarning, stacklevel=3)
-    return column
-
-
-def _count(n: int, least: int) -> int:
-    n = _arguments.whole(n, "n")
-    if n < least:
-        more = ": the layered model needs a joint above the hinge" if least == 2 else ""
-        raise InputError(f"n = {n}{more}; give {least} or more")
-    return n
-
-
-def _paper(
-    section: Section, height: float, axial_load: float, n: int, common: dict[str, Any]
-) -> Column:
-    # Columns of high axial load are controlled by compression: they yield there.
-    springs = section.springs(height, axial_load, yield_rule="first")
-    shear = springs.shear
-    if shear is None:
-        # Knee of the shear diagram in closed form: 0.48 of the uncracked stiffness.
-        stiffness = 0.48 * section.concrete_law["ec"] / 2 * section.gross_area
-        shear = Elastic(stiffness / height)
-    flexure = [springs.flexure]
-    lengths = None
-    if n > 1:
-        # Each joint has its share of the slip, and the curvature of its part.
-        shear = shear.split(n)
-        lengths, part = _parts(height, springs.hinge_length, n)
-        above = fit_springs(
-            section,
-            height,
-            axial_load,
-            yield_rule="first",
-            hinge_length=part / _lumping(n),
-            shear="none",
-        )
-        # A spring of its own for each joint, no longer that of a whole column.
-        flexure += [above.flexure.split(1)] * (n - 1)
-    return Column(
-        height, shear=shear, flexure=flexure, n=n, lengths=lengths, model="paper", **common
-    )
-
-
-def _parts(height: float, hinge_length: float, n: int) -> tuple[tuple[float, ...], float]:
+def body_lengths(height: float, hinge_length: float, n: int) -> tuple[tuple[float, ...], float]:
     """Return the lengths of the bodies, and of the parts that the joints above the hinge are for.
 
     The joints are in the middles of n - 1 equal parts of the column above the hinge.
@@ -199,7 +42,7 @@ def _parts(height: float, hinge_length: float, n: int) -> tuple[tuple[float, ...
     return tuple(high - low for low, high in pairwise(heights)), part
 
 
-def _lumping(n: int) -> float:
+def lumping(n: int) -> float:
     """Return the deflection of the top by n - 1 joints over that of the continuous column.
 
     1 - 1/(4 m^2) with m joints in the middles of m parts and the moment of a force at the top.
@@ -224,7 +67,7 @@ class LayeredModel:
     parameters : ModelParameters
         Parameters of the model with their version.
     restrained, round_core
-        As for `Section.column`.
+        As for `rbsdem.section.column`.
     """
 
     section: Section
@@ -242,7 +85,7 @@ class LayeredModel:
             self.section,
             self.height,
             self.axial_load,
-            self.parameters.hinge,
+            self.parameters,
             restrained=self.restrained,
             round_core=self.round_core,
         )
@@ -252,9 +95,9 @@ class LayeredModel:
         """Least and largest values of parameters that would change nothing beyond them."""
         joint = self.joint
         of_shear = shear_limits(
-            self.section, self.height, self.axial_load, joint.shear_stiffness, self.parameters.shear
+            self.section, self.height, self.axial_load, joint.shear_stiffness, self.parameters
         )
-        return joint.limits | {f"shear_{name}": ends for name, ends in of_shear.items()}
+        return joint.limits | of_shear
 
     def statement(self) -> _core.Statement:
         """Return the keys of the drawing, as groups of a case file."""
@@ -287,7 +130,7 @@ class LayeredModel:
     def _made_twice(self) -> dict[str, Any]:
         with without_notes():
             half = Column(self.height, 1.0, n=self.n, axial_load=self.axial_load, **self.made)
-            whole = double_curvature(half, prismatic=not self.section.symmetric)
+            whole = half.double_curvature(prismatic=not self.section.symmetric)
         return {name: getattr(whole, name) for name in self.made}
 
     def check(self, names: Iterable[str]) -> None:
@@ -326,15 +169,15 @@ class LayeredModel:
         at the foot: where the column fails in shear is where it bends most.
         """
         joint, n = self.joint, self.n
-        lengths, part = _parts(self.height, joint.length, n)
+        lengths, part = body_lengths(self.height, joint.length, n)
         # Flexible as the continuous column, whatever n is.
-        stiffness = joint.flexural_stiffness / part * _lumping(n)
+        stiffness = joint.flexural_stiffness / part * lumping(n)
         foot = shear_spring(
             self.section,
             self.height,
             self.axial_load,
             joint.shear_stiffness,
-            self.parameters.shear,
+            self.parameters,
             joint,
         )
         rigid = unchecked(Elastic, k=1e3 * joint.shear_stiffness / self.height)
@@ -353,17 +196,17 @@ class LayeredModel:
         above that; where all of the part has cracked, the joint in its middle turns as much if it
         cracks at 3/4 (a + b)^2/(a^2 + a b + b^2) of the moment.
         """
-        cracked = self.parameters.hinge.cracked_above
+        cracked = self.parameters.cracked_above
         if not cracked > 0.0:
             return unchecked(Elastic, k=stiffness)
-        section, figures = self.section, self.section._figures
+        section = self.section
         tensile = 0.6e6 * math.sqrt(section.concrete.fc / 1e6)
         # Under tension the least moment keeps the lines of the spring apart.
-        stress = max(tensile + self.axial_load / figures["area"], 0.1 * tensile)
+        stress = max(tensile + self.axial_load / section.gross_area, 0.1 * tensile)
         low = self.n - 1 - number
         high = low - 1
         share = 0.75 * (low + high) ** 2 / (low**2 + low * high + high**2)
-        m_c = share * stress * figures["inertia"] / (0.5 * section.depth)
+        m_c = share * stress * section.inertia / (0.5 * section.depth)
         d_c, k_y = m_c / stiffness, cracked * stiffness
         # More than the hinge carries, so that the joint never yields.
         most = 2.0 * max(self.joint.yield_moment, m_c)
@@ -378,31 +221,9 @@ class LayeredModel:
         )
 
 
-#: Parameters of the layered hinge that may be calibrated, and factors on several of them; bounds
-#: are factors of their values. The first six follow a loop best (calibration_directions.py).
-_FREE = {
-    **dict.fromkeys(DIRECTIONS, (0.04, 25.0, "-", "")),
-    "strength": (0.7, 1.5, "-", ""),
-    "lengths": (0.2, 4.0, "-", ""),
-    "softening": (0.1, 20.0, "-", ""),
-    "r0": (0.2, 5.0, "-", "R0 of the steel"),
-    "core_softening": (0.1, 50.0, "-", "factor of the slope behind the peak of the core"),
-    "plastic": (0.2, 3.0, "-", "factor of the plastic closing of concrete"),
-    "steel_strength": (0.7, 1.5, "-", "yield and ultimate stress over the measured ones"),
-    "concrete_strength": (0.6, 1.7, "-", "strength in place over that of cylinders"),
-    "hinge_length": (0.2, 4.0, "-", "factor of the hinge length"),
-    "compression_length": (0.3, 3.0, "-", "hinge length of the concrete over that of the steel"),
-    "wear": (0.05, 8.0, "-", "strength of the concrete lost by a cycle"),
-    "stiffness": (0.2, 4.0, "-", "flexural stiffness above the hinge over the gross one"),
-    "fatigue": (0.05, 50.0, "-", "1 over the plastic work that halves the strength"),
-    "slip_length": (0.1, 5.0, "1/MPa", "length of yielding in the footing"),
-    "confinement": (0.1, 5.0, "-", "factor of the confining stress"),
-    "cover_softening": (0.2, 20.0, "-", "factor of the slope behind the peak of the cover"),
-    "contact": (0.1, 2.0, "-", "share of the force at which a crack is closed"),
-    "shear_strength": (0.5, 2.0, "-", "shear force at yield of the ties over the shear strength"),
-    "shear_endurance": (0.02, 50.0, "-", "energy that the shear strength lasts for"),
-    "shear_pinch_force": (0.1, 3.0, "-", "force at the break of pinched reloading"),
-}
+#: Bounds of a factor along a direction, and of those on several parameters.
+_ALONG = (0.04, 25.0)
+_TOGETHER = {"strength": (0.7, 1.5), "lengths": (0.2, 4.0), "softening": (0.1, 20.0)}
 
 
 @dataclass(frozen=True, repr=False)
@@ -420,7 +241,9 @@ class LayeredColumn(Column):
 
     def __post_init__(self) -> None:
         if not isinstance(self.recipe, LayeredModel):
-            raise InputError("a LayeredColumn is made by Section.column or rbsdem.peer.column")
+            raise InputError(
+                "a LayeredColumn is made by rbsdem.section.column or rbsdem.peer.column"
+            )
         self._check_size()
         load = _arguments.number(self.axial_load, "column: axial_load")
         if load != self.recipe.axial_load:
@@ -442,8 +265,8 @@ class LayeredColumn(Column):
             if value not in known[:halves] and not self._is_other:
                 raise InputError(
                     f"column: {name} = {value!r}: the springs of this layered column are made for "
-                    f"{name} = {known[0]:g}; make the column anew with Section.column, or give it "
-                    "shear and flexure of your own"
+                    f"{name} = {known[0]:g}; make the column anew with rbsdem.section.column, "
+                    "or give it shear and flexure of your own"
                 )
 
     def _draw_again(self, axial_load: float) -> None:
@@ -488,20 +311,21 @@ class LayeredColumn(Column):
         """
         values, limits = self._recipe.parameters.values, self._recipe.limits
         found = {}
-        for name, (low, high, unit, what) in _FREE.items():
-            if any(self._kept(field) for field in _made_from(name)):
-                continue
-            if name in DIRECTIONS:
-                several = ", ".join(DIRECTIONS[name])
-                found[name] = Parameter(1.0, low, high, unit, f"factor to exponents on {several}")
-            elif name in FACTORS:
-                found[name] = Parameter(1.0, low, high, unit, f"factor of {FACTORS[name][1]}")
-            else:
-                least, most = limits.get(name, (0.0, math.inf))
-                value = min(max(values[name], least), most)
-                ends = max(low * value, least), min(high * value, most)
-                found[name] = Parameter(value, *ends, unit, what)
-        return found
+        for name, along in directions().items():
+            what = f"factor to exponents on {', '.join(along)}"
+            found[name] = Parameter(1.0, *_ALONG, "-", what)
+        for name, (_, what) in FACTORS.items():
+            found[name] = Parameter(1.0, *_TOGETHER[name], "-", f"factor of {what}")
+        offered = [row for row in table().values() if row.rank]
+        for row in sorted(offered, key=lambda row: row.rank):
+            least, most = limits.get(row.name, (0.0, math.inf))
+            value = min(max(values[row.name], least), most)
+            ends = max(row.low * value, least), min(row.high * value, most)
+            found[row.name] = Parameter(value, *ends, row.unit, row.meaning)
+        replaced = self.replaced
+        return {
+            name: one for name, one in found.items() if not set(_made_from(name)) & set(replaced)
+        }
 
     def with_parameters(self, **values: float) -> LayeredColumn:
         """Return the column with other parameters of its model; all else stays as it is.
@@ -527,7 +351,7 @@ class LayeredColumn(Column):
                     )
         # What a factor makes of several is limited, not refused.
         several = {name: FACTORS[name][0] for name in values if name in FACTORS}
-        several |= {name: tuple(DIRECTIONS[name]) for name in values if name in DIRECTIONS}
+        several |= {name: tuple(directions()[name]) for name in values if name in directions()}
         recipe.check(set(values).difference(several, *several.values()))
         ends = recipe.ends(self.top)
         made = {name: value for name, value in ends.items() if not self._kept(name)}
@@ -539,14 +363,15 @@ class LayeredColumn(Column):
         numbers, springs = self.joint_numbers, self.joints("flexure")
         foot = joint == 1 and springs[numbers.index(1)] == hinge.spring
         at_top = joint == self.n + 1 and self.top == "fixed"
-        head = at_top and springs[-1] in (hinge.spring, turned(hinge.spring))
+        head = at_top and springs[-1] in (hinge.spring, hinge.spring.mirrored())
         return hinge.gauge if foot or head else None
 
     def interaction(self, *, points: int = 60, rotation: float = 0.05) -> InteractionDiagram:
         """Return the interaction diagram of axial load and moment of the joint at the foot.
 
-        It differs from `Section.interaction`: the layers have the fitted strengths of the model,
-        and bars harden as long as the joint turns. In cycles they harden a little more.
+        It differs from that of its section, `rbsdem.section.interaction`: the layers have the
+        fitted strengths of the model, and bars harden as long as the joint turns. In cycles they
+        harden a little more.
 
         Parameters
         ----------
@@ -577,38 +402,6 @@ class LayeredColumn(Column):
         # The recipe knows the shear span, whatever the ends of the column are.
         return outside(self._recipe.section, self._recipe.height, self.axial_load)
 
-    def spread(
-        self, displacement: ArrayLike, *, samples: int = 16, scatter: Scatter | None = None
-    ) -> Spread:
-        """Predict the force along a path, with the band that holds 80 % of left-out tests.
-
-        Parameters
-        ----------
-        displacement : array_like, shape (m,)
-            Displacement of the top [m].
-        samples : int, optional
-            How many samples of strength, stiffness and degradation go through the model; 8 or more,
-            best a power of 2.
-        scatter : Scatter, optional
-            Another scatter than that of the version.
-
-        Returns
-        -------
-        Spread
-            Prediction, band, intervals of largest force, work and drift at 20 % loss, remarks.
-
-        Raises
-        ------
-        InputError
-            If the path does not change, or nobody knows the scatter of the version.
-
-        Warns
-        -----
-        AccuracyWarning
-            Where the column is outside the range of the tests.
-        """
-        return spread(self, displacement, samples=samples, scatter=scatter)
-
     @property
     def replaced(self) -> tuple[str, ...]:
         """What of shear and flexure is not that of the model."""
@@ -637,7 +430,7 @@ def _listed(springs: Any) -> tuple[Any, ...]:
 
 def _made_from(name: str) -> tuple[str, ...]:
     """Return the springs that a parameter belongs to."""
-    if name in DIRECTIONS:
+    if name in directions():
         return ("flexure", "shear")
     of_shear = name.startswith("shear_") and name != "shear_stiffness"
     return ("shear",) if of_shear else ("flexure",)

@@ -5,19 +5,16 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from rbsdem import _arguments, _core
 from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Bilinear, Takeda, for_whole_column
-from rbsdem.section.diagram import Events, make_point
-from rbsdem.section.ranges import axial_load_note, column_length
-from rbsdem.section.shear_spring import ShearSpring, closed_form_shear, fit_shear_spring
+from rbsdem.section.curvature import Events, make_point
+from rbsdem.section.ranges import axial_load_note, column_length, is_confined
+from rbsdem.section.shear import ShearSpring, closed_form_shear, fit_shear_spring
 
-if TYPE_CHECKING:
-    from rbsdem.model.section import Section
-
-__all__ = ["SHEAR", "YIELD_RULES", "SectionSprings", "fit_springs"]
+__all__ = ["SHEAR", "YIELD_RULES", "SectionSprings", "springs"]
 
 YIELD_RULES = ("A", "B", "first")
 """How the yield rotation is read from the diagrams."""
@@ -30,8 +27,8 @@ SHEAR = ("mcft", "closed", "none")
 class SectionSprings:
     """Springs of a column, with the points that they were fitted to.
 
-    They are those of a whole column, for one body. `Section.column` shares them among the joints of
-    several bodies; `rbsdem.Column` refuses them in more than one joint.
+    They are those of a whole column, for one body. `rbsdem.section.column` shares them among the
+    joints of several bodies; `rbsdem.Column` refuses them in more than one joint.
 
     Attributes
     ----------
@@ -74,7 +71,7 @@ class SectionSprings:
     report: str
 
 
-def fit_springs(
+def springs(
     section: Section,
     length: float,
     axial_load: float,
@@ -91,7 +88,7 @@ def fit_springs(
     d_m: float | None = None,
     shear: str = "mcft",
 ) -> SectionSprings:
-    """Fit the springs of a column to the diagrams of its section.
+    """Return the springs of a column with this section, from its base to the lateral load.
 
     Parameters
     ----------
@@ -110,7 +107,7 @@ def fit_springs(
         as "A", or where the extreme fibre in compression is at `eps_yield`, whichever comes first
         ("first"; Priestley, Calvi, Kowalsky 2007): for sections controlled by compression.
     ultimate : {"cover", "mander", "steel", "drop"}, optional
-        Ultimate point, see `Section.diagram`.
+        Ultimate point, see `rbsdem.section.curvature`.
     eps_yield, eps_cover : float, optional
         Strains of the extreme fibre, compression positive.
     confined : bool, optional
@@ -145,11 +142,18 @@ def fit_springs(
         If the moment falls after yield (K_u is then zero), shear governs, or the section is not
         symmetric.
     """
+    checked_section(section)
     if shear not in SHEAR:
         raise InputError(
             f"springs: shear = {shear!r} is not known; it is one of {', '.join(SHEAR)}"
         )
-    confined = section._confined(confined)
+    confined = is_confined(section, confined)
+    axial_load = _arguments.number(axial_load, "axial_load")
+    hinge = hinge_length
+    if hinge is not None and _arguments.number(hinge, "springs: hinge_length") > length:
+        raise InputError(
+            f"springs: hinge_length = {hinge:g} m is longer than the column, length = {length:g} m"
+        )
     length = column_length(length, "springs: length")
     numbers = {
         "length": length,
@@ -176,7 +180,7 @@ def fit_springs(
     if not section.symmetric:
         notes.append(
             "springs: the section is not symmetric; both directions have the springs of y > 0 in "
-            "tension (`section.turned` has those of the other)"
+            "tension (`section.mirrored` has those of the other)"
         )
     if found["k_u_found"] < 0.0:
         notes.append(
@@ -190,19 +194,17 @@ def fit_springs(
     spring, shear_fit = None, None
     if shear == "mcft":
         shear_fit = fit_shear_spring(
-            section, float(length), axial_load, events.ultimate.curvature, confined=confined
+            section, length, axial_load, events.ultimate.curvature, confined=confined
         )
         spring = shear_fit.spring
-        notes += shear_fit.warnings
+        notes += shear_fit.notes
     elif shear == "closed":
-        spring = Bilinear(
-            *closed_form_shear(section, float(length), events.cracking.moment), k_post=0.0
-        )
+        spring = Bilinear(*closed_form_shear(section, length, events.cracking.moment), k_post=0.0)
     if spring is not None:
         for_whole_column(spring, "shear")
     for note in notes:
-        warnings.warn(note, AccuracyWarning, stacklevel=3)
-    springs = SectionSprings(
+        warnings.warn(note, AccuracyWarning, stacklevel=2)
+    made = SectionSprings(
         section,
         confined,
         flexure,
@@ -210,14 +212,14 @@ def fit_springs(
         shear_fit,
         events,
         found["hinge_length"],
-        float(length),
+        length,
         axial_load,
         found["d_m"],
         tuple(notes),
         "",
     )
-    object.__setattr__(springs, "report", _report(section, springs))
-    return springs
+    object.__setattr__(made, "report", _report(section, made))
+    return made
 
 
 def _report(section: Section, springs: SectionSprings) -> str:

@@ -1,0 +1,804 @@
+"""Sections as drawn: shape, concrete, bars and transverse bars, and what follows from them at once.
+
+What a section can be asked beyond that (diagrams, strengths, springs, its column) stands in
+`rbsdem.section`.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import KW_ONLY, dataclass, fields, replace
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from rbsdem import _arguments, _core
+from rbsdem._arguments import Array
+from rbsdem.errors import InputError
+from rbsdem.model.materials import Concrete, Derived, Steel, given
+from rbsdem.model.reinforcement import Bar, Layout, Spiral, Ties, share_in_tension
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+__all__ = [
+    "CircularSection",
+    "Confinement",
+    "RectangularSection",
+    "Section",
+    "checked_section",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Confinement:
+    """The confined core inside the ties (Mander, Priestley, Park 1988).
+
+    Attributes
+    ----------
+    fcc : float
+        Strength of the confined concrete [Pa].
+    eps_cc : float
+        Strain at its peak.
+    r : float
+        Exponent of its curve.
+    eps_cu : float
+        Strain at hoop fracture.
+    effectiveness : float
+        Coefficient k_e.
+    lateral_stress : float
+        Effective lateral stress f_l [Pa].
+    ratio : float
+        Volume of the transverse bars over that of the core, rho_s.
+    width, depth : float
+        Sizes of the core between the centre lines of the hoops [m].
+    """
+
+    fcc: float
+    eps_cc: float
+    r: float
+    eps_cu: float
+    effectiveness: float
+    lateral_stress: float
+    ratio: float
+    width: float
+    depth: float
+
+
+class _LaidOut(tuple[Bar, ...]):
+    """Bars that follow from a layout."""
+
+    __slots__ = ()
+
+
+class _Parts:
+    """What every shape has as a field or property of its own."""
+
+    if TYPE_CHECKING:
+        _statement: ClassVar[_core.Statement]
+        _figures: ClassVar[dict[str, float]]
+
+        @property
+        def concrete(self) -> Concrete: ...
+        @property
+        def bars(self) -> Sequence[Bar]: ...
+        @property
+        def layout(self) -> Layout | None: ...
+        @property
+        def inner_layout(self) -> Layout | None: ...
+        @property
+        def cover(self) -> float: ...
+        @property
+        def side_cover(self) -> float | None: ...
+        @property
+        def bar_diameter(self) -> float | None: ...
+        @property
+        def strips(self) -> int: ...
+        @property
+        def wall(self) -> float | None: ...
+        @property
+        def ties(self) -> Ties | Spiral | None: ...
+        @property
+        def width(self) -> float: ...
+        @property
+        def depth(self) -> float: ...
+
+
+@dataclass(frozen=True)
+class Section(_Parts, ABC):
+    """What a section of any shape is made of.
+
+    A new shape is a class with the abstract methods below, beside its type in `src/section`.
+    """
+
+    #: The transverse bars that this shape takes, for messages.
+    hoops: ClassVar[str]
+    #: Whether the width falls towards the extreme fibres.
+    narrows: ClassVar[bool] = False
+
+    @property
+    @abstractmethod
+    def shape(self) -> str:
+        """Name of the shape."""
+
+    @abstractmethod
+    def _lay_out(self, layout: Layout, inset: float) -> list[Bar]:
+        """Return the bars of the layouts; `inset` is from the face to the edge of the bars [m]."""
+
+    @abstractmethod
+    def _sizes(self) -> dict[str, float]:
+        """Return the sizes of the shape, by the names of their keys [m]."""
+
+    @property
+    @abstractmethod
+    def effective_depth(self) -> float:
+        """From the compression face to the centre of the bars in the half in tension [m]."""
+
+    @property
+    @abstractmethod
+    def web_width(self) -> float:
+        """Width that carries shear: of a hollow section that of both webs [m]."""
+
+    @abstractmethod
+    def part(self, depth: float) -> tuple[float, float]:
+        """Return area and first moment about mid-depth of the concrete near one face [m2, m3].
+
+        `depth` is measured from the compression face, y = -depth of the section/2 [m].
+        """
+
+    @abstractmethod
+    def outline(self) -> Array:
+        """Return the outline of the concrete, a point a row: x and y [m]."""
+
+    @abstractmethod
+    def void(self, distance: float = 0.0) -> Array:
+        """Return a line around the void at a distance [m]; without points in a solid section."""
+
+    @abstractmethod
+    def hoop_line(self, inset: float, bend: float) -> Array:
+        """Return the closed line at `inset` inside the outer edge of the transverse bars [m].
+
+        `bend` is the radius of its corners [m].
+        """
+
+    @abstractmethod
+    def inner_legs(self) -> list[Array]:
+        """Return the corners of each leg of the ties between the outer ones [m]."""
+
+    @abstractmethod
+    def place_bars(self, bars: Sequence[tuple[float, float]]) -> list[tuple[float, float, float]]:
+        """Return x, y and diameter of bars of which y and diameter are given [m]."""
+
+    def _put(self, name: str, value: object) -> None:
+        object.__setattr__(self, name, value)
+
+    def _take(self, *names: str) -> None:
+        """Make sizes floats."""
+        for name in names:
+            self._put(name, _arguments.number(getattr(self, name), f"section: {name}"))
+
+    def _follow(self, name: str, otherwise: float) -> None:
+        """Make a size a float that follows from another unless it is given."""
+        value = given(getattr(self, name))
+        follows = value is None
+        number = otherwise if follows else _arguments.number(value, f"section: {name}")
+        self._put(name, Derived(number) if follows else number)
+
+    def _check_wall(self, name: str, size: float, what: str, cover: float) -> None:
+        """Refuse a wall that leaves no void, or that hoops with their cover fill."""
+        wall, hoop = getattr(self, name), self.ties.diameter if self.ties else 0.0
+        if not 0.0 < 2.0 * wall < size:
+            raise InputError(
+                f"section: {name} = {wall:g} m must be above 0 and below half of the {what}, "
+                f"{0.5 * size:g} m; a section without a void is solid"
+            )
+        if not 2.0 * (cover + hoop) < wall:
+            raise InputError(
+                f"section: cover = {cover:g} m on both sides and hoops of {hoop:g} m leave nothing "
+                f"of a wall of {wall:g} m"
+            )
+
+    def _finish(self) -> None:
+        """Set bars and bar diameter; state the section to the Fortran part, which checks it."""
+        if not isinstance(self.concrete, Concrete):
+            raise InputError(f"section: concrete = {self.concrete!r} must be a Concrete")
+        self._put("strips", _arguments.whole(self.strips, "section: strips"))
+        ties = self.ties
+        if not isinstance(self.inner_layout, Layout | None):
+            raise InputError(f"section: inner_layout = {self.inner_layout!r} must be a Layout")
+        if self.inner_layout is not None and self.layout is None:
+            raise InputError("section: inner_layout goes with layout; give the bars outside, too")
+        if self.inner_layout is not None and self.wall is None:
+            raise InputError("section: inner_layout is around a void; give wall, or remove it")
+        self._take_bars(self.cover, ties)
+        numbers = {
+            steel: i for i, steel in enumerate(dict.fromkeys(bar[2] for bar in self.bars), 1)
+        }
+        if ties is not None:
+            numbers.setdefault(ties.steel, len(numbers) + 1)
+        given = {"cover": self.cover, "side_cover": self.side_cover, "strips": self.strips}
+        diameter = self.bar_diameter if self.bars else None
+        statement = _core.group(
+            "section", {"shape": self.shape} | self._sizes() | given | {"bar_diameter": diameter}
+        )
+        statement += self.concrete.statement()
+        for steel, number in numbers.items():
+            statement += steel.statement(number)
+        if self.bars:
+            y, area, steels = zip(*self.bars, strict=True)
+            bars = {"y": y, "area": area, "steel": [numbers[steel] for steel in steels]}
+            statement += _core.group("bars", bars)
+        if ties is not None:
+            statement += ties.statement(numbers[ties.steel])
+        self._put("_statement", statement)
+        self._put("_figures", _core.check_section(statement))
+
+    def _take_bars(self, cover: float, transverse: Ties | Spiral | None) -> None:
+        """Set the bars, from list or layout, and their diameter."""
+        if not isinstance(self.bars, Sequence):
+            raise InputError(f"section: bars = {self.bars!r} must be a list of (y, area, Steel)")
+        if self.layout is not None:
+            # Those of a section that this one was made from by `dataclasses.replace` are laid anew.
+            if len(self.bars) > 0 and not isinstance(self.bars, _LaidOut):
+                raise InputError("section: give bars or layout, not both")
+            if not isinstance(self.layout, Layout):
+                raise InputError(f"section: layout = {self.layout!r} must be a Layout")
+            inset = cover + (transverse.diameter if transverse else 0.0)
+            self._put("bars", _LaidOut(self._lay_out(self.layout, inset)))
+            follows: float | None = self.layout.diameter
+        else:
+            self._put("bars", tuple(_bar(bar, i) for i, bar in enumerate(self.bars, 1)))
+            areas = [area for _, area, _ in self.bars if area > 0.0]
+            diameters = [math.sqrt(4.0 * area / math.pi) for area in areas]
+            follows = np.average(diameters, weights=areas) if areas else None
+        diameter = given(self.bar_diameter)
+        if diameter is not None:
+            self._put("bar_diameter", _arguments.number(diameter, "section: bar_diameter"))
+        else:
+            self._put("bar_diameter", None if follows is None else Derived(follows))
+
+    def drawing(self) -> _core.Statement:
+        """Return the keys of the section as it was given, as groups of a case file."""
+        layouts = {"layout": self.layout, "inner_layout": self.inner_layout}
+        laid_out = [layout for layout in layouts.values() if layout is not None]
+        steels = [steel for layout in laid_out for steel in layout.steels]
+        bars = self.bars if self.layout is None else ()
+        steels += [steel for _, _, steel in bars]
+        if self.ties is not None:
+            steels.append(self.ties.steel)
+        numbers = {steel: i for i, steel in enumerate(dict.fromkeys(steels), 1)}
+        values = ((field.name, getattr(self, field.name)) for field in fields(self))
+        sizes = {name: given(value) for name, value in values if isinstance(value, int | float)}
+        statement = _core.group("section", {"shape": self.shape} | sizes | self._sizes())
+        statement += self.concrete.statement()
+        for steel, number in numbers.items():
+            statement += steel.statement(number)
+        if bars:
+            y, area, each = zip(*bars, strict=True)
+            rows = {"y": y, "area": area, "steel": [numbers[steel] for steel in each]}
+            statement += _core.group("bars", rows)
+        for name, layout in layouts.items():
+            if layout is not None:
+                statement += layout.statement(name, numbers)
+        if self.ties is not None:
+            statement += self.ties.statement(numbers[self.ties.steel])
+        return statement
+
+    @property
+    def hollow(self) -> bool:
+        """Whether there is a void in the middle."""
+        return self.wall is not None
+
+    @property
+    def _wall(self) -> float:
+        return float(self.wall or 0.0)
+
+    @property
+    def mirrored(self) -> Self:
+        """The section upside down: y > 0 is what was y < 0. Itself where that is the same."""
+        mirrored = sorted(((-y, area, steel) for y, area, steel in self.bars), key=_place)
+        pairs = zip(mirrored, sorted(self.bars, key=_place), strict=True)
+        slack = 1e-9 * self.depth
+        if all(abs(a[0] - b[0]) <= slack and a[1:] == b[1:] for a, b in pairs):
+            return self
+        diameter = float(self.bar_diameter or 0.0)
+        changes: dict[str, Any] = {"bars": mirrored, "bar_diameter": diameter}
+        return replace(self, **changes, layout=None, inner_layout=None)
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether the section is the same upside down."""
+        return self.mirrored is self
+
+    @property
+    def gross_area(self) -> float:
+        """Area of the concrete outline [m2]."""
+        return self._figures["area"]
+
+    @property
+    def inertia(self) -> float:
+        """Second moment of area of the concrete about mid-depth [m4]."""
+        return self._figures["inertia"]
+
+    @property
+    def shear_area(self) -> float:
+        """Area that carries elastic shear [m2]."""
+        return self._figures["shear_area"]
+
+    @property
+    def steel_area(self) -> float:
+        """Area of all longitudinal bars [m2]."""
+        return sum(area for _, area, _ in self.bars)
+
+    @property
+    def steel_ratio(self) -> float:
+        """Area of the longitudinal bars over the gross area."""
+        return self.steel_area / self.gross_area
+
+    @property
+    def axial_capacity(self) -> tuple[float, float]:
+        """Least (tension, negative) and largest axial load without bending or confinement [N]."""
+        return _core.axial_capacity(self._statement, tension="bare", confined=False)[0]
+
+    @property
+    def concrete_law(self) -> dict[str, float]:
+        """Parameters of the law of the unconfined concrete: fc, ft, ec [Pa], eps0, n, decay."""
+        return {name: self._figures[name] for name in ("fc", "ft", "ec", "eps0", "n", "decay")}
+
+    @property
+    def confinement(self) -> Confinement | None:
+        """The confined core (Mander, Priestley, Park 1988); None without ties."""
+        if self.ties is None:
+            return None
+        return Confinement(**{f.name: self._figures[f.name] for f in fields(Confinement)})
+
+
+@dataclass(frozen=True)
+class RectangularSection(Section):
+    """A rectangular section.
+
+    Parameters
+    ----------
+    width, depth : float
+        Width and depth; the depth is in the direction of loading [m].
+    concrete : Concrete
+        The concrete.
+    bars : sequence of (y, area, steel), optional
+        Bars one by one: distance from mid-depth, positive to the tension face [m], area [m2],
+        `Steel`. A row of bars may be one entry if `bar_diameter` is given.
+    layout : Layout, optional
+        Bars by number and diameter, in place of `bars`.
+    ties : Ties, optional
+        Transverse bars; they carry shear, and confine the core in analyses with `confined=True`.
+    cover : float, optional
+        Clear cover to the outer edge of the ties [m].
+    side_cover : float, optional
+        Clear cover at the faces along the depth, if it differs [m].
+    bar_diameter : float, optional
+        Diameter of the main bars [m], for the length of the hinge and the confinement. By default
+        that of the layout, or the mean of round bars with the areas of `bars`, weighted by them.
+    strips : int, optional
+        Number of strips over the depth.
+    wall : float, optional
+        Thickness of the walls at the faces in tension and compression of a hollow section [m].
+        Hoops run around the outside and around the void, with the same cover at both; the walls
+        count as core, but not as confined: the inner hoops bow into the void.
+    side_wall : float, optional
+        Thickness of the two webs, by default that of the walls [m].
+    inner_layout : Layout, optional
+        Bars around the void; they go with `layout`.
+
+    Raises
+    ------
+    InputError
+        With a line for every error.
+
+    Examples
+    --------
+    >>> steel = Steel(446e6, 702e6)
+    >>> section = RectangularSection(
+    ...     0.4,
+    ...     0.4,
+    ...     Concrete(46.5e6),
+    ...     layout=Layout(12, 0.016, steel),
+    ...     ties=Ties(0.007, 0.085, Steel(364e6, 521e6), legs=4),
+    ...     cover=0.013,
+    ... )
+    >>> round(rbsdem.section.moment_curvature(section, 744e3, 0.01) / 1e3)
+    260
+    """
+
+    hoops: ClassVar[str] = "ties"
+
+    width: float
+    depth: float
+    concrete: Concrete
+    bars: Sequence[Bar] = ()
+    layout: Layout | None = None
+    ties: Ties | None = None
+    cover: float = 0.0
+    side_cover: float | None = None
+    bar_diameter: float | None = None
+    strips: int = 400
+    _: KW_ONLY
+    wall: float | None = None
+    side_wall: float | None = None
+    inner_layout: Layout | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.ties, Ties | None):
+            raise InputError(f"section: ties = {self.ties!r} must be Ties")
+        self._take("width", "depth", "cover")
+        self._follow("side_cover", self.cover)
+        if self.wall is not None:
+            self._take("wall")
+            self._follow("side_wall", self.wall)
+            self._check_wall("wall", self.depth, "depth", self.cover)
+            self._check_wall("side_wall", self.width, "width", float(self.side_cover or 0.0))
+        elif self.side_wall is not None:
+            raise InputError("section: side_wall goes with wall; give the walls at the faces, too")
+        self._finish()
+
+    @property
+    def shape(self) -> str:
+        """Name of the shape."""
+        return "hollow_rectangle" if self.hollow else "rectangle"
+
+    def _sizes(self) -> dict[str, float]:
+        sizes = {"width": self.width, "depth": self.depth}
+        return sizes | {"wall": self._wall, "side_wall": self._web} if self.hollow else sizes
+
+    def _lay_out(self, layout: Layout, inset: float) -> list[Bar]:
+        bars, inner = layout.rectangular(self.depth, inset), self.inner_layout
+        if inner is None:
+            return bars
+        # The bars around the void are those along the inside of a larger outline.
+        around = self.depth - 2.0 * self._wall + 4.0 * inset + 2.0 * inner.diameter
+        return bars + inner.rectangular(around, inset)
+
+    @property
+    def _web(self) -> float:
+        return float(self.side_wall or 0.0)
+
+    @property
+    def web_width(self) -> float:
+        """Width that carries shear: of a hollow section that of both webs [m]."""
+        return 2.0 * self._web if self.hollow else self.width
+
+    @property
+    def effective_depth(self) -> float:
+        """From the compression face to the centre of the bars in the half in tension [m].
+
+        Bars within a twentieth of the depth from its middle count in part, those at mid-depth or
+        beyond not at all. 0.8 of the depth if there is no other bar.
+        """
+        parts = [
+            (y, area, share)
+            for y, area, _ in self.bars
+            if (share := 2.0 * share_in_tension(y, self.depth) - 1.0) > 0.0
+        ]
+        if not parts:
+            return 0.8 * self.depth
+        weight = sum(area * share for _, area, share in parts)
+        centre = 0.5 * self.depth + sum(y * area * share for y, area, share in parts) / weight
+        known = max(share for *_, share in parts)
+        return known * centre + (1.0 - known) * 0.8 * self.depth
+
+    def part(self, depth: float) -> tuple[float, float]:
+        """Return area and first moment about mid-depth of the concrete near the compression face.
+
+        `depth` is measured from that face [m].
+        """
+        area = self.width * depth
+        first = 0.5 * area * (depth - self.depth)
+        if not self.hollow:
+            return area, first
+        high = self.depth - 2.0 * self._wall
+        reached = min(max(depth - self._wall, 0.0), high)
+        void = reached * (self.width - self.web_width)
+        return area - void, first - 0.5 * void * (reached - high)
+
+    def outline(self) -> Array:
+        """Return the corners of the concrete, x and y [m]."""
+        return _box(0.5 * self.width, 0.5 * self.depth)
+
+    def void(self, distance: float = 0.0) -> Array:
+        """Return the corners of the void, or of the line at a distance around it [m]."""
+        if not self.hollow:
+            return _NO_LINE
+        half_width = 0.5 * self.width - self._web + distance
+        return _box(half_width, 0.5 * self.depth - self._wall + distance)
+
+    def hoop_line(self, inset: float, bend: float) -> Array:
+        """Return the closed line at a distance inside the outer edge of the ties [m].
+
+        `bend` is the radius of its corners [m].
+        """
+        half = np.array(
+            [
+                0.5 * self.width - float(self.side_cover or 0.0) - inset - bend,
+                0.5 * self.depth - self.cover - inset - bend,
+            ]
+        )
+        angle = np.linspace(0.0, 0.5 * np.pi, 16)
+        corner = bend * np.column_stack([np.cos(angle), np.sin(angle)])
+        turned = [corner, corner[:, ::-1] * [-1, 1], -corner, corner[:, ::-1] * [1, -1]]
+        signs = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
+        return np.vstack([half * sign + arc for sign, arc in zip(signs, turned, strict=True)])
+
+    def inner_legs(self) -> list[Array]:
+        """Return the corners of each leg of the ties between the outer ones [m].
+
+        A hollow section has none: the hoop around its void is drawn with it.
+        """
+        if self.ties is None or self.hollow:
+            return []
+        half_tie = 0.5 * self.ties.diameter
+        b = 0.5 * self.width - float(self.side_cover or 0.0) - half_tie
+        d = 0.5 * self.depth - self.cover - half_tie
+        inset = half_tie + 0.5 * float(self.bar_diameter or 0.0)
+        along = np.linspace(inset - b, b - inset, round(self.ties.legs))[1:-1]
+        across = np.linspace(inset - d, d - inset, round(self.ties.legs_across or 0))[1:-1]
+        legs = [_box(half_tie, d) + np.array([x, 0.0]) for x in along]
+        return legs + [_box(b, half_tie) + np.array([0.0, y]) for y in across]
+
+    def place_bars(self, bars: Sequence[tuple[float, float]]) -> list[tuple[float, float, float]]:
+        """Return where bars stand across the width: in rows, equal distances apart.
+
+        Parameters
+        ----------
+        bars : sequence of (y, diameter)
+            Distance from mid-depth and diameter of each bar [m]: those of the layout outside first,
+            then those around the void.
+
+        Returns
+        -------
+        list of (x, y, diameter)
+            The same bars [m].
+        """
+        inset = float(self.side_cover or 0.0) + (self.ties.diameter if self.ties else 0.0)
+        outer = len(bars) - (self.inner_layout.number if self.inner_layout else 0)
+        placed = _in_rows(bars[:outer], self.width - 2.0 * inset, self.bar_diameter)
+        if outer < len(bars):
+            around = self.width - self.web_width + 2.0 * (inset + bars[-1][1])
+            placed += _in_rows(bars[outer:], around, None)
+        return placed
+
+
+@dataclass(frozen=True)
+class CircularSection(Section):
+    """A circular section.
+
+    Parameters
+    ----------
+    diameter : float
+        Diameter of the concrete [m].
+    concrete : Concrete
+        The concrete.
+    bars : sequence of (y, area, steel), optional
+        As for `RectangularSection`.
+    layout : Layout, optional
+        Bars around the circle, the first at the tension face, in place of `bars`.
+    spiral : Spiral, optional
+        Transverse bars.
+    cover : float, optional
+        Clear cover to the outer edge of the spiral [m].
+    bar_diameter : float, optional
+        As for `RectangularSection`.
+    strips : int, optional
+        Number of strips over the depth.
+    wall : float, optional
+        Thickness of the wall of a hollow section [m], as for `RectangularSection`.
+    inner_layout : Layout, optional
+        Bars around the void; they go with `layout`.
+
+    Raises
+    ------
+    InputError
+        With a line for every error.
+    """
+
+    hoops: ClassVar[str] = "a spiral"
+    narrows: ClassVar[bool] = True
+
+    diameter: float
+    concrete: Concrete
+    bars: Sequence[Bar] = ()
+    layout: Layout | None = None
+    spiral: Spiral | None = None
+    cover: float = 0.0
+    bar_diameter: float | None = None
+    strips: int = 400
+    _: KW_ONLY
+    wall: float | None = None
+    inner_layout: Layout | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.spiral, Spiral | None):
+            raise InputError(f"section: spiral = {self.spiral!r} must be a Spiral")
+        self._take("diameter", "cover")
+        if self.wall is not None:
+            self._take("wall")
+            self._check_wall("wall", self.diameter, "diameter", self.cover)
+        self._finish()
+
+    @property
+    def shape(self) -> str:
+        """Name of the shape."""
+        return "hollow_circle" if self.hollow else "circle"
+
+    def _sizes(self) -> dict[str, float]:
+        sizes = {"diameter": self.diameter}
+        return sizes | {"wall": self._wall} if self.hollow else sizes
+
+    def _lay_out(self, layout: Layout, inset: float) -> list[Bar]:
+        bars, inner = layout.circular(self.diameter, inset), self.inner_layout
+        if inner is None:
+            return bars
+        around = self.diameter - 2.0 * self._wall + 4.0 * inset + 2.0 * inner.diameter
+        return bars + inner.circular(around, inset)
+
+    @property
+    def width(self) -> float:
+        """The diameter [m]."""
+        return self.diameter
+
+    @property
+    def depth(self) -> float:
+        """The diameter [m]."""
+        return self.diameter
+
+    @property
+    def side_cover(self) -> float:
+        """The cover [m]."""
+        return self.cover
+
+    @property
+    def ties(self) -> Spiral | None:
+        """The spiral."""
+        return self.spiral
+
+    @property
+    def effective_depth(self) -> float:
+        """0.8 of the diameter [m] (ACI 318-19, 22.5.2.2)."""
+        return 0.8 * self.diameter
+
+    @property
+    def web_width(self) -> float:
+        """Width that carries shear: of a hollow section that of both sides of the wall [m]."""
+        return 2.0 * self._wall if self.hollow else self.diameter
+
+    def part(self, depth: float) -> tuple[float, float]:
+        """Return area and first moment about mid-depth of the concrete near the compression face.
+
+        `depth` is measured from that face [m].
+        """
+        area, first = _segment(0.5 * self.diameter, depth)
+        if not self.hollow:
+            return area, first
+        void, of_void = _segment(0.5 * self.diameter - self._wall, depth - self._wall)
+        return area - void, first - of_void
+
+    def outline(self) -> Array:
+        """Return the outline of the concrete, x and y [m]."""
+        return _ring(0.5 * self.diameter)
+
+    def void(self, distance: float = 0.0) -> Array:
+        """Return the outline of the void, or the line at a distance around it [m]."""
+        return _ring(0.5 * self.diameter - self._wall + distance) if self.hollow else _NO_LINE
+
+    def hoop_line(self, inset: float, bend: float) -> Array:
+        """Return the circle at a distance inside the outer edge of the spiral [m]."""
+        del bend  # A circle has no corners.
+        return _ring(0.5 * self.diameter - self.cover - inset)
+
+    def inner_legs(self) -> list[Array]:
+        """Return an empty list: a spiral has no legs inside."""
+        return []
+
+    def place_bars(self, bars: Sequence[tuple[float, float]]) -> list[tuple[float, float, float]]:
+        """Return where bars stand across the width: around the circle, left and right in turn.
+
+        Parameters
+        ----------
+        bars : sequence of (y, diameter)
+            Distance from mid-depth and diameter of each bar [m]: those of the layout outside first,
+            then those around the void.
+
+        Returns
+        -------
+        list of (x, y, diameter)
+            The same bars [m].
+        """
+        outer = len(bars) - (self.inner_layout.number if self.inner_layout else 0)
+        return _around(bars[:outer]) + _around(bars[outer:])
+
+
+def checked_section(section: object) -> Section:
+    """Return a section, or raise `InputError` with what makes one."""
+    if isinstance(section, Section):
+        return section
+    raise InputError(
+        f"section = {_arguments.shown(section)} must be a RectangularSection or a CircularSection"
+    )
+
+
+def _place(bar: Bar) -> tuple[float, float, float]:
+    """Return by what bars are ordered; heights that differ by round-off are one."""
+    y, area, steel = bar
+    return round(y, 9), area, steel.fy
+
+
+def _bar(bar: Any, number: int) -> Bar:
+    """Return an entry of `bars`, whose values must be numbers and a steel."""
+    try:
+        y, area, steel = bar
+    except (TypeError, ValueError):
+        raise InputError(f"section: bar {number} = {bar!r} must be (y, area, steel)") from None
+    if not isinstance(steel, Steel):
+        raise InputError(f"section: steel of bar {number} = {steel!r} must be a Steel")
+    return (
+        _arguments.number(y, f"section: y of bar {number}"),
+        _arguments.number(area, f"section: area of bar {number}"),
+        steel,
+    )
+
+
+def _box(half_width: float, half_depth: float) -> Array:
+    """Return the corners of a rectangle about the origin."""
+    signs = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+    return signs * [half_width, half_depth]
+
+
+#: Of a solid section.
+_NO_LINE: Array = np.empty((0, 2))
+
+
+def _in_rows(
+    bars: Sequence[tuple[float, float]], width: float, diameter: float | None
+) -> list[tuple[float, float, float]]:
+    """Return where bars stand in rows between ties that are `width` apart."""
+    # Bars of other diameters belong to the same row: they touch the same tie.
+    height = max(0.005, 0.6 * (diameter or 0.01))
+    placed = []
+    for level in dict.fromkeys(round(y / height) for y, _ in bars):
+        row = [(y, d) for y, d in bars if round(y / height) == level]
+        # The thickest stand in the corners.
+        row.sort(key=lambda bar: bar[1])
+        ends = row[-2:] if len(row) > 1 else []
+        row = [*ends[:1], *row[: len(row) - len(ends)], *ends[1:]]
+        edge = 0.5 * width - 0.5 * row[0][1]
+        places = np.linspace(-edge, edge, len(row)) if len(row) > 1 else [0.0]
+        placed += [(float(x), y, d) for x, (y, d) in zip(places, row, strict=True)]
+    return placed
+
+
+def _around(bars: Sequence[tuple[float, float]]) -> list[tuple[float, float, float]]:
+    """Return where bars stand around a circle through the outermost ones."""
+    radius = max((abs(y) for y, _ in bars), default=0.0)
+    seen: dict[int, int] = {}
+    placed = []
+    for y, d in bars:
+        level = round(1e3 * y)
+        side = 1 if seen.setdefault(level, 0) % 2 == 0 else -1
+        seen[level] += 1
+        placed.append((side * math.sqrt(max(0.0, radius**2 - y**2)), y, d))
+    return placed
+
+
+def _segment(radius: float, depth: float) -> tuple[float, float]:
+    """Return area and first moment about the centre of the segment of a circle.
+
+    `depth` [m] is that of the segment, from the circle at y = -radius; none below 0, all beyond the
+    diameter.
+    """
+    angle = math.acos(min(max(1.0 - depth / radius, -1.0), 1.0))
+    area = radius**2 * (angle - math.sin(angle) * math.cos(angle))
+    return area, -2.0 / 3.0 * (radius * math.sin(angle)) ** 3
+
+
+def _ring(radius: float) -> Array:
+    angle = np.linspace(0.0, 2.0 * np.pi, 181)
+    return radius * np.column_stack([np.cos(angle), np.sin(angle)])

@@ -1,0 +1,268 @@
+"""The column of a section: by the layered model, or by that of the paper."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+from typing import Any, Literal, TypeAlias, get_args, overload
+
+from rbsdem import _arguments
+from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.model.column import MOST_BODIES, Column, Top
+from rbsdem.model.footing import Footing
+from rbsdem.model.shape import Section, checked_section
+from rbsdem.model.springs import Elastic, Spring
+from rbsdem.section.layered import LayeredColumn, LayeredModel, body_lengths, lumping
+from rbsdem.section.paper_springs import springs
+from rbsdem.section.parameters import VERSION, ModelParameters, parameters
+from rbsdem.section.ranges import axial_load_note, column_length
+
+__all__ = ["CONCRETE_DENSITY", "DEFAULT", "MODELS", "Model", "column", "model_name"]
+
+Model: TypeAlias = Literal["layered", "paper"]
+"""Name of a model."""
+
+MODELS: tuple[str, ...] = get_args(Model)
+"""Names of the models."""
+
+DEFAULT: Model = "layered"
+"""The model that is taken if none is named."""
+
+CONCRETE_DENSITY = 2400.0
+"""Density of reinforced concrete for the mass of a column [kg/m3]."""
+
+
+def model_name(model: str, model_parameters: ModelParameters | None = None) -> str:
+    """Return the name of a model with the version of its parameters, as "layered 2026.5".
+
+    Parameters
+    ----------
+    model : str
+        "layered" or "paper", which has no fitted parameters.
+    model_parameters
+        As for `column`.
+
+    Raises
+    ------
+    InputError
+        If there is no such model.
+    """
+    if _arguments.choice(model, "model", MODELS) != "layered":
+        return model
+    return f"{model} {_known(model_parameters).label}"
+
+
+def _known(given: ModelParameters | None) -> ModelParameters:
+    if given is None:
+        return parameters()
+    remedy = "as of rbsdem.section.parameters()"
+    return _arguments.instance(given, "model_parameters", ModelParameters, remedy)
+
+
+@overload
+def column(
+    section: Section,
+    height: float,
+    *,
+    axial_load: float,
+    mass: float | None = None,
+    n: int | None = None,
+    model: Literal["layered"] = "layered",
+    model_parameters: ModelParameters | None = None,
+    axial_height: float | None = None,
+    restrained: int | None = None,
+    round_core: bool = False,
+    top: Top = "free",
+    footing: Footing | None = None,
+) -> LayeredColumn: ...
+@overload
+def column(
+    section: Section,
+    height: float,
+    *,
+    axial_load: float,
+    mass: float | None = None,
+    n: int | None = None,
+    model: Model,
+    model_parameters: ModelParameters | None = None,
+    axial_height: float | None = None,
+    restrained: int | None = None,
+    round_core: bool = False,
+    top: Top = "free",
+    footing: Footing | None = None,
+) -> Column: ...
+def column(
+    section: Section,
+    height: float,
+    *,
+    axial_load: float,
+    mass: float | None = None,
+    n: int | None = None,
+    model: Model = DEFAULT,
+    model_parameters: ModelParameters | None = None,
+    axial_height: float | None = None,
+    restrained: int | None = None,
+    round_core: bool = False,
+    top: Top = "free",
+    footing: Footing | None = None,
+) -> Column:
+    """Return the column with this section, with second-order effects of the axial load.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    height : float
+        From the foot to the lateral load [m]; with a fixed top the clear height between both
+        ends.
+    axial_load : float
+        Compression positive [N].
+    mass : float, optional
+        Mass of the column [kg]; by default that of its volume and
+        `CONCRETE_DENSITY`.
+    n : int, optional
+        Number of bodies, by default 1 in "paper" and 2 in "layered", which needs as many.
+    model : {"layered", "paper"}, optional
+        "layered": a hinge of concrete and steel layers with bar slip at the foot, elastic
+        joints above it (`rbsdem.section.hinge`), in series a shear spring that cracks, fails
+        and pinches (`rbsdem.section.shear`). "paper": one component with trilinear Takeda
+        flexure and bilinear shear by the section analysis, as the paper has them; with `n`
+        above 1, joints with the section's springs of their tributary lengths above that hinge.
+    model_parameters : ModelParameters, optional
+        Parameters of the layered model other than those of `rbsdem.section.parameters()`.
+    axial_height : float, optional
+        Height at which the axial load acts, from the foot [m]; by default that of the column.
+        The sections carry `axial_load`, and the column has its second-order moment at this
+        height.
+    restrained : int, optional
+        Longitudinal bars held in a corner of a hoop or by a tie, for the confinement in the
+        layered model. By default the four corners, and four more for each leg beyond two,
+        in proportion for a part of a leg.
+    round_core : bool, optional
+        Whether the ties of a rectangular section stand for a spiral around a round core.
+    top : {"free", "fixed"}, optional
+        "fixed": double curvature, with the hinge and the shear spring of half the height at
+        both ends (`Column.double_curvature`, prismatic); `n` is then the number of bodies of
+        each half.
+    footing : Footing, optional
+        A footing on springs that the column stands on.
+
+    Returns
+    -------
+    Column
+        A `LayeredColumn`, which knows its section and the version of its parameters, or for
+        "paper" a plain `rbsdem.Column`.
+
+    Raises
+    ------
+    InputError
+        If a value is refused, or the section cannot carry the axial load.
+
+    Examples
+    --------
+    >>> bars = Layout(12, 0.016, Steel(446e6, 702e6))
+    >>> ties = Ties(0.007, 0.085, Steel(364e6, 521e6), legs=4)
+    >>> section = RectangularSection(
+    ...     0.4, 0.4, Concrete(46.5e6), layout=bars, ties=ties, cover=0.013
+    ... )
+    >>> column = rbsdem.section.column(section, 1.6, axial_load=744e3)
+    >>> column.n, column.version
+    (2, '2026.5')
+    """
+    checked_section(section)
+    _arguments.choice(model, "model", MODELS)
+    _arguments.choice(top, "top", get_args(Top))
+    load = _arguments.number(axial_load, "axial_load")
+    if restrained is not None:
+        restrained = _arguments.whole(restrained, "restrained")
+    round_core = _arguments.switch(round_core, "round_core")
+    if n is not None and not 1 <= _arguments.whole(n, "n") <= MOST_BODIES:
+        raise InputError(f"n = {n} must be from 1 to {MOST_BODIES}")
+    # The half between an end and the point of contraflexure is a cantilever.
+    halves = 2 if top == "fixed" else 1
+    height = column_length(height, "height") / halves
+    if mass is None:
+        mass = section.gross_area * height * CONCRETE_DENSITY
+    else:
+        mass = _arguments.number(mass, "mass") / halves
+    if axial_height is not None:
+        axial_height = _arguments.number(axial_height, "axial_height")
+    common = {
+        "mass": mass,
+        "axial_load": load,
+        # At the top it needs no height, so that the column can be given other kinematics.
+        "axial_height": None if axial_height == height else axial_height,
+        "kinematics": "pdelta",
+    }
+    made: Column
+    if model == "paper":
+        given = {
+            "model_parameters": model_parameters,
+            "restrained": restrained,
+            "round_core": round_core or None,
+        }
+        for name, value in given.items():
+            if value is not None:
+                raise InputError(f"{name} is for model = 'layered'; remove it")
+        made = _paper(section, height, load, 1 if n is None else n, common)
+    else:
+        made = _layered(section, height, load, n, model_parameters, restrained, round_core, common)
+    if top == "fixed":
+        made = made.double_curvature()
+    return made if footing is None else replace(made, footing=footing)
+
+
+def _layered(
+    section: Section,
+    height: float,
+    axial_load: float,
+    n: int | None,
+    model_parameters: ModelParameters | None,
+    restrained: int | None,
+    round_core: bool,
+    common: dict[str, Any],
+) -> LayeredColumn:
+    if n == 1:
+        raise InputError("n = 1: the layered model needs a joint above the hinge; give 2 or more")
+    recipe = LayeredModel(
+        section=section,
+        height=height,
+        axial_load=axial_load,
+        n=n or 2,
+        parameters=_known(model_parameters),
+        restrained=restrained,
+        round_core=round_core,
+    )
+    if model_parameters is not None and model_parameters.version == VERSION:
+        # Those of another version are meant for all columns: what a column limits is limited.
+        recipe.check(model_parameters.own)
+    made = LayeredColumn(height, n=recipe.n, recipe=recipe, **recipe.made, **common)
+    note = axial_load_note(axial_load, section)
+    remarks = [note, *made.outside] if note else made.outside
+    if remarks:
+        warnings.warn("; ".join(remarks), AccuracyWarning, stacklevel=3)
+    return made
+
+
+def _paper(
+    section: Section, height: float, axial_load: float, n: int, common: dict[str, Any]
+) -> Column:
+    # Columns of high axial load are controlled by compression: they yield there.
+    made = springs(section, height, axial_load, yield_rule="first")
+    shear: Spring | None = made.shear
+    if shear is None:
+        # Knee of the shear diagram in closed form: 0.48 of the uncracked stiffness.
+        stiffness = 0.48 * section.concrete_law["ec"] / 2 * section.gross_area
+        shear = Elastic(stiffness / height)
+    flexure = [made.flexure]
+    lengths = None
+    if n > 1:
+        # Each joint has its share of the slip, and the curvature of its part.
+        shear = shear.split(n)
+        lengths, part = body_lengths(height, made.hinge_length, n)
+        above = made.flexure.scaled(made.hinge_length / (part / lumping(n)))
+        # A spring of its own for each joint, no longer that of a whole column.
+        flexure += [above] * (n - 1)
+    return Column(
+        height, shear=shear, flexure=flexure, n=n, lengths=lengths, model="paper", **common
+    )

@@ -1,0 +1,661 @@
+"""Shear of a section and of a column: the diagram of a section, and both kinds of shear spring.
+
+The diagram: the section bends under a constant axial load with V = M/L; each of its layers is a
+cracked membrane of the modified compression field theory (Vecchio and Collins 1986). It has a knee
+where the secant has fallen to 0.48 of the uncracked stiffness (E_c/2) A.
+
+The bilinear spring of the paper goes through that knee and through an end point at the ultimate
+curvature of the flexural spring (`fit_shear_spring`).
+
+The spring of the layered model cracks, yields its ties, fails and pinches (`shear_spring`). Its
+lines up to the largest force are published relations; what comes behind them, and the pinching, are
+parameters fitted to tests (`ModelParameters`). It needs no decision whether a column is critical in
+shear: one that yields in flexure first never leaves the lines before yield.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rbsdem import _arguments, _core
+from rbsdem._arguments import Array
+from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.model.materials import Tension
+from rbsdem.model.shape import Section
+from rbsdem.model.springs import Bilinear, Pinching, unchecked
+from rbsdem.section.hinge import HingeJoint
+from rbsdem.section.parameters import ModelParameters
+from rbsdem.section.ranges import checked_load, column_length, is_confined
+from rbsdem.section.strength import shear_sizes, shear_strength_mcft, shear_strength_sezen
+
+__all__ = [
+    "KNEE",
+    "ShearDiagram",
+    "ShearLayers",
+    "ShearPoint",
+    "ShearSpring",
+    "closed_form_shear",
+    "cracked_shear_stiffness",
+    "fit_shear_spring",
+    "shear_diagram",
+    "shear_limits",
+    "shear_spring",
+]
+
+KNEE = 0.48
+"""Share of (E_c/2) A of the secant at the knee: calibrated on the four columns of table 3 of the
+paper, whose shear springs have 0.41 to 0.53."""
+
+#: Last curvature of a diagram by default, as strain over the depth.
+_FURTHEST = 0.012
+
+
+@dataclass(frozen=True, slots=True)
+class ShearPoint:
+    """A point of the diagram.
+
+    Attributes
+    ----------
+    curvature : float
+        [1/m].
+    moment : float
+        About mid-depth [N m].
+    force : float
+        Shear force, moment over length [N].
+    strain : float
+        Mean shear strain of the section.
+    """
+
+    curvature: float
+    moment: float
+    force: float
+    strain: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ShearLayers:
+    """State of the layers at the last point of a diagram, from the compression face on.
+
+    Attributes
+    ----------
+    y : ndarray, shape (n,)
+        From mid-depth [m].
+    eps_x, eps_z : ndarray, shape (n,)
+        Longitudinal and transverse strain, tension positive.
+    tau : ndarray, shape (n,)
+        Shear stress [Pa].
+    gamma : ndarray, shape (n,)
+        Shear strain.
+    """
+
+    y: Array
+    eps_x: Array
+    tau: Array
+    gamma: Array
+    eps_z: Array
+
+
+@dataclass(frozen=True, eq=False)
+class ShearDiagram:
+    """Shear force against mean shear strain under a constant axial load.
+
+    Attributes
+    ----------
+    section : Section
+        The section.
+    length : float
+        Shear span M/V [m].
+    axial_load : float
+        Compression positive [N].
+    curvature, moment, force, strain : ndarray, shape (n,)
+        The points: curvature [1/m], moment [N m], shear force [N], shear strain.
+    knee : ShearPoint or None
+        Where the secant has fallen to the given share; None if it stays above.
+    end : ShearPoint
+        The last point.
+    sheared : bool
+        Whether the diagram ends because a layer no longer carries the shear.
+    lost : bool
+        Whether it ends because the section no longer carries the axial load.
+    layers : ShearLayers
+        The layers at the last point.
+    """
+
+    section: Section
+    length: float
+    axial_load: float
+    curvature: Array
+    moment: Array
+    force: Array
+    strain: Array
+    knee: ShearPoint | None
+    end: ShearPoint
+    sheared: bool
+    lost: bool
+    layers: ShearLayers = field(repr=False)
+
+    @property
+    def stiffness(self) -> float:
+        """Shear force over strain of the uncracked concrete, (E_c/2) A [N]."""
+        return 0.5 * self.section.concrete_law["ec"] * self.section.gross_area
+
+
+def shear_diagram(
+    section: Section,
+    length: float,
+    axial_load: float,
+    curvature: ArrayLike | None = None,
+    *,
+    furthest: float | None = None,
+    points: int = 60,
+    tension: Tension = "ts",
+    confined: bool = False,
+    coupled: bool = False,
+    layers: int = 80,
+    knee: float = KNEE,
+) -> ShearDiagram:
+    """Return shear force and shear strain of a section that bends with V = M/length.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    length : float
+        Shear span M/V: from the base to the lateral load [m].
+    axial_load : float
+        Compression positive [N].
+    curvature : array_like, shape (n,), optional
+        Positive, increasing curvatures [1/m]. By default `points` curvatures up to `furthest`,
+        closer together at the beginning.
+    furthest : float, optional
+        Last curvature [1/m]; by default 0.012 over the depth.
+    points : int, optional
+        Number of points if no curvatures are given.
+    tension : {"ts", "bare", "zero"}, optional
+        Tension law of the concrete.
+    confined : bool, optional
+        Whether the core is confined.
+    coupled : bool, optional
+        Whether the shear changes the longitudinal stresses and so the moment: layers, axial load
+        and shear are then solved together. Otherwise the moment is that of the section in flexure.
+    layers : int, optional
+        Layers over the depth.
+    knee : float, optional
+        Share of (E_c/2) A at the knee, between 0 and 1.
+
+    Returns
+    -------
+    ShearDiagram
+        The diagram, as far as the section carries axial load and shear.
+
+    Raises
+    ------
+    InputError
+        If a value is refused, or the section cannot carry the axial load.
+    """
+    if curvature is None:
+        points = _arguments.whole(points, "points")
+        if points < 2:
+            raise InputError(f"points = {points} must be 2 or more")
+        last = _FURTHEST / section.depth
+        if furthest is not None:
+            last = _arguments.number(furthest, "furthest")
+            if not 0.0 < last * section.depth <= 1.0:
+                raise InputError(f"furthest = {last} 1/m must be above zero and below 1/depth")
+        path = last * np.linspace(0.0, 1.0, points + 1)[1:] ** 2
+    else:
+        path = _arguments.finite_vector(curvature, "curvature")
+        if path.size and np.max(path) * section.depth > 1.0:
+            raise InputError(
+                f"curvature: {np.max(path)} 1/m makes strains above 1 over the depth; curvatures "
+                f"are in 1/m: 10 mrad/m is 0.01"
+            )
+    load = checked_load(section, axial_load)
+    span = column_length(length, "length")
+    settings = {
+        "length": span,
+        "axial_load": load,
+        "tension": tension,
+        "confined": is_confined(section, confined),
+        "coupled": _arguments.switch(coupled, "coupled"),
+        "layers": _arguments.whole(layers, "layers"),
+        "knee": _arguments.number(knee, "knee"),
+    }
+    run = _core.section_shear(section._statement, settings, path)
+    return ShearDiagram(
+        section=section,
+        length=span,
+        axial_load=load,
+        **run.points,
+        knee=ShearPoint(**run.knee) if run.knee else None,
+        end=ShearPoint(**run.end),
+        sheared=run.sheared,
+        lost=run.lost,
+        layers=ShearLayers(**run.profile),
+    )
+
+
+# ---- the bilinear spring of the paper ----------------------------------------------------------
+
+CLOSED_FORM_FORCE = 1.86
+"""Force at the knee over that of flexural cracking, M_c/L: calibrated on the four columns of
+table 3 of the paper."""
+
+#: If the force at the end of the diagram is below this share of the peak, the peak is taken.
+_FALLEN = 0.95
+
+
+@dataclass(frozen=True)
+class ShearSpring:
+    """The bilinear shear spring of a column, with the points that it was fitted to.
+
+    Attributes
+    ----------
+    spring : Bilinear
+        Stiffness [N/m], yield slip [m], stiffness after yield [N/m].
+    knee, end : ShearPoint
+        The two points of the diagram through which its lines pass.
+    strength : float
+        Shear strength V_n by the simplified modified compression field theory [N].
+    k_post_found : float
+        Stiffness after yield before it was raised to zero or held below the first one [N/m].
+    governs : bool
+        Whether shear fails before the end point in flexure.
+    notes : tuple of str
+        Remarks that a user should know.
+    """
+
+    spring: Bilinear
+    knee: ShearPoint
+    end: ShearPoint
+    strength: float
+    k_post_found: float
+    governs: bool
+    notes: tuple[str, ...]
+
+
+def fit_shear_spring(
+    section: Section,
+    length: float,
+    axial_load: float,
+    ultimate_curvature: float,
+    **options: Any,
+) -> ShearSpring:
+    """Fit the bilinear shear spring of a column with V = M/length.
+
+    Slip is shear strain times length. The line passes through the knee of the diagram and through
+    its point at the ultimate curvature, or at the shear strength if that is reached before, or at
+    the peak if the moment has fallen by more than 5 per cent: beyond that the shear flow of the
+    layers is no longer meaningful.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    length : float
+        From the base to the lateral load [m].
+    axial_load : float
+        Compression positive [N].
+    ultimate_curvature : float
+        Curvature of the ultimate point of the flexural spring [1/m].
+    **options
+        As for `shear_diagram`: points, tension, confined, coupled, layers, knee.
+
+    Returns
+    -------
+    ShearSpring
+        The spring, its points, and remarks.
+
+    Raises
+    ------
+    InputError
+        If a value is refused, or the section carries no shear.
+    """
+    with warnings.catch_warnings():
+        # Who asks for springs is told of an odd axial load once.
+        warnings.simplefilter("ignore", AccuracyWarning)
+        diagram = shear_diagram(section, length, axial_load, furthest=ultimate_curvature, **options)
+    strength = shear_strength_mcft(section, length, axial_load)
+    notes = []
+    end = _at_force(diagram, strength)
+    governs = end is not None or diagram.sheared
+    if end is not None:
+        notes.append(
+            f"shear governs: its strength of {strength:.4g} N is below the "
+            f"{diagram.force.max():.4g} N of flexure; the spring goes through it"
+        )
+    elif diagram.sheared:
+        notes.append(
+            f"shear governs: a layer carries no more at {diagram.end.force:.4g} N, before the "
+            f"ultimate curvature"
+        )
+    elif diagram.lost:
+        notes.append("shear spring: the axial load is lost before the ultimate curvature")
+    end = end or _last_useful(diagram)
+    if not end.strain > 0.0:
+        raise InputError(
+            "shear spring: the section carries no shear; check its concrete, the axial load and "
+            "the length"
+        )
+    knee = diagram.knee
+    if knee is None or knee.strain >= end.strain:
+        notes.append(
+            "shear spring: no knee before its end point; one line to there, and no stiffness beyond"
+        )
+        knee, k_post = end, 0.0
+    else:
+        k_post = (end.force - knee.force) / ((end.strain - knee.strain) * length)
+    k = knee.force / (knee.strain * length)
+    if k_post < 0.0:
+        notes.append(
+            f"shear spring: the stiffness after yield, {k_post:.4g} N/m, is negative; zero is taken"
+        )
+    spring = Bilinear(k=k, d_y=knee.strain * length, k_post=min(max(k_post, 0.0), 0.99 * k))
+    return ShearSpring(spring, knee, end, strength, k_post, governs, tuple(notes))
+
+
+def closed_form_shear(
+    section: Section, length: float, cracking_moment: float, knee: float = KNEE
+) -> tuple[float, float]:
+    """Return stiffness and yield slip of the shear spring without an analysis in shear.
+
+    K_y = knee E_c A/(2 L), V_y = 1.86 M_c/L; both constants are calibrated on the four columns of
+    the paper only. The stiffness after yield has no such closed form.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    length : float
+        From the base to the lateral load [m].
+    cracking_moment : float
+        Of the section under its axial load [N m].
+    knee : float, optional
+        Share of (E_c/2) A.
+
+    Returns
+    -------
+    k : float
+        Stiffness [N/m].
+    d_y : float
+        Yield slip [m].
+
+    Raises
+    ------
+    InputError
+        If a value is not positive.
+    """
+    for name, value in (("length", length), ("cracking_moment", cracking_moment), ("knee", knee)):
+        if not (math.isfinite(value) and value > 0.0):
+            raise InputError(f"closed form of shear: {name} = {value} must be above zero")
+    k = knee * 0.5 * section.concrete_law["ec"] * section.gross_area / length
+    return k, CLOSED_FORM_FORCE * cracking_moment / length / k
+
+
+def _last_useful(diagram: ShearDiagram) -> ShearPoint:
+    """Return the end of the diagram, or its peak if the force has fallen well below that."""
+    if not diagram.force.size or diagram.end.force >= _FALLEN * diagram.force.max():
+        return diagram.end
+    peak = int(np.argmax(diagram.force))
+    rows = (diagram.curvature, diagram.moment, diagram.force, diagram.strain)
+    return ShearPoint(*(float(row[peak]) for row in rows))
+
+
+def _at_force(diagram: ShearDiagram, force: float) -> ShearPoint | None:
+    """Return the first point of the diagram at a force; None if it stays below."""
+    reached = np.flatnonzero(diagram.force >= force)
+    if not reached.size:
+        return None
+    i = int(reached[0])
+    rows = np.vstack([diagram.curvature, diagram.moment, diagram.force, diagram.strain])
+    first = np.zeros(4) if i == 0 else rows[:, i - 1]
+    share = (force - first[2]) / (rows[2, i] - first[2])
+    return ShearPoint(*(first + share * (rows[:, i] - first)).tolist())
+
+
+# ---- the spring of the layered model -----------------------------------------------------------
+
+_ES = 200e9
+
+# Cracked stiffness without ties, and cracking force under tension: shares of the uncracked
+# stiffness and of the yield force that keep the lines of the spring apart.
+_LEAST = 0.01
+
+
+def cracked_shear_stiffness(section: Section) -> float:
+    """Return the shear stiffness of the truss of ties and concrete struts at 45 degrees.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+
+    Returns
+    -------
+    float
+        rho_v/(1 + 4 n rho_v) E_s b d, shear force over shear strain [N].
+
+    Notes
+    -----
+    Park and Paulay (1975), Reinforced Concrete Structures, 7.5.
+    """
+    sizes = shear_sizes(section)
+    ratio = sizes.tie_ratio
+    modular = _ES / section.concrete_law["ec"]
+    return ratio / (1 + 4 * modular * ratio) * _ES * sizes.width * sizes.d
+
+
+def shear_spring(
+    section: Section,
+    length: float,
+    axial_load: float,
+    stiffness: float,
+    given: ModelParameters,
+    joint: HingeJoint | None = None,
+) -> Pinching:
+    """Make the shear spring of a column.
+
+    Parameters
+    ----------
+    section : Section
+        The section at the foot.
+    length : float
+        From the foot to the lateral load [m].
+    axial_load : float
+        Compression positive [N].
+    stiffness : float
+        Shear stiffness before cracking, force over strain [N].
+    given : ModelParameters
+        Parameters of the model.
+    joint : HingeJoint, optional
+        The hinge, with whose work the strength decays; without it the strength does not.
+
+    Returns
+    -------
+    Pinching
+        Of the slip of the whole length: cracks at the share V_c of the concrete by Sezen and Moehle
+        (2004), which is that of a principal tension; goes on with `cracked_shear_stiffness`; yields
+        near `rbsdem.section.strength.shear_strength_mcft`. A section that is not symmetric has a
+        negative side of its own, that of the section upside down.
+
+    Raises
+    ------
+    InputError
+        If the length is not positive.
+    """
+    return _shear(section, length, axial_load, stiffness, given, joint)[0]
+
+
+def shear_limits(
+    section: Section,
+    length: float,
+    axial_load: float,
+    stiffness: float,
+    given: ModelParameters,
+) -> dict[str, tuple[float, float]]:
+    """Return least and largest values of parameters, beyond which they would change nothing.
+
+    Parameters
+    ----------
+    section, length, axial_load, stiffness, given
+        As for `shear_spring`.
+
+    Returns
+    -------
+    dict of str to (float, float)
+        By the names of `ModelParameters.values`.
+    """
+    return _shear(section, length, axial_load, stiffness, given)[1]
+
+
+def _shear(
+    section: Section,
+    length: float,
+    axial_load: float,
+    stiffness: float,
+    given: ModelParameters,
+    joint: HingeJoint | None = None,
+) -> tuple[Pinching, dict[str, tuple[float, float]]]:
+    """Return the spring and the limits of its parameters."""
+    mirrored = section.mirrored
+    positive = _side(section, length, axial_load, stiffness, given)
+    sides = [positive]
+    if mirrored is not section:
+        sides.append(_side(mirrored, length, axial_load, stiffness, given))
+    # What both sides share is that of their mean.
+    unit = sum(side.line["f_y"] * side.line["d_y"] for side in sides) / len(sides)
+    ties = sum(side.ties for side in sides) / len(sides)
+    f_y = sum(side.line["f_y"] for side in sides) / len(sides)
+    # Few ties do not hold a crack together: what the concrete carried is soon gone.
+    endurance = given.shear_endurance
+    lasts = min(1.0, max(2.0 * ties, 0.1) ** given.shear_endurance_ties)
+    # The rule refuses what would fall faster than the spring is stiff.
+    soonest = 1.01 * max(side.fastest for side in sides) / (stiffness / length * unit)
+    lambda_h, s_min = _decay(sides, f_y, ties, given, joint)
+    ratio = axial_load / (section.concrete.fc * section.gross_area)
+    closed = math.exp(given.shear_pinch_axial * (ratio - 0.1))
+    limits = {name: _widest(side.limits[name] for side in sides) for name in positive.limits}
+    limits["shear_pinch_force"] = (0.0, 1.0 / closed)
+    lines = positive.line
+    if len(sides) > 1:
+        lines = lines | {f"{name}_neg": value for name, value in sides[1].line.items()}
+    spring = unchecked(
+        Pinching,
+        **lines,
+        lambda_s=max(endurance * lasts, soonest) if endurance > 0.0 else 0.0,
+        b0=given.shear_b0,
+        kappa_f=min(given.shear_pinch_force * closed, 1.0),
+        kappa_d=given.shear_pinch_slip,
+        lambda_h=lambda_h / unit,
+        s_min=s_min,
+        fade=given.shear_fade,
+    )
+    return spring, limits
+
+
+@dataclass(frozen=True)
+class _Side:
+    """The spring in one direction of loading.
+
+    Attributes
+    ----------
+    line : dict of str to float
+        The backbone, by the names of `Pinching`.
+    ties : float
+        Strength of the ties over that of the spring.
+    strut : float
+        f'c b d [N].
+    fastest : float
+        f_cap^2 (1 + d_cap/d_pc) [N2], which bounds how fast the strength may fall.
+    limits : dict of str to (float, float)
+        Least and largest values of parameters.
+    """
+
+    line: dict[str, float]
+    ties: float
+    strut: float
+    fastest: float
+    limits: dict[str, tuple[float, float]]
+
+
+def _side(
+    section: Section, length: float, axial_load: float, stiffness: float, given: ModelParameters
+) -> _Side:
+    """Return the spring where y > 0 is in tension."""
+    sizes = shear_sizes(section)
+    # A section without bars in tension, which has no strength, still needs a spring with one.
+    by_theory = shear_strength_mcft(section, length, axial_load)
+    least = 1e-4 * sizes.fc * sizes.gross_area
+    is_round = section.ties is not None and section.ties.is_round
+    shaped = given.shear_round_strength if is_round else 1.0
+    f_y = max(given.shear_strength * shaped * by_theory, least)
+    f_cap = max(given.shear_hardening, 1.0) * f_y
+    by_ties = sizes.tie_area * sizes.tie_yield * sizes.d / sizes.spacing
+    by_concrete = shear_strength_sezen(section, length, axial_load) - by_ties
+    f_c = min(max(by_concrete, _LEAST * f_y), 0.9 * f_y)
+    whole = stiffness / length
+    truss = given.shear_cracked * cracked_shear_stiffness(section) / length
+    cracked = min(max(truss, _LEAST * whole), 0.9 * whole)
+    d_c = f_c / whole
+    d_y = d_c + (f_y - f_c) / cracked
+    # Behind yield it may not go up steeper than before.
+    least_rise = 1.01 * (f_cap - f_y) / cracked
+    rise = max(given.shear_cap * length, least_rise)
+    fall = given.shear_softening * length
+    if given.shear_snap_back > 0.0:
+        # What falls faster than the column above springs back has no equilibrium.
+        above = 3 * section.concrete_law["ec"] * section.inertia / length**3
+        fall = max(fall, f_cap / (given.shear_snap_back * above))
+    line = {
+        "d_c": d_c,
+        "f_c": f_c,
+        "d_y": d_y,
+        "f_y": f_y,
+        "d_cap": d_y + rise,
+        "f_cap": f_cap,
+        "d_pc": fall,
+        "f_res": min(given.shear_residual * f_cap, 0.9 * f_y),
+    }
+    return _Side(
+        line,
+        (given.shear_round_ties if is_round else 1.0) * by_ties / f_y,
+        sizes.fc * sizes.width * sizes.d,
+        f_cap**2 * (1.0 + (d_y + rise) / fall),
+        {
+            "shear_strength": (least / (shaped * by_theory) if by_theory > 0.0 else 0.0, math.inf),
+            "shear_hardening": (1.0, math.inf),
+            "shear_cap": (least_rise / length, math.inf),
+            "shear_residual": (0.0, 0.9 * f_y / f_cap),
+            "shear_endurance": (0.0, math.inf),
+        },
+    )
+
+
+def _widest(ends: Iterable[tuple[float, float]]) -> tuple[float, float]:
+    """Return the range that holds several."""
+    lows, highs = zip(*ends, strict=True)
+    return min(lows), max(highs)
+
+
+def _decay(
+    sides: list[_Side],
+    f_y: float,
+    ties: float,
+    given: ModelParameters,
+    joint: HingeJoint | None,
+) -> tuple[float, float]:
+    """Return the work of the hinge that halves what can decay [J], 0: none, and what stays."""
+    if joint is None or not given.shear_decay > 0.0:
+        return 0.0, 0.0
+    strut = sum(side.strut for side in sides) / len(sides)
+    stays = min(0.95, given.shear_decay_ties * ties, given.shear_decay_strut * strut / f_y)
+    # What is confined keeps the interlock of its cracks.
+    shelter = math.exp(min(joint.confinement / given.shear_decay_shelter, 50.0))
+    return joint.yield_work * shelter / given.shear_decay, stays
