@@ -13,7 +13,7 @@ series alike. There are two sets of numbers: for columns far from their shear st
 at it, as far as the model says, whatever the test said.
 
 **Distance.** Left-out tests are the farther from their prediction the farther they are from the
-middle of the tests that were not left out, in five properties (`rbsdem.section.spread.likeness`). The band
+middle of the tests that were not left out, in five properties (`spread.likeness`). The band
 grows with this distance, by the slope of the logarithm of the distance that holds 80 % of a test's
 points. How much of the band is there without samples (`SHAPE`) is what makes the interval score of
 left-out tests least (Winkler 1972: the width, and ten times what a point is beyond); the table of
@@ -54,6 +54,7 @@ from spread_quantiles import LEVEL, Growth, Numbers, Points, Ratios, between, gr
 import rbsdem
 from rbsdem import peer
 from rbsdem.curves.metrics import PathPoints, secant_stiffness
+from rbsdem.section.parameters import VERSION
 from rbsdem.section.spread import (
     Scatter,
     half_band,
@@ -421,7 +422,7 @@ def main() -> None:
     }
     for lines in tables.values():
         print("\n" + "\n".join(lines))
-    print(f"\n{given.version}: {shipped!r}\n{time.perf_counter() - began:.0f} s")
+    print(f"\n{VERSION}: {shipped!r}\n{time.perf_counter() - began:.0f} s")
     if given.write:
         write(shipped, tables)
 
