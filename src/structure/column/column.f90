@@ -258,14 +258,12 @@ contains
          return
       end if
       n = self%n
-      associate (f => result%f, work => result%work)
-         if (pressing > 0) call second_order_forces(n, self%length, result%axial, d, f, 1, work)
-         call chain_accelerations(n, self%lower, self%upper, self%inverse_mass, self%inverse_inertia, f, &
-                                  work, load(lateral), load(horizontal), work(n + 1), work(2*n + 1), &
-                                  result%a)
-         result%of_speeds = [work(2*n) + self%upper(n)*work(3*n), &
-                             -(load(lateral) - f(1) - self%mass_above(1)*load(horizontal))]
-      end associate
+      if (pressing > 0) call second_order_forces(n, self%length, result%axial, d, result%f, 1, result%work)
+      call chain_accelerations(n, self%lower, self%upper, self%inverse_mass, self%inverse_inertia, result%f, &
+                               result%work, load(lateral), load(horizontal), result%work(n + 1), &
+                               result%work(2*n + 1), result%a)
+      result%of_speeds(lateral) = result%work(2*n) + self%upper(n)*result%work(3*n)
+      result%of_speeds(horizontal) = -(load(lateral) - result%f(1) - self%mass_above(1)*load(horizontal))
       if (self%mass_damping > 0.0_wp) result%a = result%a - self%mass_damping*v
    end subroutine accelerations
 
