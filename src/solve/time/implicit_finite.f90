@@ -17,7 +17,7 @@ module rbs_solve_time_implicit_finite
    use rbs_structure_column_finite, only: finite_chain_type
    use rbs_solve_time_finite_joint, only: turned_body, turn_body, body_at, joint_type, joint_change, &
                                           joint_at, joint_rates, add_joint_forces, joint_tangent, local
-   use rbs_loading_loads, only: lateral, horizontal, vertical, axial
+   use rbs_loading_loads, only: lateral, horizontal, vertical
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_newton, only: newton_stepper, move_springs
    use rbs_solve_time_state, only: state_type
@@ -402,8 +402,7 @@ contains
                                                               + abs(self%column%axial_load)))
    end subroutine find_balance
 
-   !> Add the inertia of the moving ground, and the loads at the top. The weight of a mass lumped there is in
-   !> the field of gravity, but belongs to the axial load: it is taken away again.
+   !> Add the inertia of the moving ground, and the loads at the top.
    pure subroutine add_loads(self, top, load, constant, g, rate)
       type(finite_stepper), intent(in) :: self
       !> The top body
@@ -414,28 +413,14 @@ contains
       real(wp), intent(inout) :: g(:, 0:)
       !> Derivative of the load on the top body by its rotation
       real(wp), intent(out) :: rate(3)
-      real(wp) :: force(2), turning(2), press
+      real(wp) :: force(2), following(2), turning(2)
 
       associate (column => self%column, n => self%column%n)
          g(1, 1:) = g(1, 1:) - load(horizontal)*column%mass
          g(2, 1:) = g(2, 1:) - load(vertical)*column%mass
-         press = load(axial)
-         if (constant .or. column%axial_follows) press = press + column%axial_load
-         force = 0.0_wp
-         turning = 0.0_wp
-         if (constant) force(2) = -(column%weight(n) - column%gravity*column%mass(n))
-         if (column%axial_follows) then
-            force = force - press*top%eb
-            turning = turning - press*top%eb_rate
-         else
-            force(2) = force(2) - press
-         end if
-         if (column%force_follows) then
-            force = force + load(lateral)*top%tb
-            turning = turning + load(lateral)*top%tb_rate
-         else
-            force(1) = force(1) + load(lateral)
-         end if
+         call column%find_top_force(load, constant, force, following)
+         force = force + following(1)*top%tb + following(2)*top%eb
+         turning = following(1)*top%tb_rate + following(2)*top%eb_rate
          g(:, n) = g(:, n) + [force, column%upper(n)*sum(top%tb*force)]
          rate = [turning, column%upper(n)*(sum(top%tb_rate*force) + sum(top%tb*turning))]
       end associate

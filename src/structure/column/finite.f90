@@ -37,6 +37,7 @@ module rbs_structure_column_finite
    contains
       procedure :: accelerations
       procedure :: accelerate
+      procedure :: find_top_force
       procedure :: body_velocities
       procedure :: speeds
       procedure :: power_of_loads
@@ -138,8 +139,8 @@ contains
       !> Acceleration of the bottom of the body, along t and e of the body below, and of the top of that
       real(wp) :: bottom(2), below(2)
       real(wp) :: per_mass, per_inertia, s, c, separation, flexibility, rotation
-      !> Sine and cosine of the last joint where the top is held, and its transverse
-      real(wp) :: held(2), along
+      !> Sine and cosine of the last joint where the top is held, then of the top; transverse of the former
+      real(wp) :: held(2), along, fixed(2), following(2)
       integer :: i, n
 
       n = column%n
@@ -186,11 +187,11 @@ contains
             moment_above = 0.0_wp
             slip_above = 0.0_wp
             opening_above = 0.0_wp
-            if (n == 1) then
-               call force_at_top(column, load, s, c, transverse_above, tension_above)
-            else
-               call force_at_top(column, load, sin(rotation), cos(rotation), transverse_above, tension_above)
-            end if
+            held = [s, c]
+            if (n > 1) held = [sin(rotation), cos(rotation)]
+            call column%find_top_force(load, .true., fixed, following)
+            transverse_above = following(1) + held(2)*fixed(1) - held(1)*fixed(2)
+            tension_above = following(2) + held(1)*fixed(1) + held(2)*fixed(2)
          end if
          per_mass = 1.0_wp/column%mass(i)
          per_inertia = 1.0_wp/column%inertia(i)
@@ -247,30 +248,33 @@ contains
       end do
    end subroutine accelerate_under_forces
 
-   !> Force at the top along t_n and e_n. The weight of all masses is in the field of acceleration; that of
-   !> the lumped mass belongs to the axial load and is taken away again here.
-   pure subroutine force_at_top(column, load, s, c, along_t, along_e)
-      class(finite_chain_type), intent(in) :: column
-      real(wp), intent(in) :: load(4)
-      !> Sine and cosine of the rotation of the top body
-      real(wp), intent(in) :: s, c
-      !> Components of the force [N]
-      real(wp), intent(out) :: along_t, along_e
-      real(wp) :: down, axial
+   !> Force at the top: along x and y, and what follows it along its normal and its axis. The weight of all
+   !> masses is in the field of acceleration; that of the lumped mass belongs to the axial load and is taken
+   !> away again.
+   pure subroutine find_top_force(self, load, constant, fixed, following)
+      class(finite_chain_type), intent(in) :: self
+      real(wp), intent(in) :: load(:)
+      !> Whether loads that have a potential count too
+      logical, intent(in) :: constant
+      real(wp), intent(out) :: fixed(2), following(2)
+      real(wp) :: press
 
-      axial = column%axial_load + load(top_axial)
-      down = column%weight(column%n) - column%gravity*column%mass(column%n)
-      if (.not. column%axial_follows) down = down + axial
-      along_t = down*s
-      along_e = -down*c
-      if (column%axial_follows) along_e = along_e - axial
-      if (column%force_follows) then
-         along_t = along_t + load(lateral)
+      fixed = 0.0_wp
+      following = 0.0_wp
+      press = load(top_axial)
+      if (constant .or. self%axial_follows) press = press + self%axial_load
+      if (constant) fixed(2) = -(self%weight(self%n) - self%gravity*self%mass(self%n))
+      if (self%axial_follows) then
+         following(2) = -press
       else
-         along_t = along_t + load(lateral)*c
-         along_e = along_e + load(lateral)*s
+         fixed(2) = fixed(2) - press
       end if
-   end subroutine force_at_top
+      if (self%force_follows) then
+         following(1) = load(lateral)
+      else
+         fixed(1) = load(lateral)
+      end if
+   end subroutine find_top_force
 
    !> Find the reactions of joints that do not open, and add what they give to the accelerations.
    subroutine add_reactions(column, q, work, a)
@@ -475,6 +479,12 @@ contains
       type(moving_body) :: body
       integer :: i
 
+      if (size(d) == 2) then
+         associate (turning => cos(d(2))*v(2))
+            speed = [v(1) + self%length(1)*turning, -(self%mass(1)*v(1) + self%moment_above(1)*turning)]
+         end associate
+         return
+      end if
       speed(horizontal) = 0.0_wp
       do i = 1, self%n
          call climb(self, d, v, i, body)
@@ -489,6 +499,7 @@ contains
       class(finite_chain_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:), v(:), load(:)
       type(moving_body) :: body
+      real(wp) :: fixed(2), following(2)
       integer :: i
 
       power = 0.0_wp
@@ -496,16 +507,9 @@ contains
          call climb(self, d, v, i, body)
          power = power - self%mass(i)*(load(horizontal)*body%centroid(1) + load(vertical)*body%centroid(2))
       end do
-      if (self%force_follows) then
-         power = power + load(lateral)*(body%top(1)*body%c - body%top(2)*body%s)
-      else
-         power = power + load(lateral)*body%top(1)
-      end if
-      if (self%axial_follows) then
-         power = power - (self%axial_load + load(top_axial))*(body%top(1)*body%s + body%top(2)*body%c)
-      else
-         power = power - load(top_axial)*body%top(2)
-      end if
+      call self%find_top_force(load, .false., fixed, following)
+      power = power + sum(fixed*body%top) + following(1)*(body%top(1)*body%c - body%top(2)*body%s) &
+              + following(2)*(body%top(1)*body%s + body%top(2)*body%c)
    end function power_of_loads
 
    !> Angular momentum about the lowest joint, as it has slipped and opened [kg m2/s].
