@@ -7,7 +7,8 @@ module rbs_solve_static_corner
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: choose_lines
-   use rbs_solve_static_path, only: static_path, describe_state, name_spring
+   use rbs_hysteresis_springs, only: spring_array
+   use rbs_solve_static_path, only: static_path, state_of, weakest_spring
    implicit none
    private
 
@@ -33,7 +34,6 @@ contains
       integer, intent(in) :: direction
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
-      character(len=:), allocatable :: state
       integer :: changes, count, fewest, left
       logical :: found
 
@@ -68,8 +68,7 @@ contains
       if (found) then
          path%direction = direction
       else
-         call describe_state(path, state)
-         call fatal_error(error, analysis_failed, 'the column snaps back at '//state// &
+         call fatal_error(error, analysis_failed, 'the column snaps back at '//trim(state_of(path))// &
                           ': no combination of loading and unloading springs was found that lets its '// &
                           'top go on. A driven top cannot follow that; use a dynamic analysis')
       end if
@@ -161,7 +160,7 @@ contains
       integer, allocatable :: tried(:)
       integer :: trial, i, most, count
 
-      tried = pack([(i, i=1, path%moving)], [(at_corner(path, i), i=1, path%moving)])
+      tried = pack([(i, i=1, path%moving)], [(way_out(path%springs, i) /= 0, i=1, path%moving)])
       tried = [pack(tried, path%changed(tried) > 1), pack(tried, path%changed(tried) <= 1)]
       most = min(most_tried, int(log(real(most_work, wp)/path%moving)/log(2.0_wp)))
       tried = tried(:min(size(tried), most))
@@ -177,32 +176,21 @@ contains
          ! The bit that changes next in the Gray code.
          if (trial == 2**size(tried)) exit
          i = tried(trailz(trial) + 1)
-         call path%springs%leave(i, way_out(path, i))
+         call path%springs%leave(i, way_out(path%springs, i))
       end do
       found = .false.
    end subroutine try_all_ways
 
-   !> Whether a spring can leave its line where it stands.
-   pure logical function at_corner(path, i)
-      class(static_path), intent(in) :: path
+   !> The way by which a spring can leave its line where it stands, 0 if it cannot.
+   pure integer function way_out(springs, i)
+      type(spring_array), intent(in) :: springs
       integer, intent(in) :: i
 
-      associate (springs => path%springs)
-         at_corner = springs%unload_on_reversal(i) /= 0 .or. springs%d(i) >= springs%end_toward(i, 1) .or. &
-                     springs%d(i) <= springs%end_toward(i, -1)
-      end associate
-   end function at_corner
-
-   !> The way by which a spring at a corner leaves its line.
-   pure integer function way_out(path, i)
-      class(static_path), intent(in) :: path
-      integer, intent(in) :: i
-
-      if (path%springs%unload_on_reversal(i) /= 0) then
-         way_out = -path%springs%unload_on_reversal(i)
-      else if (path%springs%d(i) >= path%springs%end_toward(i, 1)) then
+      way_out = -springs%unload_on_reversal(i)
+      if (way_out /= 0) return
+      if (springs%d(i) >= springs%end_toward(i, 1)) then
          way_out = 1
-      else
+      else if (springs%d(i) <= springs%end_toward(i, -1)) then
          way_out = -1
       end if
    end function way_out
@@ -212,21 +200,21 @@ contains
       class(static_path), intent(in) :: path
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
-      character(len=:), allocatable :: spring, state, remark
+      character(len=:), allocatable :: remark
 
-      call describe_state(path, state)
       remark = ''
       if (path%structure%axially_loaded) remark = ' above what the axial load takes away'
-      call name_spring(path, spring)
       if (.not. path%by_force) then
          call fatal_error(error, analysis_failed, 'the equilibrium is not unique at the displacement '// &
-                          to_text(target)//' m at '//state//': '//spring// &
+                          to_text(target)//' m at '//trim(state_of(path))//': '// &
+                          trim(weakest_spring(path))// &
                           ' and the axial load leave it without stiffness. Change the axial load '// &
                           'or the stiffness after yield')
       else
          call fatal_error(error, analysis_failed, 'the lateral force '//to_text(target)// &
-                          ' N is beyond the capacity of the column: '//spring// &
-                          ' has no stiffness left at '//state//'. The path up to there is '// &
+                          ' N is beyond the capacity of the column: '// &
+                          trim(weakest_spring(path))//' has no stiffness left at '// &
+                          trim(state_of(path))//'. The path up to there is '// &
                           'kept; drive the column by displacement, or give the spring a stiffness '// &
                           'after yield'//remark)
       end if

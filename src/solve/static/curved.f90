@@ -17,7 +17,7 @@ module rbs_solve_static_curved
    use rbs_structure_column_column, only: column_type
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_curve, only: clean, most_turn
-   use rbs_solve_static_path, only: static_path, describe_state, name_spring, is_on_end, on_the_end, &
+   use rbs_solve_static_path, only: static_path, state_of, weakest_spring, is_on_end, on_the_end, &
                                     serialize_path
    use rbs_solve_static_resume, only: begin_path, end_path
    use rbs_solve_static_stride, only: stride_type, no_progress, round_off
@@ -328,25 +328,26 @@ contains
       class(curved_path), intent(in) :: self
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
-      character(len=:), allocatable :: state, spring
+      character(len=80) :: state
+      character(len=40) :: spring
 
-      call describe_state(self, state)
-      call name_spring(self, spring)
+      state = state_of(self)
+      spring = weakest_spring(self)
       if (self%stride%equilibrium%varies) then
-         call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//state//' and the '// &
-                          'axial load '//to_text(self%stride%here%axial_load)//' N on the way to '// &
+         call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//trim(state)// &
+                          ' and the axial load '//to_text(self%stride%here%axial_load)//' N on the way to '// &
                           to_text(target)//merge(' N', ' m', self%by_force)//': the column snaps through '// &
-                          'or has lost its capacity there ('//spring//' has the least stiffness left). '// &
+                          'or has lost its capacity there ('//trim(spring)//' has the least stiffness left). '// &
                           'The path up to there is kept; use a dynamic analysis to go on')
       else if (self%by_force) then
          call fatal_error(error, analysis_failed, 'the lateral force '//to_text(target)// &
                           ' N is beyond the capacity of the column: no stable equilibrium was found '// &
-                          'beyond '//state//' ('//spring//' has the least stiffness left). The path up '// &
+                          'beyond '//trim(state)//' ('//trim(spring)//' has the least stiffness left). The path up '// &
                           'to there is kept; drive the column by displacement, or stiffen the springs')
       else
-         call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//state// &
+         call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//trim(state)// &
                           ' on the way to '//to_text(target)//' m: the column snaps back there, or '// &
-                          'the top has come as far as its length lets it ('//spring//' has the '// &
+                          'the top has come as far as its length lets it ('//trim(spring)//' has the '// &
                           'least stiffness left). The path up to there is kept; a driven top cannot '// &
                           'follow that, use a dynamic analysis')
       end if

@@ -16,7 +16,7 @@ module rbs_solve_static_path
    implicit none
    private
 
-   public :: static_path, kept_rows, is_on_end, describe_state, name_spring, on_the_end, serialize_path
+   public :: static_path, kept_rows, is_on_end, state_of, weakest_spring, on_the_end, serialize_path
 
    !> What round-off alone moves the top, as a share of what all springs do.
    real(wp), parameter :: same_place = 2.0e-13_wp
@@ -279,7 +279,7 @@ contains
       !> Whether springs were put on ends of their lines since the displacement was found
       logical, intent(in) :: on_ends
       type(error_type), allocatable, intent(inout) :: failure
-      character(len=:), allocatable :: fault, spring
+      character(len=:), allocatable :: fault
       type(energy_type) :: energy
 
       energy = self%energies()
@@ -289,11 +289,11 @@ contains
                            on_ends, fault)
       if (.not. allocated(fault)) return
       self%is_wrong = .true.
-      call name_spring(self, spring)
       call fatal_error(failure, analysis_failed, 'on the way to '//to_text(target)//' '// &
                        merge('N', 'm', self%by_force)//' the arithmetic has lost the static path: at a '// &
                        'displacement of '//to_text(self%displacement)//' m '//fault//'. The path up to '// &
-                       'there is kept. The stiffnesses of the springs are too far apart ('//spring// &
+                       'there is kept. The stiffnesses of the springs are too far apart ('// &
+                       trim(weakest_spring(self))// &
                        ' has the least left): give it more stiffness after yield, or take stiff springs '// &
                        'less stiff')
    end subroutine look
@@ -389,22 +389,21 @@ contains
    end function energies
 
    !> Where the path is, for a message.
-   subroutine describe_state(path, text)
+   pure function state_of(path) result(text)
       class(static_path), intent(in) :: path
-      character(len=:), allocatable, intent(out) :: text
+      character(len=80) :: text
 
       text = 'force '//to_text(path%force)//' N, displacement '//to_text(path%displacement)//' m'
-   end subroutine describe_state
+   end function state_of
 
    !> The spring that has least of its initial stiffness left, for a message.
-   subroutine name_spring(path, text)
+   pure function weakest_spring(path) result(text)
       class(static_path), intent(in) :: path
-      character(len=:), allocatable, intent(out) :: text
+      character(len=40) :: text
 
       associate (structure => path%structure, m => path%moving)
-         text = trim(spring_name(structure%place(minloc(path%springs%k(:m)/structure%initial_stiffness(:m), &
-                                                        dim=1))))
+         text = spring_name(structure%place(minloc(path%springs%k(:m)/structure%initial_stiffness(:m), dim=1)))
       end associate
-   end subroutine name_spring
+   end function weakest_spring
 
 end module rbs_solve_static_path

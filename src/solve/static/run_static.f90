@@ -68,7 +68,7 @@ contains
          call trace_straight(loaded, equilibrium, by_force, target, task, error)
       end if
       if (allocated(error) .and. by_force .and. .not. abs(task%summary%peak_displacement) > 0.0_wp) then
-         call explain_buckling(loaded, error)
+         call explain_buckling(loaded, task%summary%steps, error)
       end if
       ! Without inertia the ground holds what drives the column.
       task%summary%peak_base_shear = task%summary%peak_force
@@ -76,14 +76,16 @@ contains
    end subroutine run_static
 
    !> A column that could not be moved by a force may have buckled before.
-   subroutine explain_buckling(column, error)
+   subroutine explain_buckling(column, row, error)
       class(column_type), intent(in) :: column
+      !> In which the path failed
+      integer, intent(in) :: row
       type(error_type), intent(inout) :: error
       real(wp) :: factor
 
       call critical_factor(column, factor)
-      if (factor > 1.0_wp) return
-      error%message = 'row 1: the axial load is '//to_text(1.0_wp/factor)// &
+      if (factor > 1.0_wp .or. row == 0) return
+      error%message = 'row '//to_text(row)//': the axial load is '//to_text(1.0_wp/factor)// &
                       ' times the critical load of the uncracked column, which buckles by itself; '// &
                       'reduce axial_load, stiffen the springs, or drive it by displacement'
    end subroutine explain_buckling

@@ -7,7 +7,7 @@ module rbs_solve_static_straight
    use rbs_base_stream, only: stream_type
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_equilibrium, only: equilibrium_type
-   use rbs_solve_static_path, only: static_path, describe_state, is_on_end, on_the_end, serialize_path
+   use rbs_solve_static_path, only: static_path, state_of, is_on_end, on_the_end, serialize_path
    use rbs_solve_static_resume, only: begin_path, end_path
    use rbs_solve_task, only: task_type
    use rbs_structure_structure, only: structure_type
@@ -71,7 +71,6 @@ contains
       !> Displacement [m] or force [N]
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
-      character(len=:), allocatable :: state
       integer :: direction, lines
 
       do lines = 1, 10000 + 1000*self%springs%count
@@ -95,8 +94,8 @@ contains
             call end_line(self)
          end if
       end do
-      call describe_state(self, state)
-      call fatal_error(error, analysis_failed, 'the static path makes no progress at '//state//'; the '// &
+      call fatal_error(error, analysis_failed, 'the static path makes no progress at '//trim(state_of(self))// &
+                       '; the '// &
                        'parameters of the springs or the targets are too extreme for the arithmetic')
    end subroutine advance
 
