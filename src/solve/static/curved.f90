@@ -335,10 +335,10 @@ contains
       spring = weakest_spring(self)
       if (self%stride%equilibrium%varies) then
          call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//trim(state)// &
-                          ' and the axial load '//to_text(self%stride%here%axial_load)//' N on the way to '// &
-                          to_text(target)//merge(' N', ' m', self%by_force)//': the column snaps through '// &
-                          'or has lost its capacity there ('//trim(spring)//' has the least stiffness left). '// &
-                          'The path up to there is kept; use a dynamic analysis to go on')
+                          ' and the axial load '//to_text(self%stride%here%axial_load)//' N on the '// &
+                          'way to '//to_text(target)//merge(' N', ' m', self%by_force)//': the column '// &
+                          'snaps through or has lost its capacity there ('//trim(spring)//' has the '// &
+                          'least stiffness left). The path up to there is kept; use a dynamic analysis to go on')
       else if (self%by_force) then
          call fatal_error(error, analysis_failed, 'the lateral force '//to_text(target)// &
                           ' N is beyond the capacity of the column: no stable equilibrium was found '// &
