@@ -328,28 +328,26 @@ contains
       class(curved_path), intent(in) :: self
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
-      character(len=80) :: state
-      character(len=40) :: spring
+      character(len=:), allocatable :: place, weakest
 
-      state = state_of(self)
-      spring = weakest_spring(self)
+      place = trim(state_of(self))
+      weakest = ' ('//trim(weakest_spring(self))//' has the least stiffness left). The path up to there '// &
+                'is kept'
       if (self%stride%equilibrium%varies) then
-         call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//trim(state)// &
-                          ' and the axial load '//to_text(self%stride%here%axial_load)//' N on the '// &
-                          'way to '//to_text(target)//merge(' N', ' m', self%by_force)//': the column '// &
-                          'snaps through or has lost its capacity there ('//trim(spring)//' has the '// &
-                          'least stiffness left). The path up to there is kept; use a dynamic analysis to go on')
+         call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//place//' and the '// &
+                          'axial load '//to_text(self%stride%here%axial_load)//' N on the way to '// &
+                          to_text(target)//merge(' N', ' m', self%by_force)//': the column snaps through '// &
+                          'or has lost its capacity there'//weakest//'; use a dynamic analysis to go on')
       else if (self%by_force) then
          call fatal_error(error, analysis_failed, 'the lateral force '//to_text(target)// &
                           ' N is beyond the capacity of the column: no stable equilibrium was found '// &
-                          'beyond '//trim(state)//' ('//trim(spring)//' has the least stiffness left). The path up '// &
-                          'to there is kept; drive the column by displacement, or stiffen the springs')
+                          'beyond '//place//weakest//'; drive the column by displacement, or stiffen the '// &
+                          'springs')
       else
-         call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//trim(state)// &
+         call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//place// &
                           ' on the way to '//to_text(target)//' m: the column snaps back there, or '// &
-                          'the top has come as far as its length lets it ('//trim(spring)//' has the '// &
-                          'least stiffness left). The path up to there is kept; a driven top cannot '// &
-                          'follow that, use a dynamic analysis')
+                          'the top has come as far as its length lets it'//weakest// &
+                          '; a driven top cannot follow that, use a dynamic analysis')
       end if
    end subroutine report_no_way
 

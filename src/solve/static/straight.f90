@@ -95,8 +95,7 @@ contains
          end if
       end do
       call fatal_error(error, analysis_failed, 'the static path makes no progress at '//trim(state_of(self))// &
-                       '; the '// &
-                       'parameters of the springs or the targets are too extreme for the arithmetic')
+                       '; the parameters of the springs or the targets are too extreme for the arithmetic')
    end subroutine advance
 
    !> Rates of the structure on the present lines of its springs.
