@@ -402,7 +402,8 @@ contains
       character(len=40) :: text
 
       associate (structure => path%structure, m => path%moving)
-         text = spring_name(structure%place(minloc(path%springs%k(:m)/structure%initial_stiffness(:m), dim=1)))
+         text = spring_name(structure%place(minloc(path%springs%k(:m)/structure%initial_stiffness(:m), &
+                                                   dim=1)))
       end associate
    end function weakest_spring
 

@@ -94,8 +94,9 @@ contains
             call end_line(self)
          end if
       end do
-      call fatal_error(error, analysis_failed, 'the static path makes no progress at '//trim(state_of(self))// &
-                       '; the parameters of the springs or the targets are too extreme for the arithmetic')
+      call fatal_error(error, analysis_failed, 'the static path makes no progress at '// &
+                       trim(state_of(self))//'; the parameters of the springs or the targets are too '// &
+                       'extreme for the arithmetic')
    end subroutine advance
 
    !> Rates of the structure on the present lines of its springs.
