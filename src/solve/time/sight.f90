@@ -28,7 +28,7 @@ module rbs_solve_time_sight
    end type watch_type
 
    type, extends(peaks_type) :: sight_type
-      !> Displacement of the top at which the column has collapsed [m], and whether it has
+      !> Displacement of the top at which the structure has collapsed [m], and whether it has
       real(wp) :: furthest = huge(1.0_wp)
       logical :: collapsed = .false.
       !> What is watched for, and when each limit state is reached first; `huge` before (states) [s]
@@ -84,7 +84,7 @@ contains
       type(spring_array), intent(in) :: springs
       real(wp), intent(in), contiguous :: q(:), v(:)
       real(wp), intent(in) :: load(4), clock
-      !> Displacement of the top over the height at which the column has collapsed; `unset`: none
+      !> Displacement of the top over the height at which the structure has collapsed; `unset`: none
       real(wp), intent(in) :: collapse_drift
       !> Whether the acceleration of the top is looked at
       logical, intent(in) :: floor

@@ -1,4 +1,4 @@
-!> The state of a column in time, the works done on it so far, and the type of a method that advances it.
+!> The state of a structure in time, the works done on it so far, and the type of a method that advances it.
 module rbs_solve_time_state
    use rbs_base_constants, only: out_of_bounds
    use rbs_base_error, only: error_type
@@ -17,7 +17,7 @@ module rbs_solve_time_state
       type(motion_type) :: motion
       type(spring_array) :: springs
       type(loads_type) :: loads
-      !> Deformations of the joints and their velocities (unknowns)
+      !> Deformations of the springs and their velocities (springs)
       real(wp), allocatable :: q(:), v(:)
       !> Time since the start of the run [s], which keeps its digits where the clock is late; the loads then
       real(wp) :: time = 0.0_wp, load(4) = 0.0_wp
@@ -74,7 +74,7 @@ contains
    !> Look at the state for the first time; what to watch for is known.
    subroutine begin_sight(self, collapse_drift, floor)
       class(state_type), intent(inout) :: self
-      !> Displacement of the top over the height at which the column has collapsed; `unset`: none
+      !> Displacement of the top over the height at which the structure has collapsed; `unset`: none
       real(wp), intent(in) :: collapse_drift
       !> Whether the acceleration of the top is looked at
       logical, intent(in) :: floor
@@ -92,7 +92,7 @@ contains
       call self%sight%see(self%motion, self%springs, self%q, self%v, self%load, clock)
    end subroutine see
 
-   !> Ready for another run of the same column with the same steps.
+   !> Ready for another run of the same structure with the same steps.
    subroutine restart(self)
       class(stepper_type), intent(inout) :: self
 
