@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from rbsdem.results.saved import read_result
     from rbsdem.solve.analysis import matrices, modes
     from rbsdem.solve.protocol import protocol
+    from rbsdem.solve.solver import Solver
 
 __version__ = _version()
 
@@ -58,6 +59,7 @@ _HOMES = {
     "results.saved": ("read_result",),
     "solve.analysis": ("matrices", "modes"),
     "solve.protocol": ("protocol",),
+    "solve.solver": ("Solver",),
 }
 _MODULE_OF = {name: home for home, names in _HOMES.items() for name in names}
 #: Public modules; curves, errors and motions hold what the names above return, raise or read.
@@ -86,6 +88,7 @@ __all__ = [
     "RectangularSection",
     "Result",
     "SolveError",
+    "Solver",
     "Spiral",
     "Steel",
     "Ties",

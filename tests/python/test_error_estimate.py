@@ -19,7 +19,7 @@ import rbsdem
 from rbsdem import InputError
 from rbsdem import __main__ as command
 from rbsdem.results.accuracy import Answer, errors_of
-from rbsdem.solve.methods import METHODS
+from rbsdem.solve.solver import METHODS
 from rbsdem.springs import Elastic
 
 COLUMN = rbsdem.peer.paper_columns("pdelta", top_mass=75.9e3)["soesianawati_1"]

@@ -128,12 +128,12 @@ def test_signatures_of_the_analyses_are_the_promised_ones():
         return list(inspect.signature(function).parameters)
 
     assert names(rbsdem.cyclic)[:3] == ["column", "displacement", "force"]
-    assert names(rbsdem.time_history)[:7] == [
-        "column", "time", "force", "ground_acceleration", "dt", "method", "initial"
+    assert names(rbsdem.time_history) == [
+        "column", "time", "force", "ground_acceleration", "initial", "vertical_acceleration",
+        "axial_load", "collapse_drift", "every", "openings", "motion", "solver",
     ]  # fmt: skip
-    assert names(rbsdem.time_history)[7:] == [
-        "vertical_acceleration", "axial_load", "events", "tolerance", "rho_infinity",
-        "collapse_drift", "allow_unstable", "max_seconds", "every", "openings", "motion",
+    assert list(rbsdem.Solver.__annotations__) == [
+        "method", "dt", "events", "tolerance", "rho_infinity", "allow_unstable", "max_seconds"
     ]  # fmt: skip
     assert names(rbsdem.matrices) == ["column", "form"]
     assert names(rbsdem.modes) == ["column", "count"]

@@ -129,6 +129,7 @@ def compare(values: CodeValues, result: Response, test: Curve | None = None) -> 
         If the column has another span, axial load or section, the openings of a layered hinge were
         not kept in time, or the test is no loop.
     """
+    _arguments.instance(values, "compare: values", CodeValues)
     _check_same(values.quantities, result.column)
     return CodeComparison(values, result, test)
 

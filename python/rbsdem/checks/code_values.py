@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
+from rbsdem import _arguments
 from rbsdem.checks import asce_41, ec_8, flexure, regressions
 from rbsdem.checks.code_drawing import Quantities, quantities
 from rbsdem.errors import InputError
@@ -120,6 +121,7 @@ def code_values(section: Section, height: float, axial_load: float) -> CodeValue
     InputError
         If the section has no bars near both faces, or a number is refused.
     """
+    _arguments.instance(section, "code_values: section", Section)
     q = quantities(section, height, axial_load)
     moment, source = _moment(section, q)
     found = [*_yield(q, moment, source), *_asce_41(q, moment)]

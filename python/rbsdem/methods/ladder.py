@@ -18,8 +18,8 @@ from rbsdem.methods.scene import Scene
 from rbsdem.model.column import Column
 from rbsdem.results.accuracy import common_interval
 from rbsdem.solve.analysis import METHODS, no_watch, time_history
-from rbsdem.solve.methods import IMPLICIT
-from rbsdem.solve.methods import METHODS as FACTS
+from rbsdem.solve.solver import IMPLICIT
+from rbsdem.solve.solver import METHODS as FACTS
 
 #: Levels of kinematics, each with more physics than the one before.
 LEVELS = ("small", "pdelta", "finite")

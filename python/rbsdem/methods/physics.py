@@ -17,7 +17,7 @@ from rbsdem.model.column import Column, without_notes
 from rbsdem.model.damping import Damping
 from rbsdem.model.springs import Spring
 from rbsdem.results.accuracy import Answer, errors_of
-from rbsdem.solve.methods import IMPLICIT
+from rbsdem.solve.solver import IMPLICIT
 
 if TYPE_CHECKING:
     import pandas as pd

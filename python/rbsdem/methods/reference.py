@@ -13,7 +13,7 @@ from rbsdem.methods.answer import Run, Setting
 from rbsdem.methods.ladder import Budget, Probe, predicted
 from rbsdem.methods.scene import Scene
 from rbsdem.results.accuracy import Answer, errors_of
-from rbsdem.solve.methods import IMPLICIT
+from rbsdem.solve.solver import IMPLICIT
 
 #: First refinement of a method that was not run before: tolerance of rk45, and the part of the
 #: stable step of rk4. Then the tolerance is divided by 100, down to the least, or the step by 2.

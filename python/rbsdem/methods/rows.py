@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from rbsdem.methods.answer import Run, Setting
 from rbsdem.methods.reference import Reference
 from rbsdem.results.accuracy import Errors, errors_of
-from rbsdem.solve.methods import IMPLICIT
+from rbsdem.solve.solver import IMPLICIT
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from rbsdem._arguments import Array
 from rbsdem.errors import AccuracyWarning
 from rbsdem.model.response import Response
 from rbsdem.solve.analysis import cyclic, no_watch, time_history
-from rbsdem.solve.methods import METHODS
+from rbsdem.solve.solver import METHODS
 
 #: By how much a tolerance is sharpened, at least to where it and not the stability limits the
 #: steps, and the least one.

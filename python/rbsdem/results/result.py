@@ -26,7 +26,7 @@ from rbsdem.model.response import Response
 from rbsdem.results import files
 from rbsdem.results.accuracy import Errors, refined_error
 from rbsdem.solve import analysis
-from rbsdem.solve.methods import METHODS
+from rbsdem.solve.solver import METHODS
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,12 +20,15 @@ from rbsdem.model.column import Column, checked_column
 from rbsdem.model.response import Response, response_of, settings_of, state_of
 from rbsdem.motions.acting import acting
 from rbsdem.motions.motion import GroundMotion
-from rbsdem.solve.methods import IN_TIME
+from rbsdem.solve.solver import IN_TIME, MethodName, Solver, checked_solver
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 #: Names of the methods in time.
 METHODS = IN_TIME
 
-Method = Literal["auto", "rk4", "rk45", "newmark", "hht", "generalised_alpha"]
+Method = MethodName
 
 #: What a run in time is watched for: limit states of the column as criteria in numbers, shape
 #: (criteria, 6), given whether openings are kept.
@@ -238,20 +241,14 @@ def time_history(
     *,
     force: ArrayLike | None = None,
     ground_acceleration: ArrayLike | GroundMotion | None = None,
-    dt: float | None = None,
-    method: Method | None = None,
     initial: Mapping[str, ArrayLike] | Response | str | os.PathLike[str] | None = None,
     vertical_acceleration: ArrayLike | GroundMotion | None = None,
     axial_load: ArrayLike | None = None,
-    events: Literal["step", "located"] | None = None,
-    tolerance: float | None = None,
-    rho_infinity: float | None = None,
     collapse_drift: float | None = None,
-    allow_unstable: bool = False,
-    max_seconds: float | None = None,
     every: int | None = None,
     openings: bool = False,
     motion: bool = False,
+    **solver: Unpack[Solver],
 ) -> Response:
     """Compute the response in time to forces at the top and motions of the ground.
 
@@ -266,17 +263,6 @@ def time_history(
         Lateral force at the top [N], linear between the times.
     ground_acceleration : array_like of shape (m,), or GroundMotion, optional
         Acceleration of the ground [m/s2], linear between the times.
-    dt : float, optional
-        Step [s]. If it divides every interval of `time`, rows are kept at `time`; otherwise the
-        steps run from the first to the last time and a row is kept after each. Without `dt` the
-        method chooses the step; "rk4" divides every interval into equal steps not longer than a
-        fifth of the stability limit.
-    method : {"auto", "rk4", "rk45", "newmark", "hht", "generalised_alpha"}, optional
-        "auto" lets the program choose; `summary["method"]` and `summary["reason"]` report its
-        choice. "rk4" is classical Runge-Kutta with a fixed step (the paper's scheme), "rk45"
-        Runge-Kutta 5(4) with error control. The others are implicit: average acceleration,
-        Hilber-Hughes-Taylor, generalised-alpha. The default is "auto" with ground motion; with a
-        lateral force alone the method must be named.
     initial : mapping, Result or path, optional
         State at the start. As a mapping: "slip" [m], "rotation" [rad], "opening" [m], and
         "slip_velocity", "rotation_velocity", "opening_velocity", each of shape (n,). The springs
@@ -290,25 +276,12 @@ def time_history(
         Vertical acceleration of the ground, upward positive [m/s2].
     axial_load : array_like, shape (m,), optional
         Axial load at the top [N], compression positive, in place of the constant one of the column.
-    events : {"step", "located"}, optional
-        For "rk4": a spring changes its line at the end of a step ("step", the default), or the step
-        is cut where the line ends ("located").
-    tolerance : float, optional
-        For "rk45" and "auto": allowed relative error of a step in the energy norm. The default is
-        1e-6.
-    rho_infinity : float, optional
-        For "hht" and "generalised_alpha": spectral radius at infinite frequency; 1 means no
-        numerical damping. The default is 0.8.
     collapse_drift : float, optional
         Displacement of the top over the height at which the column counts as collapsed: the
         analysis ends there, and `summary["status"]` is "collapsed".
-    allow_unstable : bool, optional
-        For "rk4": accept a `dt` beyond the stability limit.
-    max_seconds : float, optional
-        A run that is expected to take longer is refused before it starts [s]; the message says how
-        long, and which method is faster. The default is 300.
     every : int, optional
-        Keep every n-th step and the last one. By default rows are kept as described for `dt`.
+        Keep every n-th step and the last one. By default rows are kept as described for `dt` of
+        `Solver`.
     openings : bool, optional
         Whether to keep the openings of layered joints, for `Result.elongation` and
         `Result.layer_deformation`.
@@ -316,6 +289,9 @@ def time_history(
         Whether to keep how the top moves, for `Result.velocity`, `Result.acceleration` and
         `Result.absolute_acceleration`; `summary` then has "peak_floor_acceleration" [m/s2], the
         largest absolute acceleration of the top at the ends of all steps, in size.
+    **solver
+        Settings of the method, see `rbsdem.Solver`: method, dt, events, tolerance, rho_infinity,
+        allow_unstable, max_seconds.
 
     Returns
     -------
@@ -354,16 +330,7 @@ def time_history(
         )
     if time is None:
         raise InputError("time_history: time is missing; give the times of the loading")
-    chosen = {
-        "method": method,
-        "dt": dt,
-        "events": events,
-        "tolerance": tolerance,
-        "rho_infinity": rho_infinity,
-        "collapse_drift": collapse_drift,
-        "allow_unstable": _arguments.switch(allow_unstable, "allow_unstable") or None,
-        "max_seconds": max_seconds,
-    }
+    chosen = checked_solver(solver, "time_history") | {"collapse_drift": collapse_drift}
     kept = not _checked(column).opens and _arguments.switch(openings, "openings")
     moves = _arguments.switch(motion, "motion")
     settings = settings_of(every, kept, moves, **chosen)
