@@ -2,10 +2,8 @@
 
 from rbsdem.many.cloud import Cloud, CloudFragility, cloud
 from rbsdem.many.ensemble import Ensemble
-from rbsdem.many.fragility import Capacities, Counts, Fragility, fit_fragility
-from rbsdem.many.hazard import Hazard
-from rbsdem.many.hunt import Hunt
-from rbsdem.many.ida import IDA
+from rbsdem.many.fragility import Capacities, Counts, Fragility, Hazard, fit_fragility
+from rbsdem.many.ida import IDA, Hunt
 from rbsdem.many.measures import LIMIT_STATES, MEASURES, STATUSES
 from rbsdem.many.stripes import Stripes, stripes
 from rbsdem.many.uncertain import Sample, Uncertain, VarianceSplit, lognormal, variance_split

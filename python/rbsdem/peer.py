@@ -5,13 +5,10 @@ The histories belong to the database and are no part of rbsdem; a user gets them
 points come with rbsdem.
 """
 
-from rbsdem.measured.columns import column
-from rbsdem.measured.doubts import Checked, Doubt, check
-from rbsdem.measured.drawing import DrawnSpecimen, draw
-from rbsdem.measured.file import PeerTest, read_peer
-from rbsdem.measured.indicators import Indicators, indicators
+from rbsdem.measured.doubts import Checked, Doubt, Indicators, check, indicators
+from rbsdem.measured.drawing import DrawnSpecimen, column, draw
 from rbsdem.measured.laboratory import read_test
-from rbsdem.measured.measured import PDELTA_CODES, MeasuredTest, net_force
+from rbsdem.measured.measured import PDELTA_CODES, MeasuredTest, PeerTest, net_force, read_peer
 from rbsdem.measured.nearest import nearest
 from rbsdem.measured.predict import predict, predict_one
 from rbsdem.measured.predictions import Neighbour, Prediction, Predictions
@@ -23,8 +20,7 @@ from rbsdem.measured.shipped import (
     measured_loops,
     shipped_reversals,
 )
-from rbsdem.measured.specimen import Observed, Specimen
-from rbsdem.measured.specimens import Specimens, read_specimens
+from rbsdem.measured.specimens import Observed, Specimen, Specimens, read_specimens
 from rbsdem.section.paper import paper_columns, paper_sections
 from rbsdem.section.spread import likeness
 from rbsdem.web.gallery import gallery

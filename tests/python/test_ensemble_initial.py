@@ -11,7 +11,7 @@ from test_ensembles import column, motion, same_as_alone
 
 import rbsdem
 from rbsdem import InputError, motions
-from rbsdem.many.hunt import Hunt
+from rbsdem.many.ida import Hunt
 from rbsdem.springs import Elastic
 
 NEWMARK = {"method": "newmark"}

@@ -10,10 +10,9 @@ from scipy import integrate, optimize, special, stats
 
 from rbsdem import Column, InputError
 from rbsdem.errors import AccuracyWarning
-from rbsdem.many.fragility import Capacities, Counts, Fragility, fit_fragility
-from rbsdem.many.hazard import Hazard
+from rbsdem.many.cloud import fit_line, fit_logistic
+from rbsdem.many.fragility import Capacities, Counts, Fragility, Hazard, fit_fragility
 from rbsdem.many.lognormal import Bounds, bounds_of_counts, fit_bounds
-from rbsdem.many.regression import fit_line, fit_logistic
 from rbsdem.many.uncertain import Uncertain, lognormal, variance_split
 from rbsdem.springs import Elastic
 

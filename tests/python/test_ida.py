@@ -7,8 +7,8 @@ import pytest
 
 import rbsdem
 from rbsdem import InputError, motions
-from rbsdem.many.hazard import Hazard
-from rbsdem.many.hunt import Hunt
+from rbsdem.many.fragility import Hazard
+from rbsdem.many.ida import Hunt
 from rbsdem.many.uncertain import variance_split
 from rbsdem.output.tables import write_csv, write_parquet
 from rbsdem.plot import fragilities

@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 
 import rbsdem
 from rbsdem import motions
-from rbsdem.many.hunt import Hunt
+from rbsdem.many.ida import Hunt
 from rbsdem.springs import Bilinear, Elastic
 
 MASS, HEIGHT, DAMPING = 1e4, 3.0, 0.05

@@ -23,7 +23,7 @@ import rbsdem
 from rbsdem import peer, plot
 from rbsdem.cli import main
 from rbsdem.errors import InputError
-from rbsdem.measured import pictures
+from rbsdem.measured import predictions
 from rbsdem.output import reports
 from rbsdem.output.tables import write_csv
 from rbsdem.springs import Bilinear, Takeda
@@ -335,7 +335,7 @@ def test_gallery_and_contact_sheet_draw_the_same_lines(table):
 def test_thinned_lines_stay_where_they_were():
     t = np.linspace(0.0, 6.0, 3000)
     line = np.column_stack((600 + 500 * np.sin(t), 400 + 300 * np.sin(2.1 * t)))
-    thin = pictures.thinned(line, 1.0)
+    thin = predictions.thinned(line, 1.0)
     assert len(thin) < len(line) / 10
     assert thin[0].tolist() == line[0].tolist()
     assert thin[-1].tolist() == line[-1].tolist()
@@ -349,7 +349,7 @@ def test_thinned_lines_stay_where_they_were():
 @pytest.mark.parametrize("m", [0, 1, 2, 3])
 def test_short_lines_are_not_thinned_away(m):
     line = np.arange(2.0 * m).reshape(m, 2) ** 2
-    assert len(pictures.thinned(line, 1.0)) == m
+    assert len(predictions.thinned(line, 1.0)) == m
 
 
 def test_contact_sheet(table, tmp_path):

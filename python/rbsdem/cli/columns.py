@@ -20,8 +20,7 @@ from rbsdem._files import write_figure
 from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
 from rbsdem.errors import InputError, RepairWarning
 from rbsdem.many.ensemble import ensemble as run_ensemble
-from rbsdem.many.fragility import Fragility
-from rbsdem.many.hazard import Hazard
+from rbsdem.many.fragility import Fragility, Hazard
 from rbsdem.many.ida import IDA
 from rbsdem.many.ida import ida as run_ida
 from rbsdem.many.runs import NAMES
@@ -29,7 +28,7 @@ from rbsdem.methods.measure import compare_methods
 from rbsdem.methods.physics import Physics
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.read import read_motion, read_motions
-from rbsdem.motions.synthetic import synthetic
+from rbsdem.motions.shaping import synthetic
 from rbsdem.output import many as ensemble_figures
 from rbsdem.output import methods as methods_output
 from rbsdem.output import tables

@@ -22,8 +22,7 @@ from rbsdem.measured.predict import PredictionOptions
 from rbsdem.measured.predict import predict as run_predictions
 from rbsdem.measured.prediction_store import PredictionStore
 from rbsdem.measured.predictions import Predictions, loop_names
-from rbsdem.measured.specimen import Specimen
-from rbsdem.measured.specimens import Specimens, read_specimens
+from rbsdem.measured.specimens import Specimen, Specimens, read_specimens
 from rbsdem.output import reports, tables
 from rbsdem.output.measured import band_sheet, contact_sheet
 from rbsdem.output.measured import prediction as draw_prediction

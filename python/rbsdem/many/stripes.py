@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike
 from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
-from rbsdem.many.fragile import Fragile
-from rbsdem.many.fragility import Counts, Fragility, fit_fragility
+from rbsdem.many.fragility import Counts, Fragile, Fragility, fit_fragility
 from rbsdem.many.measures import Measure, limit_states, measures_in_a_list
 from rbsdem.many.runs import (
     MEASURES,

@@ -9,10 +9,9 @@ from functools import lru_cache
 
 from rbsdem import _arguments
 from rbsdem.errors import AccuracyWarning, InputError
-from rbsdem.measured.columns import checked_specimen
-from rbsdem.measured.drawing import draw
+from rbsdem.measured.drawing import checked_specimen, draw
 from rbsdem.measured.predictions import Neighbour, Prediction
-from rbsdem.measured.specimen import Specimen
+from rbsdem.measured.specimens import Specimen
 from rbsdem.model.shape import CircularSection, Section
 from rbsdem.section.spread import place_of
 

@@ -23,14 +23,12 @@ from rbsdem.batch.progress import progress_bar
 from rbsdem.batch.work import EndRequest, work_through
 from rbsdem.curves.scores import compare
 from rbsdem.errors import AccuracyWarning, InputError, RbsdemError, SolveError
-from rbsdem.measured.columns import check_options, checked_specimen
-from rbsdem.measured.columns import column as column_of
-from rbsdem.measured.drawing import draw
+from rbsdem.measured.drawing import check_options, checked_specimen, draw
+from rbsdem.measured.drawing import column as column_of
 from rbsdem.measured.nearest import nearest
 from rbsdem.measured.prediction_store import PredictionStore
 from rbsdem.measured.predictions import Neighbour, Prediction, Predictions
-from rbsdem.measured.specimen import Specimen
-from rbsdem.measured.specimens import TABLE, read_specimens
+from rbsdem.measured.specimens import TABLE, Specimen, read_specimens
 from rbsdem.model.column import Column
 from rbsdem.results.result import Result, cyclic
 from rbsdem.section.columns import DEFAULT, model_name

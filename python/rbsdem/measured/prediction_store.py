@@ -19,7 +19,7 @@ from rbsdem.batch.store import JSON_LINES, Store, digest
 from rbsdem.curves.scores import compare
 from rbsdem.errors import RbsdemError
 from rbsdem.measured.predictions import Prediction
-from rbsdem.measured.specimen import Specimen
+from rbsdem.measured.specimens import Specimen
 from rbsdem.section.spread import Interval, Spread
 
 __all__ = ["PredictionStore"]

@@ -1,10 +1,8 @@
 """Ground motions: records read, measured, scaled and joined, and synthetic ones."""
 
-from rbsdem.motions.motion import STANDARD_GRAVITY, GroundMotion
+from rbsdem.motions.motion import STANDARD_GRAVITY, GroundMotion, Spectrum
 from rbsdem.motions.read import read_motion, read_motions
-from rbsdem.motions.shaping import corrected, resampled, sequence
-from rbsdem.motions.spectrum import Spectrum
-from rbsdem.motions.synthetic import synthetic
+from rbsdem.motions.shaping import corrected, resampled, sequence, synthetic
 
 __all__ = [
     "STANDARD_GRAVITY",

@@ -14,8 +14,7 @@ from rbsdem.many.fragility import Capacities, Counts, Fragility
 from rbsdem.many.ida import IDA
 from rbsdem.many.runs import Runs
 from rbsdem.many.stripes import Stripes
-from rbsdem.motions.motion import GroundMotion
-from rbsdem.motions.spectrum import Spectrum
+from rbsdem.motions.motion import GroundMotion, Spectrum
 from rbsdem.output.style import MODEL_LINE, axes_or_new, line_of
 
 if TYPE_CHECKING:

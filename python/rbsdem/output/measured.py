@@ -11,7 +11,7 @@ import numpy as np
 
 from rbsdem._files import write_figure
 from rbsdem.measured.predictions import Prediction, Predictions
-from rbsdem.measured.specimen import Specimen
+from rbsdem.measured.specimens import Specimen
 from rbsdem.output.style import (
     MODEL_LINE,
     TEST_LINE,

@@ -25,11 +25,9 @@ from rbsdem._arguments import Array
 from rbsdem.checks.code_values import code_values
 from rbsdem.errors import InputError, RbsdemError, SolveError
 from rbsdem.measured.nearest import nearest
-from rbsdem.measured.pictures import picture
 from rbsdem.measured.predict import predict_one
-from rbsdem.measured.predictions import Prediction
-from rbsdem.measured.specimen import Specimen
-from rbsdem.measured.specimens import read_specimens
+from rbsdem.measured.predictions import Prediction, picture
+from rbsdem.measured.specimens import Specimen, read_specimens
 from rbsdem.model.shape import Section
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.read import read_motion

@@ -11,8 +11,7 @@ import numpy as np
 
 from rbsdem._arguments import Array
 from rbsdem._files import whole_file
-from rbsdem.measured.pictures import Picture
-from rbsdem.measured.predictions import Prediction, Predictions
+from rbsdem.measured.predictions import Picture, Prediction, Predictions
 from rbsdem.web.parts import GALLERY, one_file
 
 __all__ = ["SCORES", "card", "finite", "gallery"]
@@ -35,7 +34,7 @@ def card(row: Prediction, drawn: Picture | None) -> dict[str, Any]:
     row : Prediction
         The test.
     drawn : Picture or None
-        Its lines, as of `rbsdem.measured.pictures.picture`.
+        Its lines, as of `rbsdem.measured.predictions.picture`.
     """
     specimen = row.specimen
     found = {

@@ -28,7 +28,7 @@ from rbsdem.model.shape import (
     Section,
 )
 from rbsdem.motions.motion import GroundMotion
-from rbsdem.motions.synthetic import synthetic
+from rbsdem.motions.shaping import synthetic
 from rbsdem.results.case import Case
 from rbsdem.section import columns
 from rbsdem.section.ranges import column_length
