@@ -164,7 +164,7 @@ class Cluster(Executor):
     @property
     def workers(self) -> int:
         """Number of threads of the cluster."""
-        return max(1, sum(self._client.ncores().values()))
+        return max(1, int(sum(self._client.ncores().values())))
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **more: Any) -> Future[Any]:
         """Give a task to the cluster."""

@@ -91,7 +91,8 @@ def bounds_of_counts(level: Array, number: NDArray[Any], failures: NDArray[Any])
     none = np.full_like(x, np.inf)
     low, high = np.concatenate((-none, x)), np.concatenate((x, none))
     weight = np.concatenate((k, n - k), axis=-1)
-    return Bounds(*(np.broadcast_to(end, weight.shape) for end in (low, high)), weight)
+    shape = weight.shape
+    return Bounds(np.broadcast_to(low, shape), np.broadcast_to(high, shape), weight)
 
 
 def fit_bounds(bounds: Bounds, beta: float | None = None) -> tuple[Array, Array, Array]:
@@ -192,8 +193,9 @@ def _able(bounds: Bounds, *, stated: bool) -> NDArray[np.bool_]:
     """
     kept = bounds.weight > 0
     if not stated:
-        return np.isnan(bounds.gap()[0])
-    return (kept & np.isfinite(bounds.low)).any(-1) & (kept & np.isfinite(bounds.high)).any(-1)
+        return np.asarray(np.isnan(bounds.gap()[0]))
+    above = (kept & np.isfinite(bounds.low)).any(-1)
+    return np.asarray(above & (kept & np.isfinite(bounds.high)).any(-1))
 
 
 class _Terms:

@@ -245,7 +245,7 @@ def one_run(
         column,
         motion.time,
         ground_acceleration=scale * motion.acceleration,
-        initial=initial if initial.size else None,
+        initial=initial if initial.size else None,  # type: ignore[arg-type]
         openings=layered,
         **settings,
     )

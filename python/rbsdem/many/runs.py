@@ -98,7 +98,7 @@ def motions_by_name(motions: Any) -> dict[str, GroundMotion]:
             ) from None
         items = [(getattr(m, "name", "") or str(i), m) for i, m in enumerate(given)]
     found: dict[str, GroundMotion] = {}
-    faults = []
+    faults: list[str] = []
     for name, motion in items:
         with collected(faults):
             checked_motion(motion, f"motion {name}: ")
@@ -359,7 +359,7 @@ def columns_by_name(columns: Any, who: str) -> dict[str | int, Column]:
             items = [(0, columns)]
     if not items:
         raise InputError(f"{who}: columns is empty; give at least one Column")
-    faults = []
+    faults: list[str] = []
     for name, column in items:
         with collected(faults):
             checked_column(column, f"{who}: {name}: ")

@@ -87,9 +87,9 @@ class Uncertain:
         faults = []
         if not callable(self.make):
             faults.append("uncertain: make must be a function that returns a Column")
-        _arguments.instance(self.variables, "uncertain: variables", Mapping)
-        if self.correlation is not None:
-            _arguments.instance(self.correlation, "uncertain: correlation", Mapping)
+        for name, given in (("variables", self.variables), ("correlation", self.correlation or {})):
+            if not isinstance(given, Mapping):
+                raise InputError(f"uncertain: {name} = {_arguments.shown(given)} must be a Mapping")
         if not self.variables:
             faults.append("uncertain: variables is empty; give at least one distribution")
         for name, distribution in self.variables.items():
@@ -114,7 +114,7 @@ class Uncertain:
             i, j = names.index(pair[0]), names.index(pair[1])
             matrix[i, j] = matrix[j, i] = _arguments.number(value, f"correlation of {pair}")
         try:
-            return np.linalg.cholesky(matrix)
+            return np.asarray(np.linalg.cholesky(matrix), dtype=np.float64)
         except np.linalg.LinAlgError:
             raise InputError(
                 "uncertain: the correlations contradict each other; their matrix must be positive "

@@ -128,8 +128,8 @@ def find_layout(
     at = begin if _is_count(whole, begin, s) else begin - 1
     if header is None and columns in (2, 3) and _is_count(whole, at, s):
         # The format of the PEER database: a title, the number of rows, the rows.
-        names, units = ("displacement", "force", "axial_load"), ("mm", "kN", "kN")
-        return Layout(s, d, at + 1, names[:columns], units[:columns])
+        quantities = ("displacement", "force", "axial_load")
+        return Layout(s, d, at + 1, quantities[:columns], ("mm", "kN", "kN")[:columns])
     names, units = _head([line for line in lines[:begin] if line.strip()], s, columns)
     return Layout(s, d, begin, names, units)
 
@@ -338,7 +338,7 @@ def read_test(
         _check_sizes(d, f, given, length, where)
         _check_offset(d, f, zero, where)
         _check_order(d, f, where)
-    lengths = {"length": math.nan if length is None else length, "measured_length": measured_length}
+    span = math.nan if length is None else length
     try:
         load = math.nan if axial_load is None else _arguments.number(axial_load, "axial_load")
         force = net_force(
@@ -348,21 +348,24 @@ def read_test(
             axial_load=load,
             top_length=top_length,
             bottom_length=bottom_length,
-            **lengths,
+            length=span,
+            measured_length=measured_length,
         )
     except InputError as error:
         raise InputError(f"{where}: {error}") from error
     top = 0.0 if code == 4 else top_length or 0.0
     return MeasuredTest(
         name=name or Path(read).stem,
-        displacement=d.copy() if length is None else top_displacement(d, **lengths),
+        displacement=d.copy()
+        if length is None
+        else top_displacement(d, length=length, measured_length=measured_length),
         force=force,
         measured_displacement=d,
         measured_force=f,
-        length=lengths["length"],
+        length=span,
         axial_load=load,
         pdelta_code=code,
-        axial_height=lengths["length"] + top,
+        axial_height=span + top,
     )
 
 

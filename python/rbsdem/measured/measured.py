@@ -233,8 +233,6 @@ def read_peer(
     InputError
         If the file cannot be read; the message names file, line and remedy.
     """
-    units = (
-        "" if unit is None else _arguments.text(unit, name)
-        for name, unit in (("length", length), ("force", force))
-    )
-    return PeerTest(*_core.read_history(path, *units))
+    lengths = "" if length is None else _arguments.text(length, "length")
+    forces = "" if force is None else _arguments.text(force, "force")
+    return PeerTest(*_core.read_history(path, lengths, forces))

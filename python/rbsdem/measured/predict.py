@@ -11,7 +11,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, NamedTuple, TypeAlias, overload
+from typing import Any, TypeAlias, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -33,7 +33,7 @@ from rbsdem.model.column import Column
 from rbsdem.results.result import Result, cyclic
 from rbsdem.section.columns import DEFAULT, model_name
 from rbsdem.section.parameters import parameters
-from rbsdem.section.spread import Spread, has_bands, spread
+from rbsdem.section.spread import has_bands, spread
 
 __all__ = ["PredictionOptions", "name_of", "predict", "predict_one"]
 
@@ -319,7 +319,7 @@ def _path(displacement: ArrayLike) -> list[float]:
     path = _arguments.finite_vector(displacement, "displacement")
     if path.size < 2 or not np.any(np.diff(path)):
         raise InputError("displacement: the path does not change; give one that does")
-    return path.tolist()
+    return [float(value) for value in path]
 
 
 def _near(near: Near | None, specimen: Specimen | None = None) -> Sequence[Specimen | Prediction]:
@@ -407,75 +407,62 @@ def predict_one(
     path = np.array(how.displacement) if test is None else test.displacement
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        done = _analyse(specimen, path, model, how, options)
-    status, error, comparison = done.status, done.error, None
+        row, result = _analyse(Prediction(specimen, name, "completed"), path, model, how, options)
     if test is not None:
-        comparison = compare(done.result, test)
-        if status == "completed" and comparison.path_fraction < 1:
-            status, error = "stopped", f"the forces end at row {comparison.rows}"
-    return Prediction(
-        specimen,
-        name,
-        status,
-        error=error,
-        note="; ".join(dict.fromkeys(str(warning.message) for warning in caught)),
-        seconds_model=done.seconds[0],
-        seconds_analysis=done.seconds[1],
-        comparison=comparison,
-        band=done.band,
-        remarks=done.remarks,
-        limit_states=done.limit_states,
-    )
-
-
-class _Analysed(NamedTuple):
-    """What came of an analysis; without one the result is NaN."""
-
-    status: str
-    error: str
-    result: Any
-    seconds: tuple[float, float]
-    band: Spread | None
-    remarks: tuple[str, ...]
-    limit_states: dict[str, float] | None
+        comparison = compare(result, test)
+        row = replace(row, comparison=comparison)
+        if row.status == "completed" and comparison.path_fraction < 1:
+            row = replace(row, status="stopped", error=f"the forces end at row {comparison.rows}")
+    return replace(row, note="; ".join(dict.fromkeys(str(warning.message) for warning in caught)))
 
 
 def _analyse(
-    specimen: Specimen, path: Array, model: Model, how: PredictionOptions, options: dict[str, Any]
-) -> _Analysed:
-    nothing = path, np.full(path.size, np.nan)
-    begin = built = end = time.perf_counter()
-    band: Spread | None = None
-    remarks: tuple[str, ...] = ()
+    row: Prediction, path: Array, model: Model, how: PredictionOptions, options: dict[str, Any]
+) -> tuple[Prediction, Any]:
+    """Return the row of a test with what came of its analysis, and the result; NaN without one."""
+    result: Any = path, np.full(path.size, np.nan)
+    status, error = "failed", ""
+    column: Any = None
+    begin = built = time.perf_counter()
     try:
         if callable(model):
-            column = model(specimen, **options)
+            column = model(row.specimen, **options)
         else:
-            column = column_of(specimen, model, **options)
-        built = end = time.perf_counter()
-        remarks = getattr(column, "outside", ())
+            column = column_of(row.specimen, model, **options)  # type: ignore[call-overload]
+        built = time.perf_counter()
         result = cyclic(column, displacement=path)
-        status, error = "completed", ""
+        status = "completed"
     except SolveError as stop:
-        known = stop.result is not None
-        status, error, result = "stopped" if known else "failed", str(stop), stop.result or nothing
+        error = str(stop)
+        if stop.result is not None:
+            status, result = "stopped", stop.result
     except RbsdemError as fault:
-        status, error, result = "failed", str(fault), nothing
+        error = str(fault)
     except Exception as fault:
         # A fault in one model is a row of the table and does not end the others.
-        status, error, result = "failed", f"{type(fault).__name__}: {fault}", nothing
+        error = f"{type(fault).__name__}: {fault}"
     states = None
     if how.limit_states and isinstance(result, Result):
         states = {state.name: abs(state.drift) for state in result.limit_states()}
     end = time.perf_counter()
+    band = None
     if how.bands and status != "failed":
         band = spread(column, path, samples=how.samples)
-    built = max(built, begin)
-    return _Analysed(status, error, result, (built - begin, end - built), band, remarks, states)
+    row = replace(
+        row,
+        status=status,
+        error=error,
+        seconds_model=built - begin,
+        seconds_analysis=end - built,
+        band=band,
+        remarks=getattr(column, "outside", ()),
+        limit_states=states,
+    )
+    return row, result
 
 
 def name_of(model: Model, options: dict[str, Any]) -> str:
     """Return the name of the model, with the version of its parameters."""
     if callable(model):
-        return getattr(model, "__name__", repr(model))
+        return str(getattr(model, "__name__", repr(model)))
     return model_name(model, options.get("model_parameters"))

@@ -106,8 +106,8 @@ class PredictionStore:
                 comparison = compare((test.displacement, _unpacked(line["model_force"])), test)
             band = _band_of(line["band"]) if "band" in line else None
             remarks = tuple(str(text) for text in line["remarks"])
-            texts = {name: str(line[name]) for name in _TEXTS}
-            times = {name: float(line[name]) for name in _TIMES}
+            values: dict[str, Any] = {name: str(line[name]) for name in _TEXTS}
+            values |= {name: float(line[name]) for name in _TIMES}
             states = line["limit_states"]
             if states is not None:
                 states = {str(name): float(drift) for name, drift in states.items()}
@@ -120,8 +120,7 @@ class PredictionStore:
             band=band,
             remarks=remarks,
             limit_states=states,
-            **texts,
-            **times,
+            **values,
         )
 
 
@@ -142,15 +141,11 @@ def _band_line(band: Spread) -> dict[str, Any]:
 
 
 def _band_of(line: dict[str, Any]) -> Spread:
-    curves = {name: _unpacked(line[name]) for name in _CURVES}
-    intervals = {name: Interval(*(float(value) for value in line[name])) for name in _INTERVALS}
-    return Spread(
-        **curves,
-        **intervals,
-        samples=np.empty((0, curves["force"].size)),
-        **{name: float(line[name]) for name in _SHARES},
-        remarks=tuple(str(text) for text in line["remarks"]),
-    )
+    values: dict[str, Any] = {name: _unpacked(line[name]) for name in _CURVES}
+    values |= {name: Interval(*map(float, line[name])) for name in _INTERVALS}
+    values |= {name: float(line[name]) for name in _SHARES}
+    samples = np.empty((0, values["force"].size))
+    return Spread(**values, samples=samples, remarks=tuple(map(str, line["remarks"])))
 
 
 def _key(specimen: Specimen, given: bytes) -> str:

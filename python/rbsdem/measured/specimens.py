@@ -649,7 +649,7 @@ def _values(row: dict[str, str | None], columns: dict[str, _Column], where: str)
 
 def _condition(wanted: Any) -> Callable[[Any], bool]:
     if callable(wanted):
-        return wanted
+        return lambda value: bool(wanted(value))
     if isinstance(wanted, Collection) and not isinstance(wanted, str):
         return lambda value: value in wanted
     return lambda value: value == wanted
