@@ -234,7 +234,7 @@ def test_double_curvature_in_time_is_the_whole_column(post):
     given["loading"] = {"kind": "synthetic", "seed": 3, "scale": 0.8}
     (answer,) = post("loops", state=given)["columns"]
     column = rbsdem.section.column(section(), 3.2, axial_load=744e3, top="fixed")
-    motion = rbsdem.motions.shaping(1, 3, dt=0.01)[0].scaled(0.8)
+    motion = rbsdem.motions.synthetic(1, 3, dt=0.01)[0].scaled(0.8)
     result = rbsdem.time_history(
         replace(column, top_mass=744e3 / 9.80665),
         motion.time,
@@ -323,7 +323,7 @@ def test_other_shapes(post, shape):
 
 
 def test_records_are_texts_and_scales_follow(post):
-    motion = rbsdem.motions.shaping(1)[0]
+    motion = rbsdem.motions.synthetic(1)[0]
     text = "time_s,acceleration_m/s2\n" + "".join(
         f"{0.01 * i:.2f},{value:.6e}\n" for i, value in enumerate(motion.acceleration[:400])
     )

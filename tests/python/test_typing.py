@@ -70,7 +70,7 @@ made = rbsdem.Column(1.6, 614.4, springs.shear, springs.flexure)
 drawn = rbsdem.section.column(section, 1.6, axial_load=744e3)
 print(pushed(made).summary["status"], pushed(drawn).force[-1])
 
-record = rbsdem.motions.shaping(2)[0]
+record = rbsdem.motions.synthetic(2)[0]
 quake = rbsdem.GroundMotion(record.acceleration[:500], record.dt, "part").scaled(pga=2.0)
 print(quake.time[-1], quake.pgv, quake.spectrum([0.5]).pseudo_acceleration[0] + 1.0)
 swayed = rbsdem.time_history(pier, ground_acceleration=quake)
@@ -100,7 +100,7 @@ SLIPS = [
     ("rbsdem.Column(1.6, 1.0, s, s, axial=s)", "call-arg"),
     ("rbsdem.cyclic(c, displacement=[0.1]).forces", "attr-defined"),
     ('rbsdem.matrices(c, "papers")', "arg-type"),
-    ('rbsdem.ida(c, rbsdem.motions.shaping(), intensity="sa")', "arg-type"),
+    ('rbsdem.ida(c, rbsdem.motions.synthetic(), intensity="sa")', "arg-type"),
 ]
 
 
