@@ -106,7 +106,7 @@ function showLoops() {
 
 function showStatus() {
   const words = [], bands = beside("bands");
-  if (latest && latest.key === keyOf(state) && latest.key !== stood.loops?.key) words.push(stood.loops ? "The input is refused: what stands here is of the last one that was possible" : "");
+  if (latest && latest.key === keyOf(state) && latest.key !== stood.loops?.key) words.push(stood.loops ? "The input is refused; the results shown belong to the last valid input" : "");
   else {
     loops().forEach((loop, i) => {
       const name = loops().length > 1 ? `${stood.loops.state.columns[i].name}: ` : "";
@@ -116,7 +116,7 @@ function showStatus() {
     if (!isMotion() && words.length) {
       if (bands?.some(band => band.lower)) words.push("shaded: the band of 80 % of left-out tests");
       else if (bands) words.push(bands[0].none ?? "");
-      else if (!fixed) words.push("the band follows");
+      else if (!fixed) words.push("computing the band");
     }
   }
   get("loopstate").textContent = defect || words.filter(Boolean).join(" · ");
@@ -141,7 +141,7 @@ function showTime() {
   timeChart(get("timefigure"), of, loops());
   scaleChart(get("scalefigure"), of, scales);
   get("scales").hidden = of.columns.every(one => "case" in one);
-  get("scalestate").textContent = scales.some(one => one.scales) ? "Crosses: collapse or axial failure" : "Other scales of the motion follow";
+  get("scalestate").textContent = scales.some(one => one.scales) ? "Crosses: collapse or axial failure" : "Computing other scales of the motion";
 }
 
 function showSections() {

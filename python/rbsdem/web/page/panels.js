@@ -119,7 +119,7 @@ export function stateTables(host, below, state, loops, bands, system) {
     const found = loops.map((_, i) => reached.find(at => at.name === name && at.i === i)), first = found.find(Boolean);
     return { sign: signOf(name), cells: [nameOfState(name), ...found.flatMap(numbers), { text: first.source }] };
   });
-  const heads = ["First reached", ...loops.flatMap((_, i) => [(two ? names[i] + ", " : "") + "drift %", `d ${length}`, `F ${unit}`]), "by"];
+  const heads = ["First reached", ...loops.flatMap((_, i) => [(two ? names[i] + ", " : "") + "drift %", `d ${length}`, `F ${unit}`]), "criterion"];
   host.replaceChildren(rows.length ? table(heads, rows, "") : element("p", { className: "empty" }, "None is reached."));
   const facts = [];
   const add = (what, key, dimension, digits = 4) => {
@@ -135,7 +135,7 @@ export function stateTables(host, below, state, loops, bands, system) {
   add("drift at 20 % loss", "drift_at_loss", "drift", 3);
   add("residual drift", "residual_drift", "drift", 3);
   add("work of the springs", "energy", "energy");
-  below.replaceChildren(table(["", ...names], facts, bands?.some(band => band?.lower) ? "In brackets: 80 % of left-out tests" : ""));
+  below.replaceChildren(table(["", ...names], facts, bands?.some(band => band?.lower) ? "In brackets: 80 % prediction interval" : ""));
 }
 
 const CODE_UNITS = { "N": "force", "N m": "moment", "m": "length", "rad": "drift", "drift": "drift", "1/m": "curvature", "": "number" };
