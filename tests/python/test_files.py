@@ -24,7 +24,14 @@ def names(folder: Path) -> list[str]:
 
 def test_no_module_opens_a_file_for_writing_but_this_one():
     """A table or a figure that is written in another way would follow links and be half of one."""
-    ways = ('open("w', ".write_text(", ".write_bytes(", "savefig(", "savetxt(where", "frame.to_csv(")
+    ways = (
+        'open("w',
+        ".write_text(",
+        ".write_bytes(",
+        "savefig(",
+        "savetxt(where",
+        "frame.to_csv(",
+    )
     for path in SOURCES.rglob("*.py"):
         text = path.read_text(encoding="utf-8")
         found = [way for way in ways if way in text]
