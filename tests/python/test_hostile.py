@@ -224,7 +224,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         rbsdem.CircularSection,
         {"diameter": 1.0, "concrete": CONCRETE, "layout": LAYOUT, "cover": 0.03, "wall": 0.2},
     ),
-    "section.diagram": (rbsdem.section.curvature, {"section": SECTION, "axial_load": 5e5}),
+    "section.diagram": (rbsdem.section.diagram, {"section": SECTION, "axial_load": 5e5}),
     "section.moment_curvature": (
         rbsdem.section.moment_curvature,
         {"section": SECTION, "curvature": [0.001], "axial_load": 5e5},
@@ -247,7 +247,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         {"section": SECTION, "height": 1.6, "axial_load": 5e5},
     ),
     "section.shear_diagram": (
-        rbsdem.section.shear,
+        rbsdem.section.shear_diagram,
         {"section": SECTION, "length": 1.6, "axial_load": 5e5},
     ),
     "section.shear_strength": (

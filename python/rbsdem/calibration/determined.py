@@ -191,7 +191,7 @@ def _derivative(misfit: Misfit, places: Array, vector: Array, i: int, step: floa
         known.append((places[i], vector))
     if len(known) < 2 or known[0][0] == known[1][0]:
         return np.zeros(vector.size)
-    return (known[1][1] - known[0][1]) / (known[1][0] - known[0][0])
+    return np.asarray((known[1][1] - known[0][1]) / (known[1][0] - known[0][0]))
 
 
 def _inverse(jacobian: Array) -> Array:
@@ -199,7 +199,8 @@ def _inverse(jacobian: Array) -> Array:
     scale = np.sqrt(np.sum(jacobian**2, axis=0))
     scaled = jacobian / scale
     values, vectors = np.linalg.eigh(scaled.T @ scaled)
-    return (vectors / np.maximum(values, 1e-12)) @ vectors.T / np.outer(scale, scale)
+    inverse = (vectors / np.maximum(values, 1e-12)) @ vectors.T
+    return np.asarray(inverse / np.outer(scale, scale))
 
 
 def _groups(misfit: Misfit, vector: Array) -> Array:

@@ -24,7 +24,7 @@ class Parameters:
         self.recipe = is_recipe(column)
         if not self.recipe:
             checked_column(column, "calibrate: ")
-        self.column = column
+        self.column: Any = column  # with `parameters`, if it has a recipe
         self.ways = {} if self.recipe else paths.paths(column)
 
     @property
@@ -41,13 +41,14 @@ class Parameters:
     def start(self, name: str) -> float:
         """Return the value of a parameter in the column."""
         if self.recipe:
-            return self.column.parameters[name].value
+            return float(self.column.parameters[name].value)
         return paths.value_at(self.column, self.ways[name])
 
     def build(self, values: Mapping[str, float]) -> Column:
         """Return the column with other values, or raise `InputError` if it is refused."""
         if self.recipe:
-            return self.column.with_parameters(**values)
+            changed: Column = self.column.with_parameters(**values)
+            return changed
         return paths.with_values(self.column, self.ways, values)
 
     def accepts(self, values: Mapping[str, float]) -> bool:

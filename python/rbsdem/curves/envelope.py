@@ -245,8 +245,9 @@ def _idealise(x: Array, y: Array, method: str, end: float | None = None) -> Idea
         points = (at, y[top], max(at, ultimate), y[top])
     else:
         points = _equal_energy(*_up_to(x, y, ultimate), float(y[top]))
-    numbers = tuple(float(value) for value in points)
-    return Idealisation(method, _SOURCES[method], *numbers, ultimate, lost)
+    at, force, end_at, end_force = (float(value) for value in points)
+    source = _SOURCES[method]
+    return Idealisation(method, source, at, force, end_at, end_force, ultimate, lost)
 
 
 def _crossing(x: Array, y: Array, level: float, *, falling: bool = False) -> float:

@@ -124,7 +124,7 @@ class PathPoints:
             A value for each row of the driver.
         """
         before = curve[self.before]
-        return before + self._share * (curve[self._after] - before)
+        return np.asarray(before + self._share * (curve[self._after] - before))
 
     def reached(self, rows: int) -> np.ndarray:
         """Return which points lie within the first `rows` rows, as an array of bool."""

@@ -101,8 +101,8 @@ def _envelope(x: Array, y: Array, turns: np.ndarray) -> tuple[Array, Array, Arra
                 ys.append(np.array([most]))
     if len(places) == 1:
         return places[0], xs[0], ys[0]
-    place, order = np.unique(np.concatenate(places), return_index=True)
-    return place, np.concatenate(xs)[order], np.concatenate(ys)[order]
+    rows, order = np.unique(np.concatenate(places), return_index=True)
+    return rows, np.concatenate(xs)[order], np.concatenate(ys)[order]
 
 
 def _largest_beyond(

@@ -38,8 +38,6 @@ _COLUMNS = {
     "energy": "energy",
     "response_rms": "history",
     "wall_time_ratio": "time_ratio",
-    "status": "status",
-    "reason": "reason",
 }
 
 #: Cost of twice the bodies: twice the work of a step, and a stable step of less than half.
@@ -122,10 +120,12 @@ class Physics:
             [
                 *(getattr(effect, name) for name in _COLUMNS.values()),
                 {True: "yes", False: "no", None: ""}[effect.matters],
+                effect.status,
+                effect.reason,
             ]
             for effect in self.effects
         ]
-        return pandas.DataFrame(rows, columns=[*_COLUMNS, "matters"])
+        return pandas.DataFrame(rows, columns=[*_COLUMNS, "matters", "status", "reason"])
 
 
 class Variant(NamedTuple):

@@ -221,15 +221,15 @@ def four_panels(
     if not 1 <= len(panels) <= 4:
         raise InputError(f"four_panels: {len(panels)} panels; give one to four")
     from matplotlib.figure import Figure  # noqa: PLC0415
+    from matplotlib.layout_engine import ConstrainedLayoutEngine  # noqa: PLC0415
 
     rows = 1 if len(panels) <= 2 else 2
     with style():
         # Not through pyplot: a script that draws many figures then keeps none of them open.
         figure = Figure(
             figsize=(FIGURE_SIZE[0], FIGURE_SIZE[1] * (rows / 2 + 0.04 * (2 - rows))),
-            layout="constrained",
+            layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.05, wspace=0.04, hspace=0.03),
         )
-        figure.get_layout_engine().set(w_pad=0.06, h_pad=0.05, wspace=0.04, hspace=0.03)
         grid = figure.subplots(rows, 2, squeeze=False).ravel()
         for ax in grid[len(panels) :]:
             ax.remove()
@@ -507,9 +507,14 @@ def _dress(ax: Axes, height: float | None) -> None:
         if any(child.get_gid() == "drift" for child in ax.child_axes):
             return
         share = 0.1 / height  # per cent of a height in m, of a displacement in mm
-        top = ax.secondary_xaxis(
-            "top", functions=(lambda d: d * share, lambda drift: drift / share), gid="drift"
-        )
+
+        def drift_of(displacement: Any) -> Any:
+            return displacement * share
+
+        def displacement_of(drift: Any) -> Any:
+            return drift / share
+
+        top = ax.secondary_xaxis("top", functions=(drift_of, displacement_of), gid="drift")
         top.xaxis.set_major_locator(MaxNLocator(nbins=9, symmetric=True, steps=[1, 2, 5, 10]))
         # In the letters of the axes below, wherever those come from.
         top.set_xlabel("Drift ratio (%)", fontproperties=ax.xaxis.label.get_fontproperties())

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 __all__ = ["band_sheet", "contact_sheet", "prediction", "spread"]
 
-_MEDIAN_LINE = {"color": "0.45", "linestyle": ":", "linewidth": 0.8, "zorder": 2}
+_MEDIAN_LINE: dict[str, Any] = {"color": "0.45", "linestyle": ":", "linewidth": 0.8, "zorder": 2}
 
 #: Sheets of bands: most cells beside each other, and their size [inches].
 _BAND_COLUMNS = 8

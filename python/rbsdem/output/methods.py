@@ -161,7 +161,8 @@ def save(study: MethodStudy, path: Path, title: str) -> Path | None:
     with style():
         ax.set_title(title, loc="left")
         write_figure(ax, path, dpi=200)
-    plt.close(ax.figure)
+    figure: Any = ax.figure
+    plt.close(figure)
     return path
 
 

@@ -53,10 +53,10 @@ EVENT_MARKS: dict[str, dict[str, Any]] = {
 }
 """Markers of the events."""
 
-_OUTLINE = {"facecolor": "0.93", "edgecolor": "black", "linewidth": 0.8}
-_TIE = {"facecolor": "0.35", "linewidth": 0.0}
-_INSIDE = {"facecolor": "0.93", "linewidth": 0.0}
-_BAR = {"facecolor": "black", "edgecolor": "black", "linewidth": 0.0}
+_OUTLINE: dict[str, Any] = {"facecolor": "0.93", "edgecolor": "black", "linewidth": 0.8}
+_TIE: dict[str, Any] = {"facecolor": "0.35", "linewidth": 0.0}
+_INSIDE: dict[str, Any] = {"facecolor": "0.93", "linewidth": 0.0}
+_BAR: dict[str, Any] = {"facecolor": "black", "edgecolor": "black", "linewidth": 0.0}
 
 _NAMES = {
     "aci318": "ACI 318-19, nominal",
@@ -153,6 +153,7 @@ def section_springs(springs: SectionSprings) -> Figure:
         panels = 1 if springs.shear_fit is None else 2
         figure = Figure(figsize=(3.5 * panels, 2.9), layout="constrained")
         axes = figure.subplots(1, panels, squeeze=False)[0]
+        assert events.ultimate is not None
         if springs.shear_fit is not None:
             found = shear.shear_diagram(
                 drawing,
@@ -164,9 +165,13 @@ def section_springs(springs: SectionSprings) -> Figure:
             shear_diagram(found, spring=springs.shear_fit, ax=axes[0])
         ax = axes[-1]
         load, last = springs.axial_load, 1.1 * events.ultimate.curvature
-        points = (events.cracking, events.yielding, events.ultimate)
-        line = np.array([(0.0, 0.0)] + [(1e3 * p.curvature, p.moment / 1e3) for p in points])
-        ax.plot(*line.T, **TEST_LINE, label="Spring")
+        points = [p for p in (events.cracking, events.yielding, events.ultimate) if p]
+        ax.plot(
+            [0.0, *(1e3 * p.curvature for p in points)],
+            [0.0, *(p.moment / 1e3 for p in points)],
+            **TEST_LINE,
+            label="Spring",
+        )
         curvature = last * np.linspace(0.0, 1.0, 150) ** 2
         for tension, look, label in (
             ("ts", {**MODEL_LINE, "color": "0.6"}, "Tension stiffening"),

@@ -32,7 +32,7 @@ __all__ = [
     "style_of",
 ]
 
-RC: dict[str, Any] = {
+RC: dict[Any, Any] = {
     "font.family": "STIXGeneral",
     "font.size": 9.0,
     "mathtext.fontset": "stix",

@@ -99,10 +99,11 @@ def table(
         For ``rich.print``.
     """
     import rich.box  # noqa: PLC0415
+    from pandas import DataFrame  # noqa: PLC0415
     from pandas.api.types import is_numeric_dtype  # noqa: PLC0415
     from rich.table import Table  # noqa: PLC0415
 
-    frame = record.to_frame() if hasattr(record, "to_frame") else record
+    frame = record if isinstance(record, DataFrame) else record.to_frame()
     if frame.index.name is not None:
         frame = frame.reset_index()
     units = [str(unit) for unit in frame["unit"]] if "unit" in frame else None

@@ -226,4 +226,5 @@ def _answer(run: Response, times: np.ndarray, driven: bool) -> Answer:
         wanted = times[times <= time[-1]]
         histories = [at_times(wanted, time, values) for values in histories]
         time = wanted
-    return Answer(time, *histories, run.summary["status"])
+    response, moment, taken = histories
+    return Answer(time, response, moment, taken, run.summary["status"])

@@ -172,14 +172,19 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     if "damping" in found:
         column["damping"] = Damping(**_core.typed("damping", found["damping"]))
     column = {"mass": None} | column
-    loads = (np.ascontiguousarray(values[:, i]) if acting[i] else None for i in range(len(_DRIVES)))
+    loads = {
+        name: np.ascontiguousarray(values[:, i]) if acting[i] else None
+        for i, name in enumerate(_DRIVES)
+    }
     return Case(
-        found.get("case", {}).get("title", ""),
-        layered_column(recipe_of(groups), column) if "drawing" in groups else Column(**column),
-        settings.pop("method"),
-        time,
-        *loads,
-        settings,
+        title=found.get("case", {}).get("title", ""),
+        column=layered_column(recipe_of(groups), column)
+        if "drawing" in groups
+        else Column(**column),
+        method=settings.pop("method"),
+        time=time,
+        **loads,
+        settings=settings,
     )
 
 
