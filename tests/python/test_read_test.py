@@ -235,3 +235,17 @@ def test_checks_against_tests_of_the_database(peer_folder):
     assert wrong["other"] == missed["sign"] == 0
     assert wrong["offset"] <= 0.06 * len(tests)
     assert missed["order"] <= 0.05 * len(tests)
+
+
+def test_units_of_a_history_are_given_as_of_a_test(tmp_path):
+    path = tmp_path / "t.csv"
+    path.write_text("displacement,force\n0,0\n1,2\n3,4\n")
+    for units, factors in {None: (1.0, 1.0), ("mm", "kN"): (1e-3, 1e3)}.items():
+        test = rbsdem.peer.read_peer(path, units=units)
+        assert test.displacement == pytest.approx([0.0, factors[0], 3 * factors[0]])
+        assert test.force == pytest.approx([0.0, 2 * factors[1], 4 * factors[1]])
+    for units in (("mm",), "mm", 3, ("mm", 1)):
+        with pytest.raises(InputError, match="units"):
+            rbsdem.peer.read_peer(path, units=units)
+    with pytest.raises(InputError, match="furlong"):
+        rbsdem.peer.read_peer(path, units=("furlong", "kN"))

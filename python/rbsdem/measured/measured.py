@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -205,12 +204,7 @@ class PeerTest:
     force: Array
 
 
-def read_peer(
-    path: str | os.PathLike[str],
-    *,
-    length: Literal["m", "mm", "cm", "in"] | None = None,
-    force: Literal["N", "kN", "MN", "kip"] | None = None,
-) -> PeerTest:
+def read_peer(path: str | os.PathLike[str], *, units: tuple[str, str] | None = None) -> PeerTest:
     """Read a history: the PEER text format (millimetres, kilonewtons), or a csv with a header.
 
     Parameters
@@ -218,10 +212,10 @@ def read_peer(
     path : path-like
         File with columns displacement [mm] and force [kN]; a csv may name other units, such as
         `displacement_m,force_N`.
-    length, force : str, optional
-        Units of the displacements and forces in the file: "m", "mm", "cm", "in" and "N", "kN",
-        "MN", "kip". The default is what the file says, else millimetres and kilonewtons for the
-        PEER format and SI for a csv.
+    units : pair of str, optional
+        Units of displacement and force in the file, as ``("mm", "kN")``: "m", "mm", "cm", "in" and
+        "N", "kN", "MN", "kip". The default is what the file says, else millimetres and kilonewtons
+        for the PEER format and SI for a csv.
 
     Returns
     -------
@@ -233,6 +227,11 @@ def read_peer(
     InputError
         If the file cannot be read; the message names file, line and remedy.
     """
-    lengths = "" if length is None else _arguments.text(length, "length")
-    forces = "" if force is None else _arguments.text(force, "force")
+    pair = ["", ""] if units is None else _arguments.several(units, "units", "two units")
+    if len(pair) != 2:
+        raise InputError(
+            f'units = {_arguments.shown(units)} must be those of displacement and force, as ("mm", '
+            '"kN")'
+        )
+    lengths, forces = (_arguments.text(unit, "units") for unit in pair)
     return PeerTest(*_core.read_history(path, lengths, forces))
