@@ -360,7 +360,7 @@ def cloud(
         Before the first run, with all that is wrong.
     """
     begin = time.perf_counter()
-    columns = columns_by_name(column, "cloud")
+    columns = columns_by_name(column)
     found = motions_by_name(motions)
     factors = _arguments.finite_vector(scales, "scales", shape="1 or m")
     if factors.size not in (1, len(found)) or not (factors > 0).all():

@@ -448,7 +448,7 @@ def ida(
         Before the first run, with all that is wrong.
     """
     begin = time.perf_counter()
-    columns = columns_by_name(column, "ida")
+    columns = columns_by_name(column)
     found = motions_by_name(motions)
     measure = make_intensity(intensity, next(iter(columns.values())), period, damping)
     settings: dict[str, Any] = {

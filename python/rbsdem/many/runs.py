@@ -15,9 +15,9 @@ from rbsdem._arguments import Array
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.many.ensemble import ensemble
-from rbsdem.many.inputs import collected, raise_faults
+from rbsdem.many.inputs import collected, named_columns, raise_faults
 from rbsdem.many.plan import FAULT_OF_MEASURE
-from rbsdem.model.column import Column, checked_column
+from rbsdem.model.column import Column
 from rbsdem.motions.motion import GroundMotion, checked_motion
 from rbsdem.solve.analysis import modes
 
@@ -346,25 +346,14 @@ class Collector:
 _KEPT = ("collapse_drift", "initial", "jobs", "progress", "store")
 
 
-def columns_by_name(columns: Any, who: str) -> dict[str | int, Column]:
+def columns_by_name(columns: Any) -> dict[str | int, Column]:
     """Return columns under their names; one column, a sequence, or a mapping."""
     if isinstance(columns, Column):
         return {"column": columns}
-    if isinstance(columns, Mapping):
-        items = list(columns.items())
-    else:
-        try:
-            items = list(enumerate(columns))
-        except TypeError:
-            items = [(0, columns)]
-    if not items:
-        raise InputError(f"{who}: columns is empty; give at least one Column")
     faults: list[str] = []
-    for name, column in items:
-        with collected(faults):
-            checked_column(column, f"{who}: {name}: ")
+    names, items = named_columns(columns, faults)
     raise_faults(faults)
-    return dict(items)
+    return dict(zip(names, items, strict=True))
 
 
 def checked_drift(collapse_drift: float) -> float:

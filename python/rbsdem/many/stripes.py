@@ -134,7 +134,7 @@ def stripes(
         Before the first run, with all that is wrong.
     """
     begin = time.perf_counter()
-    columns = columns_by_name(column, "stripes")
+    columns = columns_by_name(column)
     by_level = _by_level(motions)
     if by_level is None:
         if levels is None:
