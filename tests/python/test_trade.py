@@ -21,11 +21,9 @@ from rbsdem import compare_methods
 from rbsdem.cli import main
 from rbsdem.methods import scene
 from rbsdem.methods.answer import Setting
-from rbsdem.methods.outcome import MethodStudy
-from rbsdem.methods.path import reversals
 from rbsdem.methods.physics import split_bodies
-from rbsdem.methods.rows import seconds_text
-from rbsdem.methods.scene import make_scene
+from rbsdem.methods.rows import MethodStudy, seconds_text
+from rbsdem.methods.scene import make_scene, reversals
 from rbsdem.output.methods import report
 from rbsdem.output.tables import write_csv
 from rbsdem.results.accuracy import Answer, at_times, common_interval, errors_of

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import time
 import warnings
-from collections.abc import Mapping, Sequence
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,6 @@ from rbsdem.calibration.determined import (
 from rbsdem.calibration.misfit import LOSSES, Misfit, Target, forces
 from rbsdem.calibration.names import Parameters, free_parameters
 from rbsdem.calibration.outcome import Calibration, Fitted
-from rbsdem.calibration.progress import telling
 from rbsdem.calibration.search import Search
 from rbsdem.curves.scores import Comparison, compare
 from rbsdem.errors import AccuracyWarning, InputError
@@ -237,3 +236,25 @@ def _compared(column: Column, target: Target, start: Column) -> Comparison:
     force[: reached.size] = reached
     loop = target.displacement, force
     return compare(loop, target, height=getattr(start, "height", None))
+
+
+@contextmanager
+def telling(evaluations: int) -> Iterator[Callable[[int, float], None]]:
+    """Show on stderr the number of finished analyses and the best error so far."""
+    import rich.progress  # noqa: PLC0415
+    from rich.console import Console  # noqa: PLC0415
+
+    bar = rich.progress.Progress(
+        rich.progress.BarColumn(bar_width=20),
+        rich.progress.TextColumn("{task.completed:.0f} of at most {task.total:.0f} analyses"),
+        rich.progress.TextColumn("{task.description}"),
+        console=Console(stderr=True),
+        transient=True,
+    )
+    with bar:
+        task = bar.add_task("", total=evaluations)
+
+        def told(done: int, best: float) -> None:
+            bar.update(task, completed=min(done, evaluations), description=f"nrmse {best:.4f}")
+
+        yield told

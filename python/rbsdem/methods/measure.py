@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -13,11 +13,9 @@ from rbsdem import _arguments
 from rbsdem.errors import InputError, SolveError
 from rbsdem.methods.answer import Run
 from rbsdem.methods.ladder import Budget, checked_methods, climb, ladders, own_setting, probe
-from rbsdem.methods.outcome import MethodStudy
 from rbsdem.methods.physics import Physics, find_physics
-from rbsdem.methods.progress import telling
 from rbsdem.methods.reference import Reference, find_reference
-from rbsdem.methods.rows import Row, choose, make_rows, third_method
+from rbsdem.methods.rows import MethodStudy, Row, choose, make_rows, third_method
 from rbsdem.methods.scene import Scene, make_scene
 from rbsdem.model.column import Column
 from rbsdem.model.springs import Spring
@@ -164,7 +162,7 @@ def _check(tolerance: float | None, budget: float, digits: float, repeats: int) 
 
 def _telling(progress: bool, clock: Budget) -> AbstractContextManager[Callable[[str], None]]:
     wanted = _arguments.switch(progress, "compare_methods: progress")
-    return telling(clock) if wanted else nullcontext(lambda text: None)
+    return _shown(clock) if wanted else nullcontext(lambda text: None)
 
 
 def _need_one(runs: Sequence[Run]) -> None:
@@ -194,3 +192,28 @@ def _notes(scene: Scene, rows: Sequence[Row], reference: Reference | None) -> li
     if scene.static and scene.column.kinematics != "finite":
         notes.append("the static path is exact; errors come from the points that are left out")
     return notes
+
+
+@contextmanager
+def _shown(clock: Budget) -> Iterator[Callable[[str], None]]:
+    """Show on stderr what is being done and how much of the budget is used.
+
+    Drawn between runs only, so that no thread disturbs what is timed.
+    """
+    import rich.progress  # noqa: PLC0415
+    from rich.console import Console  # noqa: PLC0415
+
+    bar = rich.progress.Progress(
+        rich.progress.BarColumn(bar_width=20),
+        rich.progress.TextColumn("{task.completed:.0f} of {task.total:.0f} s  {task.description}"),
+        console=Console(stderr=True),
+        auto_refresh=False,
+        transient=True,
+    )
+    with bar:
+        task = bar.add_task("", total=clock.seconds)
+
+        def told(text: str) -> None:
+            bar.update(task, completed=clock.used(), description=text, refresh=True)
+
+        yield told

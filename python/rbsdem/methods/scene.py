@@ -7,16 +7,16 @@ import time as clock
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError
 from rbsdem.methods.answer import Run, Setting
-from rbsdem.methods.path import along, reversals
 from rbsdem.model.column import Column, checked_column, without_notes
 from rbsdem.model.response import Response
 from rbsdem.results.accuracy import Answer, at_times
@@ -243,3 +243,22 @@ def make_scene(
         given = {name: np.interp(place, old, values) for name, values in given.items()}
         times = np.interp(place, old, times)
     return Scene(column, times, given, initial, collapse_drift)
+
+
+def reversals(path: Array) -> NDArray[np.intp]:
+    """Return the rows of the first and last points of a path and of those where it turns."""
+    moves = np.flatnonzero(np.diff(path))
+    signs = np.sign(np.diff(path)[moves])
+    turns = moves[1:][signs[1:] != signs[:-1]]
+    return np.unique(np.concatenate([[0], turns, [path.size - 1]]))
+
+
+def along(path: Array, kept: NDArray[np.intp]) -> Array:
+    """Return where the points of a path lie among those kept; 1.5 is between second and third."""
+    place = np.empty(path.size)
+    for leg, (first, last) in enumerate(pairwise(kept)):
+        length = path[last] - path[first]
+        part = path[first : last + 1] - path[first]
+        place[first : last + 1] = leg + (part / length if length else 0.0)
+    place[kept] = np.arange(kept.size)
+    return place

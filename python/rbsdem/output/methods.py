@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rbsdem._files import write_figure
 from rbsdem.errors import InputError
 from rbsdem.methods.ladder import LEVELS
-from rbsdem.methods.outcome import MethodStudy
+from rbsdem.methods.rows import MethodStudy
 from rbsdem.output.style import axes_or_new, line_of, style
 from rbsdem.output.tables import console, plain, table
 
