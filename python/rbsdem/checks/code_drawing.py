@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from rbsdem.errors import InputError
 from rbsdem.model.reinforcement import Bar
-from rbsdem.model.shape import Section
+from rbsdem.model.shape import Section, checked_section
 from rbsdem.section.ranges import carried_load, column_length
 
 __all__ = ["Quantities", "quantities"]
@@ -126,6 +126,7 @@ def quantities(section: Section, height: float, axial_load: float) -> Quantities
     InputError
         If a number is refused, or the section is hollow or has no bars near both faces.
     """
+    checked_section(section)
     span = column_length(height, "height")
     if section.hollow:
         raise InputError("code values: the formulas are for solid sections; this one is hollow")

@@ -143,10 +143,7 @@ def springs(
         symmetric.
     """
     checked_section(section)
-    if shear not in SHEAR:
-        raise InputError(
-            f"springs: shear = {shear!r} is not known; it is one of {', '.join(SHEAR)}"
-        )
+    _arguments.choice(shear, "springs: shear", SHEAR)
     confined = is_confined(section, confined)
     axial_load = _arguments.number(axial_load, "axial_load")
     hinge = hinge_length
