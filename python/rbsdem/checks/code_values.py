@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
-from rbsdem import _arguments
+from rbsdem import _package
 from rbsdem.checks import asce_41, ec_8, flexure, regressions
 from rbsdem.checks.code_drawing import Quantities, quantities
 from rbsdem.errors import InputError
 from rbsdem.model.shape import Section
-from rbsdem.section import strength
 from rbsdem.section.axial_moment import nominal_moment
+from rbsdem.section.strength import (
+    axial_failure_drift,
+    shear_failure_drift,
+    shear_strength_sezen,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    pass
 
 __all__ = ["CodeValue", "CodeValues", "code_values"]
 
@@ -121,193 +124,100 @@ def code_values(section: Section, height: float, axial_load: float) -> CodeValue
     InputError
         If the section has no bars near both faces, or a number is refused.
     """
-    _arguments.instance(section, "code_values: section", Section)
-    q = quantities(section, height, axial_load)
-    moment, source = _moment(section, q)
-    found = [*_yield(q, moment, source), *_asce_41(q, moment)]
-    if not q.round:
-        found += _ec_8(q)
-    found += _regressions(section, q, moment)
-    return CodeValues([value for value in found if math.isfinite(value.value)], q)
+    c = _Drawn(section, quantities(section, height, axial_load))
+    found = []
+    for row in _package.rows("code_values.csv"):
+        if not _COVERS[row["covers"]](c.q):
+            continue
+        value = _FORMULAS[row["name"]](c)
+        if math.isfinite(value):
+            source = (c.q.round and row["source_of_circles"]) or row["source"]
+            names = row["name"], row["meaning"]
+            confirmed = row["confirmed"] == "1"
+            found.append(CodeValue(*names, value, row["unit"], source, confirmed))
+    return CodeValues(found, c.q)
 
 
-def _moment(section: Section, q: Quantities) -> tuple[float, str]:
-    """Return the moment at which the backbones of codes yield [N mm], and its source.
+@dataclass(frozen=True)
+class _Drawn:
+    """A column as the formulas take it."""
 
-    The closed form is for rectangles; circles yield at their nominal moment, as codes have it.
-    """
-    if q.round:
-        return 1e3 * nominal_moment(section, q.load), "ACI 318-19, 22.2, nominal moment"
-    return flexure.yield_point(q)[1], "Panagiotakos, Fardis 2001, eqs 1-6"
+    section: Section
+    q: Quantities
 
+    @cached_property
+    def moment(self) -> float:
+        """Moment at which the backbones of codes yield [N mm].
 
-def _yield(q: Quantities, moment: float, source: str) -> list[CodeValue]:
-    found = [
-        CodeValue("yield.moment", "moment at yield", 1e-3 * moment, "N m", source),
-        CodeValue("yield.shear", "its shear force", moment / q.span, "N", source),
-    ]
-    if not q.round:
-        curvature = 1e3 * flexure.yield_point(q)[0]
-        found.append(CodeValue("yield.curvature", "curvature at yield", curvature, "1/m", source))
-    length = 1e-3 * flexure.hinge_length_priestley(q)
-    source = "Priestley, Calvi, Kowalsky 2007"
-    found.append(CodeValue("hinge.priestley", "length of the hinge", length, "m", source))
-    length = 1e-3 * flexure.hinge_length_paulay(q)
-    source = "Paulay, Priestley 1992"
-    return [*found, CodeValue("hinge.paulay", "length of the hinge", length, "m", source)]
+        The closed form is for rectangles; circles yield at their nominal moment, as codes have it.
+        """
+        if self.q.round:
+            return 1e3 * nominal_moment(self.section, self.q.load)
+        return self.yielding[1]
 
+    @cached_property
+    def yielding(self) -> tuple[float, float, float]:
+        """Curvature [1/mm], moment [N mm] and relative depth of the neutral axis at yield."""
+        return flexure.yield_point(self.q)
 
-def _asce_41(q: Quantities, moment: float) -> list[CodeValue]:
-    strength_ = asce_41.shear_strength(q)
-    found = [
-        CodeValue(
-            "asce_41.stiffness",
-            "E I_eff/(E_c I_g)",
-            asce_41.stiffness_ratio(q.axial_load_ratio),
-            "",
-            "ASCE 41-17, table 10-5",
-        ),
-        CodeValue("asce_41.shear", "shear strength", strength_, "N", "ASCE 41-17, 10.4.2.3.1"),
-    ]
-    if q.tie_ratio < 0.0005:
-        return found
-    ratio = moment / q.span / strength_
-    turned = asce_41.rotations(q.axial_load_ratio, q.tie_ratio, ratio, q.fc, q.fyt, circle=q.round)
-    table = "ASCE 41-17, table 10-9" if q.round else "ASCE 41-17, table 10-8"
-    for name, meaning, value, unit in (
-        ("a", "plastic rotation up to the loss of strength", turned.a, "rad"),
-        ("b", "plastic rotation up to the loss of axial load", turned.b, "rad"),
-        ("c", "residual strength ratio", turned.c, ""),
-        ("io", "immediate occupancy", turned.io, "rad"),
-        ("ls", "life safety", turned.ls, "rad"),
-        ("cp", "collapse prevention", turned.cp, "rad"),
-    ):
-        found.append(CodeValue(f"asce_41.{name}", meaning, value, unit, table))
-    return found
+    @property
+    def force(self) -> float:
+        """Shear force at yield [N]."""
+        return self.moment / self.q.span
+
+    @cached_property
+    def rotations(self) -> asce_41.Rotations:
+        """Plastic rotations of ASCE 41."""
+        q, ratio = self.q, self.force / asce_41.shear_strength(self.q)
+        given = q.axial_load_ratio, q.tie_ratio, ratio, q.fc, q.fyt
+        return asce_41.rotations(*given, circle=q.round)
+
+    @cached_property
+    def haselton(self) -> regressions.Haselton:
+        """The backbone of Haselton."""
+        return regressions.Haselton(self.q)
 
 
-def _ec_8(q: Quantities) -> list[CodeValue]:
-    cracked = ec_8.cracks_in_shear(q)
-    rows = (
-        ("yield", "chord rotation at yield", ec_8.yield_rotation(q, cracked=cracked), "A.10b"),
-        ("ultimate", "chord rotation capacity, mean", ec_8.ultimate_rotation(q), "A.1"),
-        ("plastic", "its plastic part, mean", ec_8.plastic_rotation(q), "A.3"),
-    )
-    found = [
-        CodeValue(f"ec_8.{name}", meaning, value, "rad", f"EN 1998-3:2005, ({equation})")
-        for name, meaning, value, equation in rows
-    ]
-    for name, ductility in (("shear", 0.0), ("shear_after_yield", 5.0)):
-        meaning = "shear strength, mean" + (", after yield" if ductility else "")
-        value = ec_8.shear_resistance(q, ductility)
-        found.append(CodeValue(f"ec_8.{name}", meaning, value, "N", "EN 1998-3:2005, (A.12)"))
-    return found
+#: What the values cover.
+_COVERS: dict[str, Callable[[Quantities], bool]] = {
+    "": lambda q: True,
+    "rectangle": lambda q: not q.round,
+    "ties": lambda q: q.tie_ratio >= 0.0005,
+    "hoops": lambda q: q.hoop_ratio > 0,
+    "round hoops": lambda q: q.hoop_ratio > 0 and q.round,
+}
 
-
-def _regressions(section: Section, q: Quantities, moment: float) -> list[CodeValue]:
-    haselton = regressions.Haselton(q)
-    force = moment / q.span
-    rows: list[tuple[str, str, float, str, str, bool]] = [
-        (
-            "elwood.stiffness",
-            "E I_eff/(E I_g)",
-            regressions.elwood_eberhard_stiffness(q),
-            "",
-            "Elwood, Eberhard 2009, eq 18",
-            True,
-        ),
-        (
-            "sezen.shear",
-            "shear strength",
-            strength.shear_strength_sezen(section, 1e-3 * q.span, q.load),
-            "N",
-            "Sezen, Moehle 2004",
-            True,
-        ),
-    ]
-    if not q.round:
-        rows += [
-            (
-                "elwood.shear_drift",
-                "drift at shear failure after yield",
-                strength.shear_failure_drift(section, force, q.load),
-                "drift",
-                "Elwood, Moehle 2005",
-                False,
-            ),
-            (
-                "elwood.axial_drift",
-                "drift at axial failure after shear failure",
-                strength.axial_failure_drift(section, q.load),
-                "drift",
-                "Elwood, Moehle 2005",
-                True,
-            ),
-        ]
-        for name, meaning, value, unit, equation in (
-            (
-                "cap",
-                "plastic rotation up to the cap",
-                haselton.capping_rotation,
-                "rad",
-                "2016, eq 5",
-            ),
-            ("post_cap", "rotation behind it", haselton.post_capping_rotation, "rad", "2016, eq 8"),
-            ("hardening", "M_c/M_y", haselton.hardening, "", "2008, eq 3.17"),
-            ("stiffness", "E I_y/(E I_g)", haselton.yield_stiffness, "", "2016"),
-            ("initial", "E I at 40 % of yield", haselton.initial_stiffness, "", "2016"),
-        ):
-            rows.append((f"haselton.{name}", meaning, value, unit, f"Haselton {equation}", True))
-    if q.hoop_ratio > 0:
-        rows += _buckling(q)
-    return [CodeValue(*row) for row in rows]
-
-
-def _buckling(q: Quantities) -> list[tuple[str, str, float, str, str, bool]]:
-    berry = "Berry, Eberhard"
-    rows: list[tuple[str, str, float, str, str, bool]] = [
-        (
-            "berry.spalling",
-            "drift at spalling",
-            regressions.berry_spalling_drift(q),
-            "drift",
-            f"{berry} 2003",
-            False,
-        ),
-        (
-            "berry.buckling",
-            "drift at bar buckling",
-            regressions.berry_buckling_drift(q),
-            "drift",
-            f"{berry} 2003",
-            False,
-        ),
-        (
-            "berry.rotation",
-            "plastic rotation at bar buckling",
-            regressions.berry_buckling_rotation(q),
-            "rad",
-            f"{berry} 2005",
-            True,
-        ),
-        (
-            "goodnight.strain",
-            "tensile strain before bar buckling",
-            regressions.goodnight_buckling_strain(q),
-            "",
-            "Goodnight, Kowalsky, Nau 2016",
-            True,
-        ),
-    ]
-    if q.round:
-        rows.append(
-            (
-                "goodnight.drift",
-                "drift before bar buckling",
-                regressions.goodnight_buckling_drift(q),
-                "drift",
-                "Goodnight, Kowalsky, Nau 2016",
-                True,
-            )
-        )
-    return rows
+_FORMULAS: dict[str, Callable[[_Drawn], float]] = {
+    "yield.moment": lambda c: 1e-3 * c.moment,
+    "yield.shear": lambda c: c.force,
+    "yield.curvature": lambda c: 1e3 * c.yielding[0],
+    "hinge.priestley": lambda c: 1e-3 * flexure.hinge_length_priestley(c.q),
+    "hinge.paulay": lambda c: 1e-3 * flexure.hinge_length_paulay(c.q),
+    "asce_41.stiffness": lambda c: asce_41.stiffness_ratio(c.q.axial_load_ratio),
+    "asce_41.shear": lambda c: asce_41.shear_strength(c.q),
+    "asce_41.a": lambda c: c.rotations.a,
+    "asce_41.b": lambda c: c.rotations.b,
+    "asce_41.c": lambda c: c.rotations.c,
+    "asce_41.io": lambda c: c.rotations.io,
+    "asce_41.ls": lambda c: c.rotations.ls,
+    "asce_41.cp": lambda c: c.rotations.cp,
+    "ec_8.yield": lambda c: ec_8.yield_rotation(c.q, cracked=ec_8.cracks_in_shear(c.q)),
+    "ec_8.ultimate": lambda c: ec_8.ultimate_rotation(c.q),
+    "ec_8.plastic": lambda c: ec_8.plastic_rotation(c.q),
+    "ec_8.shear": lambda c: ec_8.shear_resistance(c.q),
+    "ec_8.shear_after_yield": lambda c: ec_8.shear_resistance(c.q, 5.0),
+    "elwood.stiffness": lambda c: regressions.elwood_eberhard_stiffness(c.q),
+    "elwood.shear_drift": lambda c: shear_failure_drift(c.section, c.force, c.q.load),
+    "elwood.axial_drift": lambda c: axial_failure_drift(c.section, c.q.load),
+    "sezen.shear": lambda c: shear_strength_sezen(c.section, 1e-3 * c.q.span, c.q.load),
+    "haselton.cap": lambda c: c.haselton.capping_rotation,
+    "haselton.post_cap": lambda c: c.haselton.post_capping_rotation,
+    "haselton.hardening": lambda c: c.haselton.hardening,
+    "haselton.stiffness": lambda c: c.haselton.yield_stiffness,
+    "haselton.initial": lambda c: c.haselton.initial_stiffness,
+    "berry.spalling": lambda c: regressions.berry_spalling_drift(c.q),
+    "berry.buckling": lambda c: regressions.berry_buckling_drift(c.q),
+    "berry.rotation": lambda c: regressions.berry_buckling_rotation(c.q),
+    "goodnight.strain": lambda c: regressions.goodnight_buckling_strain(c.q),
+    "goodnight.drift": lambda c: regressions.goodnight_buckling_drift(c.q),
+}
