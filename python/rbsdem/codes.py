@@ -4,8 +4,8 @@
 """
 
 from rbsdem.checks.code_comparison import CodeComparison, compare
-from rbsdem.checks.code_drawing import Quantities, quantities
 from rbsdem.checks.code_values import CodeValue, CodeValues, code_values
+from rbsdem.checks.formulas import Quantities, quantities
 
 __all__ = [
     "CodeComparison",

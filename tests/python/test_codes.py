@@ -18,8 +18,8 @@ from rich.console import Console
 
 import rbsdem
 from rbsdem import InputError, plot
-from rbsdem.checks import asce_41, ec_8, flexure, regressions
-from rbsdem.checks.drifts import backbones, drift_at_loss, yield_drift
+from rbsdem.checks import formulas
+from rbsdem.checks.code_comparison import backbones, drift_at_loss, yield_drift
 from rbsdem.codes import code_values, compare, quantities
 from rbsdem.section.axial_moment import nominal_moment
 from rbsdem.springs import Bilinear, Elastic
@@ -47,16 +47,16 @@ C1 = quantities(SECTION, 1.5, 1750e3)
 
 
 def test_yield_and_hinges():
-    curvature, moment, deep = flexure.yield_point(C1)
+    curvature, moment, deep = formulas.yield_point(C1)
     assert (curvature, moment, deep) == pytest.approx((9.155112e-6, 625.599e6, 0.425770), rel=2e-6)
-    assert flexure.hinge_length_priestley(C1) == pytest.approx(506.0)
-    assert flexure.hinge_length_paulay(C1) == pytest.approx(373.0)
+    assert formulas.hinge_length_priestley(C1) == pytest.approx(506.0)
+    assert formulas.hinge_length_paulay(C1) == pytest.approx(373.0)
 
 
 def test_yield_in_compression_under_high_axial_load():
     """Equilibrium of the linear stresses of a section whose concrete is at 1.8 f'c/E_c."""
     q = replace(C1, load=5000e3)
-    curvature, moment, deep = flexure.yield_point(q)
+    curvature, moment, deep = formulas.yield_point(q)
     ec = 4700.0 * math.sqrt(35.0)
     axis = deep * q.d
     assert curvature * axis == pytest.approx(1.8 * 35.0 / ec)
@@ -71,19 +71,19 @@ def test_yield_in_compression_under_high_axial_load():
 
 
 def test_asce_41():
-    assert asce_41.stiffness_ratio(0.2) == pytest.approx(0.4)
-    assert [asce_41.stiffness_ratio(nu) for nu in (-0.1, 0.1, 0.5, 0.9)] == pytest.approx(
+    assert formulas.asce_41_stiffness(0.2) == pytest.approx(0.4)
+    assert [formulas.asce_41_stiffness(nu) for nu in (-0.1, 0.1, 0.5, 0.9)] == pytest.approx(
         [0.3, 0.3, 0.7, 0.7]
     )
-    shears = [asce_41.shear_strength(C1, ductility) for ductility in (1, 2, 4, 6, 9)]
+    shears = [formulas.asce_41_shear_strength(C1, ductility) for ductility in (1, 2, 4, 6, 9)]
     assert shears == pytest.approx([790.78e3, 790.78e3, 672.16e3, 553.55e3, 553.55e3], rel=1e-5)
     ratio = 417.066 / 790.78
-    found = asce_41.rotations(0.2, 0.00471239, ratio, 35.0, 460.0)
+    found = formulas.asce_41_rotations(0.2, 0.00471239, ratio, 35.0, 460.0)
     assert (found.a, found.b, found.c) == pytest.approx((0.0242384, 0.0453309, 0.16), rel=3e-6)
     assert (found.io, found.ls, found.cp) == pytest.approx(
         (0.0036358, 0.0226655, 0.0317316), rel=2e-5
     )
-    found = asce_41.rotations(0.2, 0.00471239, ratio, 35.0, 460.0, circle=True)
+    found = formulas.asce_41_rotations(0.2, 0.00471239, ratio, 35.0, 460.0, circle=True)
     assert (found.a, found.b) == pytest.approx((0.0346119, 0.0619302), rel=3e-6)
 
 
@@ -93,17 +93,17 @@ def test_asce_41():
     [(0.3, 0.0285, 0.0483333, 0.12), (0.6, 0.0156, 0.0178261, 0.0), (0.7, 0.0113, 0.0113, 0.0)],
 )
 def test_asce_41_under_high_axial_load(nu, a, b, c):
-    found = asce_41.rotations(nu, 0.01, 0.3, 50.0, 525.0)
+    found = formulas.asce_41_rotations(nu, 0.01, 0.3, 50.0, 525.0)
     assert (found.a, found.b, found.c) == pytest.approx((a, b, c), rel=2e-6)
 
 
 def test_ec_8():
-    assert ec_8.confinement_factor(C1) == pytest.approx(0.555983, rel=2e-6)
-    assert ec_8.ultimate_rotation(C1) == pytest.approx(0.0409424, rel=2e-6)
-    assert ec_8.plastic_rotation(C1) == pytest.approx(0.0315025, rel=2e-6)
-    assert ec_8.yield_rotation(C1, cracked=True) == pytest.approx(0.0100465, rel=1e-5)
-    assert ec_8.yield_rotation(C1, cracked=False) == pytest.approx(0.0089021, rel=1e-5)
-    shears = [ec_8.shear_resistance(C1, ductility) for ductility in (0, 2, 5, 9)]
+    assert formulas.ec_8_confinement(C1) == pytest.approx(0.555983, rel=2e-6)
+    assert formulas.ec_8_ultimate_rotation(C1) == pytest.approx(0.0409424, rel=2e-6)
+    assert formulas.ec_8_plastic_rotation(C1) == pytest.approx(0.0315025, rel=2e-6)
+    assert formulas.ec_8_yield_rotation(C1, cracked=True) == pytest.approx(0.0100465, rel=1e-5)
+    assert formulas.ec_8_yield_rotation(C1, cracked=False) == pytest.approx(0.0089021, rel=1e-5)
+    shears = [formulas.ec_8_shear_resistance(C1, ductility) for ductility in (0, 2, 5, 9)]
     assert shears == pytest.approx([758.58e3, 701.02e3, 614.69e3, 614.69e3], rel=1e-5)
 
 
@@ -140,7 +140,7 @@ def test_a_section_where_nothing_is_alike():
     it 485/3 mm on the sides. omega = (1963.5 500 + 402.1 300)/(300 540 30), omega' = 628.3
     420/(300 540 30).
     """
-    assert ec_8.confinement_factor(quantities(UNLIKE, 1.8, 600e3)) == pytest.approx(0.4831136)
+    assert formulas.ec_8_confinement(quantities(UNLIKE, 1.8, 600e3)) == pytest.approx(0.4831136)
     by_hand = {
         "yield.moment": 618627.75,
         "yield.curvature": 0.007822783,
@@ -179,7 +179,7 @@ def test_legs_and_sides_trade_places_together():
         section = rbsdem.RectangularSection(
             width, depth, rbsdem.Concrete(3e7), layout=bars, ties=ties, cover=0.03
         )
-        return ec_8.confinement_factor(quantities(section, 1.5, 5e5))
+        return formulas.ec_8_confinement(quantities(section, 1.5, 5e5))
 
     assert alpha(0.3, 0.6, 2, 4) == pytest.approx(alpha(0.6, 0.3, 4, 2))
     assert alpha(0.3, 0.6, 2, 4) > alpha(0.3, 0.6, 3, 3) > alpha(0.3, 0.6, 4, 2)
@@ -225,29 +225,29 @@ def test_values_have_no_jump_where_a_row_leaves_the_outermost():
 
 
 def test_regressions():
-    haselton = regressions.Haselton(C1)
+    haselton = formulas.Haselton(C1)
     assert haselton.capping_rotation == pytest.approx(0.0421693, rel=2e-6)
     assert haselton.post_capping_rotation == pytest.approx(0.0766593, rel=2e-6)
     assert haselton.hardening == pytest.approx(1.181551, rel=1e-6)
     assert haselton.yield_stiffness == pytest.approx(0.252549, rel=2e-6)
     assert haselton.initial_stiffness == pytest.approx(0.471357, rel=2e-6)
-    assert regressions.elwood_eberhard_stiffness(C1) == pytest.approx(0.335294, rel=2e-6)
+    assert formulas.elwood_eberhard_stiffness(C1) == pytest.approx(0.335294, rel=2e-6)
     # With the ratio of hoops that the worked number has.
     q = replace(C1, hoop_ratio=2 * 0.00471239)
-    assert regressions.berry_buckling_rotation(q) == pytest.approx(0.0453154, rel=2e-5)
-    assert regressions.berry_spalling_drift(q) == pytest.approx(0.01664, rel=1e-6)
-    assert regressions.berry_buckling_drift(q) == pytest.approx(0.042174, rel=2e-5)
+    assert formulas.berry_buckling_rotation(q) == pytest.approx(0.0453154, rel=2e-5)
+    assert formulas.berry_spalling_drift(q) == pytest.approx(0.01664, rel=1e-6)
+    assert formulas.berry_buckling_drift(q) == pytest.approx(0.042174, rel=2e-5)
     q = replace(C1, round=True, hoop_ratio=0.01)
-    assert regressions.berry_buckling_rotation(q) == pytest.approx(0.0586721, rel=2e-5)
-    assert regressions.goodnight_buckling_strain(q) == pytest.approx(0.0261)
-    assert regressions.goodnight_buckling_drift(q) == pytest.approx(0.04890, rel=1e-4)
+    assert formulas.berry_buckling_rotation(q) == pytest.approx(0.0586721, rel=2e-5)
+    assert formulas.goodnight_buckling_strain(q) == pytest.approx(0.0261)
+    assert formulas.goodnight_buckling_drift(q) == pytest.approx(0.04890, rel=1e-4)
 
 
 # The published example of the paper: bars of 1.375 in, 36 in deep, 54 in long.
 @pytest.mark.parametrize(("nu", "ratio"), [(0.2, 0.2499), (0.4, 0.3815)])
 def test_published_example_of_elwood_and_eberhard(nu, ratio):
     q = replace(C1, bar=1.375 * 25.4, depth=36 * 25.4, span=54 * 25.4, load=nu * 35.0 * 250e3)
-    assert regressions.elwood_eberhard_stiffness(q) == pytest.approx(ratio, rel=2e-4)
+    assert formulas.elwood_eberhard_stiffness(q) == pytest.approx(ratio, rel=2e-4)
 
 
 def test_values_of_a_drawing():

@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from rbsdem import _package
-from rbsdem.checks import asce_41, ec_8, flexure, regressions
-from rbsdem.checks.code_drawing import Quantities, quantities
+from rbsdem.checks import formulas
+from rbsdem.checks.formulas import Quantities, quantities
 from rbsdem.errors import InputError
 from rbsdem.model.shape import Section
 from rbsdem.section.axial_moment import nominal_moment
@@ -158,7 +158,7 @@ class _Drawn:
     @cached_property
     def yielding(self) -> tuple[float, float, float]:
         """Curvature [1/mm], moment [N mm] and relative depth of the neutral axis at yield."""
-        return flexure.yield_point(self.q)
+        return formulas.yield_point(self.q)
 
     @property
     def force(self) -> float:
@@ -166,16 +166,16 @@ class _Drawn:
         return self.moment / self.q.span
 
     @cached_property
-    def rotations(self) -> asce_41.Rotations:
+    def rotations(self) -> formulas.Rotations:
         """Plastic rotations of ASCE 41."""
-        q, ratio = self.q, self.force / asce_41.shear_strength(self.q)
+        q, ratio = self.q, self.force / formulas.asce_41_shear_strength(self.q)
         given = q.axial_load_ratio, q.tie_ratio, ratio, q.fc, q.fyt
-        return asce_41.rotations(*given, circle=q.round)
+        return formulas.asce_41_rotations(*given, circle=q.round)
 
     @cached_property
-    def haselton(self) -> regressions.Haselton:
+    def haselton(self) -> formulas.Haselton:
         """The backbone of Haselton."""
-        return regressions.Haselton(self.q)
+        return formulas.Haselton(self.q)
 
 
 #: What the values cover.
@@ -191,22 +191,24 @@ _FORMULAS: dict[str, Callable[[_Drawn], float]] = {
     "yield.moment": lambda c: 1e-3 * c.moment,
     "yield.shear": lambda c: c.force,
     "yield.curvature": lambda c: 1e3 * c.yielding[0],
-    "hinge.priestley": lambda c: 1e-3 * flexure.hinge_length_priestley(c.q),
-    "hinge.paulay": lambda c: 1e-3 * flexure.hinge_length_paulay(c.q),
-    "asce_41.stiffness": lambda c: asce_41.stiffness_ratio(c.q.axial_load_ratio),
-    "asce_41.shear": lambda c: asce_41.shear_strength(c.q),
+    "hinge.priestley": lambda c: 1e-3 * formulas.hinge_length_priestley(c.q),
+    "hinge.paulay": lambda c: 1e-3 * formulas.hinge_length_paulay(c.q),
+    "asce_41.stiffness": lambda c: formulas.asce_41_stiffness(c.q.axial_load_ratio),
+    "asce_41.shear": lambda c: formulas.asce_41_shear_strength(c.q),
     "asce_41.a": lambda c: c.rotations.a,
     "asce_41.b": lambda c: c.rotations.b,
     "asce_41.c": lambda c: c.rotations.c,
     "asce_41.io": lambda c: c.rotations.io,
     "asce_41.ls": lambda c: c.rotations.ls,
     "asce_41.cp": lambda c: c.rotations.cp,
-    "ec_8.yield": lambda c: ec_8.yield_rotation(c.q, cracked=ec_8.cracks_in_shear(c.q)),
-    "ec_8.ultimate": lambda c: ec_8.ultimate_rotation(c.q),
-    "ec_8.plastic": lambda c: ec_8.plastic_rotation(c.q),
-    "ec_8.shear": lambda c: ec_8.shear_resistance(c.q),
-    "ec_8.shear_after_yield": lambda c: ec_8.shear_resistance(c.q, 5.0),
-    "elwood.stiffness": lambda c: regressions.elwood_eberhard_stiffness(c.q),
+    "ec_8.yield": lambda c: formulas.ec_8_yield_rotation(
+        c.q, cracked=formulas.ec_8_cracks_in_shear(c.q)
+    ),
+    "ec_8.ultimate": lambda c: formulas.ec_8_ultimate_rotation(c.q),
+    "ec_8.plastic": lambda c: formulas.ec_8_plastic_rotation(c.q),
+    "ec_8.shear": lambda c: formulas.ec_8_shear_resistance(c.q),
+    "ec_8.shear_after_yield": lambda c: formulas.ec_8_shear_resistance(c.q, 5.0),
+    "elwood.stiffness": lambda c: formulas.elwood_eberhard_stiffness(c.q),
     "elwood.shear_drift": lambda c: shear_failure_drift(c.section, c.force, c.q.load),
     "elwood.axial_drift": lambda c: axial_failure_drift(c.section, c.q.load),
     "sezen.shear": lambda c: shear_strength_sezen(c.section, 1e-3 * c.q.span, c.q.load),
@@ -215,9 +217,9 @@ _FORMULAS: dict[str, Callable[[_Drawn], float]] = {
     "haselton.hardening": lambda c: c.haselton.hardening,
     "haselton.stiffness": lambda c: c.haselton.yield_stiffness,
     "haselton.initial": lambda c: c.haselton.initial_stiffness,
-    "berry.spalling": lambda c: regressions.berry_spalling_drift(c.q),
-    "berry.buckling": lambda c: regressions.berry_buckling_drift(c.q),
-    "berry.rotation": lambda c: regressions.berry_buckling_rotation(c.q),
-    "goodnight.strain": lambda c: regressions.goodnight_buckling_strain(c.q),
-    "goodnight.drift": lambda c: regressions.goodnight_buckling_drift(c.q),
+    "berry.spalling": lambda c: formulas.berry_spalling_drift(c.q),
+    "berry.buckling": lambda c: formulas.berry_buckling_drift(c.q),
+    "berry.rotation": lambda c: formulas.berry_buckling_rotation(c.q),
+    "goodnight.strain": lambda c: formulas.goodnight_buckling_strain(c.q),
+    "goodnight.drift": lambda c: formulas.goodnight_buckling_drift(c.q),
 }

@@ -14,8 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rbsdem._arguments import Array
-from rbsdem.checks.code_drawing import quantities
-from rbsdem.checks.regressions import goodnight_buckling_strain
+from rbsdem.checks.formulas import goodnight_buckling_strain, quantities
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
 from rbsdem.model.response import Response
