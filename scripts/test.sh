@@ -55,7 +55,7 @@ result_of "$leaks" memory
 
 say "editable install"
 install_rbsdem -Cbuild-dir="$root/build/python" --editable .
-(cd / && rbsdem --version && python -c 'import rbsdem; rbsdem.paper_columns()')
+(cd / && rbsdem --version && python -c 'import rbsdem; rbsdem.peer.paper_columns()')
 install_rbsdem -Cbuild-dir="$root/build/python" .
 
 # The tests in Python that bring numbers of all kinds to Fortran; the others see nothing new there.

@@ -34,7 +34,7 @@ bare python - <<'PY'
 import shutil
 import rbsdem
 assert not shutil.which("gfortran") and not shutil.which("cc"), "there is a compiler in the path"
-for name, column in rbsdem.paper_columns().items():
+for name, column in rbsdem.peer.paper_columns().items():
     print(f"{name}: first frequency {rbsdem.modes(column).frequency[0]:.2f} Hz")
 PY
 for file in "$work"/venv/lib/python*/site-packages/rbsdem/{_rbsdem*.so,bin/rbsdem}; do
