@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from numpy.typing import ArrayLike
 
@@ -162,6 +162,10 @@ class Column:
     model: str = ""
     top: Top = "free"
     footing: Footing | None = None
+
+    if TYPE_CHECKING:
+        #: Its keys, as the groups of a case file.
+        _statement: ClassVar[_core.Statement]
 
     def __post_init__(self) -> None:
         def put(name: str, value: Any) -> None:

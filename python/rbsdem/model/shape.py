@@ -305,7 +305,7 @@ class Section(_Parts, ABC):
             return self
         diameter = float(self.bar_diameter or 0.0)
         changes: dict[str, Any] = {"bars": mirrored, "bar_diameter": diameter}
-        return replace(self, **changes, layout=None, inner_layout=None)
+        return replace(self, **changes | {"layout": None, "inner_layout": None})
 
     @property
     def symmetric(self) -> bool:

@@ -162,7 +162,7 @@ class LayeredModel:
             )
 
     @cached_property
-    def made(self) -> dict[str, tuple[Spring, ...] | tuple[float, ...] | str]:
+    def made(self) -> dict[str, Any]:
         """The arguments of `rbsdem.Column` that the model makes: shear, flexure, lengths, model.
 
         Joints that may crack stand at the middles of n - 1 equal parts above the hinge. All slip is

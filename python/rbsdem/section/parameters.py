@@ -66,9 +66,16 @@ def table() -> Mapping[str, Row]:
     """Return the parameters of the model by name, those of the hinge first."""
     rows = {}
     for row in _package.rows("layered_parameters.csv"):
-        numbers = {name: float(row[name] or "nan") for name in ("value", "low", "high")}
-        texts = {name: row[name] for name in ("name", "unit", "meaning", "source")}
-        rows[row["name"]] = Row(**numbers, **texts, rank=int(row["rank"] or 0))
+        rows[row["name"]] = Row(
+            name=row["name"],
+            value=float(row["value"]),
+            low=float(row["low"] or "nan"),
+            high=float(row["high"] or "nan"),
+            rank=int(row["rank"] or 0),
+            unit=row["unit"],
+            meaning=row["meaning"],
+            source=row["source"],
+        )
     return MappingProxyType(rows)
 
 
