@@ -13,6 +13,7 @@ from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.checks.code_values import CodeValues
 from rbsdem.checks.formulas import Quantities, quantities
+from rbsdem.checks.limit_states import limit_states
 from rbsdem.curves.curve import Curve, loop_pair
 from rbsdem.curves.envelope import envelope
 from rbsdem.curves.metrics import summarise
@@ -335,7 +336,7 @@ def _measured(found: CodeComparison) -> dict[str, dict[str, float]]:
         rows["largest_force"][source] = loop.peak_force
         rows["strength_loss"][source] = strength_loss(d, f) / height
         rows["yield_drift"][source] = _idealised(d, f) / height
-    states = result.limit_states()
+    states = limit_states(result)
     for name in ("spalling", "bar_buckling", "axial_failure"):
         rows[name] = {"model": states.drift(name)}
     return rows
