@@ -28,7 +28,7 @@ from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.materials import Tension
-from rbsdem.model.shape import Section
+from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Bilinear, Pinching, unchecked
 from rbsdem.section.hinge import HingeJoint
 from rbsdem.section.parameters import ModelParameters
@@ -200,6 +200,7 @@ def shear_diagram(
     InputError
         If a value is refused, or the section cannot carry the axial load.
     """
+    checked_section(section)
     if curvature is None:
         points = _arguments.whole(points, "points")
         if points < 2:
