@@ -171,7 +171,7 @@ def drawn_column(rng: Rng) -> rbsdem.Column:
     )
 
 
-@pytest.mark.filterwarnings("ignore::AccuracyWarning")
+@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
 @pytest.mark.parametrize("seed", range(4))
 def test_a_drawing_comes_back(tmp_path, run_cli, read_csv, seed):
     """The column, what its layers stand for, and what follows when the drawing is changed."""

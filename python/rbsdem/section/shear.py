@@ -57,6 +57,10 @@ paper, whose shear springs have 0.41 to 0.53."""
 _FURTHEST = 0.012
 
 
+#: Points of a diagram; each is a state of all layers.
+MOST_POINTS = 100_000
+
+
 @dataclass(frozen=True, slots=True)
 class ShearPoint:
     """A point of the diagram.
@@ -203,8 +207,8 @@ def shear_diagram(
     checked_section(section)
     if curvature is None:
         points = _arguments.whole(points, "points")
-        if points < 2:
-            raise InputError(f"points = {points} must be 2 or more")
+        if not 2 <= points <= MOST_POINTS:
+            raise InputError(f"points = {points} must be from 2 to {MOST_POINTS}")
         last = _FURTHEST / section.depth
         if furthest is not None:
             last = _arguments.number(furthest, "furthest")
