@@ -152,7 +152,7 @@ LONG = """
 &analysis method = 'rk4', duration = 20, max_seconds = 1e5 /
 """
 SAID = (
-    "steps with method = 'rk4' will take some .* s; the highest frequency .* limits the stable step"
+    "steps with method = 'rk4' will take some .* s; the highest frequency.* limits the stable step"
 )
 
 

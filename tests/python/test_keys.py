@@ -17,6 +17,7 @@ from conftest import REPOSITORY
 import rbsdem
 from rbsdem import _core
 from rbsdem.model.damping import Damping
+from rbsdem.results.case import Case
 from rbsdem.solve import analysis
 from rbsdem.springs import SPRINGS, Elastic, Layered
 
@@ -131,11 +132,12 @@ def test_keywords_of_the_analyses_are_the_keys_of_their_groups():
     loads = set(group("loading")["drive"]["choices"])
     known = keywords(rbsdem.cyclic) | keywords(rbsdem.time_history)
     # The end of the times is the duration; the rest has no key.
-    assert set(known) == (set(settings) | loads | {"column", "time", "initial"}) - {"duration"}
+    hints = get_type_hints(rbsdem.Solver)
+    own = {"column", "time", "initial", "solver"}
+    assert set(known) | set(hints) == (set(settings) | loads | own) - {"duration"}
     for name in set(settings) & set(known):
         default = known[name].default
         assert default == (False if settings[name]["kind"] == "logical" else None), name
-    hints = get_type_hints(rbsdem.time_history)
     assert words(hints["events"]) == set(settings["events"]["choices"])
     assert words(hints["method"]) == set(settings["method"]["choices"]) - {"static"}
     assert set(analysis.METHODS) == words(hints["method"])
@@ -143,7 +145,7 @@ def test_keywords_of_the_analyses_are_the_keys_of_their_groups():
 
 def test_drives_of_a_case_are_the_loads_of_python():
     drives = group("loading")["drive"]["choices"]
-    assert set(drives) <= {field.name for field in fields(rbsdem.results.case.Case)}
+    assert set(drives) <= {field.name for field in fields(Case)}
 
 
 # ---- the executable, the documents ---------------------------------------------------------------

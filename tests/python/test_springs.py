@@ -784,7 +784,7 @@ BAD: list[tuple[str, str, Any]] = [
 @pytest.mark.parametrize(("spring", "name", "value"), BAD)
 def test_bad_parameters_are_refused_by_name(spring: str, name: str, value: Any) -> None:
     with pytest.raises(rbsdem.InputError, match=rf"\b{name}\b"):
-        getattr(rbsdem, spring)(**(GOOD[spring] | {name: value}))
+        getattr(rbsdem.springs, spring)(**(GOOD[spring] | {name: value}))
 
 
 def test_input_error_is_a_value_error() -> None:
@@ -808,7 +808,7 @@ def test_order_and_defaults_of_the_parameters() -> None:
 
 @pytest.fixture(params=list(GOOD))
 def spring(request: pytest.FixtureRequest) -> Any:
-    return getattr(rbsdem, request.param)(**GOOD[request.param])
+    return getattr(rbsdem.springs, request.param)(**GOOD[request.param])
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])

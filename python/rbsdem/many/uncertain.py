@@ -87,7 +87,8 @@ class Uncertain:
         faults = []
         if not callable(self.make):
             faults.append("uncertain: make must be a function that returns a Column")
-        for name, given in (("variables", self.variables), ("correlation", self.correlation or {})):
+        correlation = {} if self.correlation is None else self.correlation
+        for name, given in (("variables", self.variables), ("correlation", correlation)):
             if not isinstance(given, Mapping):
                 raise InputError(f"uncertain: {name} = {_arguments.shown(given)} must be a Mapping")
         if not self.variables:
