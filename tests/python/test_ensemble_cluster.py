@@ -72,6 +72,7 @@ def test_runs_at_which_workers_die_are_failed(cluster: Any, client: Any) -> None
 @pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
 def test_ctrl_c_keeps_what_came_back(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """At the first result: the tasks that have not ended are taken back."""
+    client.wait_for_workers(1, timeout=60)  # one died in a test before
     take = ensemble.Outcome.put
 
     def put(self: Any, *given: Any) -> None:
