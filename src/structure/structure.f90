@@ -90,6 +90,9 @@ module rbs_structure_structure
       !> Number of axial forces that may do second-order work, and of numbers in the work array of
       !> `accelerations`
       integer :: axial_count = 0, work_size = 0
+      !> Numbers that depend on the present stiffness of the springs: none where deformations follow from the
+      !> unknowns alone
+      integer :: tangent_numbers = 0
       !> Loads in the order of their signals (signals)
       type(load_pattern) :: pattern(signals)
    contains
@@ -125,6 +128,13 @@ module rbs_structure_structure
       procedure :: axial_force
       procedure :: check_loads
       procedure :: check_initial
+      ! Where deformations follow from the unknowns and the present stiffness of the springs
+      procedure :: linearise
+      procedure :: rates_on_lines
+      procedure :: forces_on_lines
+      procedure :: add_on_lines
+      procedure :: damp
+      procedure :: add_damping
       procedure :: spring_of
       procedure :: add_ground
       procedure :: work_of
@@ -148,6 +158,9 @@ module rbs_structure_structure
       real(wp), allocatable :: axial(:)
       !> Work array of the structure (work_size)
       real(wp), allocatable :: work(:)
+      !> What depends on the stiffness of the springs (tangent_numbers), and deformations that bring what lies
+      !> between the unknowns to equilibrium (springs, or none)
+      real(wp), allocatable :: tangent(:), correction(:)
    contains
       procedure :: create
    end type motion_result
@@ -275,7 +288,8 @@ contains
 
       m = size(structure%place)
       allocate (self%a(m), self%f(m), self%force(structure%unknowns), self%work(structure%work_size), &
-                self%axial(structure%axial_count), source=0.0_wp)
+                self%axial(structure%axial_count), self%tangent(structure%tangent_numbers), &
+                self%correction(merge(m, 0, structure%tangent_numbers > 0)), source=0.0_wp)
       at_rest = 0.0_wp
       call structure%axial_forces(at_rest, self%axial)
    end subroutine create
@@ -407,6 +421,73 @@ contains
       call fatal_error(error, bad_input, name//': '//to_text(size(value))//' values for '// &
                        to_text(size(self%place))//' springs; give one for each')
    end subroutine check_initial
+
+   !> What follows from the present stiffness of the springs; nothing, where it is not asked for.
+   subroutine linearise(self, k, tangent, unstable)
+      class(structure_type), intent(in) :: self
+      !> Stiffness of the springs (springs)
+      real(wp), intent(in), contiguous :: k(:)
+      !> (tangent_numbers)
+      real(wp), intent(inout), contiguous :: tangent(:)
+      !> A part whose springs determine its motion no more; 0: none
+      integer, intent(out) :: unstable
+
+      unstable = 0
+      if (size(k) < self%tangent_numbers) tangent = 0.0_wp
+   end subroutine linearise
+
+   !> Changes of the deformations from those of the unknowns, on the present lines.
+   subroutine rates_on_lines(self, tangent, dx, dd)
+      class(structure_type), intent(in) :: self
+      !> See `linearise`
+      real(wp), intent(in), contiguous :: tangent(:), dx(:)
+      !> (springs)
+      real(wp), intent(out), contiguous :: dd(:)
+
+      if (size(tangent) == 0) call self%spring_rates(dx, dd)
+   end subroutine rates_on_lines
+
+   !> Forces on the unknowns (see `forces`), and what brings the rest to equilibrium.
+   subroutine forces_on_lines(self, d, load, axial, tangent, f, g, correction)
+      class(structure_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), load(:), axial(:), tangent(:)
+      real(wp), intent(inout), contiguous :: f(:)
+      real(wp), intent(out), contiguous :: g(:)
+      !> Of the deformations (springs, or none)
+      real(wp), intent(inout), contiguous :: correction(:)
+
+      if (size(tangent) + size(correction) == 0) call self%forces(d, load, axial, f, g)
+   end subroutine forces_on_lines
+
+   !> Add the stiffness of the springs to a band; see `assemble`.
+   subroutine add_on_lines(self, k, tangent, band)
+      class(structure_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: k(:), tangent(:)
+      real(wp), intent(inout), contiguous :: band(:, :)
+
+      if (size(tangent) == 0) call self%add_stiffness(k, band)
+   end subroutine add_on_lines
+
+   !> Add forces of damping in proportion to stiffness, where it is no damping of the springs one by one.
+   subroutine damp(self, v, tangent, g)
+      class(structure_type), intent(in) :: self
+      !> Velocities of the unknowns (unknowns); see `linearise`
+      real(wp), intent(in), contiguous :: v(:), tangent(:)
+      !> (unknowns)
+      real(wp), intent(inout), contiguous :: g(:)
+
+      if (size(v) + size(tangent) < self%unknowns) g = 0.0_wp
+   end subroutine damp
+
+   !> Add what these forces are per velocity, times a factor, to a band.
+   subroutine add_damping(self, factor, tangent, band)
+      class(structure_type), intent(in) :: self
+      real(wp), intent(in) :: factor
+      real(wp), intent(in), contiguous :: tangent(:)
+      real(wp), intent(inout), contiguous :: band(:, :)
+
+      if (size(tangent) < self%tangent_numbers) band = factor
+   end subroutine add_damping
 
    !> The spring of a kind that comes in a place among those of the kind; 0 if there are not so many.
    pure integer function spring_of(self, kind, number) result(i)

@@ -23,6 +23,7 @@ module runs
    use rbs_case_analysis_record, only: analysis_record
    use rbs_structure_column_column_record, only: column_record
    use rbs_hysteresis_spring_record, only: spring_record
+   use rbs_structure_structure, only: structure_type
    use samples, only: bilinear, chain, column_1, made, random_type, d_c, k_c
    use row_places, only: row_joints
    implicit none
@@ -118,21 +119,21 @@ contains
    end function last_deformation
 
    !> A state at time zero with the springs at the deformations q.
-   subroutine new_state(state, column, loads, q, v)
+   subroutine new_state(state, structure, loads, q, v)
       type(state_type), intent(out) :: state
-      class(column_type), intent(in) :: column
+      class(structure_type), intent(in) :: structure
       type(loads_type), intent(in) :: loads
       real(wp), intent(in) :: q(:), v(:)
       type(error_type), allocatable :: outcome
-      ! A state refers to its column, which a test may give up before it.
-      class(column_type), pointer :: kept
+      ! A state refers to its structure, which a test may give up before it.
+      class(structure_type), pointer :: kept
 
-      allocate (kept, source=column)
+      allocate (kept, source=structure)
       state%loads = loads
       call state%loads%find_acting()
       call state%motion%create(kept, state%loads%acts, outcome)
-      if (allocated(outcome)) error stop 'runs: a column without motion'
-      call state%springs%create(column%rules, column%place%heard, column%spring%axial_load)
+      if (allocated(outcome)) error stop 'runs: a structure without motion'
+      call state%springs%create(structure%rules, structure%place%heard, structure%spring%axial_load)
       call state%loads%at_time(0.0_wp, state%load)
       state%q = q
       state%v = v

@@ -15,6 +15,10 @@ module test_frame
    use rbs_structure_frame_frame, only: frame_type, frame_node, frame_member, new_frame
    use rbs_structure_spring_place, only: flexure
    use rbs_structure_structure, only: small, pdelta, lateral
+   use rbs_loading_loads, only: loads_type
+   use rbs_solve_time_implicit, only: implicit_stepper, new_newmark
+   use rbs_solve_time_state, only: state_type
+   use runs, only: check_order, new_state, residual_of, signal_of
    use samples, only: random_type
    implicit none
    private
@@ -38,7 +42,9 @@ contains
                unit_test('an elastic portal sways by the stiffness method', elastic_portal), &
                unit_test('limit loads of a portal: the least of three mechanisms', limit_loads), &
                unit_test('a path in 1, 7, 100 parts turns at the same points', parts), &
-               unit_test('a column under dead load: energies balance, P-Delta by hand', loaded_column)]
+               unit_test('a column under dead load: energies balance, P-Delta by hand', loaded_column), &
+               unit_test('a mass on an elastic column: the steps of the scalar theory', elastic_mass), &
+               unit_test('a portal that yields in time: order 2, energies balance', yielding_portal)]
    end subroutine collect_frame
 
    !> K d = p s, sum p d = q with LAPACK's independent order of things: here by Gauss-Jordan elimination.
@@ -316,5 +322,93 @@ contains
       call check_close(error, recorder%rows(9, :4), spread(0.0_wp, 1, 4), 0.0_wp, 1.0e-10_wp, &
                        'what is missing from the balance')
    end subroutine loaded_column
+
+   !> Average acceleration under a ground that begins to accelerate: u'' + w^2 u = -a, rotation without mass.
+   subroutine elastic_mass(error)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp), parameter :: mass = 2.0e4_wp, ground = 2.0_wp, step = 0.02_wp
+      type(frame_type) :: frame
+      type(frame_node) :: node(2)
+      type(frame_member) :: member(1)
+      type(loads_type) :: loads
+      type(state_type) :: state
+      type(implicit_stepper) :: stepper
+      real(wp) :: u, v, a, now, stiffness
+      integer :: i
+
+      node(1)%held = .true.
+      node(2)%y = h
+      node(2)%mass(:2) = mass
+      member(1)%node = [1, 2]
+      call put_springs(member(1), h, never, 0.5_wp)
+      call new_frame(frame, node, member, small, 2)
+      loads%ground = signal_of([0.0_wp, 1.0_wp], [ground, ground])
+      stepper = new_newmark()
+      call new_state(state, frame, loads, spread(0.0_wp, 1, size(frame%place)), &
+                     spread(0.0_wp, 1, size(frame%place)))
+      stiffness = 3.0_wp*bending/h**3
+      u = 0.0_wp
+      v = 0.0_wp
+      a = -ground
+      do i = 1, 40
+         call stepper%advance(state, step, error)
+         if (allocated(error)) return
+         now = (-ground*mass + mass*(4.0_wp/step**2*u + 4.0_wp/step*v + a))/(4.0_wp*mass/step**2 + stiffness)
+         v = 2.0_wp/step*(now - u) - v
+         a = -ground - stiffness/mass*now
+         u = now
+         call check_close(error, frame%top_displacement(state%q), u, 1.0e-10_wp, 1.0e-12_wp, 'displacement')
+      end do
+      call check_close(error, residual_of(state), 0.0_wp, 0.0_wp, 1.0e-9_wp*sum(state%springs%work), 'energy')
+   end subroutine elastic_mass
+
+   subroutine yielding_portal(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: steps(4) = [400, 800, 1600, 25600]
+      real(wp), parameter :: finish = 1.0_wp
+      type(frame_type) :: frame
+      type(frame_node) :: node(4)
+      type(frame_member) :: member(3)
+      type(loads_type) :: loads
+      type(state_type) :: state
+      type(implicit_stepper) :: stepper
+      real(wp) :: top(4), residual(4), time(21)
+      integer :: i, j
+
+      node(:2)%held(1) = .true.
+      node(:2)%held(2) = .true.
+      node(:2)%held(3) = .true.
+      node(:)%x = [0.0_wp, l, 0.0_wp, l]
+      node(3:)%y = h
+      do i = 3, 4
+         node(i)%mass = [3.0e4_wp, 3.0e4_wp, 1.0e3_wp]
+      end do
+      member(1)%node = [1, 3]
+      member(2)%node = [2, 4]
+      member(3)%node = [3, 4]
+      do i = 1, 3
+         call put_springs(member(i), merge(h, l, i < 3), plastic, 0.05_wp)
+      end do
+      call new_frame(frame, node, member, small, 3)
+      frame%damped = .true.
+      frame%stiffness_damping = 1.0e-3_wp
+      frame%mass_damping = 0.2_wp
+      time = [(finish*i/20, i=0, 20)]
+      loads%ground = signal_of(time, 12.0_wp*sin(17.0_wp*time))
+      do j = 1, 4
+         stepper = new_newmark()
+         call new_state(state, frame, loads, spread(0.0_wp, 1, size(frame%place)), &
+                        spread(0.0_wp, 1, size(frame%place)))
+         do i = 1, steps(j)
+            call stepper%advance(state, finish/steps(j), error)
+            if (allocated(error)) return
+         end do
+         top(j) = frame%top_displacement(state%q)
+         residual(j) = abs(residual_of(state))/sum(state%springs%work)
+      end do
+      call check_true(error, state%springs%events > 10, 'it yields')
+      call check_order(error, abs(top(:3) - top(4)), 1.4_wp, 3.0_wp, 'displacement')
+      call check_true(error, residual(4) < 1.0e-6_wp .and. residual(4) < 0.01_wp*residual(1), 'energy')
+   end subroutine yielding_portal
 
 end module test_frame

@@ -52,7 +52,7 @@ contains
                 source=0.0_wp)
       self%control = frame%arm(frame%inside + 1:)
       call initial%create(frame%unknowns, frame%half_width)
-      call frame%add_tangent(frame%initial_stiffness, frame%initial_tangent, initial%band)
+      call frame%add_on_lines(frame%initial_stiffness, frame%initial_tangent, initial%band)
       call self%matrix%create(frame%unknowns, frame%half_width, initial%band(1, :))
    end subroutine create
 
@@ -92,8 +92,8 @@ contains
          if (.not. found) return
          self%force_rate = y(1)
          self%force_correction = y(2)
-         call frame%rates(self%tangent, self%change(:, 1), rate)
-         call frame%rates(self%tangent, self%change(:, 2), self%correction)
+         call frame%rates_on_lines(self%tangent, self%change(:, 1), rate)
+         call frame%rates_on_lines(self%tangent, self%change(:, 2), self%correction)
          rate = rate + y(1)*self%inner_load
          self%correction = self%correction + self%inner + y(2)*self%inner_load
          self%displacement_rate = sum(self%control*self%change(:, 1))
@@ -112,7 +112,7 @@ contains
          found = self%unstable == 0
          if (.not. found) return
          self%matrix%band = 0.0_wp
-         call frame%add_tangent(springs%k, self%tangent, self%matrix%band)
+         call frame%add_on_lines(springs%k, self%tangent, self%matrix%band)
          if (frame%axially_loaded) call frame%add_geometric(frame%compression, self%matrix%band)
       end associate
    end subroutine linearise

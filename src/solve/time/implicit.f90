@@ -94,7 +94,8 @@ contains
       call self%step%start(state)
       if (allocated(self%dx)) return
       call self%tangent%create(state%motion%structure)
-      allocate (self%dx(size(state%q)), self%dq(size(state%q)), self%mean(size(state%q)), source=0.0_wp)
+      allocate (self%dx(state%motion%structure%unknowns), &
+                self%dq(size(state%q)), self%mean(size(state%q)), source=0.0_wp)
    end subroutine prepare
 
    !> Take a step of h, if it converges.
@@ -227,7 +228,10 @@ contains
       logical, intent(out) :: found
 
       call self%tangent%find_correction(self%step, state, h, self%dx)
-      call state%motion%structure%spring_rates(self%dx, self%dq)
+      associate (now => self%step%now)
+         call state%motion%structure%rates_on_lines(now%tangent, self%dx, self%dq)
+         if (size(now%correction) > 0) self%dq = self%dq + now%correction
+      end associate
       found = .true.
    end subroutine correct
 
@@ -345,7 +349,7 @@ contains
                state%of_loads = state%of_loads + mean(i)*motion%structure%work_of(i, self%step%moved)
             end if
          end do
-         call motion%structure%spring_rates(self%step%v1, self%step%w1)
+         call motion%structure%rates_on_lines(self%step%now%tangent, self%step%v1, self%step%w1)
          if (motion%varies) then
             before = motion%structure%power_of_loads(state%q, state%v, lifts(state%load))
             after = motion%structure%power_of_loads(self%step%q1, self%step%w1, lifts(load))
@@ -355,6 +359,13 @@ contains
             self%mean(:) = 0.5_wp*(state%v + self%step%w1)
             state%of_damping = state%of_damping &
                                + h*motion%damping_power(state%springs, self%step%q1, self%mean)
+            if (motion%structure%tangent_numbers > 0) then
+               ! Elements damp as wholes; the residual is not needed any more.
+               call motion%structure%unknown_rates(self%mean, self%dx)
+               self%step%r = 0.0_wp
+               call motion%structure%damp(self%dx, self%step%now%tangent, self%step%r)
+               state%of_damping = state%of_damping - h*inner_product(size(self%dx), self%dx, self%step%r)
+            end if
          end if
       end associate
       call state%springs%carry_to(self%step%q1)

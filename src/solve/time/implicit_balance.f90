@@ -26,6 +26,8 @@ module rbs_solve_time_implicit_balance
       real(wp), allocatable :: v0(:), a0(:), g0(:), v1(:), a1(:), g1(:)
       !> Residual, and what the unknowns have moved in the step (unknowns)
       real(wp), allocatable :: r(:), moved(:)
+      !> Loads at the end of the step
+      real(wp) :: load(signals) = 0.0_wp
       !> Deformations of the springs and their velocities at the end of the step (springs)
       real(wp), allocatable :: q1(:), w1(:)
       !> Forces of the present trial
@@ -49,7 +51,7 @@ contains
    subroutine start(self, state)
       class(step_balance), intent(inout) :: self
       type(state_type), intent(in) :: state
-      integer :: m, springs
+      integer :: m, springs, unstable
 
       associate (structure => state%motion%structure)
          m = structure%unknowns
@@ -61,8 +63,10 @@ contains
             call self%now%create(structure)
          end if
          call structure%unknown_rates(state%v, self%v0)
+         call structure%linearise(state%springs%k, self%now%tangent, unstable)
          call find_forces(state, state%q, state%v, self%v0, state%load, self%now, self%g0)
-         self%a0 = self%g0/structure%inertias
+         self%a0 = 0.0_wp
+         where (structure%inertias > 0.0_wp) self%a0 = self%g0/structure%inertias
          call find_scale(structure, self%a0, self%now%f, state%load, self%largest)
       end associate
    end subroutine start
@@ -97,14 +101,19 @@ contains
       integer :: m
 
       m = size(self%r)
+      self%load = load
       associate (structure => state%motion%structure)
          call end_of_step(m, h, self%beta, self%gamma, self%moved, self%v0, self%a0, self%v1, self%a1)
-         if (state%motion%damped) call structure%spring_rates(self%v1, self%w1)
+         if (state%motion%damped) call structure%rates_on_lines(self%now%tangent, self%v1, self%w1)
          call find_forces(state, self%q1, self%w1, self%v1, load, self%now, self%g1)
          call balance(m, self%alpha_m, self%alpha_f, structure%inertias, self%a0, self%a1, self%g0, self%g1, &
                       self%r)
          call find_scale(structure, self%a1, self%now%f, load, self%scale)
          relative = size_of(structure, m, self%r, self%scale, self%largest)
+         if (size(self%now%correction) > 0) then
+            relative = max(relative, maxval(abs(structure%initial_stiffness*self%now%correction)) &
+                           /max(maxval(self%scale), maxval(self%largest), tiny(1.0_wp)))
+         end if
       end associate
    end subroutine find_residual
 
@@ -121,6 +130,7 @@ contains
          call motion%forces_on_bodies(state%springs, q, w, load, now)
          g = now%force
          call structure%add_ground(load, g)
+         if (structure%stiffness_damping > 0.0_wp) call structure%damp(v, now%tangent, g)
          if (structure%mass_damping > 0.0_wp) g = g - structure%mass_damping*structure%inertias*v
          ! Supports take what acts on them.
          if (structure%has_held) where (structure%is_held) g = 0.0_wp

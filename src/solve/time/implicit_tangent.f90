@@ -5,7 +5,7 @@ module rbs_solve_time_implicit_tangent
    use rbs_base_kinds, only: wp
    use rbs_solve_time_implicit_balance, only: step_balance
    use rbs_solve_time_state, only: state_type
-   use rbs_structure_structure, only: structure_type
+   use rbs_structure_structure, only: structure_type, signals
    implicit none
    private
 
@@ -40,7 +40,7 @@ contains
    !> only if a line, the step or the axial load has changed.
    subroutine find_correction(self, step, state, h, dx)
       class(step_tangent), intent(inout) :: self
-      type(step_balance), intent(in) :: step
+      type(step_balance), intent(inout) :: step
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: h
       !> Of the unknowns (unknowns)
@@ -55,11 +55,18 @@ contains
    !> Factor the tangent anew, if a line, the step or the axial load has changed.
    subroutine fit(self, step, state, h)
       class(step_tangent), intent(inout) :: self
-      type(step_balance), intent(in) :: step
+      type(step_balance), intent(inout) :: step
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: h
 
-      if (is_stale(self, state, h)) call set_tangent(self, step, state, h)
+      real(wp) :: relative, load(signals)
+
+      if (.not. is_stale(self, state, h)) return
+      call set_tangent(self, step, state, h)
+      ! What lies between the unknowns is condensed by the new tangent.
+      if (size(step%now%tangent) == 0) return
+      load = step%load
+      call step%find_residual(state, h, load, relative)
    end subroutine fit
 
    pure logical function is_stale(self, state, h)
@@ -77,23 +84,28 @@ contains
    !> Tangent of the step on the present lines, and its factor.
    subroutine set_tangent(self, step, state, h)
       type(step_tangent), intent(inout) :: self
-      type(step_balance), intent(in) :: step
+      type(step_balance), intent(inout) :: step
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: h
       real(wp) :: of_mass, of_damping
-      integer :: i
+      integer :: i, unstable
 
       of_damping = (1.0_wp - step%alpha_f)*step%gamma/(step%beta*h)
       of_mass = (1.0_wp - step%alpha_m)/(step%beta*h**2) + of_damping*state%motion%structure%mass_damping
       associate (motion => state%motion, springs => state%springs, structure => state%motion%structure)
          self%k = (1.0_wp - step%alpha_f)*springs%k
-         if (structure%tangent_damping) then
+         if (structure%tangent_numbers > 0) then
+            call structure%linearise(self%k, step%now%tangent, unstable)
+         else if (structure%tangent_damping) then
             self%k = self%k + (of_damping*structure%stiffness_damping)*max(springs%k, 0.0_wp)
          else if (motion%damped) then
             self%k = self%k + of_damping*motion%joint_damping
          end if
          self%matrix%band = 0.0_wp
-         call structure%add_stiffness(self%k, self%matrix%band)
+         call structure%add_on_lines(self%k, step%now%tangent, self%matrix%band)
+         if (structure%stiffness_damping > 0.0_wp) then
+            call structure%add_damping(of_damping, step%now%tangent, self%matrix%band)
+         end if
          if (motion%second_order) then
             call structure%add_geometric((1.0_wp - step%alpha_f)*step%now%axial, self%matrix%band)
          end if

@@ -58,6 +58,7 @@ contains
       self%acts = acts
       self%varies = acts(vertical) .or. acts(axial)
       self%joint_damping = structure%stiffness_damping*structure%initial_stiffness
+      if (structure%tangent_numbers > 0) self%joint_damping = 0.0_wp
       self%damped = structure%damped
       if (allocated(structure%modal_damping)) then
          call modal_damping(structure, self%modal, error)
@@ -102,7 +103,8 @@ contains
       call on_lines(springs%count, springs%d0, springs%f0, springs%k, q, result%f)
       m = 0
       if (.not. self%plain .or. self%second_order) call find_others(self, springs, v, load, result, m)
-      call self%structure%forces(q, load, result%axial(:m), result%f, result%force)
+      call self%structure%forces_on_lines(q, load, result%axial(:m), result%tangent, result%f, result%force, &
+                                          result%correction)
    end subroutine forces_on_bodies
 
    !> What else acts besides the forces of the springs on their lines.
@@ -148,7 +150,7 @@ contains
             f(i) = f(i) - springs%centre(i)*(self%structure%axial_force(i, load) - springs%press_at(i))
          end do
       end if
-      if (.not. self%damped) return
+      if (.not. self%damped .or. self%structure%tangent_numbers > 0) return
       if (self%structure%tangent_damping) then
          f = f + self%structure%stiffness_damping*max(springs%k, 0.0_wp)*v
       else

@@ -51,8 +51,8 @@ module rbs_structure_frame_frame
       type(frame_element), allocatable :: element(:)
       !> Number of the unknown of each displacement, 0 where a support holds it (3, nodes)
       integer, allocatable :: number(:, :)
-      !> Number of springs in elements, and of numbers in their tangents and one more
-      integer :: inside = 0, tangent_numbers = 0
+      !> Number of springs in elements
+      integer :: inside = 0
       !> Dead loads on the unknowns (unknowns), and on the springs of elements whose ends do not move (inside)
       real(wp), allocatable :: dead(:), dead_force(:)
       !> Rotations of the ends of the elastic rest under dead load (2, elements)
@@ -67,8 +67,11 @@ module rbs_structure_frame_frame
       real(wp), allocatable :: reach(:)
    contains
       procedure :: linearise
-      procedure :: add_tangent
-      procedure :: rates
+      procedure :: rates_on_lines
+      procedure :: forces_on_lines
+      procedure :: add_on_lines
+      procedure :: damp
+      procedure :: add_damping
       procedure :: unknown_forces
       procedure :: way_of_load
       procedure :: is_loaded
@@ -107,6 +110,8 @@ contains
       frame%n = size(node)
       frame%length = [(0.0_wp, i=1, size(node))]
       frame%height = maxval(node%y) - minval(node%y)
+      ! A beam alone has none.
+      if (.not. frame%height > 0.0_wp) frame%height = maxval(node%x) - minval(node%x)
       frame%total_height = frame%height
       frame%inside = 0
       do i = 1, size(member)
@@ -121,7 +126,7 @@ contains
       call set_elements(frame, node, member)
       call make_rules(frame%spring, frame%rules)
       frame%initial_stiffness = frame%rules%initial_stiffness()
-      allocate (frame%initial_tangent(frame%tangent_numbers))
+      allocate (frame%initial_tangent(frame%tangent_numbers), frame%base_spring(0), frame%base_factor(0))
       call frame%linearise(frame%initial_stiffness, frame%initial_tangent, i)
       frame%axially_loaded = kinematics == pdelta
       frame%axial_count = merge(size(member), 0, frame%axially_loaded)
@@ -491,7 +496,7 @@ contains
    end function way_of_load
 
    !> Stiffness of the elements, from their tangents, and of the ground.
-   subroutine add_tangent(self, k, tangent, band)
+   subroutine add_on_lines(self, k, tangent, band)
       class(frame_type), intent(in) :: self
       !> Of the springs (springs)
       real(wp), intent(in), contiguous :: k(:), tangent(:)
@@ -504,7 +509,7 @@ contains
          end associate
       end do
       band(1, :) = band(1, :) + k(self%inside + 1:)
-   end subroutine add_tangent
+   end subroutine add_on_lines
 
    !> Add B' A B of an element, B its elongation and rotations per unknown.
    pure subroutine add_product(self, element, a, band)
@@ -529,16 +534,59 @@ contains
       end associate
    end subroutine add_product
 
+   !> Damping in proportion to the stiffness of the elements, the initial or the present one.
+   subroutine damp(self, v, tangent, g)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: v(:), tangent(:)
+      real(wp), intent(inout), contiguous :: g(:)
+      real(wp) :: a(3, 3)
+      integer :: i
+
+      do i = 1, size(self%element)
+         call damping_of(self, i, tangent, a)
+         call self%add_element(i, -matmul(a, self%basic(i, v)), g)
+      end do
+   end subroutine damp
+
+   subroutine add_damping(self, factor, tangent, band)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in) :: factor
+      real(wp), intent(in), contiguous :: tangent(:)
+      real(wp), intent(inout), contiguous :: band(:, :)
+      real(wp) :: a(3, 3)
+      integer :: i
+
+      do i = 1, size(self%element)
+         call damping_of(self, i, tangent, a)
+         call add_product(self, i, factor*a, band)
+      end do
+   end subroutine add_damping
+
+   pure subroutine damping_of(frame, element, tangent, a)
+      type(frame_type), intent(in) :: frame
+      integer, intent(in) :: element
+      real(wp), intent(in) :: tangent(:)
+      real(wp), intent(out) :: a(3, 3)
+
+      associate (at => frame%element(element)%at)
+         if (frame%tangent_damping) then
+            a = frame%stiffness_damping*reshape(tangent(at:at + 8), [3, 3])
+         else
+            a = frame%stiffness_damping*reshape(frame%initial_tangent(at:at + 8), [3, 3])
+         end if
+      end associate
+   end subroutine damping_of
+
    subroutine spring_rates(self, dx, dd)
       class(frame_type), intent(in) :: self
       real(wp), intent(in), contiguous :: dx(:)
       real(wp), intent(out), contiguous :: dd(:)
 
-      call self%rates(self%initial_tangent, dx, dd)
+      call self%rates_on_lines(self%initial_tangent, dx, dd)
    end subroutine spring_rates
 
    !> Changes of the deformations from those of the unknowns.
-   subroutine rates(self, tangent, dx, dd)
+   subroutine rates_on_lines(self, tangent, dx, dd)
       class(frame_type), intent(in) :: self
       real(wp), intent(in), contiguous :: tangent(:), dx(:)
       real(wp), intent(out), contiguous :: dd(:)
@@ -555,7 +603,7 @@ contains
          end associate
       end do
       dd(self%inside + 1:) = dx
-   end subroutine rates
+   end subroutine rates_on_lines
 
    pure subroutine unknown_rates(self, dd, dx)
       class(frame_type), intent(in) :: self
@@ -572,10 +620,21 @@ contains
       real(wp), intent(out), contiguous :: g(:)
       real(wp) :: correction(size(d))
 
-      call self%unknown_forces(d, f, 1.0_wp, self%initial_tangent, g, correction)
-      g = g + load(lateral)*self%pattern(lateral)%force
-      if (size(axial) < 0) g = 0.0_wp
+      call self%forces_on_lines(d, load, axial, self%initial_tangent, f, g, correction)
    end subroutine forces
+
+   !> Forces on the unknowns under all dead load and the lateral one.
+   subroutine forces_on_lines(self, d, load, axial, tangent, f, g, correction)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), load(:), axial(:), tangent(:)
+      real(wp), intent(inout), contiguous :: f(:)
+      real(wp), intent(out), contiguous :: g(:)
+      real(wp), intent(inout), contiguous :: correction(:)
+
+      call self%unknown_forces(d, f, 1.0_wp, tangent, g, correction)
+      ! The axial forces are those of the dead load.
+      if (size(axial) >= 0) g = g + load(lateral)*self%pattern(lateral)%force
+   end subroutine forces_on_lines
 
    !> Forces on the unknowns: dead load less what springs and elastic rest carry, and second-order forces;
    !> corrections of the deformations that bring the inside of the elements to equilibrium.
@@ -654,7 +713,7 @@ contains
       integer :: unstable
 
       call self%linearise(k, tangent, unstable)
-      call self%add_tangent(k, tangent, band)
+      call self%add_on_lines(k, tangent, band)
    end subroutine add_stiffness
 
    subroutine add_geometric(self, k, band)
