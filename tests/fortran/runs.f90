@@ -125,6 +125,8 @@ contains
       type(loads_type), intent(in) :: loads
       real(wp), intent(in) :: q(:), v(:)
       type(error_type), allocatable :: outcome
+      integer :: heard(size(structure%place))
+      real(wp) :: axial_load(size(structure%place))
       ! A state refers to its structure, which a test may give up before it.
       class(structure_type), pointer :: kept
 
@@ -133,7 +135,9 @@ contains
       call state%loads%find_acting()
       call state%motion%create(kept, state%loads%acts, outcome)
       if (allocated(outcome)) error stop 'runs: a structure without motion'
-      call state%springs%create(structure%rules, structure%place%heard, structure%spring%axial_load)
+      heard = structure%place%heard
+      axial_load = structure%spring%axial_load
+      call state%springs%create(structure%rules, heard, axial_load)
       call state%loads%at_time(0.0_wp, state%load)
       state%q = q
       state%v = v

@@ -100,8 +100,9 @@ contains
                    source=0.0_wp)
       end if
       do i = 1, size(self%watch)
-         self%watch(i)%slips = motion%structure%spring_of(shear, self%watch(i)%joint)
-         self%watch(i)%turns = motion%structure%spring_of(flexure, self%watch(i)%joint)
+         ! A kind that the structure does not have has the factor 0, with any spring.
+         self%watch(i)%slips = max(motion%structure%spring_of(shear, self%watch(i)%joint), 1)
+         self%watch(i)%turns = max(motion%structure%spring_of(flexure, self%watch(i)%joint), 1)
       end do
       self%peaks_type = peaks_type()
       self%collapsed = .false.
