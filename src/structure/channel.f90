@@ -33,9 +33,10 @@ module rbs_structure_channel
       !> Time [s] or number of the point; displacement of the top [m]; lateral force [N]
       real(wp) :: time = 0.0_wp, displacement = 0.0_wp, force = 0.0_wp
       type(energy_type) :: energy
-      !> In time: acceleration of the ground [m/s2]; velocities of the springs, forces with those of the
-      !> damping and, where the rows ask for them, accelerations (springs)
-      real(wp) :: ground = 0.0_wp
+      !> In time: acceleration of the ground [m/s2], with damping what the ground holds the structure with
+      !> along x [N]; velocities of the springs, forces with those of the damping and, where the rows ask for
+      !> them, accelerations (springs)
+      real(wp) :: ground = 0.0_wp, base_shear = 0.0_wp
       real(wp), allocatable :: v(:), f(:), a(:)
    end type response_type
 

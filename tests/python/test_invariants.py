@@ -801,10 +801,8 @@ def test_the_peaks_are_those_of_all_steps(rng: Rng) -> None:
     reached = chosen["method"] != "rk45" and chosen.get("events") != "located"
     for name, rows in (("displacement", run.displacement), ("base_shear", run.base_shear)):
         peak, most = abs(run.summary[f"peak_{name}"]), np.abs(rows).max()
-        # Damping and springs at the base are added in rows and figures in another order.
-        digit = 1e-15 * peak
-        assert most <= peak + digit, f"{name}: {most} in the rows, {peak}"
-        assert peak <= most + digit or not reached, f"{name}: {most} in the rows, {peak}"
+        assert most <= peak, f"{name}: {most} in the rows, {peak}"
+        assert peak == most or not reached, f"{name}: {most} in the rows, {peak}"
 
 
 @relation(60, judged=0.4)

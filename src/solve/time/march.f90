@@ -240,6 +240,7 @@ contains
       end if
       if (state%motion%damped) then
          call state%motion%joint_forces(state%springs, state%q, state%v, state%load, response%f)
+         response%base_shear = state%motion%base_shear(state%springs, state%q, state%v)
       end if
       task%summary%rows = task%summary%rows + 1
       call task%recorder%keep(state%motion%structure, response, state%springs, state%q, error)

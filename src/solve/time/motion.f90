@@ -238,26 +238,24 @@ contains
       class(motion_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in) :: q(springs%count), v(springs%count)
-      real(wp) :: speed(2), damping
+      real(wp) :: speed(2), of_spring
       integer :: i, j
 
       force = 0.0_wp
       associate (structure => self%structure)
          do j = 1, size(structure%base_spring)
             i = structure%base_spring(j)
-            force = force + structure%base_factor(j)*(springs%f0(i) + springs%k(i)*(q(i) - springs%d0(i)))
-         end do
-         if (.not. self%damped) return
-         do j = 1, size(structure%base_spring)
-            i = structure%base_spring(j)
-            if (structure%tangent_damping) then
-               damping = structure%stiffness_damping*max(springs%k(i), 0.0_wp)*v(i)
-            else
-               damping = self%joint_damping(i)*v(i)
+            of_spring = springs%f0(i) + springs%k(i)*(q(i) - springs%d0(i))
+            if (self%damped) then
+               if (structure%tangent_damping) then
+                  of_spring = of_spring + structure%stiffness_damping*max(springs%k(i), 0.0_wp)*v(i)
+               else
+                  of_spring = of_spring + self%joint_damping(i)*v(i)
+               end if
+               ! The matrix is symmetric: its columns lie together.
+               if (allocated(self%modal)) of_spring = of_spring + inner_product(size(v), self%modal(:, i), v)
             end if
-            ! The matrix is symmetric: its columns lie together.
-            if (allocated(self%modal)) damping = damping + inner_product(size(v), self%modal(:, i), v)
-            force = force + structure%base_factor(j)*damping
+            force = force + structure%base_factor(j)*of_spring
          end do
          if (structure%mass_damping > 0.0_wp) then
             call structure%speeds(q, v, speed)

@@ -553,7 +553,7 @@ contains
       if (contents%in_time) then
          call self%speeds(d, response%v, speed)
          if (self%damped) then
-            row(at + 1) = response%f(1) - self%mass_damping*speed(horizontal)
+            row(at + 1) = response%base_shear
             row(at + 2) = response%f(n + 1)
             if (self%mass_damping > 0.0_wp) then
                row(at + 2) = row(at + 2) + self%mass_damping*self%angular_momentum(d, response%v)
