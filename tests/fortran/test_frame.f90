@@ -12,7 +12,8 @@ module test_frame
    use rbs_solve_static_straight, only: trace_straight
    use rbs_solve_task, only: task_type
    use rbs_structure_frame_element, only: frame_element, find_tangent
-   use rbs_structure_frame_frame, only: frame_type, frame_node, frame_member, new_frame
+   use rbs_structure_frame_frame, only: frame_type
+   use rbs_structure_frame_new_frame, only: frame_node, frame_member, new_frame
    use rbs_structure_spring_place, only: flexure
    use rbs_structure_structure, only: small, pdelta, lateral
    use rbs_loading_loads, only: loads_type

@@ -5,47 +5,14 @@
 !> bearing, or one of no account, whose deformation is the displacement.
 module rbs_structure_frame_frame
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_spring_record, only: spring_record, make_rules
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_channel, only: channel_type, response_type, row_contents
-   use rbs_structure_frame_element, only: frame_element, find_tangent, tangent_size
-   use rbs_structure_frame_numbering, only: order_nodes
-   use rbs_structure_spring_place, only: spring_place, shear, flexure, axial
-   use rbs_structure_structure, only: structure_type, unknown_group, pdelta, lateral, horizontal, vertical, &
-                                      signals
+   use rbs_structure_frame_element, only: frame_element, find_tangent
+   use rbs_structure_structure, only: structure_type, lateral, horizontal
    implicit none
    private
 
-   public :: frame_type, frame_node, frame_member, new_frame
-
-   !> Stiffness of a spring of no account [N/m, N m].
-   real(wp), parameter :: of_no_account = 1.0e-30_wp
-
-   !> A node: place [m], what supports hold (x, y, theta), mass [kg, kg, kg m2], dead load [N, N, N m].
-   type :: frame_node
-      real(wp) :: x = 0.0_wp, y = 0.0_wp
-      logical :: held(3) = .false.
-      real(wp) :: mass(3) = 0.0_wp, load(3) = 0.0_wp
-      !> Share of the lateral load
-      real(wp) :: push = 0.0_wp
-      !> The node whose displacement along x this one shares, as along a floor; 0: none
-      integer :: like = 0
-   end type frame_node
-
-   !> A member from node to node: rigid ends, and springs in what is elastic otherwise.
-   type :: frame_member
-      integer :: node(2) = 0
-      !> Lengths of the rigid ends [m]
-      real(wp) :: rigid(2) = 0.0_wp
-      !> E A [N], E I [N m2] and G A_s [N] of the elastic rest; 0 where it is rigid
-      real(wp) :: axial = 0.0_wp, bending = 0.0_wp, sliding = 0.0_wp
-      !> Springs: kind, place in shares of the clear length, parameters; those that open come last
-      integer, allocatable :: kind(:)
-      real(wp), allocatable :: place(:)
-      type(spring_record), allocatable :: spring(:)
-      !> Dead load downward per length along x [N/m]
-      real(wp) :: load = 0.0_wp
-   end type frame_member
+   public :: frame_type
 
    type, extends(structure_type) :: frame_type
       type(frame_element), allocatable :: element(:)
@@ -95,211 +62,6 @@ module rbs_structure_frame_frame
    end type frame_type
 
 contains
-
-   !> Make a frame of nodes and members that have been checked.
-   subroutine new_frame(frame, node, member, kinematics, top)
-      type(frame_type), intent(out) :: frame
-      type(frame_node), intent(in) :: node(:)
-      type(frame_member), intent(in) :: member(:)
-      integer, intent(in) :: kinematics
-      !> The node whose displacement along x is that of the top
-      integer, intent(in) :: top
-      integer :: i, springs
-
-      frame%kinematics = kinematics
-      frame%n = size(node)
-      frame%length = [(0.0_wp, i=1, size(node))]
-      frame%height = maxval(node%y) - minval(node%y)
-      ! A beam alone has none.
-      if (.not. frame%height > 0.0_wp) frame%height = maxval(node%x) - minval(node%x)
-      frame%total_height = frame%height
-      frame%inside = 0
-      do i = 1, size(member)
-         frame%inside = frame%inside + size(member(i)%kind)
-      end do
-      call number_unknowns(frame, node, member)
-      springs = frame%inside + frame%unknowns
-      allocate (frame%spring(springs), frame%place(springs), frame%arm(springs))
-      frame%arm = 0.0_wp
-      frame%arm(frame%inside + frame%number(1, top)) = 1.0_wp
-      call set_ground(frame, node)
-      call set_elements(frame, node, member)
-      call make_rules(frame%spring, frame%rules)
-      frame%initial_stiffness = frame%rules%initial_stiffness()
-      allocate (frame%initial_tangent(frame%tangent_numbers), frame%base_spring(0), frame%base_factor(0))
-      call frame%linearise(frame%initial_stiffness, frame%initial_tangent, i)
-      frame%axially_loaded = kinematics == pdelta
-      frame%axial_count = merge(size(member), 0, frame%axially_loaded)
-      frame%group = [unknown_group(1, frame%unknowns, 1, 1, frame%inside, 1.0_wp)]
-   end subroutine new_frame
-
-   !> Number the unknowns along the order of the nodes.
-   subroutine number_unknowns(frame, node, member)
-      type(frame_type), intent(inout) :: frame
-      type(frame_node), intent(in) :: node(:)
-      type(frame_member), intent(in) :: member(:)
-      integer :: pair(2, size(member) + size(node)), order(size(node)), leader(size(node))
-      integer :: i, j, number(6)
-
-      do i = 1, size(member)
-         pair(:, i) = member(i)%node
-      end do
-      do i = 1, size(node)
-         leader(i) = merge(node(i)%like, i, node(i)%like > 0)
-         pair(:, size(member) + i) = [i, leader(i)]
-      end do
-      call order_nodes(size(node), pair, order)
-      allocate (frame%number(3, size(node)), source=0)
-      do i = 1, size(node)
-         do j = 1, 3
-            associate (of => merge(leader(order(i)), order(i), j == 1))
-               if (node(of)%held(j)) cycle
-               if (frame%number(j, of) == 0) then
-                  frame%unknowns = frame%unknowns + 1
-                  frame%number(j, of) = frame%unknowns
-               end if
-               frame%number(j, order(i)) = frame%number(j, of)
-            end associate
-         end do
-      end do
-      do i = 1, size(member)
-         number = reshape(frame%number(:, member(i)%node), [6])
-         if (any(number > 0)) frame%half_width = max(frame%half_width, maxval(number) &
-                                                     - minval(number, mask=number > 0))
-      end do
-   end subroutine number_unknowns
-
-   !> Masses and loads of the nodes, and the springs from the ground.
-   subroutine set_ground(frame, node)
-      type(frame_type), intent(inout) :: frame
-      type(frame_node), intent(in) :: node(:)
-      integer, parameter :: kind_of(3) = [shear, axial, flexure]
-      integer :: i, j
-
-      allocate (frame%inertias(frame%unknowns), frame%dead(frame%unknowns), source=0.0_wp)
-      allocate (frame%is_held(frame%unknowns), source=.false.)
-      allocate (frame%reach(frame%unknowns), source=1.0_wp)
-      allocate (frame%part(frame%unknowns), source=0)
-      do j = 1, signals
-         allocate (frame%pattern(j)%force(frame%unknowns), source=0.0_wp)
-      end do
-      do i = 1, size(node)
-         do j = 1, 3
-            associate (at => frame%number(j, i))
-               if (at == 0) cycle
-               frame%inertias(at) = frame%inertias(at) + node(i)%mass(j)
-               frame%dead(at) = frame%dead(at) + node(i)%load(j)
-               frame%part(at) = i
-               if (j == 3) frame%reach(at) = frame%total_height
-               frame%place(frame%inside + at) = spring_place(kind_of(j), 0, i, index=i)
-               frame%spring(frame%inside + at)%rule = 'elastic'
-               frame%spring(frame%inside + at)%value(1) = of_no_account
-               if (j == 1) frame%pattern(lateral)%force(at) = frame%pattern(lateral)%force(at) + node(i)%push
-               if (j == 1) frame%pattern(horizontal)%force(at) = -frame%inertias(at)
-               if (j == 2) frame%pattern(vertical)%force(at) = -frame%inertias(at)
-            end associate
-         end do
-      end do
-      frame%pattern%last = frame%unknowns
-   end subroutine set_ground
-
-   !> Geometry of the elements, their springs, and what dead load does in them.
-   subroutine set_elements(frame, node, member)
-      type(frame_type), intent(inout) :: frame
-      type(frame_node), intent(in) :: node(:)
-      type(frame_member), intent(in) :: member(:)
-      real(wp) :: axis(2), across(2), chord(6)
-      integer :: i, j, before, at
-
-      allocate (frame%element(size(member)))
-      allocate (frame%dead_force(frame%inside), frame%compression(size(member)), &
-                frame%dead_rotation(2, size(member)), frame%lengths(3, size(member)), source=0.0_wp)
-      before = 0
-      at = 1
-      do i = 1, size(member)
-         associate (m => member(i), e => frame%element(i), a => node(member(i)%node(1)), &
-                    b => node(member(i)%node(2)))
-            axis = [b%x - a%x, b%y - a%y]
-            associate (whole => norm2(axis))
-               axis = axis/whole
-               frame%lengths(:, i) = [m%rigid, whole - sum(m%rigid)]
-            end associate
-            across = [axis(2), -axis(1)]
-            associate (clear => frame%lengths(3, i))
-               e%node = m%node
-               e%to_basic(1, :) = [-axis, 0.0_wp, axis, 0.0_wp]
-               ! The chord turns clockwise as its end moves across.
-               chord = [-across, -m%rigid(1), across, -m%rigid(2)]/clear
-               e%to_basic(2, :) = [0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp] - chord
-               e%to_basic(3, :) = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp] - chord
-               e%before = before
-               e%opening = count(m%kind == axial)
-               e%bending = size(m%kind) - e%opening
-               e%rest_along = m%axial/clear
-               call set_rest(e, m, clear)
-               do j = 1, size(m%kind)
-                  frame%spring(before + j) = m%spring(j)
-                  frame%place(before + j) = spring_place(m%kind(j), i, j, index=i)
-                  if (m%kind(j) == flexure) e%share(:, j) = [m%place(j) - 1.0_wp, m%place(j)]
-                  if (m%kind(j) == shear) e%share(:, j) = -1.0_wp/clear
-               end do
-               call put_load(frame, m, i, axis, clear)
-               e%at = at
-               at = at + tangent_size(e)
-               before = before + size(m%kind)
-            end associate
-         end associate
-      end do
-      frame%tangent_numbers = at
-   end subroutine set_elements
-
-   !> The elastic rest bends as a beam that is supported at its ends: alike or against each other.
-   subroutine set_rest(e, m, clear)
-      type(frame_element), intent(inout) :: e
-      type(frame_member), intent(in) :: m
-      real(wp), intent(in) :: clear
-      integer :: rest
-
-      rest = merge(2, 0, m%bending > 0.0_wp)
-      allocate (e%share(2, e%bending + rest), source=0.0_wp)
-      if (rest == 0) return
-      e%share(:, e%bending + 1) = [1.0_wp, 1.0_wp]
-      e%share(:, e%bending + 2) = [1.0_wp, -1.0_wp]
-      ! Moments (M, M) turn both ends by M l/6EI + 2M/(l GA), moments (M, -M) by M l/2EI.
-      e%rest = [12.0_wp, 4.0_wp]*m%bending/clear
-      if (m%sliding > 0.0_wp) e%rest(1) = 1.0_wp/(1.0_wp/e%rest(1) + 1.0_wp/(clear*m%sliding))
-   end subroutine set_rest
-
-   !> Dead load on a member: it is carried to the nodes as by a beam on two supports, with moments in between.
-   subroutine put_load(frame, m, i, axis, clear)
-      type(frame_type), intent(inout) :: frame
-      type(frame_member), intent(in) :: m
-      integer, intent(in) :: i
-      real(wp), intent(in) :: axis(2), clear
-      real(wp) :: down, all, share, lever
-      integer :: j, k, at
-
-      if (.not. abs(m%load) > 0.0_wp) return
-      ! Downward, and its part across the member per length of it.
-      all = m%load*clear*abs(axis(1))
-      down = all*axis(1)/clear
-      do j = 1, size(m%kind)
-         share = m%place(j)
-         at = frame%element(i)%before + j
-         if (m%kind(j) == flexure) frame%dead_force(at) = -down*clear**2*share*(1.0_wp - share)/2.0_wp
-         if (m%kind(j) == shear) frame%dead_force(at) = down*clear*(0.5_wp - share)
-      end do
-      if (m%bending > 0.0_wp) then
-         frame%dead_rotation(:, i) = [1.0_wp, -1.0_wp]*down*clear**3/(24.0_wp*m%bending)
-      end if
-      do k = 1, 2
-         at = frame%number(2, m%node(k))
-         if (at > 0) frame%dead(at) = frame%dead(at) - all/2.0_wp
-         at = frame%number(3, m%node(k))
-         lever = merge(1.0_wp, -1.0_wp, k == 1)*m%rigid(k)*axis(1)
-         if (at > 0) frame%dead(at) = frame%dead(at) + lever*all/2.0_wp
-      end do
-   end subroutine put_load
 
    !> Tangents of the elements on lines of the springs.
    subroutine linearise(self, k, tangent, unstable)
@@ -797,7 +559,8 @@ contains
       type(row_contents), intent(in) :: contents
       type(channel_type), allocatable, intent(out) :: channel(:)
 
-      allocate (channel(merge(5, 5, contents%in_time)))
+      ! In time and on a path alike
+      allocate (channel(5), source=channel_type('', '', merge(0, 0, contents%in_time)))
       channel(1) = channel_type('x', 'm', self%n)
       channel(2) = channel_type('y', 'm', self%n)
       channel(3) = channel_type('rotation', 'rad', self%n)
