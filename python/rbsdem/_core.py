@@ -515,26 +515,13 @@ def spectrum(acceleration: Array, dt: float, period: Array, damping: float) -> A
     return np.ascontiguousarray(answer.rows.T)
 
 
-def read_history(
-    path: str | os.PathLike[str],
-    length: str,
-    force: str,
-    layout: tuple[str, str, int] | None = None,
-    columns: tuple[int, int] = (1, 2),
-) -> tuple[str, Array, Array]:
+def read_history(path: str | os.PathLike[str], length: str, force: str) -> tuple[str, Array, Array]:
     """Return name, displacements [m] and forces [N] of a history file.
 
-    `length` and `force` are the units of the file; empty strings mean those given in the file. With
-    a layout, which is separator, decimal point and the number of lines before the first row, the
-    columns are taken by their numbers; else the file says what it has.
+    `length` and `force` are the units of the file; empty strings mean those given in the file.
     """
-    path = _arguments.file(path)
-    given: dict[str, Any] = {}
-    if layout:
-        separator, decimal, skip = layout
-        given = {"layout": (ord(separator), ord(decimal), skip), "columns": columns}
-    text = f"{word(length)}\n{word(force)}\n{os.fsdecode(path)}"
-    name, _, rows, _ = _evaluate("read_history", text, **given)
+    text = f"{word(length)}\n{word(force)}\n{_arguments.file(path)}"
+    name, _, rows, _ = _evaluate("read_history", text)
     displacement, force_values = rows.copy()
     return name, displacement, force_values
 

@@ -66,7 +66,7 @@ contains
       case ('read_case')
          call case_from_file(request%statement, answer)
       case ('read_history')
-         call test_from_file(request, answer)
+         call test_from_file(request%statement, answer)
       case ('protocol')
          call make_protocol(request, answer)
       case ('named_protocol')

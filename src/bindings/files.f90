@@ -7,7 +7,6 @@ module rbs_bindings_files
    use rbs_case_writer, only: case_text, write_case
    use rbs_structure_column_column, only: column_type
    use rbs_io_case_file, only: case_history, load_case
-   use rbs_io_history, only: layout_type
    use rbs_io_loading_file, only: read_test
    use rbs_loading_loading_record, only: drive_names
    use rbs_loading_signal, only: signal_type
@@ -97,29 +96,17 @@ contains
    end subroutine case_to_text
 
    !> Displacements [m] and forces [N] of a measured test, and its name. The text of the request: units of
-   !> both, empty for those of the file, and the path, with line ends between. Without a layout (separator,
-   !> decimal point, lines before the first row) the file says what it has; else columns are taken by their
-   !> numbers.
-   subroutine test_from_file(request, answer)
-      type(request_type), intent(in) :: request
+   !> both, empty for those of the file, and the path, with line ends between.
+   subroutine test_from_file(text, answer)
+      character(len=*), intent(in) :: text
       type(answer_type), intent(inout) :: answer
       character(len=16) :: units(2)
       integer :: first, second
-      real(c_double), pointer, contiguous :: layout(:)
 
-      layout => request%array('layout')
-      associate (text => request%statement)
-         first = index(text, new_line('a'))
-         second = first + index(text(first + 1:), new_line('a'))
-         units = [character(len=16) :: text(:first - 1), text(first + 1:second - 1)]
-         if (size(layout) == 0) then
-            call read_test(text(second + 1:), units, answer%text, answer%rows, answer%error)
-         else
-            call read_test(text(second + 1:), units, answer%text, answer%rows, answer%error, &
-                           nint(request%array('columns')), &
-                           layout_type(nint(layout(3)), achar(nint(layout(1))), achar(nint(layout(2)))))
-         end if
-      end associate
+      first = index(text, new_line('a'))
+      second = first + index(text(first + 1:), new_line('a'))
+      units = [character(len=16) :: text(:first - 1), text(first + 1:second - 1)]
+      call read_test(text(second + 1:), units, answer%text, answer%rows, answer%error)
    end subroutine test_from_file
 
 end module rbs_bindings_files

@@ -9,7 +9,7 @@ module rbs_io_history
    implicit none
    private
 
-   public :: history_type, layout_type, read_history
+   public :: history_type, read_history
 
    !> Largest file that is read [bytes].
    integer, parameter :: most_bytes = 2000000000
@@ -30,44 +30,19 @@ module rbs_io_history
       real(wp), allocatable :: values(:, :)
    end type history_type
 
-   !> The layout of a file of rows, where it is known beforehand.
-   type :: layout_type
-      !> Lines before the first row
-      integer :: skip = 0
-      !> What stands between two values: a comma, a semicolon, a tab or blanks
-      character(len=1) :: separator = ','
-      !> What stands before the decimals: a point or a comma
-      character(len=1) :: decimal = '.'
-   end type layout_type
-
 contains
 
    !> Read a history.
-   subroutine read_history(path, format, history, error, layout)
+   subroutine read_history(path, format, history, error)
       character(len=*), intent(in) :: path
       !> 'peer', 'csv' or 'auto'
       character(len=*), intent(in) :: format
       type(history_type), intent(out) :: history
       type(error_type), allocatable, intent(out) :: error
-      !> The layout; without it the format and the first lines say what it is
-      type(layout_type), intent(in), optional :: layout
       type(text_file) :: file
-      integer :: first, last, i
-      logical :: found
 
       call load_text(file, path, most_bytes, error)
       if (allocated(error)) return
-      if (present(layout)) then
-         history%name = path(index(path, '/', back=.true.) + 1:)
-         do i = 1, layout%skip
-            call file%next_line(first, last, found)
-         end do
-         call read_rows(file, path, layout%separator, history, error, layout%decimal)
-         if (allocated(error)) return
-         allocate (history%labels(history%columns))
-         history%labels = ''
-         return
-      end if
       history%peer = format == 'peer'
       if (format == 'auto') history%peer = is_peer(file)
       call file%go_back()
@@ -315,20 +290,16 @@ contains
    end subroutine read_csv
 
    !> Read rows of numbers to the end of the file; every row must be as long as the first.
-   subroutine read_rows(file, path, separator, history, error, decimal)
+   subroutine read_rows(file, path, separator, history, error)
       type(text_file), intent(inout) :: file
       character(len=*), intent(in) :: path
       character(len=1), intent(in) :: separator
       type(history_type), intent(inout) :: history
       type(error_type), allocatable, intent(out) :: error
-      !> What stands before the decimals, a point by default
-      character(len=1), intent(in), optional :: decimal
       type(field_list) :: fields
-      integer :: first, last, rows, i, at, status, begin(2)
-      logical :: found, commas
+      integer :: first, last, rows, i, status, begin(2)
+      logical :: found
 
-      commas = .false.
-      if (present(decimal)) commas = decimal == ','
       begin = file%place()
       rows = 0
       do
@@ -352,10 +323,6 @@ contains
                              to_text(most_columns)//' columns; is it a history?')
             return
          end if
-         if (present(decimal) .and. fields%count > 1) then
-            ! Spreadsheets may end each line with a separator.
-            if (fields%last(fields%count) < fields%first(fields%count)) fields%count = fields%count - 1
-         end if
          if (history%rows == 0) then
             history%columns = fields%count
             allocate (history%values(fields%count, rows))
@@ -366,11 +333,6 @@ contains
             return
          end if
          history%rows = history%rows + 1
-         if (commas) then
-            do at = first, last
-               if (file%text(at:at) == ',') file%text(at:at) = '.'
-            end do
-         end if
          do i = 1, fields%count
             associate (word => file%text(fields%first(i):fields%last(i)))
                call read_real(word, history%values(i, history%rows), status)

@@ -3,7 +3,7 @@ module rbs_io_loading_file
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: lower, list_of, nearest_name, to_text
-   use rbs_io_history, only: history_type, layout_type, read_history
+   use rbs_io_history, only: history_type, read_history
    use rbs_io_text_file, only: is_integer
    use rbs_base_check, only: is_given
    use rbs_loading_loading_record, only: loading_record, units_of
@@ -60,7 +60,7 @@ contains
    end subroutine loading_values
 
    !> Read the displacements [m] and forces [N] of a measured test.
-   subroutine read_test(path, units, name, values, error, columns, layout)
+   subroutine read_test(path, units, name, values, error)
       character(len=*), intent(in) :: path
       !> Units of displacement and force; blank: units of the file, see `convert`
       character(len=*), intent(in) :: units(2)
@@ -69,16 +69,11 @@ contains
       !> Displacements and forces (rows, 2)
       real(wp), allocatable, intent(out) :: values(:, :)
       type(error_type), allocatable, intent(out) :: error
-      !> Numbers of the two columns; by default they are found by their names
-      integer, intent(in), optional :: columns(2)
-      !> Layout of the file; by default it is found in the file
-      type(layout_type), intent(in), optional :: layout
       type(history_type) :: history
-      character(len=12) :: wanted
       character(len=12), parameter :: drives(2) = ['displacement', 'force       ']
       integer :: column, i
 
-      call read_history(path, 'auto', history, error, layout)
+      call read_history(path, 'auto', history, error)
       if (allocated(error)) return
       if (history%columns < 2) then
          call fatal_error(error, bad_input, path//': has one column; a test has displacements and forces')
@@ -87,9 +82,7 @@ contains
       allocate (values(history%rows, 2))
       if (history%columns == 2 .and. is_time(history%labels(1))) history%labels(1) = 'a time'
       do i = 1, 2
-         wanted = ''
-         if (present(columns)) wanted = to_text(columns(i))
-         call find_column(history, path, drives(i), wanted, 'column', column, error)
+         call find_column(history, path, drives(i), '', 'column', column, error)
          if (allocated(error)) return
          values(:, i) = history%values(column, :history%rows)
          call check_range(values(:, i), path, column, 1.0e300_wp, error)

@@ -57,6 +57,8 @@ NAMED = {"pdelta_code": 2, "length": LENGTH}
           "units": {"displacement": "mm", "force": "KN"}}),
         ("1;2;3\n4;5;6\n7;8;9\nt;d;f\n", ";", comma, ";",
          {"header": 4, "columns": ("d", "f"), "units": ("mm", "kN")}),
+        ("t,d,F,M,strain\n(s),(mm),(kN),(kN-m),(mm/mm)\n", ",", point, ",1,2", {}),
+        ("Time Disp Force\nsec mm kN\n", " ", point, "", {}),
         ("time,disp_mm,axial load_kN\n", ",", point, "", {"columns": (2, 3)}),
     ],
 )  # fmt: skip
@@ -75,7 +77,9 @@ def test_layouts(tmp_path, head, separator, number, end, given):
     [
         (("m", "N"), (1, 1)),
         (("cm", "MN"), (1e2, 1e-6)),
-        (("in", "kip"), (1 / 0.0254, 1 / 4448.2216)),
+        (("inches", "kips"), (1 / 0.0254, 1 / 4448.2216)),
+        (("in", "lbf"), (1 / 0.0254, 1 / 4.4482216)),
+        (("mm", "tonf"), (1e3, 1 / 9806.65)),
     ],
 )
 def test_units(tmp_path, units, scale):
@@ -100,7 +104,7 @@ def test_units(tmp_path, units, scale):
         ({"columns": (3, 3)}, ["both column 3"]),
         ({"columns": {"deflection": 2}}, ["'deflection' is neither"]),
         ({"units": None}, ["column 'd', has no unit", "units=", "m, mm, cm, in"]),
-        ({"units": ("mm", "lbf")}, ["the force, column 'f', has the unit 'lbf'", "kip"]),
+        ({"units": ("mm", "psi")}, ["the force, column 'f', has the unit 'psi'", "kip"]),
         (
             {"units": ("m", "kN")},
             [f"the largest displacement is {max(abs(D)) * 1e3:.4g} m", "read in m", "units="],
@@ -129,9 +133,9 @@ def test_mistakes_are_named_with_a_remedy(tmp_path, given, words):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (b"", "no rows of two or more numbers"),
+        (b"", "is empty"),
         (b"one column\n1\n2\n3\n", "no rows of two or more numbers"),
-        (b"PK\x03\x04\0\0", "no text file; save it as csv"),
+        (b"PK\x03\x04\0\0", "not a text file; save it as csv"),
         (b"d_mm,f_kN\n1,2\n3,4\n5,6\n7,x\n", "line 5, value 2: 'x' is not a number"),
         (b"d_mm,f_kN\n1,2\n3,4\n5,6\n7\n", "line 5: has 1 values"),
     ],
@@ -143,7 +147,7 @@ def test_files_that_are_no_tests(tmp_path, content, words):
 
 
 def test_paths_that_are_no_files(tmp_path):
-    for path, words in ((tmp_path, "no ordinary file"), (tmp_path / "none", "is not there")):
+    for path, words in ((tmp_path, "is a folder"), (tmp_path / "none", "cannot be read")):
         with pytest.raises(InputError, match=words):
             read_test(path, **NAMED)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import sys
 import threading
@@ -17,6 +16,7 @@ import numpy as np
 
 from rbsdem._extras import extra
 from rbsdem._files import write_figure
+from rbsdem._tables import read_table
 from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
 from rbsdem.errors import InputError, RepairWarning
 from rbsdem.many.ensemble import ensemble as run_ensemble
@@ -387,27 +387,13 @@ def _named_number(text: str) -> tuple[str, float]:
 
 def _read_hazard(path: Path) -> Hazard:
     """Return the hazard of a csv with two columns, perhaps with names."""
-    try:
-        text = path.read_text("utf-8-sig")
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}); check the path") from None
-    rows: list[tuple[float, float]] = []
-    for number, row in enumerate(csv.reader(text.splitlines()), 1):
-        if not row or row[0].startswith("#"):
-            continue
-        try:
-            intensity, frequency = map(float, row)
-        except ValueError:
-            if rows or number > 10:
-                raise InputError(
-                    f"{path} line {number}: {','.join(row)[:40]!r} is not an intensity and an "
-                    "annual frequency"
-                ) from None
-            continue
-        rows.append((intensity, frequency))
-    if not rows:
-        raise InputError(f"{path}: has no rows of an intensity and an annual frequency")
-    return Hazard(*zip(*rows, strict=True))
+    table = read_table(path)
+    if table.columns != 2:
+        raise InputError(
+            f"{path}: has {table.columns} columns; a hazard has two, the intensity and its annual "
+            "frequency"
+        )
+    return Hazard(*table.values.T)
 
 
 def _curves(

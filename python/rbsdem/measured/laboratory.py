@@ -4,213 +4,30 @@ from __future__ import annotations
 
 import math
 import os
-import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
-from rbsdem import _arguments, _core
+from rbsdem import _arguments
 from rbsdem._arguments import Array
+from rbsdem._tables import FORCES, LENGTHS, NumberTable, bare, read_table, to_si
 from rbsdem.errors import InputError
-from rbsdem.measured.measured import MeasuredTest, net_force, top_displacement
+from rbsdem.measured.measured import PDELTA_CODES, MeasuredTest, net_force, top_displacement
 
-__all__ = ["UNITS", "Layout", "find_layout", "read_test"]
-
-
-UNITS = {"displacement": ("m", "mm", "cm", "in"), "force": ("N", "kN", "MN", "kip")}
-"""Units that are known, by quantity; capital letters do not matter."""
-
-_ALL_UNITS = {unit.lower() for units in UNITS.values() for unit in units} | {
-    "s", "sec", "min", "-", "%", "rad", "mrad", "deg", "v", "mv", "knm", "nm", "με", "µε", "um/m",
-    "µm/m", "g", "m/s2", "hz", "mpa", "bar", "°c", "",
-}  # fmt: skip
-
-# In the order in which they are tried; a comma that separates has no comma before the decimals.
-_SEPARATORS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (" ", "."), (" ", ","))
-_NAMES = {";": "semicolon", "\t": "tab", ",": "comma", " ": "blank"}
-
-# Lines that are looked at, and rows in a line that make the beginning of the numbers.
-_SAMPLE = 2000
-_ROWS = 3
-
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?$")
+__all__ = ["read_test"]
 
 
-@dataclass(frozen=True)
-class Layout:
-    """What a file says about its columns.
-
-    Attributes
-    ----------
-    separator, decimal : str
-        What stands between two values, and before the decimals.
-    skip : int
-        Lines before the first row.
-    names, units : tuple of str
-        A text for each column; empty where the file gives none.
-    """
-
-    separator: str
-    decimal: str
-    skip: int
-    names: tuple[str, ...]
-    units: tuple[str, ...]
-
-    @property
-    def columns(self) -> int:
-        """Number of columns."""
-        return len(self.names)
-
-    def describe(self) -> str:
-        """Return the columns in words."""
-        if not any(self.names):
-            return f"{self.columns} columns without names"
-        return "columns " + ", ".join(f"{i} {name!r}" for i, name in enumerate(self.names, 1))
-
-
-def find_layout(
-    text: str, path: str, *, separator: str | None, decimal: str | None, header: int | None
-) -> Layout:
-    """Find the layout of a file.
-
-    Parameters
-    ----------
-    text : str
-        Its beginning.
-    path : str
-        Its name in messages.
-    separator, decimal : str or None
-        What is known of them.
-    header : int or None
-        Lines before the first row, if that is known.
-
-    Raises
-    ------
-    InputError
-        If there are no rows of at least two numbers, or if what is known cannot be.
-    """
-    if separator is not None and separator not in _NAMES:
-        raise InputError(f'separator = {separator!r} must be ",", ";", "\\t" or " "')
-    if decimal not in (None, ".", ","):
-        raise InputError(f'decimal = {decimal!r} must be "." or ","')
-    if separator == decimal == ",":
-        raise InputError("separator and decimal are both a comma; one of them must be another")
-    whole = re.split(r"\r\n|\r|\n", text)
-    lines = whole[:_SAMPLE]
-    if header is not None and not 0 <= header < len(lines):
-        raise InputError(f"header = {header}: {path} has {len(lines)} lines")
-    best: tuple[int, int, str, str] | None = None
-    for s, d in _SEPARATORS:
-        if separator not in (None, s) or decimal not in (None, d):
-            continue
-        widths = [_width(_split(line, s), d) for line in lines]
-        begin = _begin(widths, lines) if header is None else header
-        if begin is None or (header is None and widths[begin] < 2):
-            continue
-        count = sum(width >= 2 for width in widths[begin:])
-        if count and (best is None or count > best[0]):
-            best = count, begin, s, d
-    if best is None:
-        known = [f"separator = {separator!r}"] * (separator is not None)
-        known += [f"decimal = {decimal!r}"] * (decimal is not None)
-        known += [f"header = {header}"] * (header is not None)
-        given = f" with {', '.join(known)}" if known else ""
-        raise InputError(
-            f"{path}: no rows of two or more numbers were found{given}; state separator, decimal "
-            "and header, the number of lines before the first row"
-        )
-    _, begin, s, d = best
-    widths = [_width(_split(line, s), d) for line in lines]
-    columns = next(width for width in widths[begin:] if width >= 2)
-    at = begin if _is_count(whole, begin, s) else begin - 1
-    if header is None and columns in (2, 3) and _is_count(whole, at, s):
-        # The format of the PEER database: a title, the number of rows, the rows.
-        quantities = ("displacement", "force", "axial_load")
-        return Layout(s, d, at + 1, quantities[:columns], ("mm", "kN", "kN")[:columns])
-    names, units = _head([line for line in lines[:begin] if line.strip()], s, columns)
-    return Layout(s, d, begin, names, units)
-
-
-def unit_in(name: str) -> str:
-    """Return the unit at the end of a name, as in `d_mm`, `d [mm]`, `d (mm)`, or an empty text."""
-    found = re.search(r"[(\[]\s*([^()\[\]]+?)\s*[)\]]$", name.strip())
-    if found:
-        return found[1]
-    found = re.search(r"[\s_/-]([A-Za-zµ%]+)$", name.strip())
-    return found[1] if found and found[1].lower() in _ALL_UNITS else ""
-
-
-def _is_count(lines: Sequence[str], at: int, separator: str) -> bool:
-    """Whether a line has the number of the lines behind it, alone or with a 0."""
-    if separator != " " or at < 0:
-        return False
-    words = lines[at].split()
-    if not words or not words[0].isdigit() or words[1:] not in ([], ["0"]):
-        return False
-    return int(words[0]) == sum(bool(line.strip()) for line in lines[at + 1 :])
-
-
-def _split(line: str, separator: str) -> list[str]:
-    line = line.strip(" \t") if separator == " " else line.strip(" ").rstrip("\t ")
-    if not line:
-        return []
-    words = line.split() if separator == " " else line.split(separator)
-    words = [word.strip().strip('"').strip() for word in words]
-    # Spreadsheets may end each line with a separator.
-    return words[:-1] if len(words) > 1 and not words[-1] else words
-
-
-def _width(words: Sequence[str], decimal: str) -> int:
-    """Return how many numbers a line has; 0 if it has something else."""
-    if decimal == ",":
-        words = [word.replace(",", ".") if "." not in word else "x" for word in words]
-    return len(words) if words and all(map(_NUMBER.match, words)) else 0
-
-
-def _begin(widths: Sequence[int], lines: Sequence[str]) -> int | None:
-    """Return the first of the rows of numbers: as many in each of a few lines, or to the end."""
-    filled = [i for i, line in enumerate(lines) if line.strip()]
-    for place, i in enumerate(filled):
-        following = [widths[j] for j in filled[place : place + _ROWS]]
-        if widths[i] >= 2 and all(width == widths[i] for width in following):
-            return i
-    return None
-
-
-def _head(
-    lines: Sequence[str], separator: str, columns: int
-) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return names and units from the lines above the numbers."""
-    empty = ("",) * columns
-    rows = [_split(line.lstrip("#"), separator) for line in lines]
-    if not rows or len(rows[-1]) != columns:
-        return empty, empty
-    last = tuple(rows[-1])
-    stripped = tuple(word.strip("[]() ") for word in last)
-    if all(word.lower() in _ALL_UNITS for word in stripped):
-        above = tuple(rows[-2]) if len(rows) > 1 and len(rows[-2]) == columns else empty
-        return above, stripped
-    return last, tuple(unit_in(name) for name in last)
-
-
+_UNITS = {"displacement": LENGTHS, "force": FORCES}
 _QUANTITIES = ("displacement", "force")
-
-# What the force column is, by the P-Delta code of the database.
-_CODES = {
-    1: "the base moment over the length, with P-Delta in it",
-    2: "the net horizontal force on the column",
-    3: "the actuator's force, of which the leaning axial ram takes a part",
-    4: "the actuator's force, to which the leaning axial ram adds a part",
-}
 
 # How columns are often called; the first that fits one column only is taken.
 _WORDS = {
     "displacement": ("displacement", "disp", "deflection", "drift", "delta", "d", "u", "x"),
     "force": ("force", "load", "shear", "f", "v", "p", "h"),
 }
+_NOT = {"displacement": ("time",), "force": ("time", "axial")}
 
 # What the largest values of a test of a column may be, and where the doubt begins.
 _PLAUSIBLE = {"displacement": (5e-4, 1.5, "m"), "force": (500.0, 5e7, "N")}
@@ -220,9 +37,6 @@ _LARGEST_DRIFT, _SMALLEST_DRIFT = 0.4, 5e-4
 # A first row beyond this part of the largest value is an offset; a smaller area is none.
 _OFFSET = 0.05
 _AREA = 0.02
-
-# Bytes that are read to find the layout.
-_BEGINNING = 1_000_000
 
 
 def read_test(
@@ -253,15 +67,16 @@ def read_test(
     Parameters
     ----------
     path : path
-        Text with a row of numbers a line. Above them there may be any lines; the last may have the
-        names of the columns, or their names and below them their units.
+        File with a row of numbers a line, or its text. Above them there may be any lines; the last
+        may have the names of the columns, or their names and below them their units.
     columns : pair or mapping, optional
         Columns of displacement and force, by name or by number from 1: ``("LVDT 3", 5)`` or
         ``{"displacement": "LVDT 3", "force": 5}``. By default they are found by their names, or are
         the two columns of a file that has no more.
     units : pair or mapping, optional
-        Their units: "m", "mm", "cm", "in" and "N", "kN", "MN", "kip". By default those that the
-        file gives in the names (``d_mm``, ``Force [kN]``) or below them.
+        Their units: "m", "mm", "cm", "in" and "N", "kN", "MN", "kip", "lbf", "tf" or "tonf"
+        (of 1000 kg). By default those that the file gives in the names (``d_mm``, ``Force [kN]``)
+        or below them.
     pdelta_code : {1, 2, 3, 4}
         What the force column is; every test needs it, since P-Delta is in some forces and not in
         others:
@@ -309,7 +124,7 @@ def read_test(
 
     See Also
     --------
-    read_peer : the same reader for files in the format of the database.
+    read_peer : for files in the format of the database.
     rbsdem.peer.net_force : the formulas of the codes.
 
     Notes
@@ -318,17 +133,16 @@ def read_test(
     columns are exchanged it is negative; if the sign of one column is wrong, so is that of the
     correlation of the two.
     """
-    where = _arguments.file(path)
     code = _code(pdelta_code, length, axial_load)
     if force_sign not in (1, -1):
         raise InputError(f"force_sign = {force_sign!r} must be 1 or -1")
-    layout = find_layout(
-        _beginning(where), where, separator=separator, decimal=decimal, header=header
-    )
-    chosen = _columns(columns, layout, where)
-    given = _units(units, chosen, layout, where)
-    read, d, f = _core.read_history(
-        where, *given, (layout.separator, layout.decimal, layout.skip), (chosen[0], chosen[1])
+    table = read_table(path, separator=separator, decimal=decimal, header=header)
+    where = table.source
+    chosen = _columns(columns, table)
+    given = _units(units, chosen, table)
+    d, f = (
+        to_si(table.values[:, i], _UNITS[quantity][unit])
+        for i, quantity, unit in zip(chosen, _QUANTITIES, given, strict=True)
     )
     f = force_sign * f
     if zero:
@@ -355,7 +169,7 @@ def read_test(
         raise InputError(f"{where}: {error}") from error
     top = 0.0 if code == 4 else top_length or 0.0
     return MeasuredTest(
-        name=name or Path(read).stem,
+        name=name or Path(where).stem,
         displacement=d.copy()
         if length is None
         else top_displacement(d, length=length, measured_length=measured_length),
@@ -371,35 +185,19 @@ def read_test(
 
 def _code(code: int | None, length: float | None, axial_load: float | None) -> int:
     """Return the P-Delta code, if it is one and what it needs is there."""
-    if isinstance(code, bool) or not isinstance(code, int) or code not in _CODES:
+    if isinstance(code, bool) or not isinstance(code, int) or code not in PDELTA_CODES:
         missing = "is needed" if code is None else f"= {_arguments.shown(code)} is not known"
-        codes = "; ".join(f"{key}: {text}" for key, text in _CODES.items())
+        codes = "; ".join(f"{key}: {text}" for key, text in PDELTA_CODES.items())
         raise InputError(f"pdelta_code {missing}. It says what the force column is: {codes}")
     for value, needed, what in (
         (length, (1, 3), "length (from the base to the lateral force, m)"),
         (axial_load, (1, 3, 4), "axial_load (N)"),
     ):
         if value is None and code in needed:
-            raise InputError(f"pdelta_code = {code} ({_CODES[code]}) needs {what}")
+            raise InputError(f"pdelta_code = {code} ({PDELTA_CODES[code]}) needs {what}")
     if length is not None and not 0 < _arguments.number(length, "length") < math.inf:
         raise InputError(f"length = {length} m must be positive")
     return code
-
-
-def _beginning(where: str) -> str:
-    if not os.path.isfile(where):
-        what = "is no ordinary file" if os.path.exists(where) else "is not there"
-        raise InputError(f"{where}: {what}; give the path of a text file")
-    try:
-        with open(where, "rb") as file:
-            raw = file.read(_BEGINNING)
-    except OSError as error:
-        raise InputError(f"{where}: {error.strerror}; check path and permissions") from error
-    if b"\0" in raw:
-        raise InputError(f"{where}: is no text file; save it as csv or text in UTF-8")
-    # A last line that is cut off says nothing.
-    text = raw.decode("utf-8-sig", "replace")
-    return text if len(raw) < _BEGINNING else text[: text.rfind("\n") + 1]
 
 
 def _pair(given: object, what: str, examples: str) -> tuple[object, object]:
@@ -414,88 +212,74 @@ def _pair(given: object, what: str, examples: str) -> tuple[object, object]:
     raise InputError(f"{what} = {given!r} must be two, for displacement and force: {examples}")
 
 
-def _columns(given: object, layout: Layout, where: str) -> list[int]:
-    """Return the numbers of the columns of displacement and force."""
+def _columns(given: object, table: NumberTable) -> tuple[int, int]:
+    """Return the places of the columns of displacement and force."""
     pair: tuple[object, object] = (None, None)
     if given is not None:
         pair = _pair(given, "columns", 'columns=("LVDT 3", "load") or columns=(1, 2)')
-    found = [_column(value, q, layout, where) for value, q in zip(pair, _QUANTITIES, strict=True)]
-    if None in found and layout.columns == 2 and found.count(None) == 1:
-        found = [3 - int(found[1 - i] or 0) if n is None else n for i, n in enumerate(found)]
-    elif found == [None, None] and layout.columns == 2 and not _has_time(layout):
-        found = [1, 2]
-    for number, quantity in zip(found, _QUANTITIES, strict=True):
-        if number is None:
+    places = [_column(value, q, table) for value, q in zip(pair, _QUANTITIES, strict=True)]
+    if table.columns == 2 and table.find(("time", "t")) is None:
+        # Of two columns, what is not the one is the other.
+        first, second = places
+        if first is None:
+            places[0] = 0 if second is None else 1 - second
+        if second is None:
+            places[1] = 1 if first is None else 1 - first
+    for place, quantity in zip(places, _QUANTITIES, strict=True):
+        if place is None:
             raise InputError(
-                f"{where}: which column is the {quantity}? There are {layout.describe()}; say "
-                "columns=(displacement, force), by name or by number from 1"
+                f"{table.source}: which column is the {quantity}? There are {table.describe()}; "
+                "say columns=(displacement, force), by name or by number from 1"
             )
-    if found[0] == found[1]:
-        raise InputError(f"columns: displacement and force are both column {found[0]} of {where}")
-    return [int(number) for number in found if number is not None]
-
-
-def _column(value: object, quantity: str, layout: Layout, where: str) -> int | None:
-    names = [name.lower() for name in layout.names]
-    if value is None:
-        for word in _WORDS[quantity]:
-            # One letter is a name only if it stands alone, or before its unit.
-            long = len(word) > 1
-            fit = [
-                i
-                for i, name in enumerate(names, 1)
-                if (word in name if long else _bare(name) == word)
-                and not ("time" in name or ("axial" in name and quantity == "force"))
-            ]
-            if len(fit) == 1:
-                return fit[0]
-        return None
-    if isinstance(value, str):
-        fit = [i for i, name in enumerate(names, 1) if value.strip().lower() in (name, _bare(name))]
-        if len(fit) == 1:
-            return fit[0]
-        several = "is the name of more than one column" if fit else "is not there"
+    displacement, force = (place or 0 for place in places)
+    if displacement == force:
         raise InputError(
-            f"{where}: column {value!r} {several}; there are {layout.describe()}; "
+            f"columns: displacement and force are both column {force + 1} of {table.source}"
+        )
+    return displacement, force
+
+
+def _column(value: object, quantity: str, table: NumberTable) -> int | None:
+    if value is None:
+        return table.find(_WORDS[quantity], _NOT[quantity])
+    if isinstance(value, str):
+        names = [name.lower() for name in table.names]
+        word = value.strip().lower()
+        named = [i for i, name in enumerate(names) if word in (name, bare(name))]
+        if len(named) == 1:
+            return named[0]
+        several = "is the name of more than one column" if named else "is not there"
+        raise InputError(
+            f"{table.source}: column {value!r} {several}; there are {table.describe()}; "
             "a number from 1 is taken as well"
         )
     number = _arguments.whole(value, f"columns: {quantity}")
-    if not 1 <= number <= layout.columns:
+    if not 1 <= number <= table.columns:
         raise InputError(
-            f"columns: {quantity} = {number}, but {where} has {layout.describe()}, counted from 1"
+            f"columns: {quantity} = {number}, but {table.source} has {table.describe()}, counted "
+            "from 1"
         )
-    return number
+    return number - 1
 
 
-def _bare(name: str) -> str:
-    """Return a name without the unit at its end."""
-    for mark in ("[", "(", "_", " "):
-        name = name.split(mark, maxsplit=1)[0] if mark in name[1:] else name
-    return name.strip()
-
-
-def _has_time(layout: Layout) -> bool:
-    return any(name.lower().startswith("time") or name.lower() == "t" for name in layout.names)
-
-
-def _units(given: object, chosen: list[int], layout: Layout, where: str) -> tuple[str, str]:
+def _units(given: object, chosen: tuple[int, int], table: NumberTable) -> tuple[str, str]:
     """Return the units of displacement and force."""
     pair: tuple[object, object] = (None, None)
     if given is not None:
         pair = _pair(given, "units", 'units=("mm", "kN")')
-    found = []
-    for value, number, quantity in zip(pair, chosen, _QUANTITIES, strict=True):
-        unit = layout.units[number - 1] if value is None else str(value)
-        known = {name.lower(): name for name in UNITS[quantity]}
+    units = []
+    for value, place, quantity in zip(pair, chosen, _QUANTITIES, strict=True):
+        unit = table.units[place] if value is None else str(value)
+        known = {name.lower(): name for name in _UNITS[quantity]}
         if unit.lower() not in known:
             has = f"has the unit {unit!r}" if unit else "has no unit"
-            named = layout.names[number - 1] or str(number)
             raise InputError(
-                f"{where}: the {quantity}, column {named!r}, {has}; say "
-                f"units=(displacement, force), the {quantity} in {', '.join(known.values())}"
+                f"{table.source}: the {quantity}, column {table.names[place] or place + 1!r}, "
+                f"{has}; say units=(displacement, force), the {quantity} in "
+                f"{', '.join(known.values())}"
             )
-        found.append(known[unit.lower()])
-    return found[0], found[1]
+        units.append(known[unit.lower()])
+    return units[0], units[1]
 
 
 def _check_units(length: float | None, axial_load: float | None) -> None:

@@ -16,10 +16,10 @@ __all__ = ["PDELTA_CODES", "MeasuredTest", "net_force"]
 
 
 PDELTA_CODES = {
-    1: "Feff provided (base moment over length)",
-    2: "shear provided",
-    3: "rotation of the axial ram decreases the shear",
-    4: "rotation of the axial ram increases the shear",
+    1: "the base moment over the length, with P-Delta in it",
+    2: "the net horizontal force on the column",
+    3: "the actuator's force, of which the leaning axial ram takes a part",
+    4: "the actuator's force, to which the leaning axial ram adds a part",
 }
 """What the force column of a test means, by the P-Delta code of the database (manual, 3.3)."""
 

@@ -18,6 +18,7 @@ import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
+from rbsdem._tables import NumberTable, read_lines, read_table
 from rbsdem.errors import InputError, RepairWarning
 from rbsdem.motions.motion import STANDARD_GRAVITY, GroundMotion
 
@@ -255,12 +256,9 @@ def _float(word: str) -> float:
 #: Times that are this part of a step away from even steps are round-off of their printing.
 _UNEVEN = 0.02
 _SECONDS = ("", "s", "sec", "second", "seconds")
-#: The unit at the end of a column's name: ``_g``, `` (g)``, ``[g]``, ``/g``.
-_UNIT_OF_COLUMN = re.compile(r"[_(\[ ]+([^_(\[\])]+)[)\]]?$")
-_NAMES = ("acceleration", "ground_acceleration", "ground acceleration", "acc", "a_", "ag")
 
 
-def read_table(
+def read_csv(
     lines: list[str], path: str, name: str, units: str | None, dt: float | None
 ) -> GroundMotion:
     """Return the motion of a csv file.
@@ -285,11 +283,17 @@ def read_table(
     InputError
         If the rows are not numbers, times do not ascend or are uneven, or the unit is not known.
     """
-    labels, rows, numbers = _rows(lines, path)
-    time_at, value_at = _columns(labels, rows.shape[1], path)
-    unit = agreed_unit(_unit_of(labels[value_at], path) if labels else "", units, f"{path}: ")
-    _check_finite(rows, numbers, path)
-    values = rows[:, value_at] * UNITS[unit]
+    # What a comment says is no name of a column.
+    rows = ["" if line.startswith("#") else line for line in lines]
+    table = read_table((path, rows), least=1)
+    time_at, value_at = _columns(table)
+    unit = unit_named(table.units[value_at])
+    if table.units[value_at] and not unit:
+        raise InputError(
+            f"{path}: the unit {table.units[value_at]!r} of column {table.names[value_at]} is not "
+            f"one of {', '.join(UNITS)}"
+        )
+    values = table.values[:, value_at] * UNITS[agreed_unit(unit, units, f"{path}: ")]
     about = next((line.lstrip("# ").strip() for line in lines if line.startswith("#")), "")
     if time_at is None:
         if dt is None:
@@ -297,106 +301,35 @@ def read_table(
         return GroundMotion(values, dt, name, about)
     if len(values) < 2:
         raise InputError(f"{path}: has {len(values)} rows; a motion has two or more")
-    values, step = _even(rows[:, time_at], values, dt, path)
+    values, step = _even(table.values[:, time_at], values, dt, path)
     return GroundMotion(values, step, name, about)
 
 
-def _rows(lines: list[str], path: str) -> tuple[list[str], Array, list[int]]:
-    """Return the names of the columns, the values, and the number of the line of each row."""
-    labels: list[str] = []
-    rows: list[list[float]] = []
-    numbers: list[int] = []
-    separator: str | None = None
-    for number, line in enumerate(lines, 1):
-        text = line.strip()
-        if not text or text.startswith("#"):
-            continue
-        if not rows and not labels:
-            separator = next((mark for mark in (";", ",", "\t") if mark in text), None)
-        cells = [cell.strip() for cell in text.split(separator)]
-        while len(cells) > 1 and not cells[-1]:
-            cells.pop()
-        values = [_number(cell) for cell in cells]
-        if not rows and not labels and all(value is None for value in values):
-            labels = cells
-            continue
-        for cell, value in zip(cells, values, strict=True):
-            if value is None:
-                raise InputError(
-                    f"{path} line {number}: {cell[:20]!r} is not a number; correct the file"
-                )
-        width = len(labels or (rows[0] if rows else values))
-        if len(values) != width:
-            raise InputError(
-                f"{path} line {number}: {len(values)} values for {width} columns; every row has "
-                "one for each"
-            )
-        rows.append([value for value in values if value is not None])
-        numbers.append(number)
-    if not rows:
-        raise InputError(f"{path}: has no rows of numbers")
-    return labels, np.array(rows), numbers
-
-
-def _number(cell: str) -> float | None:
-    if "_" in cell:
-        return None
-    try:
-        return float(cell)
-    except ValueError:
-        return None
-
-
-def _columns(labels: list[str], width: int, path: str) -> tuple[int | None, int]:
+def _columns(table: NumberTable) -> tuple[int | None, int]:
     """Return the column of the times, None if there is none, and that of the accelerations."""
-    if not labels:
-        if width > 2:
+    path = table.source
+    if not any(table.names):
+        if table.columns > 2:
             raise InputError(
-                f"{path}: has {width} columns without names; name them in a first line, as "
+                f"{path}: has {table.columns} columns without names; name them in a first line, as "
                 "time_s,acceleration_g"
             )
-        return (None, 0) if width == 1 else (0, 1)
-    plain = [label.lower() for label in labels]
-    times = [i for i, label in enumerate(plain) if label in ("t", "t_s") or label[:4] == "time"]
-    values = [i for i, label in enumerate(plain) if i not in times and label.startswith(_NAMES)]
-    if not values:
-        values = [i for i in range(width) if i not in times] if width <= 2 else []
-    if len(values) != 1 or len(times) > 1:
-        what = "no column" if not values else "more than one column"
+        return (None, 0) if table.columns == 1 else (0, 1)
+    time = table.find(("time", "t"))
+    value = table.find(("acceleration", "acc", "ag", "a"))
+    if value is None and table.columns == (1 if time is None else 2):
+        value = 0 if time is None else 1 - time
+    if value is None:
         raise InputError(
-            f"{path}: {what} is named after the acceleration, or the time is not clear (columns: "
-            f"{', '.join(labels)}); name them time_s and acceleration_g, or acceleration_m/s2"
+            f"{path}: no column is named after the acceleration, or more than one ("
+            f"{table.describe()}); name them time_s and acceleration_g, or acceleration_m/s2"
         )
-    if times:
-        unit = _UNIT_OF_COLUMN.search(plain[times[0]])
-        if unit and unit[1].strip() not in _SECONDS:
-            raise InputError(
-                f"{path}: the times of column {labels[times[0]]} are not in seconds; convert them "
-                "and name the column time_s"
-            )
-    return (times[0] if times else None), values[0]
-
-
-def _unit_of(label: str, path: str) -> str:
-    found = _UNIT_OF_COLUMN.search(label)
-    if not found:
-        return ""
-    unit = unit_named(found[1])
-    if not unit and not label.lower().endswith(("acceleration", "acc")):
+    if time is not None and table.units[time].lower() not in _SECONDS:
         raise InputError(
-            f"{path}: the unit {found[1]!r} of column {label} is not one of {', '.join(UNITS)}"
+            f"{path}: the times of column {table.names[time]} are not in seconds; convert them "
+            "and name the column time_s"
         )
-    return unit
-
-
-def _check_finite(rows: Array, numbers: list[int], path: str) -> None:
-    bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
-    if bad.size:
-        value = rows[bad[0]][~np.isfinite(rows[bad[0]])][0]
-        more = f", and {bad.size - 1} more rows" if bad.size > 1 else ""
-        raise InputError(
-            f"{path} line {numbers[bad[0]]}: a value is {value}{more}; it must be a finite number"
-        )
+    return time, value
 
 
 def _even(time: Array, values: Array, dt: float | None, path: str) -> tuple[Array, float]:
@@ -432,8 +365,6 @@ def _rounded(step: float) -> float:
     return short if abs(short - step) <= 1e-9 * step else step
 
 
-#: Largest file that is read [bytes].
-_MOST_BYTES = 500_000_000
 #: Endings of the files that `read_motions` takes from a folder.
 ENDINGS = (".at2", ".csv", ".txt")
 #: Formats with much in them besides the accelerations, which other programs read well.
@@ -449,7 +380,7 @@ def read_motion(
     ----------
     path : path
         An AT2 file of the PEER databases, old or new; or a csv with columns of time and
-        acceleration, or with one column.
+        acceleration, or with one column. A text of more than one line is taken as such a file.
     units : {"g", "m/s2", "cm/s2", "mm/s2"}, optional
         Unit of the accelerations, where the file does not name it: the third line of an AT2 file,
         or the name of the column, ``acceleration_g``. It is never guessed.
@@ -467,17 +398,22 @@ def read_motion(
     RepairWarning
         If a few of the last values of an AT2 file are missing.
     """
-    name = _arguments.file(path)
-    lines = _lines(name)
+    ending = "" if "\n" in str(path) else _arguments.path(path).suffix.lower()
+    if ending in _OTHERS:
+        raise InputError(
+            f"{path}: the format {ending} is not read here; gmprocess (USGS) or obspy reads it, "
+            "and GroundMotion(acceleration, dt) takes the values in m/s2"
+        )
+    name, lines = read_lines(path)
     # The name of a file may have bytes that are no text.
     stem = Path(name).stem.encode("utf-8", "replace").decode()
-    if is_at2(lines) or name.lower().endswith(".at2"):
+    if is_at2(lines) or ending == ".at2":
         if dt is not None:
             raise InputError(f"{name}: dt = {dt} was given, and an AT2 file has its own; remove it")
         return read_at2(lines, name, stem, units)
     if dt is not None:
         dt = _arguments.number(dt, "dt")
-    return read_table(lines, name, stem, units, dt)
+    return read_csv(lines, name, stem, units, dt)
 
 
 def read_motions(
@@ -526,28 +462,3 @@ def read_motions(
     if faults:
         raise InputError("\n".join(faults))
     return tuple(motions)
-
-
-def _lines(path: str) -> list[str]:
-    """Return the lines of a file, whatever system and code they come from."""
-    ending = Path(path).suffix.lower()
-    if ending in _OTHERS:
-        raise InputError(
-            f"{path}: the format {ending} is not read here; gmprocess (USGS) or obspy reads it, "
-            "and GroundMotion(acceleration, dt) takes the values in m/s2"
-        )
-    if os.path.isdir(path):
-        raise InputError(f"{path} is a folder; read_motions reads all records of one")
-    try:
-        if os.path.getsize(path) > _MOST_BYTES:
-            raise InputError(f"{path}: larger than {_MOST_BYTES // 10**6} MB; this is no record")
-        with open(path, "rb") as file:
-            raw = file.read()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}); check the path") from None
-    if b"\0" in raw[:4096]:
-        raise InputError(f"{path}: is not a text file; get the record as AT2 or csv")
-    lines = raw.decode("utf-8-sig", "replace").splitlines()
-    if not any(line.strip() for line in lines):
-        raise InputError(f"{path}: is empty; get the record anew")
-    return lines
