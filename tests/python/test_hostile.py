@@ -22,6 +22,7 @@ from rbsdem import _arguments, fragility, motions, peer
 from rbsdem import curves as comparison
 from rbsdem.calibration import free_names, undetermined
 from rbsdem.errors import InputError, RbsdemError
+from rbsdem.many.runs import RunOptions
 from rbsdem.section.parameters import parameters
 from rbsdem.springs import (
     Bilinear,
@@ -126,6 +127,9 @@ HISTORY = {"time": TIME, "ground_acceleration": SHAKEN, "dt": 0.02, "method": "n
 MANY = {"method": "newmark", "dt": 0.02, "jobs": 1}
 
 #: Public calls with arguments that are taken, and others that they have.
+#: The keywords that a call takes together.
+OPTIONS = {f"Unpack[{kind.__name__}]": kind.__annotations__ for kind in (rbsdem.Solver, RunOptions)}
+
 CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Elastic": (Elastic, {"k": 1e8}),
     "Bilinear": (Bilinear, {"k": 1e8, "d_y": 1e-3, "k_post": 1e6}),
@@ -332,11 +336,12 @@ def test_hostile_values_are_refused_or_taken(
     """Some are the name of a file that is written."""
     monkeypatch.chdir(tmp_path)
     function, given = CALLS[call]
-    names = [
-        name
-        for name, parameter in inspect.signature(function).parameters.items()
-        if parameter.kind not in (parameter.VAR_KEYWORD, parameter.VAR_POSITIONAL)
-    ]
+    names: list[str] = []
+    for name, parameter in inspect.signature(function).parameters.items():
+        if parameter.kind == parameter.VAR_KEYWORD:
+            names += OPTIONS.get(parameter.annotation, {})
+        elif parameter.kind != parameter.VAR_POSITIONAL:
+            names.append(name)
     wrong = {}
     for argument in dict.fromkeys([*names, *given]):
         for name, value in HOSTILE.items():

@@ -9,7 +9,7 @@ import warnings
 import webbrowser
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import click
 import numpy as np
@@ -24,6 +24,7 @@ from rbsdem.many.fragility import Fragility, Hazard
 from rbsdem.many.ida import IDA
 from rbsdem.many.ida import ida as run_ida
 from rbsdem.many.runs import NAMES
+from rbsdem.methods.ladder import OF_SETTING
 from rbsdem.methods.measure import compare_methods
 from rbsdem.methods.physics import Physics
 from rbsdem.motions.motion import GroundMotion
@@ -33,6 +34,7 @@ from rbsdem.output import many as ensemble_figures
 from rbsdem.output import methods as methods_output
 from rbsdem.output import tables
 from rbsdem.results.case import Case, read_case
+from rbsdem.solve.solver import Solver
 from rbsdem.web.answers import NearestTests
 from rbsdem.web.exports import drawing_in, opened
 from rbsdem.web.report import write_report
@@ -44,8 +46,6 @@ if TYPE_CHECKING:
 
 #: Collapse drift of an IDA if the case has none.
 _DRIFT = 0.1
-#: Settings of a case that belong to its method.
-_OF_METHOD = ("dt", "events", "tolerance", "rho_infinity", "allow_unstable", "max_seconds")
 
 _units = click.option("--units", help="unit of records that name none: g, m/s2, cm/s2")
 _jobs = click.option("--jobs", type=int, metavar="N", help="threads; default one per processor")
@@ -84,7 +84,7 @@ def trade(
         model.column,
         **_loading(model),
         methods=methods.split(",") if methods else None,
-        setting=None if model.method == "static" else _settings(model, _OF_METHOD[:4]),
+        setting=cast(Solver, {n: v for n, v in model.solver.items() if n in OF_SETTING}),
         tolerance=tolerance,
         budget=budget,
         progress=not quiet and sys.stderr.isatty(),
@@ -104,11 +104,6 @@ def trade(
             print("no figure: there is no reference")
         _tell_files(written)
     return 0
-
-
-def _settings(case: Case, names: Sequence[str]) -> dict[str, Any]:
-    """Return method and settings of a case that runs in time."""
-    return {"method": case.method, **{n: case.settings[n] for n in names if n in case.settings}}
 
 
 def _loading(case: Case) -> dict[str, Any]:
@@ -203,12 +198,13 @@ def ensemble(
         raise InputError(
             f"{case}: method = 'static' takes no records; give a method in time, as 'auto'"
         )
-    names = (*_OF_METHOD, "collapse_drift", "initial")
     runs = run_ensemble(
         {model.title or case.stem: model.column},
         _records(list(map(str, records)), units) if records else [_own_motion(case, model)],
         scales=_numbers(scales, "--scales", "numbers separated by commas, as 0.5,1,2"),
-        **_settings(model, names),
+        collapse_drift=model.settings.get("collapse_drift"),
+        initial=model.settings.get("initial"),
+        **model.solver,
         jobs=jobs,
         store=out / "store",
         shard=None if shard is None else _part(shard),
@@ -340,9 +336,7 @@ def _ida_settings(
 ) -> dict[str, Any]:
     """Return method, step and collapse drift of the command line, else of the case."""
     # What belongs to the method of the case has no meaning for another one.
-    settings = _settings(case, () if method else _OF_METHOD)
-    if method or case.method == "static":
-        settings["method"] = method or "auto"
+    settings: dict[str, Any] = {"method": method} if method else dict(case.solver)
     if dt is not None:
         settings["dt"] = dt
     if "initial" in case.settings:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,19 +14,13 @@ from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 from rbsdem.many.fragility import Fragile, Fragility, Hazard
-from rbsdem.many.measures import Measure, is_switch, measures_in_a_list
-from rbsdem.many.runs import (
-    Collector,
-    Name,
-    Runs,
-    checked_drift,
-    columns_by_name,
-    make_intensity,
-    motions_by_name,
-)
+from rbsdem.many.measures import is_switch
+from rbsdem.many.runs import RunOptions, Runs, make_collector, motions_by_name
 from rbsdem.model.column import Column
 from rbsdem.motions.motion import GroundMotion
-from rbsdem.solve.analysis import Method
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 _MOST_STEPS = 100
 _CLOSE = 1e-10
@@ -323,16 +317,7 @@ def cloud(
     motions: GroundMotion | Sequence[GroundMotion] | Mapping[str, GroundMotion],
     *,
     scales: ArrayLike = 1.0,
-    intensity: Name = "sa_t1",
-    period: float | None = None,
-    damping: float = 0.05,
-    collapse_drift: float = 0.1,
-    measures: Sequence[str | Measure] = ("peak_drift", "residual_drift", "peak_base_shear"),
-    method: Method = "auto",
-    dt: float | None = None,
-    initial: Any = None,
-    jobs: int | None = None,
-    progress: bool = False,
+    **options: Unpack[RunOptions],
 ) -> Cloud:
     """Run records as they are, or by a factor of each.
 
@@ -344,10 +329,8 @@ def cloud(
         The records, many and of different strength.
     scales : array_like, shape () or (motions,), optional
         Factors of the records.
-    intensity, period, damping, collapse_drift, measures, method, dt, initial : optional
-        As for `rbsdem.ida`.
-    jobs, progress : optional
-        As for `rbsdem.ida`.
+    **options
+        As for `rbsdem.ida`, see `rbsdem.many.runs.RunOptions`.
 
     Returns
     -------
@@ -360,7 +343,6 @@ def cloud(
         Before the first run, with all that is wrong.
     """
     begin = time.perf_counter()
-    columns = columns_by_name(column)
     found = motions_by_name(motions)
     factors = _arguments.finite_vector(scales, "scales", shape="1 or m")
     if factors.size not in (1, len(found)) or not (factors > 0).all():
@@ -368,17 +350,9 @@ def cloud(
             f"scales: {factors.size} factors for {len(found)} motions; give one, or one for each, "
             "above 0"
         )
-    measure = make_intensity(intensity, next(iter(columns.values())), period, damping)
-    settings: dict[str, Any] = {
-        "method": method,
-        "dt": dt,
-        "collapse_drift": checked_drift(collapse_drift),
-        "initial": initial,
-        "jobs": jobs,
-        "progress": progress,
-    }
-    work = Collector(columns, found, measure, measures_in_a_list(measures), settings)
-    levels = np.broadcast_to((factors * work.unit)[:, None], (len(columns), len(found), 1))
+    options.setdefault("measures", ("peak_drift", "residual_drift", "peak_base_shear"))
+    work = make_collector("cloud", column, found, **options)
+    levels = np.broadcast_to((factors * work.unit)[:, None], (*work.shape, 1))
     work.run(levels.copy())
     return Cloud(work.finish(), time.perf_counter() - begin)
 

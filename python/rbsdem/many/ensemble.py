@@ -10,7 +10,7 @@ from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -41,10 +41,11 @@ from rbsdem.many.plan import Outcome, Piece, Plan, compute, cut, expected, one_r
 from rbsdem.many.run_store import RunStore
 from rbsdem.model.column import Column
 from rbsdem.results.result import Result
-from rbsdem.solve.analysis import Method
+from rbsdem.solve.solver import Solver, checked_solver
 
 if TYPE_CHECKING:
     import pandas as pd
+    from typing_extensions import Unpack
 
 #: Seconds of a task at the most, as far as that is known: what a kill may cost.
 _LONGEST = 2.0
@@ -170,15 +171,8 @@ def ensemble(
     *,
     scales: ArrayLike = 1.0,
     measures: Sequence[str | Measure] | None = None,
-    method: Method = "auto",
-    dt: float | None = None,
-    events: Literal["step", "located"] | None = None,
-    tolerance: float | None = None,
-    rho_infinity: float | None = None,
     collapse_drift: float | None = None,
     initial: Any = None,
-    allow_unstable: bool = False,
-    max_seconds: float | None = None,
     jobs: int | None = None,
     store: str | os.PathLike[str] | None = None,
     shard: tuple[int, int] | None = None,
@@ -186,6 +180,7 @@ def ensemble(
     client: Any = None,
     progress: bool = False,
     allow_partial: bool = False,
+    **solver: Unpack[Solver],
 ) -> Ensemble:
     """Run columns under ground motions at several scales, and measure each run.
 
@@ -208,21 +203,13 @@ def ensemble(
         states (`LIMIT_STATES`: the time at which each is first reached, NaN if it
         is not), and functions of a `Result` that return a number. A function makes the run's
         history once more, which takes as long as `time_history`; a limit state does not.
-    method : str, optional
-        As for `time_history`; "auto" chooses for each column and motion.
-    dt, tolerance, rho_infinity, collapse_drift : float, optional
-        As for `time_history`.
-    events : {"step", "located"}, optional
+    collapse_drift : float, optional
         As for `time_history`.
     initial : Result, path, or sequence or mapping of them, optional
         The state that the runs begin in, which another analysis has ended in, as for
         `time_history`: one for all columns, or one for each, in their order or by their names
         (None: at rest). A column that begins in several states is given once for each, under names
         of its own.
-    allow_unstable : bool, optional
-        As for `time_history`.
-    max_seconds : float, optional
-        As for `time_history`: the longest that one run may be expected to take [s].
     jobs : int, optional
         Threads; by default one for each processor that this process may use.
     store : path, optional
@@ -242,6 +229,9 @@ def ensemble(
         Show runs, rate and time left on stderr, if it is a terminal.
     allow_partial : bool, optional
         Return the runs that were finished if Ctrl-C ends the work, the others with the status "".
+    **solver
+        Settings of the method, see `rbsdem.Solver`. Without a method "auto" chooses for each column
+        and motion; `max_seconds` is the longest that one run may be expected to take.
 
     Returns
     -------
@@ -257,17 +247,10 @@ def ensemble(
         Before the first run, with a line for everything that is wrong.
     """
     begin = time.perf_counter()
-    settings = {
-        "method": method,
-        "dt": dt,
-        "events": events,
-        "tolerance": tolerance,
-        "rho_infinity": rho_infinity,
-        "collapse_drift": collapse_drift,
-        "allow_unstable": _arguments.switch(allow_unstable, "allow_unstable") or None,
-        "max_seconds": max_seconds,
-    }
-    settings = {name: _plain(value) for name, value in settings.items() if value is not None}
+    settings = {"method": "auto"} | checked_solver(solver, "ensemble")
+    if collapse_drift is not None:
+        settings["collapse_drift"] = collapse_drift
+    settings = {name: _plain(value) for name, value in settings.items()}
     faults: list[str] = []
     column_names, column_items = named_columns(columns, faults)
     given, motion_items = named_motions(motions, faults)

@@ -7,11 +7,10 @@ is halved until the collapse is known closely enough, and runs below it fill the
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,17 +24,17 @@ from rbsdem.many.runs import (
     LOST,
     MEASURES,
     Collector,
-    Name,
+    RunOptions,
     Runs,
-    checked_drift,
     checked_levels,
-    columns_by_name,
-    make_intensity,
+    make_collector,
     motions_by_name,
 )
 from rbsdem.model.column import Column
 from rbsdem.motions.motion import GroundMotion
-from rbsdem.solve.analysis import Method
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 _SMALLEST = 1e-4
 _MOST_REPAIRS = 5
@@ -115,8 +114,7 @@ def hunt_and_fill(work: Collector, hunt: Hunt) -> tuple[Array, Array]:
         The highest intensity without collapse below the lowest one with a collapse, and that one;
         infinity where the column did not collapse.
     """
-    shape = len(work.columns), len(work.motions)
-    low, high = np.zeros(shape), np.full(shape, np.inf)
+    low, high = np.zeros(work.shape), np.full(work.shape, np.inf)
     _bracket(work, hunt, low, high)
     _narrow(work, hunt, low, high)
     for _ in range(_MOST_REPAIRS):
@@ -385,23 +383,8 @@ def ida(
     column: Column | Sequence[Column] | Mapping[str, Column],
     motions: GroundMotion | Sequence[GroundMotion] | Mapping[str, GroundMotion],
     *,
-    intensity: Name = "sa_t1",
     levels: ArrayLike | Literal["hunt"] | Hunt = "hunt",
-    period: float | None = None,
-    damping: float = 0.05,
-    collapse_drift: float = 0.1,
-    measures: Sequence[str | Measure] = MEASURES,
-    method: Method = "auto",
-    dt: float | None = None,
-    tolerance: float | None = None,
-    events: Literal["step", "located"] | None = None,
-    rho_infinity: float | None = None,
-    allow_unstable: bool = False,
-    max_seconds: float | None = None,
-    initial: Any = None,
-    jobs: int | None = None,
-    progress: bool = False,
-    store: str | os.PathLike[str] | None = None,
+    **options: Unpack[RunOptions],
 ) -> IDA:
     """Run an incremental dynamic analysis: every motion at growing intensity.
 
@@ -411,31 +394,13 @@ def ida(
         The column; several, as from `Uncertain`, are all run with every motion.
     motions : GroundMotion, or sequence or mapping of GroundMotion
         The records, whose own scale does not matter.
-    intensity : {"sa_t1", "pga", "sa_avg"}, optional
-        Intensity measure [m/s2]: pseudo-spectral acceleration at the first period, peak
-        acceleration, or geometric mean of spectral accelerations from 0.2 to 3 first periods.
     levels : array_like, "hunt" or Hunt, optional
         Intensities of the runs [m/s2], or a search for the collapse of each record, whose
         settings are those of `Hunt`.
-    period : float, optional
-        Period of the intensity [s], by default the first one of the (first) column, uncracked.
-    damping : float, optional
-        Damping ratio of the spectrum.
-    collapse_drift : float, optional
-        Displacement of the top over the height that counts as a collapse.
-    measures : sequence, optional
-        What is kept of each run, as for `rbsdem.ensemble`.
-    initial : Result, path, or sequence or mapping of them, optional
-        The state that all runs of a column begin in, as for `rbsdem.ensemble`: what an aftershock
-        finds. The curves begin at what the column does in it without motion.
-    method, dt, tolerance, events, rho_infinity, allow_unstable, max_seconds : optional
-        As for `rbsdem.ensemble`. A run that fails is tried again with "rk45"; one that fails
-        twice counts as a collapse, with a warning.
-    jobs, progress : optional
-        As for `rbsdem.ensemble`.
-    store : path, optional
-        Folder that keeps the runs, as for `rbsdem.ensemble`; a second start, with more records too,
-        goes on from there.
+    **options
+        See `rbsdem.many.runs.RunOptions`: intensity, period, damping, collapse_drift, measures,
+        initial, jobs, progress, store; and the settings of the method, see `rbsdem.Solver`. With
+        an initial state the curves begin at what the column does in it without motion.
 
     Returns
     -------
@@ -448,37 +413,19 @@ def ida(
         Before the first run, with all that is wrong.
     """
     begin = time.perf_counter()
-    columns = columns_by_name(column)
-    found = motions_by_name(motions)
-    measure = make_intensity(intensity, next(iter(columns.values())), period, damping)
-    settings: dict[str, Any] = {
-        "method": method,
-        "dt": dt,
-        "tolerance": tolerance,
-        "events": events,
-        "rho_infinity": rho_infinity,
-        "allow_unstable": _arguments.switch(allow_unstable, "allow_unstable"),
-        "max_seconds": max_seconds,
-        "collapse_drift": checked_drift(collapse_drift),
-        "initial": initial,
-        "jobs": jobs,
-        "progress": progress,
-        "store": None if store is None else _arguments.path(store, "store"),
-    }
-    names = _with_drift(measures)
+    options["measures"] = _with_drift(options.get("measures", MEASURES))
     hunt = _hunt(levels)
-    work = Collector(columns, found, measure, names, settings)
-    shape = len(columns), len(found)
+    work = make_collector("ida", column, motions_by_name(motions), **options)
     work.run_unshaken("ida")
     if hunt is not None:
         lower, upper = hunt_and_fill(work, hunt)
     else:
         at = checked_levels(levels)
-        collapsed = work.run(np.broadcast_to(at, (*shape, at.size)).copy())
+        collapsed = work.run(np.broadcast_to(at, (*work.shape, at.size)).copy())
         lower, upper = _first(at, collapsed)
     about = {
         n: v
-        for n, v in settings.items()
+        for n, v in work.settings.items()
         if v is not None and v is not False and n not in _OF_THE_RUN
     }
     about["levels"] = "hunt" if hunt is not None else "given"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -16,13 +17,16 @@ from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.many.ensemble import ensemble
 from rbsdem.many.inputs import collected, named_columns, raise_faults
+from rbsdem.many.measures import Measure, measures_in_a_list
 from rbsdem.many.plan import FAULT_OF_MEASURE
 from rbsdem.model.column import Column
 from rbsdem.motions.motion import GroundMotion, checked_motion
 from rbsdem.solve.analysis import modes
+from rbsdem.solve.solver import Solver, checked_solver
 
 if TYPE_CHECKING:
     import pandas as pd
+    from typing_extensions import Unpack
 
 Name = Literal["sa_t1", "pga", "sa_avg"]
 NAMES: tuple[Name, ...] = ("sa_t1", "pga", "sa_avg")
@@ -132,6 +136,46 @@ LOST = (*COLLAPSES, "failed")
 _AGAIN = "rk45"
 #: Least intensity [m/s2] from which a motion is scaled.
 _LEAST_UNIT = 1e-20
+
+
+class RunOptions(Solver, total=False):
+    """What `ida`, `stripes` and `cloud` take as keywords, with the settings of `rbsdem.Solver`.
+
+    A run that fails is tried again with "rk45"; one that fails twice counts as a collapse, with a
+    warning.
+
+    Attributes
+    ----------
+    intensity : {"sa_t1", "pga", "sa_avg"}
+        Intensity measure [m/s2]: pseudo-spectral acceleration at the first period (the default),
+        peak acceleration, or geometric mean of spectral accelerations from 0.2 to 3 first periods.
+    period : float
+        Period of the intensity [s], by default the first one of the (first) column, uncracked.
+    damping : float
+        Damping ratio of the spectrum; the default is 0.05.
+    collapse_drift : float
+        Displacement of the top over the height that counts as a collapse; the default is 0.1.
+    measures : sequence
+        What is kept of each run, as for `rbsdem.ensemble`; the default is `MEASURES`.
+    initial : Result, path, or sequence or mapping of them
+        The state that all runs of a column begin in, as for `rbsdem.ensemble`: what an aftershock
+        finds.
+    jobs, progress
+        As for `rbsdem.ensemble`.
+    store : path
+        Folder that keeps the runs, as for `rbsdem.ensemble`; a second start, with more records too,
+        goes on from there.
+    """
+
+    intensity: Name
+    period: float | None
+    damping: float
+    collapse_drift: float
+    measures: Sequence[str | Measure]
+    initial: Any
+    jobs: int | None
+    progress: bool
+    store: str | os.PathLike[str] | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -249,6 +293,11 @@ class Collector:
                 f"{', '.join(bad)}"
             )
 
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of columns, number of motions."""
+        return len(self.columns), len(self.motions)
+
     def run(self, levels: Array) -> NDArray[np.bool_]:
         """Run at levels of intensity, shape (columns, motions, k), NaN for no run.
 
@@ -294,7 +343,7 @@ class Collector:
         """
         if self.settings.get("initial") is None:
             return
-        collapsed = self.run(np.zeros((len(self.columns), len(self.motions), 1)))
+        collapsed = self.run(np.zeros((*self.shape, 1)))
         for column in np.flatnonzero(collapsed.any(axis=(1, 2))):
             raise InputError(
                 f"{who}: column {list(self.columns)[column]!r} collapses from its initial state "
@@ -344,6 +393,36 @@ class Collector:
 
 #: Settings that a second attempt by another method keeps.
 _KEPT = ("collapse_drift", "initial", "jobs", "progress", "store")
+
+
+def make_collector(
+    who: str,
+    columns: Column | Sequence[Column] | Mapping[str, Column],
+    motions: Mapping[str, GroundMotion],
+    *,
+    intensity: Name = "sa_t1",
+    period: float | None = None,
+    damping: float = 0.05,
+    collapse_drift: float = 0.1,
+    measures: Sequence[str | Measure] = MEASURES,
+    initial: Any = None,
+    jobs: int | None = None,
+    progress: bool = False,
+    store: str | os.PathLike[str] | None = None,
+    **solver: Unpack[Solver],
+) -> Collector:
+    """Return what makes the runs of an analysis; the keywords are those of `RunOptions`."""
+    named = columns_by_name(columns)
+    measure = make_intensity(intensity, next(iter(named.values())), period, damping)
+    settings = {"method": "auto"} | checked_solver(solver, who)
+    settings |= {
+        "collapse_drift": checked_drift(collapse_drift),
+        "initial": initial,
+        "jobs": jobs,
+        "progress": progress,
+        "store": None if store is None else _arguments.path(store, "store"),
+    }
+    return Collector(named, motions, measure, measures_in_a_list(measures), settings)
 
 
 def columns_by_name(columns: Any) -> dict[str | int, Column]:

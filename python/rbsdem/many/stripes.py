@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,21 +14,13 @@ from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 from rbsdem.many.fragility import Counts, Fragile, Fragility, fit_fragility
-from rbsdem.many.measures import Measure, limit_states, measures_in_a_list
-from rbsdem.many.runs import (
-    MEASURES,
-    Collector,
-    Name,
-    Runs,
-    checked_drift,
-    checked_levels,
-    columns_by_name,
-    make_intensity,
-    motions_by_name,
-)
+from rbsdem.many.measures import limit_states
+from rbsdem.many.runs import RunOptions, Runs, checked_levels, make_collector, motions_by_name
 from rbsdem.model.column import Column
 from rbsdem.motions.motion import GroundMotion
-from rbsdem.solve.analysis import Method
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -95,17 +87,7 @@ def stripes(
     column: Column | Sequence[Column] | Mapping[str, Column],
     motions: Any,
     levels: ArrayLike | None = None,
-    *,
-    intensity: Name = "sa_t1",
-    period: float | None = None,
-    damping: float = 0.05,
-    collapse_drift: float = 0.1,
-    measures: Sequence[str | Measure] = MEASURES,
-    method: Method = "auto",
-    dt: float | None = None,
-    initial: Any = None,
-    jobs: int | None = None,
-    progress: bool = False,
+    **options: Unpack[RunOptions],
 ) -> Stripes:
     """Run records at levels of intensity.
 
@@ -118,10 +100,8 @@ def stripes(
         to it.
     levels : array_like, shape (k,), optional
         Intensities of the runs [m/s2], unless the motions come by level.
-    intensity, period, damping, collapse_drift, measures, method, dt, initial : optional
-        As for `rbsdem.ida`.
-    jobs, progress : optional
-        As for `rbsdem.ida`.
+    **options
+        As for `rbsdem.ida`, see `rbsdem.many.runs.RunOptions`.
 
     Returns
     -------
@@ -134,30 +114,19 @@ def stripes(
         Before the first run, with all that is wrong.
     """
     begin = time.perf_counter()
-    columns = columns_by_name(column)
     by_level = _by_level(motions)
     if by_level is None:
         if levels is None:
             raise InputError("stripes: levels are missing; give intensities in m/s2")
-        found = motions_by_name(motions)
-        at = checked_levels(levels)
-        wanted = np.broadcast_to(at, (len(columns), len(found), at.size)).copy()
+        found, wanted = motions_by_name(motions), checked_levels(levels)
+        at = wanted
     else:
         if levels is not None:
             raise InputError("stripes: the motions come by level; leave levels out")
-        found, wanted = _own_records(by_level, len(columns))
+        found, wanted = _own_records(by_level)
         at = checked_levels(list(by_level))
-    measure = make_intensity(intensity, next(iter(columns.values())), period, damping)
-    settings: dict[str, Any] = {
-        "method": method,
-        "dt": dt,
-        "collapse_drift": checked_drift(collapse_drift),
-        "initial": initial,
-        "jobs": jobs,
-        "progress": progress,
-    }
-    work = Collector(columns, found, measure, measures_in_a_list(measures), settings)
-    work.run(wanted)
+    work = make_collector("stripes", column, found, **options)
+    work.run(np.broadcast_to(wanted, (*work.shape, wanted.shape[-1])).copy())
     return Stripes(work.finish(), at, by_level is None, time.perf_counter() - begin)
 
 
@@ -172,12 +141,12 @@ def _by_level(motions: Any) -> dict[float, dict[str, GroundMotion]] | None:
 
 
 def _own_records(
-    by_level: dict[float, dict[str, GroundMotion]], columns: int
+    by_level: dict[float, dict[str, GroundMotion]],
 ) -> tuple[dict[str, GroundMotion], Array]:
-    """Return all motions, named after their levels, and the level that each one has."""
+    """Return all motions, named after their levels, and the level of each, shape (motions, 1)."""
     found, levels = {}, []
     for level, own in by_level.items():
         for name, motion in own.items():
             found[f"{level:g} {name}"] = motion
             levels.append(level)
-    return found, np.broadcast_to(np.array(levels)[:, None], (columns, len(levels), 1)).copy()
+    return found, np.array(levels)[:, None]

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import cast
 
 from rbsdem.results.accuracy import Answer
+from rbsdem.solve.solver import Solver
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,12 @@ class Setting:
     parts: int | None = None
     rho_infinity: float | None = None
     own: bool = False
+
+    @property
+    def solver(self) -> Solver:
+        """The settings of the method."""
+        names = [name for name in Solver.__annotations__ if getattr(self, name, None) is not None]
+        return cast(Solver, {name: getattr(self, name) for name in names})
 
     @property
     def family(self) -> tuple[str, str | None, str, float | None, bool]:

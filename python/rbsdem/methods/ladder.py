@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import time as clock
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +18,7 @@ from rbsdem.methods.scene import Scene
 from rbsdem.model.column import Column
 from rbsdem.results.accuracy import common_interval
 from rbsdem.solve.analysis import METHODS, no_watch, time_history
-from rbsdem.solve.solver import IMPLICIT
+from rbsdem.solve.solver import IMPLICIT, Solver
 from rbsdem.solve.solver import METHODS as FACTS
 
 #: Levels of kinematics, each with more physics than the one before.
@@ -202,19 +202,24 @@ def _families(look: Probe, methods: Sequence[str], level: str) -> list[list[Sett
     return found
 
 
-def own_setting(column: Column, given: Mapping[str, Any]) -> Setting:
-    """Return the setting that a user gives by the keywords of `time_history`.
+#: The settings of a method that a setting of a study has; the budget and the limit of stability
+#: are its own affair.
+OF_SETTING = tuple(name for name in Solver.__annotations__ if name in Setting.__annotations__)
+
+
+def own_setting(column: Column, given: Solver) -> Setting:
+    """Return the setting that a user gives.
 
     Raises
     ------
     InputError
         If a keyword does not belong to a setting.
     """
-    known = ("method", "dt", "tolerance", "events", "rho_infinity")
     for name in given:
-        if name not in known:
+        if name not in OF_SETTING:
+            known = ", ".join(OF_SETTING)
             raise InputError(
-                f"compare_methods: setting: {name!r} is not known; it is one of {', '.join(known)}"
+                f"compare_methods: setting: {name!r} is not known; it is one of {known}"
             )
     fields = {"method": "rk4", **given}
     if fields["method"] == "rk4":

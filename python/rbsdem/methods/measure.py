@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from typing import Any
 
 from numpy.typing import ArrayLike
 
@@ -21,6 +20,7 @@ from rbsdem.model.column import Column
 from rbsdem.model.springs import Spring
 from rbsdem.motions.acting import acting
 from rbsdem.motions.motion import GroundMotion
+from rbsdem.solve.solver import Solver
 
 __all__ = ["compare_methods"]
 
@@ -39,7 +39,7 @@ def compare_methods(
     axial_load: ArrayLike | None = None,
     initial: Mapping[str, ArrayLike] | None = None,
     methods: Sequence[str] | None = None,
-    setting: Mapping[str, Any] | None = None,
+    setting: Solver | None = None,
     tolerance: float | None = None,
     budget: float = 60.0,
     digits: float = 8.0,
@@ -73,9 +73,8 @@ def compare_methods(
         Displacement of the top that drives a static path [m]; the response is then the force.
     methods : sequence of str, optional
         The methods in time to try; by default all of them.
-    setting : mapping, optional
-        A further setting to measure: "method", "dt", "tolerance", "events", "rho_infinity" as for
-        `rbsdem.time_history`.
+    setting : Solver, optional
+        A further setting to measure: method, dt, tolerance, events, rho_infinity.
     tolerance : float, optional
         Relative error allowed. The cheapest setting within it is named, and a part of the model
         matters if it changes the answer by more.

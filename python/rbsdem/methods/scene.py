@@ -86,12 +86,9 @@ class Scene:
         if column.kinematics == "small" and column.axial_spring is None:
             # These loads would have nothing to act on and would be refused.
             loads = {name: load for name, load in loads.items() if name not in VERTICAL}
-        names = ("dt", "tolerance", "events", "rho_infinity")
-        chosen = {name: getattr(setting, name) for name in names}
         return {
             **loads,
-            **{name: value for name, value in chosen.items() if value is not None},
-            "method": setting.method,
+            **setting.solver,
             "initial": self._initial(column.n),
             "collapse_drift": self.collapse_drift,
         }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from rbsdem.model.footing import Footing
 from rbsdem.model.springs import SPRINGS, Spring
 from rbsdem.results.result import Result, cyclic, time_history
 from rbsdem.section.drawing import Groups, layered_column, recipe_of
+from rbsdem.solve.solver import Solver
 
 _DRIVES = ("displacement", "force", "ground_acceleration", "vertical_acceleration", "axial_load")
 
@@ -58,6 +59,14 @@ class Case:
     vertical_acceleration: Array | None
     axial_load: Array | None
     settings: dict[str, Any]
+
+    @property
+    def solver(self) -> Solver:
+        """The method in time and its settings that were given; nothing for a static case."""
+        if self.method == "static":
+            return Solver()
+        given = {"method": self.method} | self.settings
+        return cast(Solver, {name: given[name] for name in Solver.__annotations__ if name in given})
 
     def run(self, column: Column | None = None, **changes: Any) -> Result:
         """Solve the case as the executable does.

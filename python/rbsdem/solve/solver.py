@@ -58,7 +58,7 @@ class Solver(TypedDict, total=False):
 
 
 def checked_solver(given: Mapping[str, Any], who: str) -> dict[str, Any]:
-    """Return all settings of a method, None for those that are not given.
+    """Return the settings of a method that are given.
 
     Raises
     ------
@@ -70,7 +70,8 @@ def checked_solver(given: Mapping[str, Any], who: str) -> dict[str, Any]:
         if name not in names:
             raise TypeError(f"{who}() got an unexpected keyword argument {name!r}")
     unstable = _arguments.switch(given.get("allow_unstable", False), "allow_unstable")
-    return {name: given.get(name) for name in names} | {"allow_unstable": unstable or None}
+    chosen = {**given, "allow_unstable": unstable or None}
+    return {name: chosen[name] for name in names if chosen.get(name) is not None}
 
 
 @dataclass(frozen=True)
