@@ -6,11 +6,9 @@ program unit_tests
    use test_bilinear, only: collect_bilinear
    use test_capped, only: collect_capped
    use test_chain, only: collect_chain
-   use test_column, only: collect_column
    use test_concrete, only: collect_concrete
    use test_finite, only: collect_finite
    use test_frame, only: collect_frame
-   use test_history, only: collect_history
    use test_implicit, only: collect_implicit
    use test_implicit_finite, only: collect_implicit_finite
    use test_structure, only: collect_structure
@@ -52,7 +50,7 @@ program unit_tests
       procedure(collect_interface), pointer, nopass :: collect => null()
    end type suite_type
 
-   type(suite_type) :: suites(34)
+   type(suite_type) :: suites(32)
    character(len=80) :: wanted, pattern
    integer :: i, run, failed, found
 
@@ -66,7 +64,7 @@ program unit_tests
              suite_type('steel', collect_steel), &
              suite_type('layered', collect_layered), suite_type('rules', collect_rules), &
              suite_type('interaction', collect_interaction), &
-             suite_type('springs', collect_springs), suite_type('column', collect_column), &
+             suite_type('springs', collect_springs), &
              suite_type('chain', collect_chain), &
              suite_type('band', collect_band), &
              suite_type('finite', collect_finite), suite_type('frame', collect_frame), &
@@ -74,7 +72,6 @@ program unit_tests
              suite_type('results', collect_results), suite_type('time_plan', collect_time_plan), &
              suite_type('modal', collect_modal), suite_type('static', collect_static), &
              suite_type('static_finite', collect_static_finite), &
-             suite_type('history', collect_history), &
              suite_type('run', collect_run), &
              suite_type('steppers', collect_steppers), &
              suite_type('shear', collect_shear), &

@@ -12,6 +12,7 @@ module runs
    use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: summary_type
    use rbs_loading_loads, only: loads_type
+   use rbs_solve_static_run_static, only: run_static
    use rbs_solve_task, only: task_type
    use rbs_solve_time_located, only: located_stepper
    use rbs_solve_time_march, only: initial_state
@@ -30,7 +31,7 @@ module runs
    private
 
    public :: scene_type, scenes, new_scene, new_mass, play, play_located, find_reference
-   public :: run_data, run, times, signal_of, loads_of, last_deformation
+   public :: run_data, run, run_path, times, signal_of, loads_of, last_deformation
    public :: new_state, column_of, new_located, residual_of, distance, order_of, check_order
 
    !> One run: its input without the column, and its results.
@@ -81,6 +82,27 @@ contains
       if (recorder%count == 0) allocate (recorder%rows(recorder%channels%width, 0))
       data%rows = recorder%rows(:, :recorder%count)
    end subroutine run
+
+   !> Follow a static path.
+   subroutine run_path(spec, by_force, values, rows, outcome, summary)
+      type(column_record), intent(in) :: spec
+      logical, intent(in) :: by_force
+      real(wp), intent(in) :: values(:)
+      real(wp), allocatable, intent(out) :: rows(:, :)
+      type(error_type), allocatable, intent(out) :: outcome
+      type(summary_type), intent(out), optional :: summary
+      type(array_recorder), target :: recorder
+      class(column_type), allocatable :: column
+      type(task_type) :: task
+
+      column = made(spec)
+      recorder%channels = new_channels(column, .false., .false., .false.)
+      task%recorder => recorder
+      call run_static(column, by_force, values, task, outcome)
+      if (recorder%count == 0) allocate (recorder%rows(recorder%channels%width, 0))
+      rows = recorder%rows(:, :recorder%count)
+      if (present(summary)) summary = task%summary
+   end subroutine run_path
 
    !> The loads of a run.
    type(loads_type) function loads_of(data) result(loads)

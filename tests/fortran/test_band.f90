@@ -1,7 +1,7 @@
 !> The chain in centroid coordinates against the dense matrices in slips and rotations, and the critical
 !> load against the dense eigenproblem.
 module test_band
-   use check, only: unit_test, check_close, check_passed, check_true
+   use check, only: unit_test, check_close
    use dense, only: solve_eigen
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
@@ -25,8 +25,7 @@ contains
                unit_test('band of the springs is B''k B', springs), &
                unit_test('band of the axial forces is B''K_G B', geometric), &
                unit_test('openings are not coupled to slips and rotations', openings), &
-               unit_test('critical load against the dense eigenproblem', critical), &
-               unit_test('critical load of 10000 bodies: Haringx with shear, order 2', critical_long)]
+               unit_test('critical load against the dense eigenproblem', critical)]
    end subroutine collect_band
 
    !> A chain with openings, a mass on top, weight and axial load.
@@ -209,36 +208,5 @@ contains
          call check_close(error, factor*w(2*n), 1.0_wp, 1.0e-10_wp, 0.0_wp, 'critical factor')
       end do
    end subroutine critical
-
-   !> An elastic cantilever with shear: the slip of a joint is across the axis of the body below, and the
-   !> axial force stays vertical; so the chain tends to Haringx's critical load, P (1 + P/kGA) =
-   !> pi^2 EI/(2 L)^2. Each flexural spring represents a body's length, the lowest one half of it. The axial
-   !> force acts on a slip through the rotation of the body below, so it has no effect on the lowest shear
-   !> spring, and the highest one represents two bodies.
-   subroutine critical_long(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(column_record) :: spec
-      integer, parameter :: bodies(3) = [200, 1000, 10000]
-      real(wp), parameter :: height = 2.0_wp, ei = 1.0e6_wp, ga = 3.0e6_wp
-      real(wp) :: euler, haringx, factor, wrong(3)
-      integer :: i, n
-
-      euler = acos(-1.0_wp)**2*ei/(2.0_wp*height)**2
-      haringx = 2.0_wp*euler/(1.0_wp + sqrt(1.0_wp + 4.0_wp*euler/ga))
-      do i = 1, 3
-         n = bodies(i)
-         spec = chain(n, 'pdelta')
-         spec%lengths = height/n
-         spec%shear(:) = elastic(ga*n/height)
-         spec%shear(n) = elastic(0.5_wp*ga*n/height)
-         spec%flexure(:) = elastic(ei*n/height)
-         spec%flexure(1) = elastic(2.0_wp*ei*n/height)
-         spec%axial_load = euler
-         call critical_factor(made(spec), factor)
-         wrong(i) = factor*euler/haringx - 1.0_wp
-      end do
-      call check_close(error, log(abs(wrong(1)/wrong(2)))/log(5.0_wp), 2.0_wp, 0.0_wp, 0.05_wp, 'order')
-      call check_true(error, abs(wrong(3)) < 1.0e-8_wp, '10000 bodies')
-   end subroutine critical_long
 
 end module test_band

@@ -1,7 +1,6 @@
 !> Equation of motion of the chain with small rotations: the O(n) forms against dense matrices from the
 !> equations of theory.md, and against the energies.
 module test_chain
-   use dense, only: factor_positive, solve_positive
    use check, only: unit_test, check_close, check_passed, check_same, check_true
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
@@ -17,7 +16,7 @@ module test_chain
    use rbs_solve_time_state, only: state_type
    use rbs_structure_column_column_record, only: column_record
    use runs, only: column_of, new_state, signal_of
-   use samples, only: bilinear, made, random_type, rich_column
+   use samples, only: made, random_type, rich_column
    implicit none
    private
 
@@ -29,12 +28,10 @@ contains
       type(unit_test), allocatable, intent(out) :: tests(:)
 
       tests = [unit_test('accelerations solve the dense equation of motion', dense), &
-               unit_test('each load on its own', one_load), &
                unit_test('powers are the rates of the energies', power), &
                unit_test('velocities of bodies and of joints, kinetic energy', bodies), &
                unit_test('height of the top to second order', height), &
-               unit_test('one body: the fast step is the step of the chain', fast_step), &
-               unit_test('loads that do not act cost nothing and change nothing', idle_loads)]
+               unit_test('one body: the fast step is the step of the chain', fast_step)]
    end subroutine collect_chain
 
    !> Column of a variant, whose bits mean: opens, second order, lumped mass, damping of mass, of initial
@@ -191,47 +188,6 @@ contains
       end do
    end subroutine dense
 
-   !> For one body without spring forces each load alone has a closed form.
-   subroutine one_load(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(column_record) :: spec
-      type(state_type) :: state
-      class(column_type), allocatable :: column
-      type(loads_type) :: loads
-      type(motion_result) :: now
-      real(wp) :: q(3), v(3), load(4), m, l
-
-      spec = rich_column(1, 'pdelta', .true., random)
-      spec%self_weight = .false.
-      spec%axial_load = 0.0_wp
-      column = made(spec)
-      m = column%mass(1)
-      l = column%length(1)
-      q = 0.0_wp
-      v = 0.0_wp
-      loads%force = constant(1.0_wp)
-      loads%ground = constant(1.0_wp)
-      loads%vertical = constant(1.0_wp)
-      loads%axial = constant(1.0_wp)
-      call new_state(state, column, loads, q, v)
-      call now%create(column)
-
-      load = [12.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
-      call state%motion%acceleration(state%springs, q, v, load, now)
-      call check_close(error, now%a(2)*column%inertia(1), 6.0_wp*l, 1.0e-14_wp, 0.0_wp, 'force turns')
-      call check_close(error, now%a(1) + 0.5_wp*l*now%a(2), 12.0_wp/m, 1.0e-14_wp, 0.0_wp, 'force pushes')
-      load = [0.0_wp, 3.0_wp, 0.0_wp, 0.0_wp]
-      call state%motion%acceleration(state%springs, q, v, load, now)
-      call check_close(error, now%a, [-3.0_wp, 0.0_wp, 0.0_wp], 1.0e-15_wp, 0.0_wp, 'ground')
-      load = [0.0_wp, 0.0_wp, 3.0_wp, 0.0_wp]
-      call state%motion%acceleration(state%springs, q, v, load, now)
-      call check_close(error, now%a, [0.0_wp, 0.0_wp, -3.0_wp], 1.0e-15_wp, 0.0_wp, 'vertical')
-      load = [0.0_wp, 0.0_wp, 0.0_wp, 3.0_wp*m]
-      call state%motion%acceleration(state%springs, q, v, load, now)
-      call check_close(error, now%a, [0.0_wp, 0.0_wp, -3.0_wp], 1.0e-15_wp, 0.0_wp, 'axial')
-   end subroutine one_load
-
    !> d(kinetic energy + potential)/dt + power of the springs = power of loads - power of damping. Both
    !> energies are quadratic, so a central difference over any distance is their derivative.
    subroutine power(error)
@@ -381,40 +337,5 @@ contains
          call check_same(error, fast%load, slow%load, 'loads at the end')
       end do
    end subroutine fast_step
-
-   !> A load of zeros has the effect of no load, to round-off.
-   subroutine idle_loads(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      class(column_type), allocatable :: column
-      type(state_type) :: idle, none
-      type(loads_type) :: zeros
-      type(rk4_scheme) :: a, b
-      real(wp), allocatable :: q(:), v(:)
-      integer :: n, kind
-
-      zeros%force = constant(0.0_wp)
-      zeros%ground = constant(0.0_wp)
-      zeros%vertical = constant(0.0_wp)
-      zeros%axial = constant(0.0_wp)
-      do n = 1, 3
-         do kind = 0, 127
-            column = made(variant(n, kind, random))
-            q = random%uniform_array(-1.0e-3_wp, 1.0e-3_wp, column%unknowns)
-            v = random%uniform_array(-1.0_wp, 1.0_wp, column%unknowns)
-            call new_state(idle, column, zeros, q, v)
-            call new_state(none, column, loads_type(), q, v)
-            a = rk4_scheme()
-            b = rk4_scheme()
-            call a%create(column)
-            call b%create(column)
-            call a%attempt(idle, 1.0e-5_wp)
-            call b%attempt(none, 1.0e-5_wp)
-            call check_close(error, a%v, b%v, 0.0_wp, 1.0e-13_wp*maxval(abs(b%v)), 'velocity')
-            call check_close(error, a%of_loads, 0.0_wp, 0.0_wp, 0.0_wp, 'no work')
-            call check_close(error, a%of_damping, b%of_damping, 1.0e-13_wp, 0.0_wp, 'damping')
-         end do
-      end do
-   end subroutine idle_loads
 
 end module test_chain

@@ -1,15 +1,11 @@
 !> Exact rotations, body by body: against the dense method of module `exact`, eq 4, and invariants.
 module test_finite
-   use dense, only: solve_general
-   use check, only: unit_test, check_close, check_same, check_true
-   use rbs_base_constants, only: pi
+   use check, only: unit_test, check_close, check_same
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_structure_column_chain, only: geometric_forces
    use rbs_structure_column_column, only: column_type
    use rbs_structure_column_finite, only: finite_chain_type
-   use rbs_structure_column_chain_matrices, only: symmetric_mass
    use rbs_structure_column_column_record, only: column_record
    use rbs_structure_structure, only: motion_result
    use exact, only: point, variant, state, sample, variant_of, random_state, place, dense_mass, &
@@ -26,21 +22,12 @@ contains
       type(unit_test), allocatable, intent(out) :: tests(:)
 
       tests = [unit_test('accelerations against M = sum J'' diag(m, m, I) J', accelerations), &
-               unit_test('the same for 40 bodies', many_bodies), &
-               unit_test('mass matrix of the straight column', mass_straight), &
-               unit_test('one body: corrected eq 4 with axial load, weight and ground', one_body), &
                unit_test('closed joints are open ones held by their reactions', reactions), &
                unit_test('power balance of loads, springs, potential and damping', power_balance), &
                unit_test('kinetic energy and position of the top', kinetic), &
                unit_test('velocity and acceleration of the top', moving_top), &
                unit_test('potential of axial load and weight from the heights', potential), &
-               unit_test('potential of small rotations, without cancellation', small_potential), &
-               unit_test('the derivative of the potential is the force', potential_force), &
-               unit_test('small rotations: pdelta to third order', small_rotations), &
-               unit_test('small rotations: openings are not coupled to second order', small_openings), &
-               unit_test('a rigid rotation of the column is not felt in the joints above', rigid_rotation), &
-               unit_test('a full turn of any joint changes nothing', full_turns), &
-               unit_test('in free fall the column has no weight', free_fall)]
+               unit_test('potential of small rotations, without cancellation', small_potential)]
    end subroutine collect_finite
 
    !> Accelerations of a state.
@@ -80,71 +67,6 @@ contains
          end do
       end do
    end subroutine accelerations
-
-   subroutine many_bodies(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(column_record) :: spec
-      class(column_type), allocatable :: column
-      type(state) :: now
-      real(wp), allocatable :: expected(:)
-      real(wp) :: largest
-      integer :: i
-
-      do i = 8, 9
-         spec = sample(40, variant_of(i))
-         column = made(spec)
-         now = random_state(column, random)
-         expected = now%q
-         call dense_acceleration(spec, now, expected, largest)
-         call check_close(error, accelerated(column, now), expected, 0.0_wp, 1.0e-10_wp*largest, &
-                          'variant '//to_text(i))
-      end do
-   end subroutine many_bodies
-
-   subroutine mass_straight(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(column_record) :: spec
-      real(wp) :: q(15), mass(15, 15), expected(15, 15)
-
-      spec = sample(5, variant(opens=.true., lumped=.true.))
-      q = 0.0_wp
-      call dense_mass(spec, q, mass)
-      call symmetric_mass(made(spec), expected)
-      call check_close(error, pack(mass, .true.), pack(expected, .true.), 1.0e-14_wp, 0.0_wp, 'entry')
-   end subroutine mass_straight
-
-   !> theory.md section 3, both rows.
-   subroutine one_body(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(column_record) :: spec
-      class(column_type), allocatable :: column
-      type(state) :: now
-      real(wp) :: a(2), left(2), right(2), i_half, s, c
-      integer :: i
-
-      spec = sample(1, variant())
-      spec%damping%mass = 0.0_wp
-      spec%depth = 0.0_wp
-      column = made(spec)
-      do i = 1, 20
-         now = random_state(column, random)
-         now%load(3:) = 0.0_wp
-         a = accelerated(column, now)
-         s = sin(now%q(2))
-         c = cos(now%q(2))
-         associate (m => spec%masses(1), l => spec%height, p => spec%axial_load, g => spec%gravity)
-            i_half = m*l**2/12.0_wp + m*l**2/4.0_wp
-            left = [m*a(1) + 0.5_wp*m*l*c*a(2) - 0.5_wp*m*l*s*now%v(2)**2 + now%f(1), &
-                    0.5_wp*m*l*c*a(1) + i_half*a(2) + now%f(2)]
-            right = [now%load(1) - m*now%load(2), &
-                     now%load(1)*l*c + p*l*s + 0.5_wp*m*g*l*s - 0.5_wp*m*l*now%load(2)*c]
-         end associate
-         call check_close(error, left, right, 0.0_wp, 1.0e-12_wp*(maxval(abs(now%f)) + spec%axial_load), &
-                          'row')
-      end do
-   end subroutine one_body
 
    subroutine reactions(error)
       type(error_type), allocatable, intent(inout) :: error
@@ -337,174 +259,5 @@ contains
       call check_close(error, column%potential_energy(q), upright%potential_energy(q), 1.0e-14_wp, 0.0_wp, &
                        'second order')
    end subroutine small_potential
-
-   subroutine potential_force(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(column_record) :: spec
-      class(column_type), allocatable :: column
-      type(state) :: now
-      real(wp), parameter :: h = 0.01_wp
-      real(wp) :: mass(15, 15), slope(15), at(-3:3)
-      integer :: i, k
-
-      spec = sample(5, variant(opens=.true., lumped=.true.))
-      column = made(spec)
-      now = random_state(column, random)
-      now%v = 0.0_wp
-      now%f = 0.0_wp
-      now%load = 0.0_wp
-      call dense_mass(spec, now%q, mass)
-      do i = 1, 15
-         do k = -3, 3
-            at(k) = column%potential_energy(moved(now%q, i, k*h))
-         end do
-         slope(i) = (45.0_wp*(at(1) - at(-1)) - 9.0_wp*(at(2) - at(-2)) + at(3) - at(-3))/(60.0_wp*h)
-      end do
-      call check_close(error, matmul(mass, accelerated(column, now)), -slope, 0.0_wp, &
-                       1.0e-11_wp*maxval(abs(slope)), 'force')
-   end subroutine potential_force
-
-   !> The unknowns with one of them changed.
-   pure function moved(q, i, by) result(there)
-      real(wp), intent(in) :: q(:), by
-      integer, intent(in) :: i
-      real(wp) :: there(size(q))
-
-      there = q
-      there(i) = q(i) + by
-   end function moved
-
-   !> M q'' + f + K_G q = a F - b a_g holds up to terms of third order, as the motion is odd in the state.
-   subroutine small_rotations(error)
-      type(error_type), allocatable, intent(inout) :: error
-      integer, parameter :: n = 5
-      type(random_type) :: random
-      class(column_type), allocatable :: column
-      type(state) :: one, now
-      real(wp) :: right(2*n, 1), mass(2*n, 2*n), g(2*n), away(2), share
-      integer :: i
-      logical :: regular
-
-      column = made(sample(n, variant(lumped=.true.)))
-      one = random_state(column, random)
-      one%q(n + 1:) = one%q(n + 1:)/10.0_wp
-      one%load(3:) = 0.0_wp
-      do i = 1, 2
-         share = 2.0e-3_wp/i
-         now = state(share*one%q, share*one%v, share*one%f, share*one%load)
-         call symmetric_mass(column, mass)
-         g = 0.0_wp
-         call geometric_forces(column%n, column%length, [column%axial_body, column%axial_slip], &
-                               now%q, g)
-         right(:, 1) = column%arm*now%load(1) - column%ground_arm*now%load(2) - now%f - g
-         call solve_general(mass, right, regular)
-         g = accelerated(column, now) - (right(:, 1) - column%mass_damping*now%v)
-         away(i) = maxval(abs(g))
-         call check_true(error, away(i) < 1.0e-3_wp*maxval(abs(right)), 'close')
-      end do
-      call check_close(error, away(1)/away(2), 8.0_wp, 0.01_wp, 0.0_wp, 'third order')
-   end subroutine small_rotations
-
-   !> Openings about the equilibrium N_i = -`axial_joint` are not coupled to other unknowns at first order.
-   subroutine small_openings(error)
-      type(error_type), allocatable, intent(inout) :: error
-      integer, parameter :: n = 5
-      type(random_type) :: random
-      class(column_type), allocatable :: column
-      type(state) :: one, now
-      real(wp) :: right(3*n, 1), mass(3*n, 3*n), g(3*n), away(2), share
-      integer :: i
-      logical :: regular
-
-      column = made(sample(n, variant(opens=.true., lumped=.true.)))
-      one = random_state(column, random)
-      one%q(n + 1:2*n) = one%q(n + 1:2*n)/10.0_wp
-      one%load(3:) = 0.0_wp
-      do i = 1, 2
-         share = 1.0e-4_wp/i
-         now = state(share*one%q, share*one%v, share*one%f, share*one%load)
-         call symmetric_mass(column, mass)
-         g = 0.0_wp
-         call geometric_forces(column%n, column%length, [column%axial_body, column%axial_slip], &
-                               now%q, g)
-         right(:, 1) = column%arm*now%load(1) - column%ground_arm*now%load(2) - now%f - g
-         now%f(2*n + 1:) = now%f(2*n + 1:) - column%axial_joint
-         call solve_general(mass, right, regular)
-         g = accelerated(column, now) - (right(:, 1) - column%mass_damping*now%v)
-         away(i) = maxval(abs(g))
-         call check_true(error, away(i) < 1.0e-2_wp*maxval(abs(right)), 'close')
-      end do
-      call check_close(error, away(1)/away(2), 4.0_wp, 0.01_wp, 0.0_wp, 'second order')
-   end subroutine small_openings
-
-   !> A chain without ground motion turns as a whole: the motion of its joints is the same.
-   subroutine rigid_rotation(error)
-      type(error_type), allocatable, intent(inout) :: error
-      integer, parameter :: n = 4
-      type(random_type) :: random
-      type(column_record) :: spec
-      class(column_type), allocatable :: column
-      type(state) :: now
-      real(wp) :: before(3*n), after(3*n), turn
-
-      spec = sample(n, variant(opens=.true., axial_follows=.true., force_follows=.true.))
-      spec%self_weight = .false.
-      column = made(spec)
-      now = random_state(column, random)
-      now%load(2:3) = 0.0_wp
-      now%q([1, 2*n + 1]) = 0.0_wp
-      now%f([1, 2*n + 1]) = 0.0_wp
-      now%v([1, 2*n + 1]) = 0.0_wp
-      before = accelerated(column, now)
-      turn = 1.234_wp
-      now%q(n + 1) = now%q(n + 1) + turn
-      after = accelerated(column, now)
-      associate (u => before(1), w => before(2*n + 1), size => maxval(abs(before)))
-         before([1, 2*n + 1]) = [u*cos(turn) + w*sin(turn), w*cos(turn) - u*sin(turn)]
-         call check_close(error, after, before, 0.0_wp, 1.0e-13_wp*size, 'acceleration')
-      end associate
-   end subroutine rigid_rotation
-
-   subroutine full_turns(error)
-      type(error_type), allocatable, intent(inout) :: error
-      integer, parameter :: n = 4
-      type(random_type) :: random
-      class(column_type), allocatable :: column
-      type(state) :: now
-      real(wp) :: before(2*n), after(2*n), energy
-      integer :: i
-
-      column = made(sample(n, variant(lumped=.true.)))
-      now = random_state(column, random)
-      before = accelerated(column, now)
-      energy = column%potential_energy(now%q)
-      do i = 1, n
-         now%q(n + i) = now%q(n + i) + (-1)**i*i*2.0_wp*pi
-         after = accelerated(column, now)
-         call check_close(error, after, before, 0.0_wp, 1.0e-13_wp*maxval(abs(before)), 'acceleration')
-         call check_close(error, column%potential_energy(now%q), energy, 1.0e-13_wp, 0.0_wp, 'potential')
-      end do
-   end subroutine full_turns
-
-   !> If the ground falls with g, the bodies have no weight.
-   subroutine free_fall(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(column_record) :: spec
-      class(column_type), allocatable :: column
-      type(state) :: now
-      real(wp) :: falling(10), expected(10)
-
-      spec = sample(5, variant())
-      column = made(spec)
-      now = random_state(column, random)
-      now%load(3) = -spec%gravity
-      falling = accelerated(column, now)
-      spec%self_weight = .false.
-      now%load(3) = 0.0_wp
-      expected = accelerated(made(spec), now)
-      call check_same(error, falling, expected, 'acceleration')
-   end subroutine free_fall
 
 end module test_finite

@@ -12,10 +12,9 @@ module test_implicit
    use rbs_loading_loads, only: loads_type
    use rbs_solve_time_state, only: state_type
    use rbs_structure_column_column_record, only: column_record
-   use runs, only: scene_type, scenes, new_scene, new_mass, play, play_located, find_reference, new_state, &
+   use runs, only: scene_type, new_scene, new_mass, play, play_located, find_reference, new_state, &
                    signal_of, check_order, residual_of, distance
-   use samples, only: set_value, value_of, chain, column_1, compression, elastic, made, random_type, &
-                      takeda_1, d_y, k_u
+   use samples, only: set_value, value_of, chain, column_1, compression, elastic, made, random_type, takeda_1
    implicit none
    private
 
@@ -32,21 +31,14 @@ contains
 
       tests = [unit_test('one mass: the steps of the scalar theory', scalar_theory), &
                unit_test('infinite frequency: the spectral radius of the input', high_frequency), &
-               unit_test('free and damped vibration: closed form, order 2', vibration), &
                unit_test('order 2 through yielding and unloading', yielding_order), &
                unit_test('average acceleration keeps the energy of elastic chains', elastic_energy), &
-               unit_test('damping of low frequencies is small', low_frequency), &
-               unit_test('ten bodies that yield, against located rk4', ten_bodies), &
                unit_test('axial load and vertical motion in time, against rk45', axial_history), &
                unit_test('modal damping: the exact decay of every mode', modal_decay), &
-               unit_test('modal damping of a column that yields, against rk45', modal_yielding), &
                unit_test('present stiffness in the damping, against rk45', tangent_damping), &
                unit_test('a step much longer than all periods stays bounded', long_step), &
-               unit_test('stiff chains come to rest at the static solution', stiff_chain), &
                unit_test('stiff chains that yield', stiff_yielding), &
-               unit_test('a contact that bounces, against the closed form', bounce), &
                unit_test('a chain of contacts falls onto its base', impact), &
-               unit_test('a column that falls has no bounds', falling), &
                unit_test('a step that fails has no effect', no_trace), &
                unit_test('a failure names spring and time', failure), &
                unit_test('steps of all lengths in any order', halves), &
@@ -168,53 +160,6 @@ contains
       end do
    end subroutine high_frequency
 
-   !> Rayleigh damping keeps the modes: exp(-c t/2) (cos w t + c/(2 w) sin w t).
-   subroutine vibration(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(column_record) :: spec
-      class(column_type), allocatable :: column
-      type(modes_type) :: modes
-      type(state_type) :: state
-      type(implicit_stepper) :: stepper
-      real(wp), parameter :: alpha(3) = [0.0_wp, 60.0_wp, 30.0_wp], beta(3) = [0.0_wp, 0.0_wp, 2.0e-5_wp]
-      real(wp) :: wrong(4), c, w, t
-      integer :: kind, i, mode, number, step, steps
-
-      do kind = 1, 3
-         spec = chain(3, 'pdelta')
-         if (kind < 3) spec%axial_load = 1.0e7_wp
-         spec%damping%mass = alpha(kind)
-         spec%damping%stiffness = beta(kind)
-         column = made(spec)
-         call find_modes(column, modes, outcome)
-         call check_passed(error, outcome, 'find_modes')
-         do mode = 1, 6, 5
-            c = alpha(kind) + beta(kind)*modes%omega(mode)**2
-            w = sqrt(modes%omega(mode)**2 - c**2/4)
-            t = 4.7_wp/w
-            do number = 1, methods
-               do i = 1, 4
-                  steps = 40*2**i
-                  call new_state(state, column, loads_type(), modes%shapes(:, mode), spread(0.0_wp, 1, 6))
-                  stepper = method(number)
-                  do step = 1, steps
-                     call stepper%advance(state, t/steps, outcome)
-                     call check_passed(error, outcome, 'step')
-                  end do
-                  wrong(i) = maxval(abs(state%q - modes%shapes(:, mode) &
-                                        *exp(-c*t/2)*(cos(w*t) + c/(2*w)*sin(w*t)))) &
-                             /maxval(abs(modes%shapes(:, mode)))
-               end do
-               call check_order(error, wrong(2:), 1.9_wp, 2.1_wp, 'method '//to_text(number)//', mode '// &
-                                to_text(mode)//', damping '//to_text(kind))
-               call check_true(error, wrong(4) < 2.0e-3_wp, 'error '//to_text(wrong(4)))
-               if (allocated(error)) return
-            end do
-         end do
-      end do
-   end subroutine vibration
-
    !> A line ends at a random place within the step: order 2 in the mean over five halvings.
    subroutine yielding_order(error)
       type(error_type), allocatable, intent(inout) :: error
@@ -292,73 +237,6 @@ contains
          end do
       end do
    end subroutine elastic_energy
-
-   !> Generalised-alpha with rho = 0.8 and 20 steps per period: the amplitude decreases by less than 0.1 per
-   !> cent per period, and never grows.
-   subroutine low_frequency(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(scene_type) :: scene
-      type(state_type) :: state
-      type(implicit_stepper) :: stepper
-      real(wp) :: energy, before, period
-      integer :: number, step
-
-      do number = 1, methods
-         call new_mass(scene, elastic(800.0_wp), 2.0_wp, 0.1_wp, 0.0_wp)
-         period = 2.0_wp*pi*sqrt(2.0_wp/800.0_wp)
-         call new_state(state, scene%column, scene%loads, scene%q, scene%v)
-         stepper = method(number)
-         energy = 1.0_wp
-         do step = 1, 400
-            call stepper%advance(state, period/20.0_wp, outcome)
-            call check_passed(error, outcome, 'step')
-            before = energy
-            if (mod(step, 20) /= 0) cycle
-            energy = (0.5_wp*2.0_wp*state%v(3)**2 + 0.5_wp*800.0_wp*state%q(3)**2)/4.0_wp
-            call check_true(error, energy < 1.01_wp, 'method '//to_text(number)//' gives energy')
-         end do
-         if (number == 5) call check_true(error, energy > 0.95_wp, 'rho = 0.8: energy after 20 periods '// &
-                                          to_text(energy))
-         if (number == 1) call check_close(error, energy, 1.0_wp, 1.0e-10_wp, 0.0_wp, 'Newmark')
-      end do
-   end subroutine low_frequency
-
-   subroutine ten_bodies(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(column_record) :: spec
-      type(scene_type) :: scene
-      type(state_type) :: reference, state
-      type(implicit_stepper) :: stepper
-      real(wp) :: wrong(3)
-      integer :: i, number
-
-      spec = column_1('pdelta')
-      spec%n = 10
-      spec%axial_load = 5.0e5_wp
-      spec%top_mass = 2.0e4_wp
-      scene%column = made(spec)
-      allocate (scene%q(20), scene%v(20), source=0.0_wp)
-      scene%finish = 0.4_wp
-      scene%loads%ground = signal_of(0.1_wp*[0.0_wp, 1.0_wp, 2.0_wp, 3.0_wp, 4.0_wp], &
-                                     [0.0_wp, 30.0_wp, -40.0_wp, 40.0_wp, -30.0_wp])
-      call play_located(scene, 0.0_wp, 20000, reference, outcome)
-      call check_passed(error, outcome, 'located rk4')
-      call check_true(error, reference%springs%events > 30, 'the springs yield and unload')
-      do number = 1, methods, 4
-         do i = 1, 3
-            stepper = method(number)
-            call play(scene, stepper, 400*2**i, state, outcome)
-            call check_passed(error, outcome, 'method '//to_text(number))
-            wrong(i) = abs(sum(state%motion%structure%arm*(state%q - reference%q))) &
-                       /abs(sum(state%motion%structure%arm*reference%q))
-            call check_equal(error, stepper%cut_steps, 0, 'no step is cut')
-         end do
-         call check_true(error, wrong(3) < 2.0e-3_wp .and. wrong(3) < 0.3_wp*wrong(1), 'method '// &
-                         to_text(number)//': top is wrong by '//to_text(wrong(3)))
-      end do
-   end subroutine ten_bodies
 
    !> All four loads on a column with axial springs.
    subroutine axial_history(error)
@@ -465,40 +343,6 @@ contains
       end do
    end subroutine modal_decay
 
-   subroutine modal_yielding(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(column_record) :: spec
-      type(scene_type) :: scene
-      type(state_type) :: reference, state
-      type(implicit_stepper) :: stepper
-      real(wp) :: wrong(3)
-      integer :: i
-
-      call new_scene(scene, 4)
-      spec = column_1('small')
-      spec%n = 3
-      spec%damping%modal = [0.05_wp]
-      scene%column = made(spec)
-      scene%v = scene%v*3.0_wp
-      call play_located(scene, 1.0e-11_wp, 1, reference, outcome)
-      call check_passed(error, outcome, 'reference')
-      call check_true(error, reference%of_damping > 0.1_wp*reference%at_begin, 'damping takes part')
-      do i = 1, 3
-         stepper = method(5)
-         call play(scene, stepper, 500*4**(i - 1), state, outcome)
-         call check_passed(error, outcome, 'generalised-alpha')
-         wrong(i) = maxval(abs(state%q - reference%q))/maxval(abs(reference%q))
-      end do
-      call check_order(error, wrong, 2.5_wp, 5.0_wp, 'over quarters of the step')
-      call check_true(error, wrong(3) < 1.0e-3_wp, 'error '//to_text(wrong(3)))
-      ! A step of many periods of the higher modes: Newton's method without the damping in its tangent.
-      stepper = method(5)
-      call play(scene, stepper, 20, state, outcome)
-      call check_passed(error, outcome, 'long steps')
-      call check_true(error, all(abs(state%q) < 0.1_wp), 'long steps stay bounded')
-   end subroutine modal_yielding
-
    subroutine tangent_damping(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -561,52 +405,6 @@ contains
       end do
    end subroutine long_step
 
-   !> Statics with small rotations: every joint has the force of its lever arm, q_i = arm_i F/k_i.
-   subroutine stiff_chain(error)
-      type(error_type), allocatable, intent(inout) :: error
-      integer, parameter :: bodies(3) = [10, 200, 1000]
-      type(error_type), allocatable :: outcome
-      type(column_record) :: spec
-      class(column_type), allocatable :: column
-      type(loads_type) :: loads
-      type(state_type) :: state
-      type(implicit_stepper) :: stepper
-      real(wp), allocatable :: expected(:)
-      real(wp), parameter :: push = 1.0e5_wp
-      integer :: i, j, number, step
-
-      do i = 1, 3
-         spec = chain(bodies(i), 'small')
-         allocate (spec%axial_spring(1))
-         spec%axial_spring(1) = elastic(2.0e9_wp*bodies(i))
-         ! The same column in more bodies, with equal total flexibility and mass.
-         do j = 1, size(spec%shear)
-            call set_value(spec%shear(j), 'k', value_of(spec%shear(j), 'k')*bodies(i))
-            call set_value(spec%flexure(j), 'k', value_of(spec%flexure(j), 'k')*bodies(i))
-         end do
-         spec%masses = spec%masses/bodies(i)
-         spec%axial_load = 1.0e6_wp
-         spec%damping%stiffness = 0.1_wp
-         column = made(spec)
-         expected = column%arm*push/column%initial_stiffness
-         expected(2*bodies(i) + 1:) = -1.0e6_wp/column%initial_stiffness(2*bodies(i) + 1:)
-         loads%force = signal_of([0.0_wp, 1.0_wp], [push, push])
-         do number = 6, 7
-            call new_state(state, column, loads, 0.0_wp*expected, 0.0_wp*expected)
-            stepper = method(number)
-            do step = 1, 60
-               call stepper%advance(state, 0.2_wp, outcome)
-               call check_passed(error, outcome, 'n = '//to_text(bodies(i)))
-            end do
-            ! With hundreds of bodies the first damping forces consist of round-off.
-            if (i == 1) call check_equal(error, stepper%cut_steps, 0, 'no step is cut')
-            call check_true(error, stepper%cut_steps < 20, 'cut steps: '//to_text(stepper%cut_steps))
-            call check_close(error, state%q, expected, 1.0e-6_wp, 0.0_wp, 'n = '//to_text(bodies(i))// &
-                             ', method '//to_text(number)//': deformation')
-         end do
-      end do
-   end subroutine stiff_chain
-
    !> Many springs change their lines in one step: it is not cut, and the energy has the order of the step.
    subroutine stiff_yielding(error)
       type(error_type), allocatable, intent(inout) :: error
@@ -649,41 +447,6 @@ contains
       end do
    end subroutine stiff_yielding
 
-   !> The contact of the explicit tests: five impacts, and the energy of the last flight.
-   subroutine bounce(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(scene_type) :: scene
-      type(state_type) :: state
-      type(implicit_stepper) :: stepper
-      real(wp), parameter :: mass = 2.0_wp, k = 800.0_wp, v0 = 3.0_wp, push = 20.0_wp
-      real(wp) :: omega, sag, flight, contact, wrong(3)
-      integer :: i, number
-
-      call new_mass(scene, compression(k), mass, 0.0_wp, v0)
-      scene%column%axial_load = push
-      scene%column%axial_joint = push
-      omega = sqrt(k/mass)
-      sag = push/k
-      flight = 2.0_wp*v0*mass/push
-      contact = (2.0_wp*pi - 2.0_wp*acos(sag/hypot(sag, v0/omega)))/omega
-      scene%finish = 5.0_wp*(flight + contact) + 0.5_wp*flight
-      do number = 1, methods, 2
-         do i = 1, 3
-            stepper = method(number)
-            call play(scene, stepper, 1000*4**i, state, outcome)
-            call check_passed(error, outcome, 'method '//to_text(number))
-            wrong(i) = abs(state%q(3)/(0.5_wp*v0**2*mass/push) - 1.0_wp) + abs(state%v(3))/v0
-            call check_equal(error, stepper%cut_steps, 0, 'no step is cut')
-         end do
-         call check_true(error, wrong(3) < 2.0e-4_wp .and. wrong(3) < 0.1_wp*wrong(1), 'method '// &
-                         to_text(number)//': '//to_text(wrong(3)))
-         call check_equal(error, state%springs%events, 11, 'opened six times, closed five times')
-         ! The contact itself has dissipated nothing.
-         call check_close(error, state%springs%work(3), 0.0_wp, 0.0_wp, 1.0e-12_wp*mass*v0**2, 'work')
-      end do
-   end subroutine bounce
-
    !> Twenty loose blocks fall onto each other, with steps far beyond the limit of explicit methods.
    subroutine impact(error)
       type(error_type), allocatable, intent(inout) :: error
@@ -721,43 +484,6 @@ contains
          end if
       end do
    end subroutine impact
-
-   !> Beyond the critical load of the yielded springs the column falls: an error or unbounded values, but no
-   !> crash.
-   subroutine falling(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(column_record) :: spec
-      type(scene_type) :: scene
-      type(state_type) :: state
-      type(implicit_stepper) :: stepper
-      real(wp), parameter :: steps(4) = [1.0e-4_wp, 1.0e-3_wp, 1.0e-2_wp, 0.1_wp]
-      real(wp) :: before
-      integer :: i, number, step
-
-      spec = column_1('pdelta')
-      spec%axial_load = 10.0_wp*k_u/1.6_wp
-      scene%column = made(spec)
-      do i = 1, 4
-         do number = 1, methods
-            call new_state(state, scene%column, loads_type(), [0.0_wp, 2.0_wp*d_y], [0.0_wp, 10.0_wp])
-            stepper = method(number)
-            before = 0.0_wp
-            do step = 1, 20000
-               before = state%time
-               call stepper%advance(state, steps(i), outcome)
-               if (allocated(outcome) .or. state%lost) exit
-            end do
-            call check_true(error, all(abs(state%q) < 1.0e101_wp), 'the state is finite')
-            if (allocated(outcome)) then
-               call check_failed(error, outcome, analysis_failed, 'Rows up to there are kept')
-            else
-               call check_true(error, state%lost .or. steps(i) > 5.0e-3_wp, 'step '//to_text(steps(i))// &
-                               ', method '//to_text(number)//': it has fallen')
-            end if
-         end do
-      end do
-   end subroutine falling
 
    !> Force a step to fail in the middle of a run, after all its work; then continue.
    subroutine no_trace(error)

@@ -8,14 +8,12 @@ module test_implicit_finite
    use rbs_structure_column_column, only: column_type
    use rbs_solve_time_finite_joint, only: turned_body, turn_body, body_at, joint_type, joint_change, &
                                           joint_at, add_joint_forces, joint_tangent, local
-   use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha, &
-                                      with_finite_rotations
+   use rbs_solve_time_implicit, only: new_newmark, new_hht, new_generalised_alpha, with_finite_rotations
    use rbs_solve_time_implicit_finite, only: finite_stepper
    use rbs_loading_loads, only: loads_type
    use rbs_solve_time_state, only: state_type
    use rbs_structure_column_column_record, only: column_record
-   use runs, only: scene_type, new_scene, play, find_reference, new_state, signal_of, check_order, &
-                   residual_of, distance
+   use runs, only: scene_type, play, find_reference, new_state, signal_of, check_order, residual_of, distance
    use samples, only: bilinear, chain, elastic, made, random_type, rich_column
    implicit none
    private
@@ -33,11 +31,8 @@ contains
       tests = [unit_test('changes of slip and opening, from the positions of the bodies', exact_change), &
                unit_test('forces of a joint do the work of its springs', exact_work), &
                unit_test('tangent of a joint, by differences', tangent), &
-               unit_test('order 2 through yielding and unloading', yielding_order), &
                unit_test('order 2 for chains with damping, openings and all loads', order_of_chains), &
                unit_test('average acceleration balances the energy, springs that yield included', energy), &
-               unit_test('small rotations: the methods of the other levels', small_rotations), &
-               unit_test('a whole turn of a free body', whole_turn), &
                unit_test('stiff chains with a long step', stiff), &
                unit_test('a step that fails has no effect', no_trace)]
    end subroutine collect_implicit_finite
@@ -222,30 +217,6 @@ contains
       end do
    end subroutine tangent
 
-   subroutine yielding_order(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(scene_type) :: scene
-      type(state_type) :: reference, state
-      type(finite_stepper) :: stepper
-      real(wp) :: wrong(6)
-      integer :: i, number
-
-      call new_scene(scene, 6)
-      call find_reference(scene, reference, error)
-      do number = 1, 3
-         do i = 1, 6
-            stepper = method(number)
-            call play(scene, stepper, 360*2**(i - 1), state, outcome)
-            call check_passed(error, outcome, 'method '//to_text(number))
-            wrong(i) = distance(state, reference)
-         end do
-         call check_order(error, wrong(2:), 1.4_wp, 2.6_wp, 'method '//to_text(number))
-         call check_true(error, wrong(6) < 3.0e-3_wp, 'error '//to_text(wrong(6)))
-         if (allocated(error)) return
-      end do
-   end subroutine yielding_order
-
    !> A random chain under all loads; with large rotations.
    subroutine new_chain(scene, n, kind)
       type(scene_type), intent(out) :: scene
@@ -330,80 +301,6 @@ contains
          end do
       end do
    end subroutine energy
-
-   !> What the levels differ by falls with the square of the motion.
-   subroutine small_rotations(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(column_record) :: spec
-      class(column_type), allocatable :: column
-      type(loads_type) :: loads
-      type(state_type) :: state(2)
-      type(finite_stepper) :: finite
-      type(implicit_stepper) :: small
-      real(wp) :: apart(2), force
-      integer :: i, number, step
-
-      do number = 1, 3
-         do i = 1, 2
-            force = 1.0e6_wp*0.1_wp**i
-            loads%force = signal_of([0.0_wp, 0.01_wp, 0.05_wp], [0.0_wp, force, -force])
-            spec = chain(3, 'pdelta')
-            spec%axial_load = 1.0e6_wp
-            column = made(spec)
-            call new_state(state(1), column, loads, spread(0.0_wp, 1, 6), spread(0.0_wp, 1, 6))
-            spec%kinematics = 'finite'
-            column = made(spec)
-            call new_state(state(2), column, loads, spread(0.0_wp, 1, 6), spread(0.0_wp, 1, 6))
-            select case (number)
-            case (1)
-               small = new_newmark()
-            case (2)
-               small = new_hht(0.8_wp)
-            case default
-               small = new_generalised_alpha(0.8_wp)
-            end select
-            finite = method(number)
-            do step = 1, 50
-               call small%advance(state(1), 1.0e-3_wp, outcome)
-               call check_passed(error, outcome, 'small')
-               call finite%advance(state(2), 1.0e-3_wp, outcome)
-               call check_passed(error, outcome, 'finite')
-            end do
-            apart(i) = distance(state(2), state(1))
-         end do
-         call check_true(error, apart(1) > 1.0e-8_wp .and. apart(1) < 1.0e-3_wp, &
-                         'there is something to see: '//to_text(apart(1)))
-         call check_true(error, apart(2) < 0.02_wp*apart(1), 'square: '//to_text(apart(2)/apart(1)))
-         if (allocated(error)) return
-      end do
-   end subroutine small_rotations
-
-   !> A rod on a stiff pin without other springs turns at a constant rate, whatever the step.
-   subroutine whole_turn(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(column_record) :: spec
-      class(column_type), allocatable :: column
-      type(loads_type) :: loads
-      type(state_type) :: state
-      type(finite_stepper) :: stepper
-      integer :: step
-
-      spec = chain(1, 'finite')
-      spec%shear(1) = elastic(1.0e12_wp)
-      spec%flexure(1) = elastic(1.0e-6_wp)
-      column = made(spec)
-      call new_state(state, column, loads, [0.0_wp, 0.0_wp], [0.0_wp, 5.0_wp])
-      stepper = method(1)
-      do step = 1, 400
-         call stepper%advance(state, 5.0e-3_wp, outcome)
-         call check_passed(error, outcome, 'step')
-         if (allocated(error)) return
-      end do
-      call check_close(error, state%q(2), 10.0_wp, 1.0e-4_wp, 0.0_wp, 'rotation')
-      call check_close(error, residual_of(state), 0.0_wp, 0.0_wp, 1.0e-11_wp*state%at_begin, 'energy')
-   end subroutine whole_turn
 
    !> A hundred stiff bodies that yield, with steps that are many times their shortest period.
    subroutine stiff(error)

@@ -1,23 +1,19 @@
-!> The static path with exact rotations: against bracketing, statics by hand, the elastica, and other runs.
+!> The static path with exact rotations: statics by hand, orders, peaks and limits of the path. The elastica
+!> is in tests/python/test_extremes_rotations.py, other relations in test_invariants.py.
 module test_static_finite
    use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_true
    use rbs_base_constants, only: pi
-   use rbs_base_error, only: error_type, analysis_failed, bad_input
+   use rbs_base_error, only: error_type, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_structure_column_column, only: column_type
-   use rbs_hysteresis_springs, only: follow_path, spring_array
-   use rbs_output_channels, only: new_channels
-   use rbs_output_recorder, only: array_recorder
+   use rbs_hysteresis_springs, only: follow_path
    use rbs_output_summary, only: summary_type
-   use rbs_solve_static_run_static, only: run_static
-   use rbs_solve_task, only: task_type
    use rbs_structure_column_column_record, only: column_record
-   use rbs_hysteresis_spring_record, only: spring_record
-   use samples, only: set_value, value_of, bilinear, bilinear_1, chain, column_1, compression, elastic, &
-                      made, random_type, takeda, takeda_1, f_y, d_y, k_u, s_k, height_1, mass_1
-   use row_places, only: row_displacement, row_force, row_axial, row_residual, row_joints, row_spring, &
-                         row_input, row_top
+   use runs, only: run_path
+   use samples, only: set_value, value_of, bilinear, chain, column_1, compression, elastic, made, &
+                      random_type, takeda, takeda_1, f_y, d_y, k_u, s_k, height_1
+   use row_places, only: row_displacement, row_force, row_axial, row_residual, row_joints, row_input, row_top
    implicit none
    private
 
@@ -28,18 +24,8 @@ contains
    subroutine collect_static_finite(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('one body: same result by bracketing of its two equations', bracketing), &
-               unit_test('small amplitudes: pdelta, and the difference falls with their square', &
-                         small_amplitudes), &
-               unit_test('elastica: cantilever under an end load, order 2', elastica), &
-               unit_test('elastica: buckled cantilever, its top beyond a right angle, order 2', &
-                         buckled_elastica), &
-               unit_test('every row of a yielding chain is in equilibrium', equilibrium), &
-               unit_test('the same with joints that open', equilibrium_opening), &
+      tests = [unit_test('every row of a yielding chain, open or not, is in equilibrium', equilibrium), &
                unit_test('springs are on their paths', on_their_paths), &
-               unit_test('one increment or a hundred', increments), &
-               unit_test('driven by its own force, the column follows the same path', both_drives), &
-               unit_test('loops through yield close', closed_loops), &
                unit_test('back to a peak, and on', back_to_a_peak), &
                unit_test('the residual of the energy decreases with the fourth power', energy_order), &
                unit_test('softening column: capacity under a force, peak under a displacement', softening), &
@@ -47,34 +33,8 @@ contains
                unit_test('a driven top moves as far as the column can follow', farthest_top), &
                unit_test('beyond the critical load: a path by displacement, none by force', buckled), &
                unit_test('an axial spring yields before the path starts', axial_yield), &
-               unit_test('a joint that cannot carry tension is named', no_tension), &
-               unit_test('loads that follow are refused', following), &
-               unit_test('collapse ends the path', collapse), &
-               unit_test('a long chain', long_chain)]
+               unit_test('a joint that cannot carry tension is named', no_tension)]
    end subroutine collect_static_finite
-
-   !> Run into an array of rows.
-   subroutine run(spec, by_force, values, rows, outcome, summary, drift)
-      type(column_record), intent(in) :: spec
-      logical, intent(in) :: by_force
-      real(wp), intent(in) :: values(:)
-      real(wp), allocatable, intent(out) :: rows(:, :)
-      type(error_type), allocatable, intent(out) :: outcome
-      type(summary_type), intent(out), optional :: summary
-      real(wp), intent(in), optional :: drift
-      class(column_type), allocatable :: column
-      type(array_recorder), target :: recorder
-      type(task_type) :: task
-
-      column = made(spec)
-      recorder%channels = new_channels(column, .false., .false., .false.)
-      task%recorder => recorder
-      if (present(drift)) task%collapse_drift = drift
-      call run_static(column, by_force, values, task, outcome)
-      if (recorder%count == 0) allocate (recorder%rows(recorder%channels%width, 0))
-      rows = recorder%rows(:, :recorder%count)
-      if (present(summary)) summary = task%summary
-   end subroutine run
 
    subroutine random_targets(random, x, largest)
       type(random_type), intent(inout) :: random
@@ -86,78 +46,6 @@ contains
          x(i) = random%uniform(-largest, largest)*i/size(x)
       end do
    end subroutine random_targets
-
-   !> V(u) = F and M(th) = F l cos th + P l sin th + m g l/2 sin th with u + l sin th = x: bisection on th,
-   !> from the state at the last target, with the springs but no other part of the solver.
-   subroutine bracketing(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(column_record) :: spec
-      type(random_type) :: random
-      type(spring_array) :: springs, trial
-      real(wp), allocatable :: rows(:, :)
-      real(wp), parameter :: load = 2.0e6_wp, g = 9.80665_wp, l = height_1
-      real(wp) :: x(60), below, above, th, moment
-      integer :: i, j
-
-      spec = column_1('finite')
-      spec%axial_load = load
-      spec%self_weight = .true.
-      call random_targets(random, x, 0.5_wp)
-      call run(spec, .false., x, rows, outcome)
-      call check_passed(error, outcome, 'static path')
-      if (allocated(error)) return
-      call springs%create([bilinear_1(), takeda_1('kc')])
-      do i = 1, size(x)
-         below = -0.5_wp*pi
-         above = 0.5_wp*pi
-         do j = 1, 80
-            th = 0.5_wp*(below + above)
-            trial = springs
-            call trial%move_all([x(i) - l*sin(th), th])
-            moment = trial%force(1)*l*cos(th) + (load + mass_1*g/2.0_wp)*l*sin(th)
-            if (trial%force(2) < moment) then
-               below = th
-            else
-               above = th
-            end if
-         end do
-         call springs%move_all([x(i) - l*sin(th), th])
-         call check_close(error, rows(row_force, i), springs%force(1), 1.0e-9_wp, 1.0e-4_wp, 'force')
-         call check_close(error, rows(row_joints, i), springs%d(1), 1.0e-9_wp, 1.0e-12_wp, 'slip')
-         call check_close(error, rows(row_joints + 1, i), th, 1.0e-9_wp, 1.0e-12_wp, 'rotation')
-         call check_close(error, rows(row_spring, i), sum(springs%work), 1.0e-8_wp, 1.0e-6_wp, 'work')
-         call check_close(error, rows(row_top, i), l*cos(th), 1.0e-12_wp, 0.0_wp, 'height')
-      end do
-   end subroutine bracketing
-
-   subroutine small_amplitudes(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(column_record) :: spec
-      real(wp), allocatable :: rows(:, :), second_order(:, :)
-      real(wp) :: difference(4), x(2)
-      integer :: i, n
-
-      do n = 1, 9, 4
-         do i = 1, 4
-            spec = chain(n, 'finite')
-            spec%axial_load = 1.0e7_wp
-            x = [1.0_wp, -0.7_wp]*0.2_wp/2.0_wp**i
-            call run(spec, .false., x, rows, outcome)
-            call check_passed(error, outcome, 'finite')
-            spec%kinematics = 'pdelta'
-            call run(spec, .false., x, second_order, outcome)
-            call check_passed(error, outcome, 'pdelta')
-            if (allocated(error)) return
-            difference(i) = maxval(abs(rows(row_force, :)/second_order(row_force, :) - 1.0_wp))
-         end do
-         call check_true(error, difference(1) > 1.0e-5_wp, 'exact rotations matter')
-         do i = 2, 4
-            call check_close(error, difference(i - 1)/difference(i), 4.0_wp, 0.02_wp, 0.0_wp, 'order 2')
-         end do
-      end do
-   end subroutine small_amplitudes
 
    !> A chain for an elastic beam of EI = 1 and length 1 in n parts: a joint represents the two half parts
    !> next to it, so that the curvature is summed by the trapezoidal rule (it is zero at the top).
@@ -174,83 +62,6 @@ contains
       spec%flexure = [(elastic(1.0_wp*n), i=1, n)]
       call set_value(spec%flexure(1), 'k', 2.0_wp*n)
    end function beam
-
-   !> Integrals of 1 and of 2 k^2 sin^2 - 1 over sqrt(1 - k^2 sin^2) from `low` to pi/2, by Simpson's rule.
-   pure function elliptic(k2, low) result(integral)
-      !> k^2, and the lower bound
-      real(wp), intent(in) :: k2, low
-      real(wp) :: integral(2)
-      integer, parameter :: parts = 2000
-      real(wp) :: h, s2, weight
-      integer :: i
-
-      h = (0.5_wp*pi - low)/parts
-      integral = 0.0_wp
-      do i = 0, parts
-         weight = merge(4.0_wp, 2.0_wp, mod(i, 2) == 1)
-         if (i == 0 .or. i == parts) weight = 1.0_wp
-         s2 = sin(low + i*h)**2
-         integral = integral + weight*h/3.0_wp*[1.0_wp, 2.0_wp*k2*s2 - 1.0_wp]/sqrt(1.0_wp - k2*s2)
-      end do
-   end function elliptic
-
-   !> Rotation a of the end: sqrt(F L^2/EI) = K(k) - F(asin(1/(k sqrt 2)), k), k^2 = (1 + sin a)/2; with
-   !> sin th = 2 k^2 sin^2 - 1 (Bisshopp and Drucker, Quart. Appl. Math. 3 (1945) 272-275).
-   subroutine elastica(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      real(wp), allocatable :: rows(:, :)
-      real(wp) :: k2, integral(2), force, top(2), wrong(2, 4)
-      integer :: i, n
-
-      k2 = 0.5_wp*(1.0_wp + sin(1.3_wp))
-      integral = elliptic(k2, asin(sqrt(0.5_wp/k2)))
-      force = integral(1)**2
-      top = [integral(2)/integral(1), sqrt(2.0_wp*sin(1.3_wp)/force)]
-      do i = 1, 4
-         n = 10*2**i
-         call run(beam(n), .true., [force], rows, outcome)
-         call check_passed(error, outcome, 'driven by force')
-         if (allocated(error)) return
-         wrong(:, i) = [rows(row_displacement, 1), rows(row_top, 1)] - top
-      end do
-      call check_true(error, maxval(abs(wrong(:, 4))) < 2.0e-4_wp, 'close')
-      do i = 2, 4
-         call check_close(error, wrong(:, i - 1)/wrong(:, i), [4.0_wp, 4.0_wp], 0.05_wp, 0.0_wp, 'order 2')
-      end do
-   end subroutine elastica
-
-   !> Without lateral force: sqrt(P L^2/EI) = K(k), x = 2 k/sqrt(P/EI), k = sin(a/2), at a = 110 degrees.
-   !> The top is driven there from the straight column; then no force is left.
-   subroutine buckled_elastica(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(column_record) :: spec
-      type(summary_type) :: summary
-      real(wp), allocatable :: rows(:, :)
-      real(wp) :: angle, k2, integral(2), x, wrong(4), turn
-      integer :: i
-
-      angle = 110.0_wp*pi/180.0_wp
-      k2 = sin(0.5_wp*angle)**2
-      integral = elliptic(k2, 0.0_wp)
-      x = 2.0_wp*sqrt(k2)/integral(1)
-      do i = 1, 4
-         spec = beam(10*2**i)
-         spec%axial_load = integral(1)**2
-         call run(spec, .false., [0.1_wp*x, x], rows, outcome, summary)
-         call check_passed(error, outcome, 'driven by displacement')
-         if (allocated(error)) return
-         call check_true(error, rows(row_force, 1) < -0.05_wp, 'it leans against the hand')
-         wrong(i) = rows(row_force, 2)
-         turn = summary%peak_rotation
-      end do
-      call check_true(error, abs(wrong(4)) < 2.0e-3_wp, 'no force is left')
-      call check_close(error, turn, angle, 2.0e-3_wp, 0.0_wp, 'rotation of the top')
-      do i = 2, 4
-         call check_close(error, wrong(i - 1)/wrong(i), 4.0_wp, 0.05_wp, 0.0_wp, 'order 2')
-      end do
-   end subroutine buckled_elastica
 
    !> A nonlinear chain.
    type(column_record) function yielding_chain(n) result(spec)
@@ -317,6 +128,7 @@ contains
       end associate
    end subroutine check_statics
 
+   !> Closed joints, and joints that open with springs of three rules.
    subroutine equilibrium(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -326,52 +138,18 @@ contains
       type(summary_type) :: summary
       real(wp), allocatable :: rows(:, :)
       real(wp) :: x(60), largest
-      integer :: i, n
+      integer :: i, kind, n
 
       do n = 1, 13, 4
-         spec = yielding_chain(n)
-         spec%self_weight = .true.
-         column = made(spec)
-         call random_targets(random, x, 0.8_wp)
-         call run(spec, .false., x, rows, outcome, summary)
-         call check_passed(error, outcome, 'static path')
-         if (allocated(error)) return
-         do i = 1, size(x)
-            call check_statics(error, column, rows(:, i), 1.0e-9_wp)
-         end do
-         largest = maxval(abs(rows(row_input, :)))
-         call check_true(error, maxval(abs(rows(row_residual, :))) < 1.0e-6_wp*largest, 'energy balance')
-         call check_true(error, minval(rows(row_axial, :)) < -0.001_wp*largest, 'the axial load does work')
-         call check_true(error, summary%events > 50, 'springs yield')
-         call check_true(error, summary%peak_rotation > 0.2_wp, 'rotations are large')
-      end do
-   end subroutine equilibrium
-
-   subroutine equilibrium_opening(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(random_type) :: random
-      type(column_record) :: spec
-      class(column_type), allocatable :: column
-      real(wp), allocatable :: rows(:, :)
-      real(wp) :: x(40), largest
-      integer :: i, j, n
-
-      do n = 1, 5, 2
-         do j = 1, 3
+         do kind = 0, 3
             spec = yielding_chain(n)
             spec%self_weight = .true.
-            select case (j)
-            case (1)
-               spec%axial_spring = [elastic(1.0e7_wp)]
-            case (2)
-               spec%axial_spring = [bilinear(1.0e7_wp, 0.06_wp, 1.0e6_wp)]
-            case default
-               spec%axial_spring = [compression(2.0e7_wp)]
-            end select
+            if (kind == 1) spec%axial_spring = [elastic(1.0e7_wp)]
+            if (kind == 2) spec%axial_spring = [bilinear(1.0e7_wp, 0.06_wp, 1.0e6_wp)]
+            if (kind == 3) spec%axial_spring = [compression(2.0e7_wp)]
             column = made(spec)
-            call random_targets(random, x, 0.4_wp)
-            call run(spec, .false., x, rows, outcome)
+            call random_targets(random, x, merge(0.8_wp, 0.4_wp, kind == 0))
+            call run_path(spec, .false., x, rows, outcome, summary)
             call check_passed(error, outcome, 'static path')
             if (allocated(error)) return
             do i = 1, size(x)
@@ -379,9 +157,14 @@ contains
             end do
             largest = maxval(abs(rows(row_input, :)))
             call check_true(error, maxval(abs(rows(row_residual, :))) < 1.0e-6_wp*largest, 'energy balance')
+            if (kind > 0) cycle
+            call check_true(error, minval(rows(row_axial, :)) < -0.001_wp*largest, &
+                            'the axial load does work')
+            call check_true(error, summary%events > 50, 'springs yield')
+            call check_true(error, summary%peak_rotation > 0.2_wp, 'rotations are large')
          end do
       end do
-   end subroutine equilibrium_opening
+   end subroutine equilibrium
 
    !> The path to each target in many increments.
    subroutine divide(x, parts, fine)
@@ -415,7 +198,7 @@ contains
       column = made(yielding_chain(n))
       call random_targets(random, x, 0.4_wp)
       call divide(x, parts, fine)
-      call run(yielding_chain(n), .false., fine, rows, outcome)
+      call run_path(yielding_chain(n), .false., fine, rows, outcome)
       call check_passed(error, outcome, 'static path')
       if (allocated(error)) return
       do i = 1, 2*n
@@ -424,75 +207,6 @@ contains
                           'unknown '//to_text(i)//' alone')
       end do
    end subroutine on_their_paths
-
-   subroutine increments(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(random_type) :: random
-      real(wp), allocatable :: rows(:, :), cut(:, :)
-      integer, parameter :: m = 12, parts = 100
-      real(wp) :: x(m), fine(m*parts)
-      integer :: n, i
-
-      do n = 1, 9, 4
-         call random_targets(random, x, 0.5_wp)
-         x(1) = 0.4_wp
-         call divide(x, parts, fine)
-         call run(yielding_chain(n), .false., x, rows, outcome)
-         call check_passed(error, outcome, 'whole')
-         call run(yielding_chain(n), .false., fine, cut, outcome)
-         call check_passed(error, outcome, 'cut')
-         if (allocated(error)) return
-         do i = 1, m
-            call check_close(error, cut(row_force, parts*i), rows(row_force, i), 1.0e-9_wp, 1.0e-4_wp, &
-                             to_text(n)//' bodies: force '//to_text(i))
-         end do
-      end do
-   end subroutine increments
-
-   subroutine both_drives(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(random_type) :: random
-      real(wp), allocatable :: rows(:, :), again(:, :)
-      real(wp) :: x(40)
-      integer :: n
-
-      do n = 1, 5, 2
-         call random_targets(random, x, 0.3_wp)
-         call run(yielding_chain(n), .false., x, rows, outcome)
-         call check_passed(error, outcome, 'driven by displacement')
-         call run(yielding_chain(n), .true., rows(row_force, :), again, outcome)
-         call check_passed(error, outcome, 'driven by force')
-         if (allocated(error)) return
-         call check_close(error, again(row_displacement, :), x, 1.0e-8_wp, 1.0e-10_wp, 'displacement')
-         call check_true(error, maxval(abs(again(row_residual, :))) &
-                         < 1.0e-6_wp*maxval(abs(again(row_input, :))), 'energy balance')
-      end do
-   end subroutine both_drives
-
-   !> Equal cycles through yield: bilinear springs return from the first peak on, Takeda springs too.
-   subroutine closed_loops(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(column_record) :: spec
-      real(wp), allocatable :: rows(:, :)
-      real(wp), parameter :: share(6) = [1.0_wp, 0.5_wp, 0.9_wp, -1.0_wp, 0.2_wp, -0.6_wp]
-      integer :: i, j
-
-      do j = 1, 2
-         spec = yielding_chain(3)
-         if (j == 2) spec%flexure = [(bilinear(1.0e8_wp, 1.0e-3_wp, 5.0e6_wp), i=1, 3)]
-         call run(spec, .false., 0.3_wp*[share, share, share, share], rows, outcome)
-         call check_passed(error, outcome, 'static path')
-         if (allocated(error)) return
-         call check_close(error, rows(row_force, 19:24), rows(row_force, 13:18), 1.0e-8_wp, 1.0e-3_wp, &
-                          'force')
-         call check_close(error, rows(row_spring, 24) - rows(row_spring, 18), &
-                          rows(row_spring, 18) - rows(row_spring, 12), 1.0e-8_wp, 0.0_wp, 'work of a loop')
-         call check_true(error, rows(row_spring, 24) - rows(row_spring, 18) > 0.0_wp, 'work is lost')
-      end do
-   end subroutine closed_loops
 
    !> Where a target is a former peak, springs meet the ends of their lines in its last digits.
    subroutine back_to_a_peak(error)
@@ -508,7 +222,7 @@ contains
       spec%shear(1) = elastic(7.0e8_wp)
       spec%flexure(1) = takeda(2.5e8_wp, 3.0e-4_wp, 6.0e7_wp, 3.0e-3_wp, 7.0e6_wp, 0.4_wp, 1.0_wp, 'kc')
       spec%mass = 600.0_wp
-      call run(spec, .false., [-x, y, -x, -y, x, -x, y], rows, outcome)
+      call run_path(spec, .false., [-x, y, -x, -y, x, -x, y], rows, outcome)
       call check_passed(error, outcome, 'static path')
       if (allocated(error)) return
       call check_close(error, rows(row_force, 3), rows(row_force, 1), 1.0e-10_wp, 0.0_wp, 'at the peak')
@@ -529,9 +243,9 @@ contains
          do j = 1, 3
             parts = 160*2**j
             if (by_force) then
-               call run(beam(3), .true., [(8.0_wp*i/parts, i=1, parts)], rows, outcome)
+               call run_path(beam(3), .true., [(8.0_wp*i/parts, i=1, parts)], rows, outcome)
             else
-               call run(beam(3), .false., [(0.8_wp*i/parts, i=1, parts)], rows, outcome)
+               call run_path(beam(3), .false., [(0.8_wp*i/parts, i=1, parts)], rows, outcome)
             end if
             call check_passed(error, outcome, 'static path')
             if (allocated(error)) return
@@ -561,13 +275,13 @@ contains
       th = [1.0_wp, 3.0_wp, 10.0_wp, 40.0_wp]*d_y
       force = (f_y + k_u*(th - d_y))/(height_1*cos(th)) - load*tan(th)
       largest = force(1)
-      call run(spec, .false., height_1*sin(th) + force/s_k, rows, outcome)
+      call run_path(spec, .false., height_1*sin(th) + force/s_k, rows, outcome)
       call check_passed(error, outcome, 'driven by displacement')
       if (allocated(error)) return
       call check_close(error, rows(row_force, :), force, 1.0e-9_wp, 0.0_wp, 'force')
       call check_close(error, rows(row_joints + 1, :), th, 1.0e-9_wp, 0.0_wp, 'rotation')
       call check_true(error, force(3) < force(1), 'the force falls')
-      call run(spec, .true., [-0.5_wp, 0.999_wp, 1.001_wp]*largest, rows, outcome)
+      call run_path(spec, .true., [-0.5_wp, 0.999_wp, 1.001_wp]*largest, rows, outcome)
       call check_failed(error, outcome, analysis_failed, &
                         'row 3: the lateral force '//to_text(1.001_wp*largest)//' N is beyond the capacity')
       call check_failed(error, outcome, analysis_failed, 'the flexural spring of joint 1 has no stiffness')
@@ -591,13 +305,13 @@ contains
       spec%lengths = [0.95_wp, 0.05_wp]
       spec%axial_spring = [elastic(2.5_wp)]
       spec%flexure = [elastic(0.66_wp), elastic(10.0_wp)]
-      call run(spec, .false., [(0.002_wp*i, i=1, 300)], rows, outcome)
+      call run_path(spec, .false., [(0.002_wp*i, i=1, 300)], rows, outcome)
       call check_passed(error, outcome, 'driven by displacement')
       if (allocated(error)) return
       peak = maxloc(rows(row_force, :), dim=1)
       largest = rows(row_force, peak)
       call check_true(error, peak > 10 .and. peak < 290, 'a peak inside')
-      call run(spec, .true., [0.5_wp*largest, 1.1_wp*largest], driven, outcome)
+      call run_path(spec, .true., [0.5_wp*largest, 1.1_wp*largest], driven, outcome)
       call check_failed(error, outcome, analysis_failed, 'is beyond the capacity of the column')
       last = size(driven, 2)
       call check_close(error, driven(row_force, last), largest, 1.0e-5_wp, 0.0_wp, 'force reached')
@@ -622,14 +336,14 @@ contains
          x = sin(th) + (th - 3.0_wp*sin(th))/cos(th)/10.0_wp
          farthest = max(farthest, x)
       end do
-      call run(spec, .false., [0.3_wp, 0.99_wp*farthest, 1.01_wp*farthest], rows, outcome)
+      call run_path(spec, .false., [0.3_wp, 0.99_wp*farthest, 1.01_wp*farthest], rows, outcome)
       call check_failed(error, outcome, analysis_failed, 'row 3: no equilibrium was found beyond force')
       last = size(rows, 2)
       call check_equal(error, last, 3, 'rows kept')
       call check_close(error, rows(row_displacement, last), farthest, 1.0e-8_wp, 0.0_wp, &
                        'displacement reached')
       ! Below this displacement the path continues.
-      call run(spec, .false., [0.99_wp, -0.99_wp]*farthest, rows, outcome)
+      call run_path(spec, .false., [0.99_wp, -0.99_wp]*farthest, rows, outcome)
       call check_passed(error, outcome, 'driven by displacement')
       call check_close(error, rows(row_force, 2), -rows(row_force, 1), 1.0e-10_wp, 0.0_wp, 'symmetric')
    end subroutine farthest_top
@@ -645,20 +359,20 @@ contains
       call set_value(spec%flexure(1), 'k', 1.0_wp)
       call set_value(spec%shear(1), 'k', 100.0_wp)
       spec%axial_load = 1.25_wp
-      call run(spec, .true., [0.1_wp], rows, outcome)
+      call run_path(spec, .true., [0.1_wp], rows, outcome)
       call check_failed(error, outcome, analysis_failed, &
                         'the axial load is 1.25 times the critical load of the uncracked column')
       th = 0.4_wp
       force = (th - 1.25_wp*sin(th))/cos(th)
-      call run(spec, .false., [sin(th) + force/100.0_wp], rows, outcome)
+      call run_path(spec, .false., [sin(th) + force/100.0_wp], rows, outcome)
       call check_passed(error, outcome, 'driven by displacement')
       call check_close(error, rows(row_force, 1), force, 1.0e-10_wp, 0.0_wp, 'force')
       call check_true(error, force < 0.0_wp, 'it leans against the hand')
       ! At the critical load itself the force starts with the third power.
       spec%axial_load = 1.0_wp
-      call run(spec, .true., [0.1_wp], rows, outcome)
+      call run_path(spec, .true., [0.1_wp], rows, outcome)
       call check_failed(error, outcome, analysis_failed, 'critical load')
-      call run(spec, .false., [0.01_wp], rows, outcome)
+      call run_path(spec, .false., [0.01_wp], rows, outcome)
       call check_passed(error, outcome, 'driven by displacement')
       call check_close(error, rows(row_force, 1), 0.01_wp**3/6.0_wp, 1.0e-3_wp, 0.0_wp, 'third power')
    end subroutine buckled
@@ -682,7 +396,7 @@ contains
                                        1.0e7_wp)]
          opening(2) = -(1.0e5_wp + 2000.0_wp*9.80665_wp)/1.0e8_wp
          opening(1) = -(1.1e-3_wp + (1.0e5_wp + 3000.0_wp*9.80665_wp - 1.1e5_wp)/1.0e7_wp)
-         call run(spec, .false., [0.0_wp, 1.0e-4_wp], rows, outcome)
+         call run_path(spec, .false., [0.0_wp, 1.0e-4_wp], rows, outcome)
          call check_passed(error, outcome, 'static path')
          if (allocated(error)) return
          call check_close(error, rows(row_joints + 4:row_joints + 5, 1), opening, 1.0e-12_wp, 0.0_wp, &
@@ -711,68 +425,15 @@ contains
          spec = chain(2, kinematics(i))
          spec%axial_load = -500.0_wp
          spec%axial_spring = [compression(1.0e8_wp)]
-         call run(spec, .false., [1.0e-4_wp], rows, outcome)
+         call run_path(spec, .false., [1.0e-4_wp], rows, outcome)
          call check_failed(error, outcome, analysis_failed, &
                            "the axial spring of joint 1 (rule 'compression')")
          call check_failed(error, outcome, analysis_failed, 'cannot carry the tension of 500 N')
          spec%axial_spring = [elastic(1.0e8_wp), bilinear(1.0e8_wp, 4.0e-6_wp, 0.0_wp)]
-         call run(spec, .false., [1.0e-4_wp], rows, outcome)
+         call run_path(spec, .false., [1.0e-4_wp], rows, outcome)
          call check_failed(error, outcome, analysis_failed, "the axial spring of joint 2 (rule 'bilinear')")
          call check_equal(error, size(rows, 2), 0, 'rows')
       end do
    end subroutine no_tension
-
-   subroutine following(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(column_record) :: spec
-      real(wp), allocatable :: rows(:, :)
-
-      spec = column_1('finite')
-      spec%axial_follows = .true.
-      call run(spec, .false., [0.1_wp], rows, outcome)
-      call check_failed(error, outcome, bad_input, 'use a dynamic analysis')
-      spec%axial_follows = .false.
-      spec%force_follows = .true.
-      call run(spec, .true., [0.1_wp], rows, outcome)
-      call check_failed(error, outcome, bad_input, 'force_follows')
-   end subroutine following
-
-   subroutine collapse(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(summary_type) :: summary
-      real(wp), allocatable :: rows(:, :)
-
-      call run(beam(3), .false., [0.1_wp, -0.2_wp, 0.3_wp, 0.1_wp], rows, outcome, summary, drift=0.2_wp)
-      call check_passed(error, outcome, 'static path')
-      call check_true(error, summary%collapsed, 'collapsed')
-      call check_equal(error, size(rows, 2), 2, 'rows')
-      call check_equal(error, summary%steps, 2, 'steps')
-      call run(beam(3), .false., [0.1_wp, -0.2_wp, 0.3_wp], rows, outcome, summary, drift=0.31_wp)
-      call check_passed(error, outcome, 'static path')
-      call check_true(error, .not. summary%collapsed, 'not collapsed')
-      call check_equal(error, size(rows, 2), 3, 'rows')
-   end subroutine collapse
-
-   subroutine long_chain(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(column_record) :: spec
-      real(wp), allocatable :: rows(:, :)
-      real(wp) :: k2, integral(2), force
-      integer, parameter :: n = 2000
-
-      k2 = 0.5_wp*(1.0_wp + sin(0.8_wp))
-      integral = elliptic(k2, asin(sqrt(0.5_wp/k2)))
-      force = integral(1)**2
-      spec = beam(n)
-      call run(spec, .true., [force], rows, outcome)
-      call check_passed(error, outcome, 'driven by force')
-      if (allocated(error)) return
-      call check_close(error, rows(row_displacement, 1), integral(2)/integral(1), 1.0e-6_wp, 0.0_wp, &
-                       'elastica')
-      call check_statics(error, made(spec), rows(:, 1), 1.0e-9_wp)
-   end subroutine long_chain
 
 end module test_static_finite
