@@ -1,12 +1,29 @@
-!> Dense systems, and the dense eigenproblem by LAPACK, that tests compare with.
+!> Dense systems and the dense eigenproblem by LAPACK, that tests compare with.
 module dense
    use rbs_base_kinds, only: wp
    implicit none
    private
 
-   public :: factor_positive, solve_positive, solve_general, solve_eigen
+   public :: is_positive, solve_general, solve_eigen
 
    interface
+      subroutine dpotrf(uplo, n, a, lda, info)
+         import :: wp
+         implicit none
+         character(len=1), intent(in) :: uplo
+         integer, intent(in) :: n, lda
+         real(wp), intent(inout) :: a(lda, *)
+         integer, intent(out) :: info
+      end subroutine dpotrf
+
+      subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
+         import :: wp
+         implicit none
+         integer, intent(in) :: n, nrhs, lda, ldb
+         real(wp), intent(inout) :: a(lda, *), b(ldb, *)
+         integer, intent(out) :: ipiv(*), info
+      end subroutine dgesv
+
       subroutine dsygv(itype, jobz, uplo, n, a, lda, b, ldb, w, work, lwork, info)
          import :: wp
          implicit none
@@ -20,122 +37,37 @@ module dense
 
 contains
 
-   !> Cholesky factor of a symmetric matrix, in place; it exists if the matrix is positive definite.
-   pure subroutine factor_positive(a, positive)
-      !> Matrix (n, n), of which only the lower triangle is read; on return its factor there
-      real(wp), intent(inout) :: a(:, :)
-      !> Whether the matrix is positive definite
-      logical, intent(out) :: positive
-      integer :: i, j, k
+   !> Whether a symmetric matrix, of which the lower triangle is read, is positive definite.
+   logical function is_positive(matrix)
+      real(wp), intent(in) :: matrix(:, :)
+      real(wp) :: a(size(matrix, 1), size(matrix, 1))
+      integer :: info
 
-      positive = .false.
-      do k = 1, size(a, 1)
-         if (.not. a(k, k) > 0.0_wp) return
-         a(k, k) = sqrt(a(k, k))
-         do i = k + 1, size(a, 1)
-            a(i, k) = a(i, k)/a(k, k)
-         end do
-         do j = k + 1, size(a, 1)
-            do i = j, size(a, 1)
-               a(i, j) = a(i, j) - a(i, k)*a(j, k)
-            end do
-         end do
-      end do
-      positive = .true.
-   end subroutine factor_positive
-
-   !> Solve with the factor of `factor_positive`.
-   pure subroutine solve_positive(factor, b)
-      !> Factor (n, n)
-      real(wp), intent(in) :: factor(:, :)
-      !> Right-hand side (n), replaced by the solution
-      real(wp), intent(inout) :: b(:)
-      integer :: i, k
-
-      do k = 1, size(b)
-         b(k) = b(k)/factor(k, k)
-         do i = k + 1, size(b)
-            b(i) = b(i) - factor(i, k)*b(k)
-         end do
-      end do
-      do k = size(b), 1, -1
-         do i = k + 1, size(b)
-            b(k) = b(k) - factor(i, k)*b(i)
-         end do
-         b(k) = b(k)/factor(k, k)
-      end do
-   end subroutine solve_positive
+      a = matrix
+      call dpotrf('L', size(a, 1), a, size(a, 1), info)
+      is_positive = info == 0
+   end function is_positive
 
    !> Solve a general system by elimination with partial pivoting.
-   pure subroutine solve_general(a, b, regular)
+   subroutine solve_general(a, b, regular)
       !> Matrix (n, n), overwritten
-      real(wp), intent(inout) :: a(:, :)
+      real(wp), intent(inout), contiguous :: a(:, :)
       !> Right-hand sides (n, m), replaced by the solutions
-      real(wp), intent(inout) :: b(:, :)
+      real(wp), intent(inout), contiguous :: b(:, :)
       !> Whether the matrix has an inverse
       logical, intent(out) :: regular
+      integer :: pivot(size(b, 1)), info
 
-      call eliminate(size(a, 1), size(b, 2), a, b, regular)
+      call dgesv(size(b, 1), size(b, 2), a, size(b, 1), pivot, b, size(b, 1), info)
+      regular = info == 0
    end subroutine solve_general
-
-   !> The same with arrays of known shape: column by column, as they stand in memory.
-   pure subroutine eliminate(n, m, a, b, regular)
-      integer, intent(in) :: n, m
-      real(wp), intent(inout) :: a(n, n), b(n, m)
-      logical, intent(out) :: regular
-      real(wp) :: swap
-      integer :: i, j, k, p
-
-      regular = .false.
-      do k = 1, n
-         p = k
-         do i = k + 1, n
-            if (abs(a(i, k)) > abs(a(p, k))) p = i
-         end do
-         if (.not. abs(a(p, k)) > 0.0_wp) return
-         if (p /= k) then
-            do j = k, n
-               swap = a(k, j)
-               a(k, j) = a(p, j)
-               a(p, j) = swap
-            end do
-            do j = 1, m
-               swap = b(k, j)
-               b(k, j) = b(p, j)
-               b(p, j) = swap
-            end do
-         end if
-         do i = k + 1, n
-            a(i, k) = a(i, k)/a(k, k)
-         end do
-         do j = k + 1, n
-            do i = k + 1, n
-               a(i, j) = a(i, j) - a(i, k)*a(k, j)
-            end do
-         end do
-         do j = 1, m
-            do i = k + 1, n
-               b(i, j) = b(i, j) - a(i, k)*b(k, j)
-            end do
-         end do
-      end do
-      do j = 1, m
-         do i = n, 1, -1
-            do k = i + 1, n
-               b(i, j) = b(i, j) - a(i, k)*b(k, j)
-            end do
-            b(i, j) = b(i, j)/a(i, i)
-         end do
-      end do
-      regular = .true.
-   end subroutine eliminate
 
    !> Eigenvalues of `a x = w b x`, ascending, with vectors that satisfy x' b x = 1.
    subroutine solve_eigen(a, b, w)
       !> Symmetric matrix (n, n), replaced by the vectors, one per column
-      real(wp), intent(inout) :: a(:, :)
+      real(wp), intent(inout), contiguous :: a(:, :)
       !> Symmetric positive definite matrix (n, n), overwritten
-      real(wp), intent(inout) :: b(:, :)
+      real(wp), intent(inout), contiguous :: b(:, :)
       !> Eigenvalues (n)
       real(wp), intent(out) :: w(:)
       real(wp) :: work(40*size(w))

@@ -15,7 +15,7 @@ module samples
    private
 
    public :: elastic, bilinear, compression, takeda, bilinear_1, takeda_1, column_1, chain, rich_column, made
-   public :: concrete_1, steel_1, random_type, set_value, value_of
+   public :: concrete_1, steel_1, capped, random_type, set_value, value_of
 
    !> Soesianawati & Park No 1, table 3 of the paper: flexure [N m, rad] ...
    real(wp), parameter, public :: k_c = 2.5428e8_wp, d_c = 3.1891e-4_wp
@@ -164,6 +164,19 @@ contains
       call set_value(spec, 'isotropic_hardening', 0.01_wp)
       call set_value(spec, 'endurance', 2000.0_wp)
    end function steel_1
+
+   !> Elastic 100 up to (1, 100), cap (3, 120), softening with -10 to the residual 20 at 13.
+   type(spring_record) function capped(rule) result(spec)
+      character(len=*), intent(in) :: rule
+
+      spec%rule = rule
+      call set_value(spec, 'd_y', 1.0_wp)
+      call set_value(spec, 'f_y', 100.0_wp)
+      call set_value(spec, 'd_cap', 3.0_wp)
+      call set_value(spec, 'f_cap', 120.0_wp)
+      call set_value(spec, 'd_pc', 12.0_wp)
+      call set_value(spec, 'f_res', 20.0_wp)
+   end function capped
 
    !> Column 1 as one body.
    type(column_record) function column_1(kinematics) result(spec)

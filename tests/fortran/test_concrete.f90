@@ -3,11 +3,9 @@ module test_concrete
    use check, only: unit_test, check_close, check_same, check_true
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_rule, only: rule_type, rule_memory
-   use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_springs, only: follow_path
    use rbs_hysteresis_spring_record, only: spring_record
-   use samples, only: set_value, value_of, concrete_1, random_type
+   use samples, only: set_value, concrete_1
    implicit none
    private
 
@@ -27,8 +25,6 @@ contains
                unit_test('no misfit, no contact: back to the plastic closing', plain), &
                unit_test('wear: by the way of opening over the widest one', wear), &
                unit_test('partial unloading is one line both ways', partial), &
-               unit_test('forces are continuous where lines meet', continuous), &
-               unit_test('envelope is never left outward', envelope), &
                unit_test('friction: two paths, and the initial stiffness between them', friction), &
                unit_test('seating: opening does not follow the early touch', seating)]
    end subroutine collect_concrete
@@ -174,93 +170,6 @@ contains
       call check_same(error, f(5), f(2), 'same line')
       call check_close(error, f([6, 7]), [f(1), straight(1)], 1.0e-13_wp, 0.0_wp, 'no effect')
    end subroutine partial
-
-   !> A random concrete spring, and a path in units of its closing at the peak.
-   subroutine random_spring(random, spec, d)
-      type(random_type), intent(inout) :: random
-      type(spring_record), intent(out) :: spec
-      real(wp), intent(out) :: d(:)
-      real(wp) :: exponent
-      integer :: j
-
-      spec = hand()
-      call set_value(spec, 'k', random%uniform(51.0_wp, 300.0_wp))
-      call set_value(spec, 'k_soft', 10.0_wp**random%uniform(-1.0_wp, 3.0_wp))
-      call set_value(spec, 'f_res', random%uniform(0.0_wp, 100.0_wp))
-      call set_value(spec, 'plastic', random%uniform(0.0_wp, 2.0_wp))
-      call set_value(spec, 'contact', max(0.0_wp, random%uniform(-0.3_wp, 0.95_wp)))
-      call set_value(spec, 'misfit', max(0.0_wp, random%uniform(-0.3_wp, 0.95_wp)))
-      call set_value(spec, 'wear', max(0.0_wp, random%uniform(-0.2_wp, 0.2_wp)))
-      do j = 1, size(d)
-         exponent = random%uniform(-1.0_wp, 1.2_wp)
-         d(j) = random%uniform(-1.0_wp, 0.5_wp)*10.0_wp**exponent
-         ! Exact returns to an earlier point.
-         if (random%uniform(0.0_wp, 1.0_wp) > 0.85_wp) d(j) = d(max(j - 3, 1))
-      end do
-   end subroutine random_spring
-
-   !> The force is continuous at every event; the ends of every line are in order.
-   subroutine continuous(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      class(rule_type), allocatable :: rule
-      class(rule_memory), allocatable :: memory
-      type(segment) :: line
-      real(wp) :: to(30), d, before
-      integer :: path, j, direction, lines
-
-      do path = 1, 300
-         call random_spring(random, spec, to)
-         call spec%make(rule)
-         call rule%start(memory, line)
-         d = 0.0_wp
-         do j = 1, size(to)
-            direction = merge(1, -1, to(j) > d)
-            do lines = 1, 100
-               if (line%unload_on_reversal == -direction) then
-                  if (direction > 0) line%hi = d
-                  if (direction < 0) line%lo = d
-               end if
-               if (direction*(to(j) - line%end_toward(direction)) < 0.0_wp) exit
-               d = line%end_toward(direction)
-               before = line%force(d)
-               call rule%next(memory, line, direction)
-               call check_close(error, line%force(d), before, 0.0_wp, 1.0e-10_wp, 'force at an event')
-               call check_true(error, line%lo <= line%hi, 'ends in order')
-               call check_true(error, line%lo <= d .and. d <= line%hi, 'on the new line')
-               call check_true(error, line%k <= (1.0_wp + 1.0e-9_wp)*value_of(spec, 'k'), &
-                               'not stiffer than at first')
-            end do
-            call check_true(error, lines < 50, 'few lines in one move')
-            d = to(j)
-         end do
-      end do
-   end subroutine continuous
-
-   !> There is never tension; if the faces match, the force never exceeds that of loading in one direction.
-   subroutine envelope(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      real(wp) :: d(60), f(60), straight(1)
-      integer :: path, j
-
-      do path = 1, 300
-         call random_spring(random, spec, d)
-         if (mod(path, 2) == 0) call set_value(spec, 'misfit', 0.0_wp)
-         call follow_path(spec, d, f)
-         do j = 1, size(d)
-            call check_true(error, f(j) <= 0.0_wp, 'no tension')
-            call check_true(error, f(j) >= -value_of(spec, 'f_peak')*(1.0_wp + 1.0e-12_wp), &
-                            'not above the strength')
-            if (value_of(spec, 'misfit') > 0.0_wp) cycle
-            if (d(j) > 0.0_wp) cycle
-            call follow_path(spec, d(j:j), straight)
-            call check_true(error, f(j) >= straight(1) - 1.0e-9_wp, 'within the envelope')
-         end do
-      end do
-   end subroutine envelope
 
    !> Unloading from (4, 80) leads to c_p = 2 (0.84 - 0.0415625), along a slope of 80/(4 - c_p); with half of
    !> it lost to friction opening is on half of that line.

@@ -1,6 +1,6 @@
 !> Planar frames on static paths: closed forms of the stiffness method, limit loads, dead load.
 module test_frame
-   use check, only: unit_test, check_close, check_failed, check_same, check_true
+   use check, only: unit_test, check_close, check_same, check_true
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: spring_array

@@ -31,11 +31,9 @@ contains
 
       tests = [unit_test('four contacts, by hand', contacts), &
                unit_test('bilinear layers, against an independent return mapping', bilinear_layers), &
-               unit_test('increments of a straight path do not matter', increments), &
                unit_test('work of the layers is that of moment and axial load', energy), &
                unit_test('a closed path returns its work or takes some', closed_paths), &
-               unit_test('plastic layers fail where all have yielded', plastic_failure), &
-               unit_test('a constant axial load: the joint is a spring of its own', constant_load)]
+               unit_test('plastic layers fail where all have yielded', plastic_failure)]
    end subroutine collect_interaction
 
    !> A joint under an axial load at the start.
@@ -147,37 +145,6 @@ contains
       call check_points(error, joint, from_rest)
    end subroutine bilinear_layers
 
-   subroutine increments(error)
-      type(error_type), allocatable, intent(inout) :: error
-      class(rule_memory), allocatable :: joint, other
-      type(segment) :: line
-      class(rule_type), allocatable :: rule
-      type(random_type) :: random
-      real(wp) :: from(2), to(2), opening(2), moment(2), work(2)
-      integer, parameter :: counts(3) = [3, 7, 50]
-      integer :: path, point, i, count
-
-      do path = 1, 30
-         call make_unsymmetric(joint, 3.0e5_wp, line, rule)
-         call make_unsymmetric(other, 3.0e5_wp, line, rule)
-         work = 0.0_wp
-         from = [0.0_wp, 3.0e5_wp]
-         count = counts(modulo(path, 3) + 1)
-         do point = 1, 20
-            to = [random%uniform(-1.0e-2_wp, 1.0e-2_wp), random%uniform(-3.0e5_wp, 1.0e6_wp)]
-            call visit(joint, to(1), to(2), opening(1), moment(1), work(1))
-            do i = 1, count
-               call visit(other, from(1) + (to(1) - from(1))*i/count, from(2) + (to(2) - from(2))*i/count, &
-                          opening(2), moment(2), work(2))
-            end do
-            call check_close(error, opening(2), opening(1), 0.0_wp, 1.0e-13_wp, 'opening')
-            call check_close(error, moment(2), moment(1), 0.0_wp, 1.0e-6_wp, 'moment')
-            call check_close(error, work(2), work(1), 1.0e-10_wp, 1.0e-8_wp, 'work')
-            from = to
-         end do
-      end do
-   end subroutine increments
-
    !> Along a straight piece of the path both products integrate exactly by small steps of the trapezoidal
    !> rule.
    subroutine energy(error)
@@ -286,38 +253,5 @@ contains
       end subroutine check_failure
 
    end subroutine plastic_failure
-
-   !> `next` at a constant axial load and `go` are two doors to the same path.
-   subroutine constant_load(error)
-      type(error_type), allocatable, intent(inout) :: error
-      class(rule_memory), allocatable :: joint, other
-      class(rule_type), allocatable :: rule
-      type(segment) :: line
-      type(random_type) :: random
-      real(wp) :: rotation, target, opening, moment, work
-      integer :: point, direction
-
-      call make_unsymmetric(joint, 4.0e5_wp, line, rule)
-      call make_unsymmetric(other, 4.0e5_wp, line, rule)
-      rotation = 0.0_wp
-      work = 0.0_wp
-      do point = 1, 200
-         target = random%uniform(-2.0e-2_wp, 2.0e-2_wp)
-         direction = merge(1, -1, target > rotation)
-         do
-            if (line%unload_on_reversal == -direction) then
-               if (direction > 0) line%hi = rotation
-               if (direction < 0) line%lo = rotation
-            else if (direction*(target - line%end_toward(direction)) < 0.0_wp) then
-               exit
-            end if
-            rotation = line%end_toward(direction)
-            call rule%next(joint, line, direction)
-         end do
-         rotation = target
-         call visit(other, target, 4.0e5_wp, opening, moment, work)
-         call check_close(error, moment, line%force(target), 0.0_wp, 1.0e-7_wp, 'moment')
-      end do
-   end subroutine constant_load
 
 end module test_interaction

@@ -1,7 +1,6 @@
-!> The interface to LAPACK: small systems by hand, and every possible failure.
+!> The interface to LAPACK and the band matrix: small systems by hand, and every possible failure.
 module test_linalg
-   use dense, only: factor_positive, solve_general, solve_positive
-   use check, only: unit_test, check_close, check_failed, check_passed, check_true
+   use check, only: unit_test, check_close, check_true
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_base_band_matrix, only: band_matrix
@@ -12,99 +11,18 @@ module test_linalg
 
    public :: collect_linalg
 
-   !> Symmetric, positive definite; eigenvalues 1 and 3. Its upper triangle must never be read.
-   real(wp), parameter :: two_by_two(2, 2) = reshape([2.0_wp, 1.0_wp, -99.0_wp, 2.0_wp], [2, 2])
-
 contains
 
    subroutine collect_linalg(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('Cholesky solves, lower triangle only', positive), &
-               unit_test('Cholesky refuses an indefinite matrix', indefinite), &
-               unit_test('Cholesky refuses a singular matrix', semidefinite), &
-               unit_test('Cholesky of a 6 by 6 Hilbert matrix, exact integers', hilbert), &
-               unit_test('elimination with pivots, two right-hand sides', general), &
-               unit_test('elimination equation by equation', rows), &
-               unit_test('elimination refuses a singular matrix', singular), &
+      tests = [unit_test('elimination equation by equation', rows), &
                unit_test('band: L D L'' solves and counts negative eigenvalues, narrow and wide', band), &
                unit_test('band with a border, also where the band has no inverse', bordered), &
                unit_test('tridiagonal system, and one that is not positive', tridiagonal), &
                unit_test('general band needs pivots, two right-hand sides', general_band), &
                unit_test('dense system by LAPACK, and a singular one', dense_system)]
    end subroutine collect_linalg
-
-   subroutine positive(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: a(2, 2), b(2)
-      logical :: is_positive
-
-      a = two_by_two
-      b = [4.0_wp, 5.0_wp]
-      call factor_positive(a, is_positive)
-      call check_true(error, is_positive, 'positive definite')
-      call solve_positive(a, b)
-      call check_close(error, b, [1.0_wp, 2.0_wp], 1.0e-15_wp, 0.0_wp, 'solution')
-   end subroutine positive
-
-   subroutine indefinite(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: a(2, 2)
-      logical :: is_positive
-
-      a = reshape([1.0_wp, 2.0_wp, 2.0_wp, 1.0_wp], [2, 2])
-      call factor_positive(a, is_positive)
-      call check_true(error, .not. is_positive, 'eigenvalues -1 and 3')
-   end subroutine indefinite
-
-   subroutine semidefinite(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: a(2, 2)
-      logical :: is_positive
-
-      a = reshape([4.0_wp, 2.0_wp, 2.0_wp, 1.0_wp], [2, 2])
-      call factor_positive(a, is_positive)
-      call check_true(error, .not. is_positive, 'eigenvalues 0 and 5')
-   end subroutine semidefinite
-
-   subroutine hilbert(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: a(6, 6), b(6, 2)
-      integer :: i, j
-      logical :: is_positive
-
-      do j = 1, 6
-         do i = 1, 6
-            a(i, j) = 1.0_wp/(i + j - 1)
-         end do
-      end do
-      b = 0.0_wp
-      b(1, 1) = 1.0_wp
-      b(6, 2) = 1.0_wp
-      call factor_positive(a, is_positive)
-      call check_true(error, is_positive, 'positive definite')
-      call solve_positive(a, b(:, 1))
-      call solve_positive(a, b(:, 2))
-      ! Columns of the inverse. Condition 1.5e7: nine digits must remain.
-      call check_close(error, b(:3, 1), [36.0_wp, -630.0_wp, 3360.0_wp], 1.0e-8_wp, 0.0_wp, 'column 1')
-      call check_close(error, b(4:, 2), [1552320.0_wp, -1746360.0_wp, 698544.0_wp], 1.0e-8_wp, &
-                       0.0_wp, 'column 6')
-   end subroutine hilbert
-
-   subroutine general(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: a(3, 3), b(3, 2)
-      logical :: regular
-
-      ! A zero as first element needs pivots, like the bordered matrix of a driven top.
-      a = reshape([0.0_wp, 1.0_wp, 2.0_wp, 1.0_wp, 0.0_wp, 1.0_wp, 3.0_wp, -1.0_wp, 0.0_wp], [3, 3])
-      b(:, 1) = matmul(a, [1.0_wp, 2.0_wp, 3.0_wp])
-      b(:, 2) = matmul(a, [-1.0_wp, 0.0_wp, 0.5_wp])
-      call solve_general(a, b, regular)
-      call check_true(error, regular, 'regular')
-      call check_close(error, b(:, 1), [1.0_wp, 2.0_wp, 3.0_wp], 1.0e-14_wp, 0.0_wp, 'first')
-      call check_close(error, b(:, 2), [-1.0_wp, 0.0_wp, 0.5_wp], 1.0e-14_wp, 1.0e-15_wp, 'second')
-   end subroutine general
 
    !> The same system equation by equation, with three right-hand sides; and one without an inverse.
    subroutine rows(error)
@@ -125,17 +43,6 @@ contains
       call solve_rows(3, row, regular)
       call check_true(error, .not. regular, 'equal rows')
    end subroutine rows
-
-   subroutine singular(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: a(2, 2), b(2, 1)
-      logical :: regular
-
-      a = reshape([1.0_wp, 2.0_wp, 2.0_wp, 4.0_wp], [2, 2])
-      b = 1.0_wp
-      call solve_general(a, b, regular)
-      call check_true(error, .not. regular, 'two equal rows')
-   end subroutine singular
 
    !> T T of the second differences T, (1, -4, 6, -4, 1) with 5 in place of 6 at the ends, as a lower band
    !> of half-width 3; its eigenvalues are (2 - 2 cos(j pi/(n + 1)))^2.

@@ -5,7 +5,7 @@ module test_peak_oriented
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: follow_path, spring_array
-   use samples, only: set_value, random_type
+   use samples, only: capped, set_value, random_type
    implicit none
    private
 
@@ -35,19 +35,6 @@ contains
                unit_test('decay: small detours of both springs have small effects', small_detours)]
    end subroutine collect_peak_oriented
 
-   !> Elastic 100 up to (1, 100), cap (3, 120), softening with -10 to the residual 20 at 13.
-   type(spring_record) function hand(rule) result(spec)
-      character(len=*), intent(in) :: rule
-
-      spec%rule = rule
-      call set_value(spec, 'd_y', 1.0_wp)
-      call set_value(spec, 'f_y', 100.0_wp)
-      call set_value(spec, 'd_cap', 3.0_wp)
-      call set_value(spec, 'f_cap', 120.0_wp)
-      call set_value(spec, 'd_pc', 12.0_wp)
-      call set_value(spec, 'f_res', 20.0_wp)
-   end function hand
-
    !> Forces along a path against those by hand.
    subroutine expect(error, spec, d, by_hand, what)
       type(error_type), allocatable, intent(inout) :: error
@@ -66,7 +53,7 @@ contains
       real(wp), parameter :: f(7) = [50.0_wp, 100.0_wp, 110.0_wp, 120.0_wp, 70.0_wp, 20.0_wp, 20.0_wp]
       type(spring_record) :: spec
 
-      spec = hand('peak_oriented')
+      spec = capped('peak_oriented')
       call expect(error, spec, d, f, 'positive side')
       call expect(error, spec, -d, -f, 'negative side')
       call set_value(spec, 'd_u', 15.0_wp)
@@ -82,7 +69,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(spring_record) :: spec
 
-      spec = hand('peak_oriented')
+      spec = capped('peak_oriented')
       call set_value(spec, 'd_c', 0.2_wp)
       call set_value(spec, 'f_c', 40.0_wp)
       call expect(error, spec, [0.1_wp, 0.2_wp, 0.6_wp, 1.0_wp], [20.0_wp, 40.0_wp, 70.0_wp, 100.0_wp], &
@@ -95,7 +82,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
 
       ! Zero force at 2 - 110/100; from there to the yield point at -1; from -0.9 to the peak at 2.
-      call expect(error, hand('peak_oriented'), &
+      call expect(error, capped('peak_oriented'), &
                   [2.0_wp, 1.5_wp, 2.0_wp, 0.9_wp, 0.45_wp, -1.0_wp, -2.0_wp, 0.0_wp, 2.0_wp, 8.0_wp, &
                    7.3_wp, -2.0_wp], &
                   [110.0_wp, 60.0_wp, 110.0_wp, 0.0_wp, -100.0_wp*0.45_wp/1.9_wp, -100.0_wp, -110.0_wp, &
@@ -112,7 +99,7 @@ contains
       zero = 1.0_wp - turn/100.0_wp
       back = -110.0_wp/(2.0_wp + zero)*(0.5_wp + zero)
       again = -0.5_wp - back/100.0_wp
-      call expect(error, hand('peak_oriented'), &
+      call expect(error, capped('peak_oriented'), &
                   [2.0_wp, -2.0_wp, 1.0_wp, -0.5_wp, 0.5_wp, 1.0_wp, 1.5_wp, 2.0_wp], &
                   [110.0_wp, -110.0_wp, turn, back, turn*(0.5_wp - again)/(1.0_wp - again), turn, &
                    0.5_wp*(turn + 110.0_wp), 110.0_wp], 'one')
@@ -121,13 +108,13 @@ contains
       zero = 0.5_wp - inner/100.0_wp
       third = back*(zero + 0.1_wp)/(zero + 0.5_wp)
       again = -0.1_wp - third/100.0_wp
-      call expect(error, hand('peak_oriented'), &
+      call expect(error, capped('peak_oriented'), &
                   [2.0_wp, -2.0_wp, 1.0_wp, -0.5_wp, 0.5_wp, -0.1_wp, 0.3_wp, 0.5_wp, 0.75_wp, 1.0_wp, &
                    1.5_wp], &
                   [110.0_wp, -110.0_wp, turn, back, inner, third, inner*(0.3_wp - again)/(0.5_wp - again), &
                    inner, 0.5_wp*(inner + turn), turn, 0.5_wp*(turn + 110.0_wp)], 'two')
       ! Unloading from -2 again ends at -0.9, where the line to the turn at 1 started: straight to the peak.
-      call expect(error, hand('peak_oriented'), [2.0_wp, -2.0_wp, 1.0_wp, -2.5_wp, 1.0_wp], &
+      call expect(error, capped('peak_oriented'), [2.0_wp, -2.0_wp, 1.0_wp, -2.5_wp, 1.0_wp], &
                   [110.0_wp, -110.0_wp, turn, -115.0_wp, 110.0_wp*2.35_wp/3.35_wp], 'forgotten')
    end subroutine inner_loops
 
@@ -137,7 +124,7 @@ contains
       type(spring_record) :: spec
       real(wp) :: break_force
 
-      spec = hand('pinching')
+      spec = capped('pinching')
       call set_value(spec, 'kappa_f', 0.4_wp)
       call set_value(spec, 'kappa_d', 0.5_wp)
       break_force = 0.4_wp*110.0_wp/2.9_wp*1.35_wp
@@ -162,7 +149,7 @@ contains
 
       do i = 0, 1
          c = 1.0_wp + 0.5_wp*i
-         spec = hand('peak_oriented')
+         spec = capped('peak_oriented')
          call set_value(spec, 'lambda_s', 10.0_wp)
          call set_value(spec, 'c', c)
          left = 1.0_wp - (energy/1000.0_wp)**c
@@ -178,7 +165,7 @@ contains
       real(wp), parameter :: left(2) = [exp(-energy/1000.0_wp), 1.0_wp/(1.0_wp + energy/1000.0_wp)]
       integer :: i
 
-      spec = hand('peak_oriented')
+      spec = capped('peak_oriented')
       call set_value(spec, 'lambda_s', 10.0_wp)
       do i = 1, 2
          call set_value(spec, 'fade', real(i, wp))
@@ -193,7 +180,7 @@ contains
       type(spring_record) :: spec
       real(wp) :: left
 
-      spec = hand('peak_oriented')
+      spec = capped('peak_oriented')
       call set_value(spec, 'lambda_c', 10.0_wp)
       left = 1.0_wp - energy/1000.0_wp
       call expect(error, spec, [2.0_wp, -8.0_wp], [110.0_wp, -(150.0_wp*left - 80.0_wp)], 'forces')
@@ -205,7 +192,7 @@ contains
       type(spring_record) :: spec
       real(wp) :: k
 
-      spec = hand('peak_oriented')
+      spec = capped('peak_oriented')
       call set_value(spec, 'lambda_k', 10.0_wp)
       k = 100.0_wp*(1.0_wp - energy/1000.0_wp)
       call expect(error, spec, [2.0_wp, 1.5_wp, 1.0_wp, 1.8_wp, 2.0_wp, 2.1_wp], &
@@ -219,7 +206,7 @@ contains
       type(spring_record) :: spec
       real(wp) :: yield, force, second, reached, slope
 
-      spec = hand('peak_oriented')
+      spec = capped('peak_oriented')
       call set_value(spec, 'lambda_a', 10.0_wp)
       ! The second excursion, from 0.9 to the moved yield of the other side, to (-2, -110), back to zero.
       yield = 1.0_wp/(1.0_wp - energy/1000.0_wp)
@@ -246,7 +233,7 @@ contains
       type(spring_array) :: springs
       type(spring_record) :: spec
 
-      spec = hand('peak_oriented')
+      spec = capped('peak_oriented')
       call set_value(spec, 'lambda_h', 2.0_wp)
       call set_value(spec, 's_min', 0.2_wp)
       call springs%create([spec, hinge()], told=[2, 0])
@@ -273,7 +260,7 @@ contains
 
       worst = 0.0_wp
       do history = 1, 400
-         spec = hand(merge('pinching     ', 'peak_oriented', mod(history, 2) == 0))
+         spec = capped(merge('pinching     ', 'peak_oriented', mod(history, 2) == 0))
          if (mod(history, 2) == 0) then
             call set_value(spec, 'kappa_f', 0.4_wp)
             call set_value(spec, 'kappa_d', 0.5_wp)

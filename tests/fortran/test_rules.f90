@@ -3,11 +3,13 @@ module test_rules
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use, intrinsic :: iso_fortran_env, only: int64
    use any_rule, only: detours, loops, detour_result, loop_result, random_spring, random_path, yield_of
-   use check, only: unit_test, check_same, check_true
+   use check, only: unit_test, check_close, check_equal, check_same, check_true
+   use rbs_base_constants, only: unset
    use rbs_base_error, only: error_type
+   use rbs_base_keys, only: key_type
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
-   use rbs_hysteresis_registry, only: rule_names
+   use rbs_hysteresis_registry, only: keys_of, rule_names
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use samples, only: random_type
@@ -19,6 +21,8 @@ module test_rules
    !> Rules that depend on their path discontinuously: Takeda's at a former peak and where the force is zero
    !> (docs/takeda.md), and a joint whose layers soften.
    character(len=*), parameter :: exceptions(*) = [character(len=16) :: 'takeda', 'layered']
+   !> Rules that push and pull differently, and layers of any of them.
+   character(len=*), parameter :: one_sided(*) = [character(len=16) :: 'compression', 'concrete', 'layered']
 
 contains
 
@@ -28,6 +32,8 @@ contains
       tests = [unit_test('a detour of size e changes later forces by 10 k e at most', &
                          continuous), &
                unit_test('property 9: no loop and no path gives energy', dissipative), &
+               unit_test('property 3: forces are continuous where lines meet', lines_meet), &
+               unit_test('property 6: the mirror path, to the last bit', mirror), &
                unit_test('property 2: 1, 7, 1000 increments, to the last bit', increments), &
                unit_test('property 13: copies and trial moves leave no trace', trials), &
                unit_test('what a spring remembers is all that it goes on by', resumes)]
@@ -60,11 +66,79 @@ contains
       end do
    end subroutine dissipative
 
+   !> Across every event the force stays, the deformation is between the ends of its line, and no line is
+   !> steeper than the first one.
+   subroutine lines_meet(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(spring_record) :: spec
+      type(spring_array) :: spring
+      real(wp) :: d(24), k, before
+      integer :: rule, history, j, s, lines
+
+      do rule = 1, size(rule_names)
+         do history = 1, merge(10, 300, rule_names(rule) == 'layered')
+            call random_history(trim(rule_names(rule)), history, spec, d)
+            call spring%create([spec])
+            k = spec%initial_stiffness()
+            do j = 1, size(d)
+               s = merge(1, -1, d(j) > spring%d(1))
+               do lines = 1, 100000
+                  if (s*(d(j) - spring%end_toward(1, s)) <= 0.0_wp) exit
+                  call spring%advance_on_branch(1, spring%end_toward(1, s))
+                  before = spring%force(1)
+                  call spring%leave(1, s)
+                  if (ieee_is_nan(spring%force(1))) exit
+                  ! Layers that soften may snap.
+                  if (rule_names(rule) == 'layered') before = spring%force(1)
+                  call check_close(error, spring%force(1), before, 0.0_wp, 1.0e-9_wp*k*maxval(abs(d)), &
+                                   trim(rule_names(rule))//': force at an event')
+                  call check_true(error, spring%k(1) <= (1.0_wp + 1.0e-9_wp)*k, &
+                                  trim(rule_names(rule))//': not steeper than the first line')
+               end do
+               if (ieee_is_nan(spring%force(1))) exit
+               call check_true(error, lines < 100 .or. rule_names(rule) == 'layered', &
+                               trim(rule_names(rule))//': few lines in one move')
+               call spring%advance_to(1, d(j))
+               call check_true(error, spring%first(1) <= d(j) .and. d(j) <= spring%last(1), &
+                               trim(rule_names(rule))//': within the ends')
+            end do
+            if (allocated(error)) return
+         end do
+      end do
+   end subroutine lines_meet
+
+   !> Of springs with two equal sides.
+   subroutine mirror(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(key_type), allocatable :: keys(:)
+      type(spring_record) :: spec
+      real(wp) :: d(24), f(24), mirrored(24)
+      integer :: rule, history, i
+
+      do rule = 1, size(rule_names)
+         if (any(one_sided == rule_names(rule))) cycle
+         call keys_of(rule_names(rule), keys)
+         do history = 1, 200
+            call random_history(trim(rule_names(rule)), history, spec, d)
+            do i = 1, size(keys)
+               associate (name => keys(i)%name)
+                  if (index(name, '_neg') + index(name, 'buckl') > 0) spec%value(i) = unset
+               end associate
+            end do
+            call follow_path(spec, d, f)
+            call follow_path(spec, -d, mirrored)
+            ! + 0: makes zeros of both signs equal.
+            call check_same(error, 0.0_wp - mirrored, f + 0.0_wp, trim(rule_names(rule)))
+         end do
+      end do
+   end subroutine mirror
+
    !> On a path cut into increments every move ends at the same force.
    subroutine increments(error)
       type(error_type), allocatable, intent(inout) :: error
       type(spring_record) :: spec
       type(spring_array) :: spring
+      type(spring_array) :: whole
       real(wp) :: d(24), f(24), begin
       integer :: rule, history, parts, i, j
 
@@ -74,6 +148,7 @@ contains
             call follow_path(spec, d, f)
             parts = merge(1000, 7, mod(history, 20) == 0)
             call spring%create([spec])
+            whole = spring
             begin = 0.0_wp
             do j = 1, size(d)
                if (ieee_is_nan(f(j))) exit  ! Layers that carry their axial load no more.
@@ -81,9 +156,14 @@ contains
                   call spring%advance_to(1, begin + (d(j) - begin)*i/parts)
                end do
                call spring%advance_to(1, d(j))
+               call whole%advance_to(1, d(j))
                call check_same(error, spring%force(1), f(j), trim(rule_names(rule)))
                begin = d(j)
             end do
+            call check_close(error, spring%work(1), whole%work(1), 1.0e-9_wp, &
+                             1.0e-10_wp*spec%initial_stiffness()*maxval(abs(d))**2, &
+                             trim(rule_names(rule))//': work')
+            call check_equal(error, spring%events, whole%events, trim(rule_names(rule))//': events')
          end do
       end do
    end subroutine increments

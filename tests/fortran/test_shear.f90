@@ -1,20 +1,18 @@
 !> Shear of a section: a layer of the modified compression field theory, shear flow, the diagram.
 module test_shear
-   use check, only: unit_test, check_close, check_contains, check_equal, check_passed, check_same, check_true
+   use check, only: unit_test, check_close, check_passed, check_same, check_true
    use rbs_base_constants, only: pi, unset
-   use rbs_base_error, only: error_type, message_list
+   use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_section_balance, only: advance, begin, state_type
-   use rbs_section_concrete_law, only: concrete_stress, plain_concrete, tension_ts
-   use rbs_section_mcft_layer, only: crack_softening, layer_state, layer_stress, layer_type, solve_layer, &
-                                     stress_of_state
-   use rbs_case_group_reader, only: group_reader
+   use rbs_section_concrete_law, only: plain_concrete, tension_ts
+   use rbs_section_mcft_layer, only: layer_state, layer_stress, layer_type, solve_layer, stress_of_state
    use rbs_section_resultants, only: section_laws
    use rbs_section_cross_section, only: section_type, slice, spiral, ties
    use rbs_section_section_build, only: build_section
    use rbs_section_shape, only: new_shape, shape_names
-   use rbs_section_shear_diagram, only: check_curvatures, follow_shear, shear_diagram_type, shear_record
+   use rbs_section_shear_diagram, only: follow_shear, shear_diagram_type, shear_record
    use rbs_section_shear_coupling, only: couple
    use rbs_section_shear_flow, only: begin_flow, flow_type, shear_stresses, transverse_ratio
    use rbs_section_steel_law, only: steel_stress, steel_type
@@ -31,28 +29,18 @@ contains
    subroutine collect_shear(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('an uncracked layer has G = E_c/2', uncracked), &
-               unit_test('stresses of a state are those of its circle of Mohr', circle), &
-               unit_test('slopes are the differences of the stresses', slopes), &
-               unit_test('a solved layer is in equilibrium', balanced), &
-               unit_test('without stirrups tau^2 = -f_1 f_2', no_stirrups), &
+      tests = [unit_test('slopes are the differences of the stresses', slopes), &
                unit_test('shear in the other direction is the mirror image', mirror), &
-               unit_test('a layer cracks where its principal stress is f_t', cracks), &
                unit_test('a layer reports that it does not carry the stress', exhausted), &
-               unit_test('softening of Vecchio and Collins 1986', softening), &
                unit_test('shear flow adds up to the shear force', flow_adds_up), &
                unit_test('shear flow of an elastic section is V S/(I b)', elastic_flow), &
                unit_test('a far state is reached in parts', in_parts), &
-               unit_test('stirrups of a rectangle are inside the cover', tie_ratio), &
                unit_test('stirrups of a circle add up to pi/2 of a leg', circle_stirrups), &
                unit_test('V/gamma is (E_c/2) A before cracking', before_cracking), &
                unit_test('more layers change nothing', more_layers), &
-               unit_test('the knee does not depend on the points', knee_alone), &
-               unit_test('a column without stirrups and a short span fails in shear', fails), &
                unit_test('the failure in shear does not depend on the points', failure_alone), &
                unit_test('coupled, the layers carry N, M and V', coupled_equilibrium), &
-               unit_test('coupled without shear is flexure alone', coupled_without_shear), &
-               unit_test('what is refused', refused)]
+               unit_test('coupled without shear is flexure alone', coupled_without_shear)]
    end subroutine collect_shear
 
    !> A layer of 32 MPa concrete with stirrups of 325 MPa.
@@ -87,53 +75,6 @@ contains
       call build_section(section, 0.006_wp, 400)
    end function sample_section
 
-   subroutine uncracked(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(layer_type) :: layer
-      type(layer_state) :: state
-      logical :: carried
-
-      ! Popovics' curve is straight only at its start: the stress is so small that E_c is the slope.
-      layer = sample_layer(0.0_wp)
-      call solve_layer(layer, 0.0_wp, 100.0_wp, state, carried)
-      call check_true(error, carried, 'carried')
-      call check_close(error, state%gamma, 200.0_wp/layer%concrete%ec, 1.0e-9_wp, 0.0_wp, 'gamma')
-      ! Tension is linear up to f_t and there is no compressive strain, so the result is exact.
-      state = layer_state()
-      call solve_layer(layer, 2.0e-5_wp, 1000.0_wp, state, carried)
-      call check_close(error, state%gamma, 2000.0_wp/layer%concrete%ec, 1.0e-4_wp, 0.0_wp, 'under tension')
-   end subroutine uncracked
-
-   subroutine circle(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(layer_type) :: layer
-      type(layer_state) :: state
-      type(layer_stress) :: stress
-      real(wp) :: e_1, e_2, f_1, f_2, factor, slope, steel
-      integer :: i
-
-      layer = sample_layer(0.004_wp)
-      do i = 1, 40
-         state = layer_state(eps_z=1.0e-3_wp*sin(1.0_wp*i), gamma=2.0e-3_wp*abs(cos(1.7_wp*i)), &
-                             eps_x=1.5e-3_wp*sin(2.3_wp*i + 1.0_wp))
-         stress = stress_of_state(layer, state)
-         e_1 = 0.5_wp*(state%eps_x + state%eps_z + hypot(state%eps_x - state%eps_z, state%gamma))
-         e_2 = state%eps_x + state%eps_z - e_1
-         call crack_softening(layer%concrete%ft/layer%concrete%ec, e_1, factor, slope)
-         f_1 = -concrete_stress(layer%concrete, -e_1)
-         f_2 = -concrete_stress(layer%concrete, -e_2)
-         if (e_2 < 0.0_wp) f_2 = factor*f_2
-         steel = layer%rho_z*steel_stress(layer%stirrup, state%eps_z)
-         associate (s_x => stress%sigma_x, s_z => stress%sigma_z - steel, tau => stress%tau)
-            call check_close(error, s_x + s_z, f_1 + f_2, 1.0e-12_wp, 1.0e-2_wp, 'sum')
-            call check_close(error, s_x*s_z - tau**2, f_1*f_2, 1.0e-9_wp, 1.0e4_wp, 'determinant')
-            ! Stress and strain have the same axes.
-            call check_close(error, tau*(state%eps_x - state%eps_z), 0.5_wp*state%gamma*(s_x - s_z), &
-                             1.0e-9_wp, 1.0e-3_wp, 'axes')
-         end associate
-      end do
-   end subroutine circle
-
    subroutine slopes(error)
       type(error_type), allocatable, intent(inout) :: error
       real(wp), parameter :: h = 1.0e-8_wp
@@ -164,51 +105,6 @@ contains
       end do
    end subroutine slopes
 
-   !> Increasing shear at many longitudinal strains, from compression to well beyond yield.
-   subroutine balanced(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(layer_type) :: layer
-      type(layer_state) :: state
-      type(layer_stress) :: stress
-      logical :: carried
-      real(wp) :: eps_x, last
-      integer :: i, j
-
-      layer = sample_layer(0.0075_wp)
-      do i = -10, 20
-         eps_x = 2.0e-5_wp*i*abs(i)
-         state = layer_state()
-         last = 0.0_wp
-         do j = 1, 15
-            call solve_layer(layer, eps_x, 1.0e5_wp*j, state, carried)
-            call check_true(error, carried, 'carried')
-            stress = stress_of_state(layer, state)
-            call check_close(error, stress%sigma_z, 0.0_wp, 0.0_wp, 1.0_wp, 'sigma_z')
-            call check_close(error, stress%tau, 1.0e5_wp*j, 0.0_wp, 1.0_wp, 'tau')
-            call check_true(error, state%gamma > last, 'more shear, more strain')
-            last = state%gamma
-         end do
-      end do
-   end subroutine balanced
-
-   subroutine no_stirrups(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(layer_type) :: layer
-      type(layer_state) :: state
-      logical :: carried
-      real(wp) :: e_1, e_2, f_1, f_2, factor, slope
-
-      layer = sample_layer(0.0_wp)
-      call solve_layer(layer, 1.0e-3_wp, 0.9e6_wp, state, carried)
-      e_1 = 0.5_wp*(state%eps_x + state%eps_z + hypot(state%eps_x - state%eps_z, state%gamma))
-      e_2 = state%eps_x + state%eps_z - e_1
-      call crack_softening(layer%concrete%ft/layer%concrete%ec, e_1, factor, slope)
-      f_1 = -concrete_stress(layer%concrete, -e_1)
-      f_2 = -factor*concrete_stress(layer%concrete, -e_2)
-      call check_true(error, carried .and. f_1 > 0.0_wp .and. f_2 < 0.0_wp, 'a cracked layer')
-      call check_close(error, sqrt(-f_1*f_2), 0.9e6_wp, 1.0e-7_wp, 0.0_wp, 'tau')
-   end subroutine no_stirrups
-
    subroutine mirror(error)
       type(error_type), allocatable, intent(inout) :: error
       type(layer_type) :: layer
@@ -225,26 +121,6 @@ contains
       call solve_layer(layer, 4.0e-4_wp, 1.0e6_wp, down, carried)
       call check_true(error, carried .and. down%gamma > 0.0_wp, 'back again')
    end subroutine mirror
-
-   !> Without longitudinal strain tau = f_1 up to cracking, except that compression is slightly softer.
-   subroutine cracks(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(layer_type) :: layer
-      type(layer_state) :: before, after
-      type(layer_stress) :: stress
-      logical :: carried
-
-      layer = sample_layer(0.004_wp)
-      associate (ft => layer%concrete%ft, ec => layer%concrete%ec)
-         call solve_layer(layer, 0.0_wp, 0.99_wp*ft, before, carried)
-         call check_close(error, before%gamma, 2.0_wp*0.99_wp*ft/ec, 0.02_wp, 0.0_wp, 'whole')
-         after = before
-         call solve_layer(layer, 0.0_wp, 1.02_wp*ft, after, carried)
-         call check_true(error, carried .and. after%gamma > 1.2_wp*before%gamma, 'cracked')
-         stress = stress_of_state(layer, after)
-         call check_close(error, stress%tau, 1.02_wp*ft, 0.0_wp, 1.0_wp, 'cracked and in equilibrium')
-      end associate
-   end subroutine cracks
 
    subroutine exhausted(error)
       type(error_type), allocatable, intent(inout) :: error
@@ -264,18 +140,6 @@ contains
       call solve_layer(layer, 1.0e-3_wp, 1.05_wp*most, state, carried)
       call check_true(error, .not. carried, 'not much more is')
    end subroutine exhausted
-
-   subroutine softening(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: factor, slope
-
-      call crack_softening(1.0e-4_wp, 0.9e-4_wp, factor, slope)
-      call check_same(error, [factor, slope], [1.0_wp, 0.0_wp], 'before cracking')
-      call crack_softening(1.0e-4_wp, 1.0e-3_wp, factor, slope)
-      call check_same(error, factor, 1.0_wp, 'not above one')
-      call crack_softening(1.0e-4_wp, 0.01_wp, factor, slope)
-      call check_close(error, factor, 1.0_wp/2.5_wp, 1.0e-14_wp, 0.0_wp, '1/(0.8 + 1.7)')
-   end subroutine softening
 
    !> The flow of the sample bent to a curvature.
    subroutine bent_flow(curvature, flow, state, tau, error)
@@ -362,19 +226,6 @@ contains
       call check_close(error, at_once%gamma, step_by_step%gamma, 1.0e-6_wp, 0.0_wp, 'gamma')
    end subroutine in_parts
 
-   subroutine tie_ratio(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(section_type) :: section
-      real(wp) :: inside
-
-      section = sample_section()
-      inside = 4.0_wp*0.25_wp*pi*0.012_wp**2/(0.55_wp*0.11_wp)
-      call check_close(error, transverse_ratio(section, [0.0_wp, 0.2349_wp, -0.2351_wp, 0.27_wp], 0.55_wp), &
-                       [inside, inside, 0.0_wp, 0.0_wp], 1.0e-13_wp, 0.0_wp, 'rho_z')
-      section%transverse%kind = 0
-      call check_same(error, transverse_ratio(section, 0.0_wp, 0.55_wp), 0.0_wp, 'without ties')
-   end subroutine tie_ratio
-
    subroutine circle_stirrups(error)
       type(error_type), allocatable, intent(inout) :: error
       type(section_type) :: section
@@ -453,21 +304,6 @@ contains
       end do
    end subroutine more_layers
 
-   subroutine knee_alone(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(shear_diagram_type) :: few, many
-      type(section_type) :: section
-      real(wp) :: secant
-
-      call sample_diagram(80, 12, few, error)
-      call sample_diagram(80, 200, many, error)
-      call check_close(error, few%knee%strain, many%knee%strain, 2.0e-3_wp, 0.0_wp, 'knee')
-      call check_close(error, few%last%strain, many%last%strain, 2.0e-3_wp, 0.0_wp, 'end')
-      section = sample_section()
-      secant = 0.48_wp*0.5_wp*section%plain%ec*section%shape%area()
-      call check_close(error, few%knee%force/few%knee%strain, secant, 2.0e-3_wp, 0.0_wp, 'secant')
-   end subroutine knee_alone
-
    !> The sample without ties and axial load, and with a short span.
    subroutine failing_diagram(points, diagram, error)
       integer, intent(in) :: points
@@ -484,15 +320,6 @@ contains
       call check_passed(error, failure, 'the analysis')
       call check_true(error, diagram%sheared .and. size(diagram%points) < points, 'sheared')
    end subroutine failing_diagram
-
-   subroutine fails(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(shear_diagram_type) :: diagram
-
-      call failing_diagram(100, diagram, error)
-      call check_true(error, diagram%last%curvature >= diagram%points(size(diagram%points))%curvature, 'last')
-      call check_true(error, diagram%last%force < 450.0e3_wp, 'below what flexure needs')
-   end subroutine fails
 
    subroutine failure_alone(error)
       type(error_type), allocatable, intent(inout) :: error
@@ -596,29 +423,5 @@ contains
       call check_close(error, state%moment, alone%moment, 2.0e-3_wp, 0.0_wp, 'M')
       call check_close(error, state%eps0, alone%eps0, 1.0e-2_wp, 0.0_wp, 'strain')
    end subroutine coupled_without_shear
-
-   subroutine refused(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(message_list) :: messages
-      type(group_reader) :: setter
-      character(len=10), parameter :: names(4) = ['axial_load', 'length    ', 'layers    ', 'knee      ']
-      real(wp), parameter :: values(4) = [0.0_wp, -1.0_wp, 2.0_wp, 1.5_wp]
-      integer :: i, place
-      logical :: ok
-
-      setter%of_section = .true.
-      call setter%open('shear', '', messages, ok)
-      do i = 1, size(names)
-         call setter%find(trim(names(i)), '', place, messages)
-         call setter%put_numbers(place, values(i:i))
-      end do
-      call setter%finish(messages)
-      call check_curvatures([2.0e-3_wp, 1.0e-3_wp], messages)
-      call check_equal(error, messages%count, 4, 'messages')
-      call check_contains(error, messages%text, 'shear: length = -1 m', 'span')
-      call check_contains(error, messages%text, 'shear: layers = 2 must be', 'layers')
-      call check_contains(error, messages%text, 'shear: knee = 1.5 must be below 1', 'knee')
-      call check_contains(error, messages%text, 'shear: curvature 2 = 0.001 1/m is not above', 'order')
-   end subroutine refused
 
 end module test_shear

@@ -1,7 +1,7 @@
 !> The static path, event to event: closed forms, bands against full matrices, and a structure that is no
 !> column. What a user sees of it is proved in tests/python/test_static.py and test_invariants.py.
 module test_static
-   use dense, only: factor_positive, solve_general, solve_positive
+   use dense, only: is_positive, solve_general
    use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_same, check_true
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
@@ -255,15 +255,16 @@ contains
       end subroutine follow_displacement
 
       subroutine follow_force()
-         real(wp) :: a(2*n, 2*n)
+         real(wp) :: a(2*n, 2*n), b(2*n, 2)
 
          call fill(a)
-         call factor_positive(a, regular)
+         regular = is_positive(a)
          if (.not. regular) return
-         rate = column%arm
-         correction = r
-         call solve_positive(a, rate)
-         call solve_positive(a, correction)
+         b(:, 1) = column%arm
+         b(:, 2) = r
+         call solve_general(a, b, regular)
+         rate = b(:, 1)
+         correction = b(:, 2)
       end subroutine follow_force
 
       !> Slips and rotations relative to the largest, as the residual has entries of different size.

@@ -3,14 +3,12 @@
 !> Springs here yield at (1, 1). A roundness of 1e12 makes the limits of all elements equal, so that the bank
 !> is bilinear and every force is known in closed form.
 module test_steel
-   use check, only: unit_test, check_close, check_contains, check_equal, check_same, check_true
-   use rbs_base_error, only: error_type, message_list
+   use check, only: unit_test, check_close, check_same, check_true
+   use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_rule, only: rule_type, rule_memory
-   use rbs_hysteresis_segment, only: segment
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_hysteresis_spring_record, only: spring_record
-   use samples, only: set_value, value_of, random_type
+   use samples, only: set_value, random_type
    implicit none
    private
 
@@ -38,14 +36,7 @@ contains
                unit_test('wear ends at zero force', worn_out), &
                unit_test('steel.md S7: isotropic hardening', hardening), &
                unit_test('the virgin curve is exact whatever the roundness', virgin), &
-               unit_test('relations between parameters', relations), &
                unit_test('elastic range: no trace', elastic_range), &
-               unit_test('small cycles close and leave no trace', small_cycles), &
-               unit_test('a small reversal has a small effect, fixed limits', continuous), &
-               unit_test('a small reversal has a small effect, all options', continuous_options), &
-               unit_test('property 9: work of closed loops, work from the virgin state', work), &
-               unit_test('mirrored path, mirrored bits', mirror), &
-               unit_test('forces are continuous where lines meet', events), &
                unit_test('few lines in a cycle', lines_of_cycle), &
                unit_test('bars that were stretched far wear faster in compression', buckling)]
    end subroutine collect_steel
@@ -249,49 +240,6 @@ contains
       end do
    end subroutine virgin
 
-   subroutine relations(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(spring_record) :: spec
-
-      spec = bank(0.01_wp)
-      call expect(error, spec, '')
-      call set_value(spec, 'k_post', 1.0_wp)
-      call expect(error, spec, 'k_post = 1 must be below k = 1')
-      spec = bank(0.01_wp)
-      call set_value(spec, 'plateau', 2.0_wp)
-      call expect(error, spec, 'plateau = 2 needs f_u')
-      call set_value(spec, 'f_u', 0.9_wp)
-      call expect(error, spec, 'f_u = 0.9 must not be below f_y = 1')
-      call set_value(spec, 'f_u', 1.0_wp)
-      call expect(error, spec, '')
-      call set_value(spec, 'k_post', 0.0_wp)
-      call expect(error, spec, 'f_u = 1 is not reached with k_post = 0')
-      spec = bank(0.01_wp)
-      call set_value(spec, 'endurance', 5.0_wp)
-      call expect(error, spec, 'the widest limit of an element')
-      ! Hardening to 1.4 makes a limit of (1.4 - 0.99)/0.01 = 41.
-      call set_value(spec, 'f_u', 1.4_wp)
-      call set_value(spec, 'endurance', 40.0_wp)
-      call expect(error, spec, 'endurance = 40 must be 41 or more')
-      call set_value(spec, 'endurance', 41.5_wp)
-      call expect(error, spec, '')
-   end subroutine relations
-
-   !> A message that contains a text; blank: none.
-   subroutine expect(error, spec, text)
-      type(error_type), allocatable, intent(inout) :: error
-      type(spring_record), intent(in) :: spec
-      character(len=*), intent(in) :: text
-      type(message_list) :: messages
-      type(error_type), allocatable :: refused
-
-      call spec%validate('spring', messages)
-      call check_equal(error, messages%count, merge(0, 1, text == ''), 'messages for: '//text)
-      if (messages%count == 0) return
-      call messages%raise(refused)
-      call check_contains(error, refused%message, text, 'message')
-   end subroutine expect
-
    subroutine elastic_range(error)
       type(error_type), allocatable, intent(inout) :: error
       real(wp), parameter :: inside(6) = [0.8_wp, -0.8_wp, 0.5_wp, 0.0_wp, -0.3_wp, 0.99_wp]
@@ -302,221 +250,6 @@ contains
       call follow_path(bank(0.01_wp), [3.0_wp], straight)
       call check_same(error, f(7), straight(1), 'no trace')
    end subroutine elastic_range
-
-   !> Random cycles away from a point and back to it, inside the reach: the rest is as if there had been none.
-   subroutine small_cycles(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      real(wp) :: d(8), f(8), g(3), low
-      integer :: path, j
-
-      do path = 1, 300
-         call random_bank(random, spec, options=.true.)
-         call set_value(spec, 'endurance', 0.0_wp)
-         d(1) = -random%uniform(1.0_wp, 9.0_wp)
-         d(2) = random%uniform(2.0_wp, 6.0_wp)
-         low = random%uniform(d(1), d(2))
-         do j = 3, 5
-            d(j) = random%uniform(low, d(2))
-         end do
-         d(6) = d(2)
-         d(7) = 8.0_wp
-         d(8) = -10.0_wp
-         call follow_path(spec, d, f)
-         call follow_path(spec, d([2, 7, 8]), g)
-         call follow_path(spec, d([1, 2, 7, 8]), f(1:4))
-         call check_close(error, f(7:8), f(3:4), 1.0e-12_wp, 1.0e-12_wp, 'as if there had been none')
-         call check_close(error, f(6), f(2), 1.0e-12_wp, 1.0e-12_wp, 'closed')
-      end do
-   end subroutine small_cycles
-
-   !> Parameters within their bounds; with options, all of them but some at times.
-   subroutine random_bank(random, spec, options)
-      type(random_type), intent(inout) :: random
-      type(spring_record), intent(out) :: spec
-      logical, intent(in) :: options
-      type(message_list) :: messages
-      real(wp) :: choice
-
-      spec = bank(max(0.0_wp, random%uniform(-0.02_wp, 0.1_wp)))
-      call set_value(spec, 'r0', random%uniform(0.5_wp, 25.0_wp))
-      call set_value(spec, 'cr1', random%uniform(0.0_wp, 0.95_wp))
-      call set_value(spec, 'cr2', random%uniform(0.05_wp, 0.5_wp))
-      if (.not. options) return
-      call set_value(spec, 'isotropic_hardening', max(0.0_wp, random%uniform(-0.05_wp, 0.2_wp)))
-      call set_value(spec, 'hardening_reach', random%uniform(0.2_wp, 5.0_wp))
-      choice = random%uniform(0.0_wp, 1.0_wp)
-      if (value_of(spec, 'k_post') > 0.02_wp .and. choice > 0.3_wp) then
-         call set_value(spec, 'f_u', random%uniform(1.0_wp, 1.5_wp))
-         call set_value(spec, 'plateau', max(0.0_wp, random%uniform(-2.0_wp, 8.0_wp)))
-      end if
-      choice = random%uniform(5.0_wp, 100.0_wp)
-      do
-         call set_value(spec, 'endurance', choice)
-         call spec%validate('spring', messages)
-         if (messages%count == 0) exit
-         messages%count = 0
-         choice = 2.0_wp*choice
-      end do
-   end subroutine random_bank
-
-   !> A path of some turns with a point in the middle of each leg.
-   subroutine random_path(random, d)
-      type(random_type), intent(inout) :: random
-      real(wp), intent(out) :: d(:)
-      real(wp) :: exponent, from, choice
-      integer :: j
-
-      do j = 2, size(d), 2
-         exponent = random%uniform(-0.7_wp, 1.0_wp)
-         d(j) = random%uniform(-1.0_wp, 1.0_wp)*10.0_wp**exponent
-         ! Exact returns to an earlier point.
-         choice = random%uniform(0.0_wp, 1.0_wp)
-         if (choice > 0.85_wp) d(j) = d(max(j - 4, 2))
-         from = 0.0_wp
-         if (j > 2) from = d(max(j - 2, 1))
-         d(j - 1) = from + random%uniform(0.0_wp, 1.0_wp)*(d(j) - from)
-      end do
-   end subroutine random_path
-
-   subroutine continuous(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: largest
-
-      call largest_change(5000, .false., largest)
-      ! 2 by theory, for the walls of every element move by e at most.
-      call check_true(error, largest <= 2.01_wp, 'changes by 2 e k at most')
-   end subroutine continuous
-
-   subroutine continuous_options(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: largest
-
-      call largest_change(5000, .true., largest)
-      call check_true(error, largest <= 10.0_wp, 'changes by 10 e k at most')
-   end subroutine continuous_options
-
-   !> Largest change of a later force by a detour of length e anywhere on a path, over e k.
-   subroutine largest_change(histories, options, largest)
-      integer, intent(in) :: histories
-      logical, intent(in) :: options
-      real(wp), intent(out) :: largest
-      type(random_type) :: random
-      type(spring_record) :: spec
-      type(spring_array) :: virgin, spring, detour
-      real(wp) :: d(28), f(28), e
-      integer :: path, j, i, at, turns
-
-      largest = 0.0_wp
-      do path = 1, histories
-         if (mod(path, 20) == 1) then
-            call random_bank(random, spec, options)
-            call virgin%create([spec])
-         end if
-         turns = int(random%uniform(5.0_wp, 15.0_wp))
-         call random_path(random, d(:2*turns))
-         at = int(random%uniform(1.0_wp, 2.0_wp*turns))
-         spring = virgin
-         do j = 1, 2*turns
-            call spring%advance_to(1, d(j))
-            f(j) = spring%force(1)
-            if (j == at) detour = spring
-         end do
-         do i = 1, 3
-            e = 10.0_wp**(-3*i)
-            spring = detour
-            call spring%advance_to(1, d(at) + sign(e, random%uniform(-1.0_wp, 1.0_wp)))
-            do j = at, 2*turns
-               call spring%advance_to(1, d(j))
-               largest = max(largest, abs(spring%force(1) - f(j))/e)
-            end do
-         end do
-      end do
-   end subroutine largest_change
-
-   subroutine work(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      type(spring_array) :: spring
-      real(wp) :: d(20), loop(4), begin
-      integer :: path, j
-
-      do path = 1, 2000
-         call random_bank(random, spec, options=mod(path, 2) == 0)
-         call spring%create([spec])
-         call random_path(random, d)
-         do j = 1, size(d)
-            call spring%advance_to(1, d(j))
-            call check_true(error, spring%work(1) >= 0.5_wp*spring%force(1)**2 - 1.0e-12_wp, &
-                            'at least the elastic work')
-         end do
-         loop = random%uniform_array(-6.0_wp, 6.0_wp, 4)
-         do j = 1, 8
-            if (j == 5) begin = spring%work(1)
-            call spring%advance_to(1, loop(modulo(j - 1, 4) + 1))
-         end do
-         call check_true(error, spring%work(1) - begin >= -1.0e-12_wp, 'work of a closed loop')
-      end do
-   end subroutine work
-
-   subroutine mirror(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      real(wp) :: d(40), f(40), mirrored(40)
-      integer :: path
-
-      do path = 1, 200
-         call random_bank(random, spec, options=.true.)
-         call random_path(random, d)
-         call follow_path(spec, d, f)
-         call follow_path(spec, -d, mirrored)
-         call check_same(error, mirrored, 0.0_wp - f, 'mirror')
-      end do
-   end subroutine mirror
-
-   !> Across every event the force stays; every line has its ends in order and a slope from 0 to k, less
-   !> only by wear.
-   subroutine events(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      class(rule_type), allocatable :: rule
-      class(rule_memory), allocatable :: memory
-      type(segment) :: line
-      real(wp) :: to(40), d, before, least
-      integer :: path, j, direction, lines
-
-      do path = 1, 300
-         call random_bank(random, spec, options=mod(path, 2) == 0)
-         least = merge(-0.5_wp, 0.0_wp, mod(path, 2) == 0)
-         call random_path(random, to)
-         call spec%make(rule)
-         call rule%start(memory, line)
-         d = 0.0_wp
-         do j = 1, size(to)
-            direction = merge(1, -1, to(j) > d)
-            do lines = 1, 100
-               if (line%unload_on_reversal == -direction) then
-                  if (direction > 0) line%hi = d
-                  if (direction < 0) line%lo = d
-               end if
-               if (direction*(to(j) - line%end_toward(direction)) < 0.0_wp) exit
-               d = line%end_toward(direction)
-               before = line%force(d)
-               call rule%next(memory, line, direction)
-               call check_close(error, line%force(d), before, 0.0_wp, 1.0e-11_wp, 'force at an event')
-               call check_true(error, line%lo <= d .and. d <= line%hi .and. line%lo < line%hi, 'on the line')
-               call check_true(error, line%k <= 1.0_wp + 1.0e-12_wp, 'not stiffer than elastic')
-               call check_true(error, line%k >= least - 1.0e-12_wp, 'does not fall')
-            end do
-            call check_true(error, lines < 60, 'few lines in one move')
-            d = to(j)
-         end do
-      end do
-   end subroutine events
 
    !> Seven elements each way, the reversals and the way out.
    subroutine lines_of_cycle(error)

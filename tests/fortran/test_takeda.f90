@@ -23,49 +23,14 @@ contains
    subroutine collect_takeda(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('S1 uncracked', s1), &
-               unit_test('S2 cracked, not yielded', s2), &
+      tests = [unit_test('S2 cracked, not yielded', s2), &
                unit_test('S3 yielded, full reversals, with work', s3), &
                unit_test('S4 partial unloading, inner loops', s4), &
-               unit_test('property 4: the backbone at new extremes', backbone_at_extremes), &
-               unit_test('corners of the backbone are met exactly', corners), &
-               unit_test('rule 1: outer unloading is one line both ways', outer_line), &
-               unit_test('rule 2: the other side uncracked after yield', first_return), &
-               unit_test('rule 3: redirection to a steeper yield point', redirection), &
                unit_test('equality: an exact return to the peak unloads from the backbone', exact_return), &
                unit_test('equality: a turn at zero force leads directly to the other side', turn_at_zero), &
-               unit_test('section 2b: K_in is not below the secant', secant_floor), &
-               unit_test('section 2b: K_r of the other side if this one has none', other_side), &
-               unit_test('property 6: the mirror path, to the last bit', mirror), &
-               unit_test('property 8: 3000 nested loops close exactly', nested_loops), &
                unit_test('6000 nested peaks: the oldest are forgotten, without a jump', forgotten_peaks), &
                unit_test('partial unloading does not fill the memory', partial_unloading)]
    end subroutine collect_takeda
-
-   !> Backbone force at a positive deformation.
-   elemental real(wp) function backbone(d) result(f)
-      real(wp), intent(in) :: d
-
-      if (d <= d_c) then
-         f = k_c*d
-      else if (d <= d_y) then
-         f = f_c + k_y*(d - d_c)
-      else
-         f = f_y + k_u*(d - d_y)
-      end if
-   end function backbone
-
-   subroutine s1(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: f(4)
-      integer :: i
-
-      do i = 1, 3
-         call follow_path(takeda_1(inner(i)), [2.0e-4_wp, -3.0e-4_wp, 3.0e-4_wp, 0.0_wp], f)
-         call check_close(error, f, [50856.0_wp, -76284.0_wp, 76284.0_wp, 0.0_wp], 1.0e-15_wp, 0.0_wp, &
-                          inner(i))
-      end do
-   end subroutine s1
 
    subroutine s2(error)
       type(error_type), allocatable, intent(inout) :: error
@@ -196,86 +161,6 @@ contains
       f(15) = -f_4/(z_5 + 4.0_wp*d_y)*z_5
    end function s4_by_hand
 
-   subroutine backbone_at_extremes(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_array) :: spring
-      real(wp) :: most(-1:1), d
-      integer :: path, j, s
-
-      do path = 1, 50
-         call spring%create([takeda_1(inner(1 + mod(path, 3)))])
-         most = d_y
-         do j = 1, 60
-            d = random%uniform(-6.0_wp, 6.0_wp)*d_y
-            call spring%advance_to(1, d)
-            s = merge(1, -1, d > 0.0_wp)
-            if (s*d <= most(s)) cycle
-            most(s) = s*d
-            call check_close(error, s*spring%force(1), backbone(s*d), 1.0e-15_wp, 0.0_wp, 'new extreme')
-         end do
-      end do
-   end subroutine backbone_at_extremes
-
-   subroutine corners(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: f(4)
-
-      call follow_path(takeda_1('kc'), [d_c, d_y, 3.0_wp*d_y, 1.0e3_wp*d_y], f)
-      call check_same(error, f, [f_c, f_y, f_y + k_u*(3.0_wp*d_y - d_y), f_y + k_u*(1.0e3_wp*d_y - d_y)], &
-                      'force')
-   end subroutine corners
-
-   !> Property 11, and the least K_r, F/D, under the extreme B0 = 1 with k_u = k_y.
-   subroutine outer_line(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: f(4), f_peak, k_r
-      type(spring_record) :: spec
-
-      f_peak = f_y + k_u*d_y
-      k_r = k_0*0.5_wp**b0
-      call follow_path(takeda_1('kc'), [2.0_wp*d_y, 1.5_wp*d_y, 2.0_wp*d_y, &
-                       2.0_wp*d_y - 0.9_wp*f_peak/k_r], f)
-      call check_close(error, f, [f_peak, f_peak - 0.5_wp*k_r*d_y, f_peak, 0.1_wp*f_peak], 1.0e-12_wp, &
-                       0.0_wp, 'table 3')
-      spec = takeda(k_c, d_c, k_y, d_y, k_y, 1.0_wp, 1.0_wp, 'kc')
-      call follow_path(spec, [9.0_wp*d_y, 1.0_wp*d_y], f(:2))
-      f_peak = f_y + 8.0_wp*k_y*d_y
-      call check_close(error, f(:2), [f_peak, f_peak/9.0_wp], 1.0e-12_wp, 0.0_wp, 'the secant as floor')
-   end subroutine outer_line
-
-   !> Unloading from 2 d_y continues to -F_c, then directly to the opposite yield point.
-   subroutine first_return(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: f(3), k_r, crack
-      type(spring_record) :: spec
-
-      k_r = k_0*0.5_wp**b0
-      crack = 2.0_wp*d_y - (f_y + k_u*d_y + f_c)/k_r
-      call follow_path(takeda_1('kc'), [2.0_wp*d_y, crack, 0.5_wp*(crack - d_y)], f)
-      call check_close(error, f, [f_y + k_u*d_y, -f_c, -0.5_wp*(f_c + f_y)], 1.0e-12_wp, 0.0_wp, 'table 3')
-
-      ! Extreme: the line to the yield point would lead back; with K_r to the yielded backbone.
-      spec = takeda(1.0_wp, 1.0_wp, 0.9_wp, 1.05_wp, 0.5_wp, 1.0_wp, 1.0_wp, 'kc')
-      call follow_path(spec, [9.0_wp, -40.0_wp], f(:2))
-      call check_close(error, f(2), -(1.0_wp + 0.9_wp*0.05_wp + 0.5_wp*38.95_wp), 1.0e-14_wp, 0.0_wp, &
-                       'extreme numbers')
-   end subroutine first_return
-
-   !> S2 with a larger far side: the line to the yield point is steeper than that to the peak.
-   subroutine redirection(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: f(3), f_1, k_r, zero, slope
-
-      f_1 = backbone(1.1_wp*d_c)
-      k_r = k_0*(1.0_wp/8.0_wp)**b0
-      zero = -8.0_wp*d_y + (f_y + 7.0_wp*k_u*d_y)/k_r
-      slope = f_y/(d_y - zero)
-      call check_true(error, slope > f_1/(1.1_wp*d_c - zero), 'the yield point is the steeper one here')
-      call follow_path(takeda_1('kc'), [1.1_wp*d_c, -8.0_wp*d_y, 0.5_wp*d_y], f)
-      call check_close(error, f(3), slope*(0.5_wp*d_y - zero), 1.0e-12_wp, 0.0_wp, 'toward the yield point')
-   end subroutine redirection
-
    subroutine exact_return(error)
       type(error_type), allocatable, intent(inout) :: error
       real(wp) :: f(4), k_in(3)
@@ -326,42 +211,6 @@ contains
       call check_true(error, found > 300, 'enough turns')
    end subroutine turn_at_zero
 
-   !> B1 = 0.22 as a factor on K_r lies below the reloading slope: inner loops retrace it.
-   subroutine secant_floor(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(spring_array) :: spring
-      real(wp) :: before
-
-      call check_true(error, b1*k_r4 < slope_4, 'the factor alone would create energy')
-      call spring%create([takeda_1('kr')])
-      call spring%advance_to(1, 4.0_wp*d_y)
-      call spring%advance_to(1, -4.0_wp*d_y)
-      call spring%advance_to(1, 1.0_wp*d_y)
-      before = spring%work(1)
-      call spring%advance_to(1, 0.0_wp)
-      call check_close(error, spring%force(1), -slope_4*zero_4, 1.0e-12_wp, 0.0_wp, 'on the reloading line')
-      call spring%advance_to(1, 1.0_wp*d_y)
-      call check_close(error, spring%work(1) - before, 0.0_wp, 0.0_wp, 1.0e-9_wp, 'no work')
-   end subroutine secant_floor
-
-   !> A side that never unloaded from the backbone has no K_r yet.
-   subroutine other_side(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: f(3), k_r, crack
-      integer :: i
-
-      k_r = k_0*0.5_wp**b0
-      crack = 2.0_wp*d_y - (f_y + k_u*d_y + f_c)/k_r
-      do i = 1, 3, 2
-         call follow_path(takeda_1(inner(i)), [2.0_wp*d_y, 0.5_wp*(crack - d_y), &
-                                               0.5_wp*(crack - d_y) + 0.1_wp*d_y], f)
-         call check_close(error, f(2), -0.5_wp*(f_c + f_y), 1.0e-12_wp, 0.0_wp, 'inner peak')
-         if (i == 1) k_r = min(b1*k_c, k_r)
-         call check_close(error, f(3), f(2) + k_r*0.1_wp*d_y, 1.0e-12_wp, 0.0_wp, inner(i)//' unloading')
-         k_r = k_0*0.5_wp**b0
-      end do
-   end subroutine other_side
-
    !> Parameters over the whole range on which takeda.md section 3 was tested.
    subroutine random_spring(random, spec)
       type(random_type), intent(inout) :: random
@@ -397,23 +246,6 @@ contains
       end do
    end subroutine random_path
 
-   subroutine mirror(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(spring_record) :: spec
-      real(wp) :: d(40), f(40), f_mirror(40)
-      integer :: path
-
-      do path = 1, 300
-         call random_spring(random, spec)
-         call random_path(random, value_of(spec, 'd_y'), d)
-         call follow_path(spec, d, f)
-         call follow_path(spec, -d, f_mirror)
-         ! + 0: makes zeros of both signs equal.
-         call check_same(error, -f_mirror + 0.0_wp, f + 0.0_wp, 'force')
-      end do
-   end subroutine mirror
-
    !> Ever smaller cycles inside +-4 d_y; vertex j alternates in sign.
    elemental real(wp) function vertex(j, n)
       integer, intent(in) :: j, n
@@ -421,29 +253,6 @@ contains
       vertex = d_y*(3.5_wp - 3.0_wp*j/n)
       if (mod(j, 2) == 0) vertex = -vertex
    end function vertex
-
-   subroutine nested_loops(error)
-      type(error_type), allocatable, intent(inout) :: error
-      integer, parameter :: n = 3000
-      type(spring_array) :: spring
-      real(wp) :: f(n)
-      integer :: j
-
-      call spring%create([takeda_1('kc')])
-      call spring%advance_to(1, 4.0_wp*d_y)
-      call spring%advance_to(1, -4.0_wp*d_y)
-      do j = 1, n
-         call spring%advance_to(1, vertex(j, n))
-         f(j) = spring%force(1)
-      end do
-      ! Outward on one side: every loop closes at its start.
-      do j = n - 1, 1, -2
-         call spring%advance_to(1, vertex(j, n))
-         call check_same(error, spring%force(1), f(j), 'closed loop')
-      end do
-      call spring%advance_to(1, 4.0_wp*d_y)
-      call check_close(error, spring%force(1), f_4, 1.0e-15_wp, 0.0_wp, 'the peak')
-   end subroutine nested_loops
 
    !> More than `most_peaks` = 4096: the older half is forgotten when the memory is full.
    subroutine forgotten_peaks(error)

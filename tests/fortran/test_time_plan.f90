@@ -1,6 +1,5 @@
 !> The plan of the steps, and the input that is refused.
 module test_time_plan
-   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf
    use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_same, check_true
    use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: error_type, bad_input
@@ -20,37 +19,13 @@ contains
    subroutine collect_time_plan(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('times must be two or more, finite, ascending', times), &
-               unit_test('no dt: equal steps, not above the longest', automatic), &
-               unit_test('dt that divides every interval', dividing), &
+      tests = [unit_test('no dt: equal steps, not above the longest', automatic), &
                unit_test('dt that divides within round-off', nearly_dividing), &
-               unit_test('dt that does not divide: free steps to the end', free), &
-               unit_test('dt longer than an interval of the loading: free steps', longer), &
-               unit_test('dt beyond the limit is refused, with the limit', beyond_limit), &
-               unit_test('dt that is not a valid step', no_step), &
                unit_test('too many steps', too_many), &
                unit_test('number of rows', number_of_rows), &
                unit_test('intervals that are all shorter than the step', short_intervals), &
                unit_test('steps and rows of random loadings', any_loading)]
    end subroutine collect_time_plan
-
-   subroutine times(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-
-      call check_times([0.0_wp, 1.0_wp, 1.5_wp], outcome)
-      call check_passed(error, outcome, 'ascending times')
-      call check_times([0.0_wp], outcome)
-      call check_failed(error, outcome, bad_input, 'time: 1 point(s); give two or more')
-      call check_times([0.0_wp, 1.0_wp, 1.0_wp], outcome)
-      call check_failed(error, outcome, bad_input, 'value 3 of 3, 1 s, does not come after')
-      call check_times([0.0_wp, -1.0_wp], outcome)
-      call check_failed(error, outcome, bad_input, 'times must ascend strictly')
-      call check_times([0.0_wp, ieee_value(1.0_wp, ieee_quiet_nan), 2.0_wp], outcome)
-      call check_failed(error, outcome, bad_input, 'time: value 2 of 3 is NaN')
-      call check_times([0.0_wp, ieee_value(1.0_wp, ieee_positive_inf)], outcome)
-      call check_failed(error, outcome, bad_input, 'time: value 2 of 2 is Infinity')
-   end subroutine times
 
    subroutine automatic(error)
       type(error_type), allocatable, intent(inout) :: error
@@ -73,19 +48,6 @@ contains
       call check_equal(error, plan%steps, 4, 'an interval of four longest steps')
    end subroutine automatic
 
-   subroutine dividing(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(time_plan) :: plan
-
-      call new_plan(plan, [0.0_wp, 0.5_wp, 0.75_wp], 0.0625_wp, longest, limit, outcome)
-      call check_passed(error, outcome, 'plan')
-      call check_true(error, .not. plan%free, 'steps follow the loading')
-      call check_equal(error, plan%parts(1), 8, 'steps in the first interval')
-      call check_equal(error, plan%parts(2), 4, 'steps in the second')
-      call check_same(error, plan%dt, 0.0625_wp, 'step')
-   end subroutine dividing
-
    subroutine nearly_dividing(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
@@ -99,56 +61,6 @@ contains
       call check_true(error, .not. plan%free, 'steps follow the loading')
       call check_equal(error, plan%steps, 4000, 'steps')
    end subroutine nearly_dividing
-
-   subroutine free(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(time_plan) :: plan
-
-      call new_plan(plan, [0.0_wp, 0.25_wp, 1.0_wp], 0.03_wp, longest, limit, outcome)
-      call check_passed(error, outcome, 'plan')
-      call check_true(error, plan%free, 'free steps')
-      call check_equal(error, plan%steps, 34, 'steps: 33 of 0.03 s and a shorter one')
-      call check_equal(error, plan%intervals, 34, 'a row after each')
-      call check_same(error, plan%dt, 0.03_wp, 'step')
-   end subroutine free
-
-   subroutine longer(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(time_plan) :: plan
-      integer :: i
-
-      call new_plan(plan, [(0.01_wp*i, i=0, 100)], 0.02_wp, longest, limit, outcome)
-      call check_passed(error, outcome, 'plan')
-      call check_true(error, plan%free, 'free steps')
-      call check_equal(error, plan%steps, 50, 'steps')
-   end subroutine longer
-
-   subroutine beyond_limit(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(time_plan) :: plan
-
-      call new_plan(plan, [0.0_wp, 1.0_wp], limit, longest, limit, outcome)
-      call check_passed(error, outcome, 'the limit itself')
-      call new_plan(plan, [0.0_wp, 1.0_wp], 0.125_wp, longest, limit, outcome)
-      call check_failed(error, outcome, bad_input, &
-                        'dt = 0.125 s is beyond the stability limit of rk4, 0.1 s; give a dt below it')
-   end subroutine beyond_limit
-
-   subroutine no_step(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(time_plan) :: plan
-
-      call new_plan(plan, [0.0_wp, 1.0_wp], 0.0_wp, longest, limit, outcome)
-      call check_failed(error, outcome, bad_input, 'dt = 0 s must be above zero')
-      call new_plan(plan, [0.0_wp, 1.0_wp], -0.01_wp, longest, limit, outcome)
-      call check_failed(error, outcome, bad_input, 'dt = -0.01 s must be above zero')
-      call new_plan(plan, [0.0_wp, 1.0_wp], ieee_value(1.0_wp, ieee_quiet_nan), longest, limit, outcome)
-      call check_failed(error, outcome, bad_input, 'dt = NaN must be a finite number')
-   end subroutine no_step
 
    subroutine too_many(error)
       type(error_type), allocatable, intent(inout) :: error

@@ -2,8 +2,7 @@
 
 The linear references are built here: mass from positions of centroids, geometric stiffness by hand
 (theory, section 3), time by the matrix exponential, which is exact for loads that are linear
-between their points, and by the steady state of a harmonic force. Closed forms of single modes are
-proved in the Fortran suite `history`.
+between their points, and by the steady state of a harmonic force.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The springs against an independent method and against their properties on random histories.
 
-The worked sequences (``takeda`` S1 to S4, "bilinear") and the properties that hold to the last bit
-are proved in the Fortran suites `takeda`, `bilinear` and `springs`. Here, named in the tests:
+The worked sequences (``takeda`` S2 to S4, "bilinear") and the properties that hold to the last bit
+are proved in the Fortran suites `takeda`, `bilinear` and `rules`. Here, named in the tests:
 property 01 to 14 of what any correct implementation satisfies, and what rule 1 to 5 and section 2b
 say beyond those sequences. ``reference_springs`` is a second implementation written from the same
 rules; it also supplies the corners of a path, so that work can be summed without an error of

@@ -1,7 +1,7 @@
 """The static path: independent solutions, equilibrium, energy, limits.
 
-Closed forms of elastic columns, mechanisms and the capacity under axial load are proved in the
-Fortran suite `static`.
+Elastic columns below and beyond their critical load, and mechanisms, are proved in the Fortran
+suite `static`.
 
 `small`: the column is statically determinate, every force follows from the lateral force by hand.
 `pdelta`: equilibrium is checked in the deformed state, joint by joint, to second order.
