@@ -17,24 +17,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from rbsdem.errors import InputError
 
-__all__ = [
-    "BEYOND_MEANING",
-    "choice",
-    "file",
-    "finite_vector",
-    "instance",
-    "is_one_of",
-    "number",
-    "path",
-    "seed",
-    "several",
-    "shown",
-    "switch",
-    "text",
-    "vector",
-    "whole",
-]
-
 Array = NDArray[np.float64]
 T = TypeVar("T")
 

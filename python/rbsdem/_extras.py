@@ -5,8 +5,6 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-__all__ = ["extra"]
-
 #: Extra of each package.
 _EXTRAS = {"pyarrow": "ensembles", "xarray": "netcdf", "distributed": "cluster"}
 

@@ -17,8 +17,6 @@ from typing import IO, Any
 from rbsdem import _arguments
 from rbsdem.errors import InputError
 
-__all__ = ["escape_formula", "whole_file", "write_csv", "write_figure"]
-
 #: Bytes of a name that go into the temporary name, so that this does not become too long.
 _LONGEST = 180
 #: Names that are tried before the folder is taken to be at fault.

@@ -20,8 +20,6 @@ from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 
-__all__ = ["FORCES", "LENGTHS", "NumberTable", "read_lines", "read_table", "to_si"]
-
 #: Value of each unit in metres and in newtons; capital letters do not matter.
 LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254, "inch": 0.0254, "inches": 0.0254}
 FORCES = {
@@ -189,11 +187,13 @@ def read_table(
     first, mark, point = _layout(lines, where, stated, least)
     values = _values(lines, first, mark, point, where)
     at = first if _is_count(lines, first, mark) else first - 1
+    names: tuple[str, ...]
+    units: tuple[str, ...]
     if header is None and values.shape[1] in (2, 3) and _is_count(lines, at, mark):
         # The format of the PEER database: a title, the number of rows, the rows.
-        names, units = ("displacement", "force", "axial_load"), ("mm", "kN", "kN")
         values = values[at + 1 - first :]
-        names, units = names[: values.shape[1]], units[: values.shape[1]]
+        count = values.shape[1]
+        names, units = ("displacement", "force", "axial_load")[:count], ("mm", "kN", "kN")[:count]
     else:
         above = [line for line in lines[:first] if line.strip()]
         names, units = _head(above, mark, values.shape[1])

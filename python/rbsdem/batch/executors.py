@@ -21,16 +21,6 @@ from typing import Any
 from rbsdem import _arguments
 from rbsdem.errors import InputError
 
-__all__ = [
-    "Cluster",
-    "Processes",
-    "Serial",
-    "available_processors",
-    "check_client",
-    "check_jobs",
-    "check_sent",
-]
-
 
 def available_processors() -> int:
     """Return the number of processors that this process may use."""

@@ -28,7 +28,6 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-__all__ = ["JSON_LINES", "PARQUET", "Format", "Store", "digest"]
 
 _MANIFEST = "manifest.json"
 _LOCK = "manifest.lock"

@@ -13,8 +13,6 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import contextmanager
 from typing import Any, TypeVar
 
-__all__ = ["BEAT", "EndRequest", "work_through"]
-
 #: How often the display is renewed, and a signal seen [s].
 BEAT = 0.2
 

@@ -30,8 +30,6 @@ from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import Column
 from rbsdem.model.parameter import Parameter
 
-__all__ = ["calibrate", "free_names", "undetermined"]
-
 #: Number of random points, besides the start, at which the effect of a parameter is tried.
 _LOOKS = 3
 

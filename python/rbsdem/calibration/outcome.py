@@ -15,7 +15,6 @@ from rbsdem.model.column import Column
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Calibration", "Fitted"]
 
 _HEAD = ("", "Unit", "Start", "Low", "High", "Fitted", "Std. error", "Effect", "Rise", "At")
 

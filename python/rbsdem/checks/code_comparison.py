@@ -28,17 +28,6 @@ if TYPE_CHECKING:
 
     pass
 
-__all__ = [
-    "DRIFTS_AT_LOSS",
-    "SOURCES",
-    "Backbone",
-    "CodeComparison",
-    "Quantity",
-    "backbones",
-    "compare",
-    "drift_at_loss",
-    "yield_drift",
-]
 
 # ---- drifts and backbones of a cantilever that follow from code values ---------------------------
 

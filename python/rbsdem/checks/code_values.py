@@ -23,8 +23,6 @@ from rbsdem.section.strength import (
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["CodeValue", "CodeValues", "code_values"]
-
 
 @dataclass(frozen=True)
 class CodeValue:

@@ -23,8 +23,6 @@ from rbsdem.model.springs import Layered, Spring
 from rbsdem.model.strains import Gauge
 from rbsdem.section.layered import LayeredColumn
 
-__all__ = ["WATCHED", "Criterion", "buckling_strain", "criteria", "watches"]
-
 #: The limit states that criteria find, and what each is.
 WATCHED: dict[str, str] = {
     "cracking": "the section cracks, or a spring leaves its first line",

@@ -16,30 +16,6 @@ from rbsdem.model.reinforcement import Bar
 from rbsdem.model.shape import Section, checked_section
 from rbsdem.section.ranges import carried_load, column_length
 
-__all__ = [
-    "Haselton",
-    "Quantities",
-    "Rotations",
-    "asce_41_rotations",
-    "asce_41_shear_strength",
-    "asce_41_stiffness",
-    "berry_buckling_drift",
-    "berry_buckling_rotation",
-    "berry_spalling_drift",
-    "ec_8_confinement",
-    "ec_8_plastic_rotation",
-    "ec_8_shear_resistance",
-    "ec_8_ultimate_rotation",
-    "ec_8_yield_rotation",
-    "elwood_eberhard_stiffness",
-    "goodnight_buckling_drift",
-    "goodnight_buckling_strain",
-    "hinge_length_paulay",
-    "hinge_length_priestley",
-    "quantities",
-    "yield_point",
-]
-
 # ---- The quantities of a drawing that formulas of codes use, in the units they are written in ----
 
 _MPA = 1.0e6

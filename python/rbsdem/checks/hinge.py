@@ -13,8 +13,6 @@ from rbsdem.checks.criteria import Criterion, criteria
 from rbsdem.errors import InputError
 from rbsdem.model.response import Response
 
-__all__ = ["Hinge"]
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Hinge:

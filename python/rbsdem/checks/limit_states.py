@@ -16,8 +16,6 @@ from rbsdem.model.response import Response
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["LimitState", "LimitStates", "limit_states"]
-
 
 @dataclass(frozen=True)
 class LimitState:

@@ -20,15 +20,6 @@ from rbsdem.curves.curve import columns
 from rbsdem.curves.metrics import work
 from rbsdem.errors import InputError
 
-__all__ = [
-    "TURN",
-    "HalfCycles",
-    "half_cycle_numbers",
-    "half_cycles",
-    "tip_rows",
-    "turning_points",
-]
-
 TURN = 0.02
 """Share of its largest absolute value by which a displacement turns back at a turning point."""
 

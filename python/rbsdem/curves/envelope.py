@@ -14,8 +14,6 @@ from rbsdem.curves.curve import Curve, columns, loop_pair
 from rbsdem.curves.strength import beyond
 from rbsdem.errors import InputError
 
-__all__ = ["IDEALISATIONS", "Envelope", "Idealisation", "Method", "envelope"]
-
 Method = Literal["asce_41", "ec_8", "park", "equal_energy"]
 
 IDEALISATIONS: tuple[Method, ...] = get_args(Method)

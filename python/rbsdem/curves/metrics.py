@@ -17,21 +17,6 @@ from rbsdem._arguments import Array
 from rbsdem.curves.curve import columns
 from rbsdem.errors import InputError
 
-__all__ = [
-    "N_POINTS",
-    "STIFFNESS_LEVEL",
-    "Loop",
-    "PathPoints",
-    "energy",
-    "loop_of",
-    "ratio",
-    "resample",
-    "rms",
-    "secant_stiffness",
-    "summarise",
-    "work",
-]
-
 N_POINTS = 2000
 """Points along the path at which the error between two curves is taken."""
 

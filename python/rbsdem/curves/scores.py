@@ -21,7 +21,6 @@ from rbsdem.errors import InputError
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["SCORES", "Comparison", "DisplacementMetrics", "compare", "displacement_metrics"]
 
 SCORES = (
     "nrmse",

@@ -14,8 +14,6 @@ from rbsdem.curves.curve import columns
 from rbsdem.curves.cycles import turning_points
 from rbsdem.errors import InputError
 
-__all__ = ["beyond", "envelope_points", "strength_loss", "strength_loss_point"]
-
 _NEARLY = 0.95
 """Share of the largest displacement so far that a repeated cycle has to reach."""
 

@@ -21,8 +21,6 @@ from rbsdem.many.runs import Runs
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Fragile"]
-
 
 #: A frequency of which more than this part comes from beyond the given points is warned of.
 _BEYOND = 0.1

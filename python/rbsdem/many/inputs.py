@@ -19,17 +19,6 @@ from rbsdem.errors import InputError
 from rbsdem.model.column import Column, checked_column
 from rbsdem.model.response import Response, state_of
 
-__all__ = [
-    "AT_REST",
-    "Motion",
-    "collected",
-    "named_columns",
-    "named_motions",
-    "raise_faults",
-    "scale_array",
-    "states_of_columns",
-]
-
 #: More faults than this are only counted.
 MOST_FAULTS = 25
 

@@ -11,8 +11,6 @@ from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import InputError
 from rbsdem.results.result import Result
 
-__all__ = ["LIMIT_STATES", "MEASURES", "STATUSES", "Measure", "checked_measures"]
-
 #: A measure of the user: a function of the `Result` of a run.
 Measure: TypeAlias = Callable[[Result], float]
 

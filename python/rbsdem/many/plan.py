@@ -21,8 +21,6 @@ from rbsdem.model.springs import Layered
 from rbsdem.results.result import time_history
 from rbsdem.solve.analysis import without_notes
 
-__all__ = ["Outcome", "Piece", "Plan", "compute", "cut", "watched"]
-
 Integers = NDArray[np.int32]
 
 #: First run of a task, and the one after its last.

@@ -22,8 +22,6 @@ from rbsdem.errors import InputError
 from rbsdem.many.measures import STATUSES, Measure
 from rbsdem.many.plan import Outcome, Plan, watched
 
-__all__ = ["RunStore"]
-
 
 class RunStore:
     """A folder for the runs of ensembles with the same settings and measures.

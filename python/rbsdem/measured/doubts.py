@@ -52,8 +52,6 @@ from rbsdem.section.curvature import diagram
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Checked", "Doubt", "Indicators", "check", "indicators"]
-
 
 #: Share of the largest drift beyond which the growth of the base moment is taken.
 _OUTER = 0.4

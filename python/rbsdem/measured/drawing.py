@@ -33,9 +33,6 @@ from rbsdem.section.columns import DEFAULT, MODELS, Model
 from rbsdem.section.columns import column as column_of
 from rbsdem.section.layered import LayeredColumn
 
-__all__ = ["DEFAULT_YIELD_STRESS", "ULTIMATE_OVER_YIELD", "DrawnSpecimen", "column", "draw"]
-
-
 ULTIMATE_OVER_YIELD = 1.5
 """Ultimate over yield stress where it is not reported."""
 

@@ -16,9 +16,6 @@ from rbsdem._tables import FORCES, LENGTHS, NumberTable, bare, read_table, to_si
 from rbsdem.errors import InputError
 from rbsdem.measured.measured import PDELTA_CODES, MeasuredTest, net_force, top_displacement
 
-__all__ = ["read_test"]
-
-
 _UNITS = {"displacement": LENGTHS, "force": FORCES}
 _QUANTITIES = ("displacement", "force")
 

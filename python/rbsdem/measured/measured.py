@@ -12,9 +12,6 @@ from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 
-__all__ = ["PDELTA_CODES", "MeasuredTest", "net_force"]
-
-
 PDELTA_CODES = {
     1: "the base moment over the length, with P-Delta in it",
     2: "the net horizontal force on the column",

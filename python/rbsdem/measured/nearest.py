@@ -15,8 +15,6 @@ from rbsdem.measured.specimens import Specimen
 from rbsdem.model.shape import CircularSection, Section
 from rbsdem.section.spread import place_of
 
-__all__ = ["nearest"]
-
 #: Differences that count as 1: of the axial load ratio, and of the logarithms of the shear span
 #: over the depth, the concrete strength, and the mechanical ratios of bars and ties.
 _SCALES = (0.15, 0.4, 0.35, 0.4, 0.6)

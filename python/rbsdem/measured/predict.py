@@ -35,8 +35,6 @@ from rbsdem.section.columns import DEFAULT, model_name
 from rbsdem.section.parameters import parameters
 from rbsdem.section.spread import has_bands, spread
 
-__all__ = ["PredictionOptions", "name_of", "predict", "predict_one"]
-
 #: Tests most like a column that stand beside its prediction.
 _NEIGHBOURS = 5
 

@@ -22,8 +22,6 @@ from rbsdem.measured.predictions import Prediction
 from rbsdem.measured.specimens import Specimen
 from rbsdem.section.spread import Interval, Spread
 
-__all__ = ["PredictionStore"]
-
 _TEXTS = ("status", "error", "note")
 _TIMES = ("seconds_model", "seconds_analysis")
 _CURVES = ("displacement", "force", "median", "lower", "upper")

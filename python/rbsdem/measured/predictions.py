@@ -27,17 +27,6 @@ if TYPE_CHECKING:
 
     from rbsdem.curves.scores import Comparison
 
-__all__ = [
-    "SUMMARY_SCORES",
-    "Neighbour",
-    "Picture",
-    "Prediction",
-    "Predictions",
-    "loop_names",
-    "picture",
-    "thinned",
-]
-
 
 #: How far a model is drawn beyond its test: of the largest force that is in the box.
 _BEYOND = 1.08

@@ -18,15 +18,6 @@ from rbsdem import _package
 from rbsdem.curves.metrics import Loop
 from rbsdem.errors import InputError
 
-__all__ = [
-    "FOLDER_VARIABLE",
-    "HISTORY_FILES",
-    "Reversals",
-    "find_history",
-    "measured_loops",
-    "shipped_reversals",
-]
-
 FOLDER_VARIABLE = "RBSDEM_PEER_DIR"
 """Environment variable with the folder of the histories."""
 

@@ -20,8 +20,6 @@ from rbsdem.section.columns import CONCRETE_DENSITY
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["TABLE", "Observed", "Specimen", "Specimens", "read_specimens"]
-
 
 # Spellings of one author.
 _AUTHORS = {"Petrovsky": "Petrovski"}

@@ -22,8 +22,6 @@ from rbsdem.motions.acting import acting
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.solve.solver import Solver
 
-__all__ = ["compare_methods"]
-
 #: Shares of the budget at which the settings, and then the reference, have to be done.
 SETTINGS_SHARE, REFERENCE_SHARE = 0.4, 0.75
 

@@ -11,8 +11,6 @@ from numpy.typing import ArrayLike
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
 
-__all__ = ["Concrete", "Derived", "Steel", "Tension", "given"]
-
 Tension = Literal["ts", "bare", "zero"]
 """Tension laws of concrete: with tension stiffening beyond f_t; up to f_t only; no tension."""
 

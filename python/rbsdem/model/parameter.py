@@ -13,8 +13,6 @@ from rbsdem.errors import InputError
 if TYPE_CHECKING:
     from rbsdem.model.column import Column
 
-__all__ = ["Parameter", "Recipe", "is_recipe"]
-
 
 @dataclass(frozen=True, slots=True)
 class Parameter:

@@ -13,8 +13,6 @@ from rbsdem import _arguments, _core
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Derived, Steel, given
 
-__all__ = ["Bar", "Layout", "Spiral", "Ties", "share_in_tension"]
-
 #: Bars at mid-depth count half in tension; the others whole from this share of the depth on.
 _MIDDLE = 0.05
 

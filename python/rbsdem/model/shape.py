@@ -23,14 +23,6 @@ from rbsdem.model.reinforcement import Bar, Layout, Spiral, Ties, share_in_tensi
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-__all__ = [
-    "CircularSection",
-    "Confinement",
-    "RectangularSection",
-    "Section",
-    "checked_section",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Confinement:

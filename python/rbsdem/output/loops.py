@@ -35,17 +35,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = [
-    "Panel",
-    "calibration",
-    "code_comparison",
-    "comparison",
-    "envelope",
-    "four_panels",
-    "limit_states",
-    "loop",
-    "loops_over_test",
-]
 
 FIGURE_SIZE = (6.9, 6.0)
 

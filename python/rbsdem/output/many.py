@@ -20,7 +20,6 @@ from rbsdem.output.style import MODEL_LINE, axes_or_new, line_of
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["cloud", "fragilities", "fragility", "ida", "motion", "spectrum", "stripes"]
 
 _RECORD: dict[str, Any] = {"color": "0.72", "linewidth": 0.5}
 _POINT: dict[str, Any] = {"color": "0.35", "marker": ".", "linestyle": "none", "markersize": 4}

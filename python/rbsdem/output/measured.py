@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["band_sheet", "contact_sheet", "prediction", "spread"]
 
 _MEDIAN_LINE: dict[str, Any] = {"color": "0.45", "linestyle": ":", "linewidth": 0.8, "zorder": 2}
 

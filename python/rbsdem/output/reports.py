@@ -13,7 +13,6 @@ from rbsdem.output.tables import table
 if TYPE_CHECKING:
     from rich.table import Table
 
-__all__ = ["bands_table", "numbers_table", "summary_table", "tests_table"]
 
 _STYLES = {"stopped": "yellow", "failed": "red", "no history": "dim"}
 _RATIOS = {

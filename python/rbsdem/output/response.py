@@ -17,7 +17,6 @@ from rbsdem.output.style import MODEL_LINE, ZERO_LINE, axes_or_new, line_of, new
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["energy", "history", "profile"]
 
 Over = Literal["displacement", "drift", "force", "base_shear", "base_moment"]
 

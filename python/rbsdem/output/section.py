@@ -36,14 +36,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = [
-    "interaction",
-    "moment_curvature",
-    "section",
-    "section_springs",
-    "section_state",
-    "shear_diagram",
-]
 
 EVENT_MARKS: dict[str, dict[str, Any]] = {
     "cracking": {"marker": "o", "markerfacecolor": "white"},

@@ -21,16 +21,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = [
-    "RC",
-    "axes_or_new",
-    "keep_letters",
-    "line_of",
-    "new_axes",
-    "save",
-    "style",
-    "style_of",
-]
 
 RC: dict[Any, Any] = {
     "font.family": "STIXGeneral",

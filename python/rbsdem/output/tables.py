@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from rich.table import Table
     from rich.text import Text
 
-__all__ = ["HasFrame", "console", "plain", "table", "write_csv", "write_parquet"]
 
 #: Units of SI: factor to the unit on paper, and that unit.
 _PAPER = {

@@ -21,8 +21,6 @@ from rbsdem.results.case import Case, read_case
 from rbsdem.results.files import FORMAT, FORMAT_VERSION, ending_of
 from rbsdem.results.result import Result
 
-__all__ = ["read_result"]
-
 # What makes a column's text a whole case.
 _LOADING = "&loading drive = 'force', values = 0, 0 /\n"
 

@@ -28,15 +28,6 @@ from rbsdem.model.springs import Layered, SteelSpring
 from rbsdem.section.curvature import largest_moment
 from rbsdem.section.ranges import is_confined
 
-__all__ = [
-    "Code",
-    "InteractionDiagram",
-    "interaction",
-    "joint_interaction",
-    "joint_loads",
-    "nominal_moment",
-]
-
 Code = Literal["aci318", "ec2"]
 
 _MPA = 1.0e6

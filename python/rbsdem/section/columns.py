@@ -17,8 +17,6 @@ from rbsdem.section.paper_springs import springs
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
 from rbsdem.section.ranges import axial_load_note, column_length
 
-__all__ = ["CONCRETE_DENSITY", "DEFAULT", "MODELS", "Model", "column", "model_name"]
-
 Model: TypeAlias = Literal["layered", "paper"]
 """Name of a model."""
 

@@ -15,18 +15,6 @@ from rbsdem.model.materials import Tension
 from rbsdem.model.shape import Section
 from rbsdem.section.ranges import checked_load, is_confined
 
-__all__ = [
-    "Diagram",
-    "Events",
-    "Point",
-    "diagram",
-    "largest_moment",
-    "make_point",
-    "moment_curvature",
-    "strains",
-]
-
-
 #: Points of a diagram at the most.
 _MOST_POINTS = 100_000
 

@@ -16,8 +16,6 @@ from rbsdem.model.shape import CircularSection, RectangularSection, Section
 from rbsdem.section.layered import LayeredColumn, LayeredModel
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
 
-__all__ = ["SHAPES", "Groups", "layered_column", "recipe_of"]
-
 Groups = Mapping[str, list[dict[str, Any]]]
 """The groups of a case file with their values by name; those of one name in their order."""
 

@@ -18,8 +18,6 @@ from rbsdem.model.springs import ConcreteSpring, Layered, SteelSpring, unchecked
 from rbsdem.model.strains import Gauge
 from rbsdem.section.parameters import ModelParameters
 
-__all__ = ["HingeJoint", "Strip", "Strips", "cut", "hinge_joint"]
-
 _STRIPS = 14
 # The hinge is lumped at the foot, where it turns the whole length, not that above its middle: the
 # column above makes up for it.

@@ -26,8 +26,6 @@ from rbsdem.section.parameters import FACTORS, ModelParameters, directions, tabl
 from rbsdem.section.ranges import axial_load_note, outside
 from rbsdem.section.shear import shear_limits, shear_spring
 
-__all__ = ["LayeredColumn", "LayeredModel", "body_lengths", "lumping"]
-
 #: Strain at which all concrete is crushed.
 _CRUSHED = 0.02
 

@@ -18,13 +18,6 @@ from rbsdem.model.shape import RectangularSection
 from rbsdem.model.springs import Bilinear, Takeda
 from rbsdem.section.columns import CONCRETE_DENSITY
 
-__all__ = [
-    "KEYS",
-    "PaperSection",
-    "paper_columns",
-    "paper_sections",
-]
-
 KEYS = ("soesianawati_1", "tanaka_park_1", "tanaka_park_5", "zahn_7")
 """The four columns of the paper, in its order."""
 

@@ -14,8 +14,6 @@ from rbsdem.section.curvature import Events, make_point
 from rbsdem.section.ranges import axial_load_note, column_length, is_confined
 from rbsdem.section.shear import ShearSpring, closed_form_shear, fit_shear_spring
 
-__all__ = ["SHEAR", "YIELD_RULES", "SectionSprings", "springs"]
-
 YIELD_RULES = ("A", "B", "first")
 """How the yield rotation is read from the diagrams."""
 

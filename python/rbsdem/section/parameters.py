@@ -16,8 +16,6 @@ from types import MappingProxyType
 from rbsdem import _arguments, _package
 from rbsdem.errors import InputError
 
-__all__ = ["FACTORS", "VERSION", "ModelParameters", "Row", "directions", "parameters", "table"]
-
 VERSION = "2026.5"
 """Version of the parameters."""
 

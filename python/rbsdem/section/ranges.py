@@ -10,16 +10,6 @@ from rbsdem import _arguments
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.shape import Section, checked_section
 
-__all__ = [
-    "RANGE",
-    "axial_load_note",
-    "carried_load",
-    "checked_load",
-    "column_length",
-    "is_confined",
-    "outside",
-]
-
 #: Least and largest length of a column [m]: a number in millimetres is outside.
 _SHORTEST, _LONGEST = 0.05, 100.0
 

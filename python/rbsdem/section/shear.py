@@ -35,20 +35,6 @@ from rbsdem.section.parameters import ModelParameters
 from rbsdem.section.ranges import checked_load, column_length, is_confined
 from rbsdem.section.strength import shear_sizes, shear_strength_mcft, shear_strength_sezen
 
-__all__ = [
-    "KNEE",
-    "ShearDiagram",
-    "ShearLayers",
-    "ShearPoint",
-    "ShearSpring",
-    "closed_form_shear",
-    "cracked_shear_stiffness",
-    "fit_shear_spring",
-    "shear_diagram",
-    "shear_limits",
-    "shear_spring",
-]
-
 KNEE = 0.48
 """Share of (E_c/2) A of the secant at the knee: calibrated on the four columns of table 3 of the
 paper, whose shear springs have 0.41 to 0.53."""

@@ -36,26 +36,6 @@ from rbsdem.section.parameters import VERSION
 from rbsdem.section.strength import shear_sizes
 from rbsdem.solve.analysis import cyclic
 
-__all__ = [
-    "LEAST",
-    "MOST",
-    "Interval",
-    "Middle",
-    "Scatter",
-    "Spread",
-    "between",
-    "half_band",
-    "has_bands",
-    "likeness",
-    "near_shear",
-    "numbers",
-    "path_force",
-    "place_of",
-    "sample",
-    "scatter_of_tests",
-    "spread",
-]
-
 LEAST, MOST = 8, 4096
 """Fewest and most samples of a band."""
 

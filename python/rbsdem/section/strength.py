@@ -16,17 +16,6 @@ from rbsdem.model.reinforcement import share_in_tension
 from rbsdem.model.shape import Section
 from rbsdem.section.ranges import carried_load, checked_load, column_length
 
-__all__ = [
-    "ShearSizes",
-    "axial_failure_drift",
-    "shear_failure_drift",
-    "shear_sizes",
-    "shear_strength",
-    "shear_strength_aci",
-    "shear_strength_mcft",
-    "shear_strength_sezen",
-]
-
 _MPA = 1.0e6
 # Share of the least ties from which on the crack spacing goes over to that of tied sections.
 _NEARLY = 0.9

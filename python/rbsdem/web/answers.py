@@ -51,8 +51,6 @@ from rbsdem.web.state import (
     state_of,
 )
 
-__all__ = ["LANES", "ONCE", "Answers", "NearestTests", "defect", "to_json"]
-
 #: Results that are kept: those of two columns, before and after a few undos; records that are kept.
 _KEPT, _RECORDS = 12, 16
 #: Rows of a response in an answer; a figure shows no more.

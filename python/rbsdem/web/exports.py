@@ -24,8 +24,6 @@ from rbsdem.results.case import Case, read_case
 from rbsdem.results.result import Result
 from rbsdem.web.state import ENDS, Drawn, Faults, RefusedError, drawn_case, state_of
 
-__all__ = ["case_of_text", "csv_of", "drawing_in", "exported", "opened", "text_file"]
-
 _MARK = "! rbsdem explore: "
 #: Letters of the drawing on a line of its comment.
 _LINE = 90

@@ -14,8 +14,6 @@ from rbsdem._files import whole_file
 from rbsdem.measured.predictions import Picture, Prediction, Predictions
 from rbsdem.web.parts import GALLERY, one_file
 
-__all__ = ["SCORES", "card", "finite", "gallery"]
-
 #: Scores of a card, with their digits.
 SCORES = {
     "nrmse": 3,

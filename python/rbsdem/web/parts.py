@@ -10,8 +10,6 @@ from collections.abc import Mapping, Sequence
 from importlib import resources
 from typing import Any
 
-__all__ = ["GALLERY", "MODULES", "TYPES", "one_file", "parts"]
-
 #: Modules of the page, each after those that it imports.
 MODULES = (
     "units.js",

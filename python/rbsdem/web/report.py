@@ -13,8 +13,6 @@ from rbsdem.errors import InputError
 from rbsdem.web.answers import Answers, NearestTests
 from rbsdem.web.parts import one_file
 
-__all__ = ["report_data", "write_report"]
-
 #: Letters of a text that a report takes with it.
 _MOST_TEXT = 400_000
 

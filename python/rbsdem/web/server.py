@@ -24,8 +24,6 @@ from rbsdem.web.answers import LANES, ONCE, Answers, NearestTests, defect
 from rbsdem.web.parts import TYPES, parts
 from rbsdem.web.state import RefusedError
 
-__all__ = ["ExploreServer", "SupersededError"]
-
 #: Largest request [bytes]: a state, and the text of a file.
 MOST_STATE, MOST_TEXT = 1_000_000, 8_000_000
 #: Tabs that are known, requests at once.

@@ -34,8 +34,6 @@ from rbsdem.section import columns
 from rbsdem.section.ranges import column_length
 from rbsdem.solve.protocol import protocol
 
-__all__ = ["DEFAULT", "ENDS", "SHAPES", "Drawn", "Faults", "RefusedError", "drawn_case", "state_of"]
-
 #: The column that the page begins with: test No 1 of Soesianawati and others (1986).
 DEFAULT: dict[str, Any] = {
     "columns": [
