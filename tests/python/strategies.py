@@ -349,3 +349,30 @@ def waves(rng: Rng, points: int) -> np.ndarray:
     ]
     values = np.sum(parts, axis=0) * np.minimum(1, 5 * at)
     return values / np.abs(values).max()
+
+
+def section(rng: Rng, shape: str | None = None) -> rbsdem.model.shape.Section:
+    """Return a solid or hollow section, whose faces need not be alike, of 2 to 4 % of bars."""
+    depth = between(rng, 0.3, 1.5)
+    fy = rng.uniform(300e6, 600e6)
+    steel = rbsdem.Steel(fy, rng.uniform(1.1, 1.6) * fy)
+    hoops = rbsdem.Steel(rng.uniform(250e6, 600e6))
+    given: dict[str, Any] = {"concrete": rbsdem.Concrete(rng.uniform(15e6, 90e6)), "cover": 0.03}
+    wall = {"wall": depth * rng.uniform(0.2, 0.4)} if rng.random() < 0.3 else {}
+    if (shape or str(rng.choice(["rectangle", "circle"]))) == "circle":
+        spiral = rbsdem.Spiral(0.01, rng.uniform(0.05, 0.12), hoops)
+        layout = rbsdem.Layout(int(rng.integers(6, 25)), 0.035 * depth, steel)
+        return rbsdem.CircularSection(depth, layout=layout, spiral=spiral, **given, **wall)
+    width = depth * rng.uniform(0.5, 2)
+    share = rng.dirichlet([2, 1, 2]) * width * depth * rng.uniform(0.01, 0.03)
+    edge = 0.5 * depth - 0.06
+    places = (edge, edge * rng.uniform(-0.6, 0.6), -edge)
+    return rbsdem.RectangularSection(
+        width,
+        depth,
+        bars=[(y, float(area), steel) for y, area in zip(places, share, strict=True)],
+        bar_diameter=0.02,
+        ties=rbsdem.Ties(0.01, rng.uniform(0.05, 0.2), hoops, legs=rng.uniform(2, 5)),
+        **given,
+        **wall,
+    )

@@ -540,54 +540,6 @@ D, F = response(COLUMNS["zahn_7"], path(COLUMNS["zahn_7"]))
 ZERO = replace(COLUMNS["zahn_7"], flexure=replace(COLUMNS["zahn_7"].flexure, k_u=0.0))
 
 
-@pytest.mark.parametrize(
-    ("change", "text"),
-    [
-        ({"free": []}, "free is empty; it names height"),
-        ({"free": "flexure.k_y"}, "must be a list of names"),
-        ({"free": 3}, "must be a list of names"),
-        ({"free": ["flexure.ky"]}, r"'flexure.ky' .* did you mean 'flexure.k_y'\?"),
-        ({"free": ["flexure[0].k_y"]}, r"did you mean 'flexure.k_y'\?"),
-        ({"free": [None]}, "None is not a parameter"),
-        ({"free": ["shear.k", "shear.k"]}, "'shear.k' comes twice"),
-        ({"bounds": {"shear.k": (1e8, 1e9)}}, r"'shear.k' is not in free \(flexure.k_y\)"),
-        ({"bounds": {"flexure.k_y": (2e8, 1e8)}}, "must be a lower and a higher one"),
-        ({"bounds": {"flexure.k_y": (1e8, 2e8)}}, "leave out the start 6.2188e"),
-        ({"bounds": {"flexure.k_y": (np.nan, 2e8)}}, "low = nan must be a finite number"),
-        ({"bounds": {"flexure.k_y": (0, np.inf)}}, "high = inf must be a finite number"),
-        ({"bounds": {"flexure.k_y": 3.0}}, r"must be \(low, high\)"),
-        ({"bounds": {"flexure.k_y": ("a", 2)}}, "must be a number"),
-        ({"bounds": [1, 2]}, "must be a mapping"),
-        ({"column": 3}, "column = 3 must be a Column"),
-        ({"column": ZERO, "free": ["flexure.k_u"]}, "k_u = 0 has no default bounds"),
-        ({"test": 3}, "a int has no displacement and force"),
-        ({"test": (D, F, F)}, "has no displacement and force"),
-        ({"test": (D, F[:-1])}, "displacements and .* forces"),
-        ({"test": (D, F * np.nan)}, "force of the test: value 1 .* nan"),
-        ({"test": (0 * D, F)}, "displacement of the test is 0 m in every row"),
-        ({"test": (D, 0 * F)}, "force of the test is 0 in every row"),
-        ({"test": (D[:2], F[:2])}, "2 rows; a loop needs at least 3"),
-        ({"loss": "rms"}, "loss = 'rms' is not known; it is one of nrmse, balanced"),
-        ({"seed": -1}, "seed = -1 must be 0 or more"),
-        ({"seed": 1.5}, "seed = 1.5 must be a whole number"),
-        ({"jobs": 0}, "jobs = 0 must be 1 or more"),
-        ({"evaluations": 0}, "evaluations = 0 must be 1 or more"),
-        ({"seconds": 0}, "seconds = 0 must be a positive number"),
-        ({"progress": "yes"}, "progress = 'yes' must be True or False"),
-    ],
-)
-def test_wrong_input(change, text):
-    given = {"column": COLUMNS["zahn_7"], "test": (D, F), "free": ["flexure.k_y"]}
-    with pytest.raises(InputError, match=text):
-        rbsdem.calibrate(**(given | change))
-
-
-@pytest.mark.parametrize("numbers", [(1, 2, 3), (2, 3, 1), (2, 1, 1), (np.nan, 0, 1), ("a", 0, 1)])
-def test_wrong_parameter(numbers):
-    with pytest.raises(InputError, match="parameter length"):
-        Parameter(*numbers, what="length")
-
-
 def test_zero_start_with_bounds():
     test = response(COLUMNS["zahn_7"], D)
     fit = quiet(ZERO, test, ["flexure.k_u"], {"flexure.k_u": (0, 5e7)})

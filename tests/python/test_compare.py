@@ -171,31 +171,6 @@ def test_rows_that_do_not_belong_together_are_refused(curves, changed, words):
         rbsdem.compare(result, (d, f))
 
 
-@pytest.mark.parametrize(
-    ("result", "test", "words"),
-    [
-        (([0, 1], [0, 1]), ([0, 1], [0, 0]), "force is 0"),
-        (([0, 1], [0, 1]), ([0, math.nan], [0, 1]), "displacement: value 2"),
-        (([0, 1], [0, 1]), ([0, 1], [0, 1, 2]), "force has 3 rows, test: displacement has 2"),
-        (([0, 1], [0]), ([0, 1], [0, 1]), "force has 1 rows, displacement has 2"),
-        (([0, 0], [0, 1]), ([0, 0], [0, 1]), "displacement that changes"),
-        (([0, 1], [0, 1]), 3, "test is neither"),
-        (None, ([0, 1], [0, 1]), "result is neither"),
-        (([0], [0]), ([0], [1]), "at least 2"),
-    ],
-)
-def test_bad_input_is_named(result, test, words):
-    with pytest.raises(InputError, match=words):
-        rbsdem.compare(result, test)
-
-
-@pytest.mark.parametrize("height", [0.0, -1.0, math.nan, "tall"])
-def test_a_height_is_positive(curves, height):
-    d, f, _ = curves
-    with pytest.raises(InputError, match="height"):
-        rbsdem.compare((d, f), (d, f), height=height)
-
-
 # ---- half-cycles ---------------------------------------------------------------------------------
 
 

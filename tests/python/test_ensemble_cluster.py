@@ -14,7 +14,6 @@ import pytest
 from test_ensembles import column, motion
 
 import rbsdem
-from rbsdem import InputError
 from rbsdem.many import ensemble
 
 distributed = pytest.importorskip("distributed", reason="the extra 'cluster' brings distributed")
@@ -87,8 +86,3 @@ def test_ctrl_c_keeps_what_came_back(client: Any, monkeypatch: pytest.MonkeyPatc
     )
     assert found.interrupted
     assert 0 < (found.status != "").sum() < len(found)
-
-
-def test_what_is_no_client() -> None:
-    with pytest.raises(InputError, match=r"client = 7 must be a dask\.distributed\.Client"):
-        rbsdem.ensemble(column(), motion(1), client=7)

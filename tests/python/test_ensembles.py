@@ -260,29 +260,6 @@ def test_columns_that_cannot_be_run_are_named_before_the_start() -> None:
     assert "column 'a'" not in str(caught.value)
 
 
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        ({"columns": []}, "columns is empty"),
-        ({"motions": {}}, "motions is empty"),
-        ({"columns": {"1": column(), 1: column()}}, "columns: two are called '1'"),
-        ({"columns": {None: column()}}, "columns: the name None must be a text"),
-        ({"motions": {"\udc80": motion(1)}}, "has characters that no file takes"),
-        ({"store": 3}, "store = 3 is not the path"),
-        ({"scales": [np.nan]}, "no run is asked for"),
-        ({"scales": "x"}, "scales must be an array of numbers"),
-        ({"scales": np.inf}, "must be a finite number"),
-        ({"motions": (0.0, [1.0, 2.0])}, "step = 0.0 s must be above zero"),
-        ({"method": "euler"}, "euler"),
-        ({"collapse_drift": -1.0}, "collapse_drift"),
-    ],
-)
-def test_bad_input(given: dict, message: str) -> None:
-    good = {"columns": column(), "motions": motion(1)}
-    with pytest.raises(InputError, match=message):
-        rbsdem.ensemble(**(good | given))
-
-
 def bodies() -> list[rbsdem.Column]:
     """Return columns of one body that differ in mass, springs and damping."""
     columns = [column(mass) for mass in (2e3, 10e3, 30e3, 80e3)]

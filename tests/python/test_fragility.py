@@ -245,41 +245,6 @@ def test_band_holds_the_curve():
     assert found.probability(found.theta) == pytest.approx(0.5)
 
 
-@pytest.mark.parametrize(
-    ("call", "words"),
-    [
-        (lambda: fit_fragility("x", counts([1, 2], [9, 9], [0, 0])), "no run reached the limit st"),
-        (lambda: fit_fragility("x", counts([1, 2], [9, 9], [9, 9])), "all reached the limit state"),
-        (lambda: fit_fragility("x", counts([1], [9], [3])), "one level does not give a curve"),
-        (lambda: fit_fragility("x", counts([1, 2], [9, 0], [3, 0])), "one level does not give a c"),
-        (
-            lambda: fit_fragility("x", counts([1, 2], [9, 9], [9, 0])),
-            "does not grow with the inten",
-        ),
-        (
-            lambda: fit_fragility("x", counts([1, 2], [9, 9], [4, 4])),
-            "does not grow with the inten",
-        ),
-        (lambda: fit_fragility("x", Capacities(np.ones(3), np.full(3, np.inf))), "no record reach"),
-        (
-            lambda: fit_fragility("x", Capacities(np.full(3, 2.0), np.ones(3))),
-            "the lower one first",
-        ),
-        (lambda: fit_fragility("x", Capacities(np.ones(1), np.ones(1))), "1 records; give two"),
-        (lambda: FOUND.band([1.0], 90), "level = 90 must be above 0 and below 1"),
-        (lambda: FOUND.samples(3), "n = 3 must be from 10 to 100000"),
-        (lambda: FOUND.mean_annual_frequency(3.0), "must be a Hazard"),
-        (lambda: Hazard([1.0], [1.0]), "1 intensities and 1 frequencies"),
-        (lambda: Hazard([1.0, 2.0], [0.1, 0.2]), "must be above 0 and descend strictly"),
-        (lambda: Hazard([2.0, 1.0], [0.2, 0.1]), "must be above 0 and ascend strictly"),
-        (lambda: Hazard([1.0, 2.0], [0.2, 0.1]).frequency_of(1.0, 0.0), "a beta above 0"),
-    ],
-)
-def test_bad_input_of_fits(call, words):
-    with pytest.raises(InputError, match=words):
-        call()
-
-
 FOUND = Fragility("x", 3.0, 0.4, np.eye(2), Capacities(drawn(9, 3, 0.4), drawn(9, 3, 0.4)))
 
 
@@ -423,29 +388,6 @@ def test_all_bad_samples_are_told_at_once():
     assert "mass = -" in lines[0]
 
 
-@pytest.mark.parametrize(
-    ("call", "words"),
-    [
-        (lambda: Uncertain(make, {}), "variables is empty"),
-        (lambda: Uncertain(make, {"k": 3.0}), "k = 3.0 is not a distribution"),
-        (lambda: Uncertain(None, {"k": lognormal(1, 1)}), "make must be a function"),
-        (lambda: Uncertain(make, VARIABLES, {("k", "x"): 0.1}), "give it for pairs of k, mass"),
-        (lambda: Uncertain(make, VARIABLES, {("k", "mass"): 1.5}), "contradict each other"),
-        (lambda: Uncertain(make, VARIABLES).values(10, "sobol"), "n = 10 must be a power of 2"),
-        (lambda: Uncertain(make, VARIABLES).values(0), "n = 0 must be from 1"),
-        (
-            lambda: Uncertain(make, VARIABLES).values(8, "halton"),
-            "method = 'halton' is not known; it is one of",
-        ),
-        (lambda: Uncertain(lambda k, mass: 3, VARIABLES).sample(1), "make returned a int"),
-        (lambda: lognormal(-1.0, 0.2), "must be above 0"),
-    ],
-)
-def test_bad_input_of_samples(call, words):
-    with pytest.raises(InputError, match=words):
-        call()
-
-
 def test_variance_of_two_sources_that_add():
     """ln c = record + model: no residual, and each variance is that of its own values."""
     records = np.array([0.1, -0.3, 0.4, 0.0, 0.2])
@@ -467,19 +409,6 @@ def test_variance_of_three_sources_is_found_without_bias():
         found = variance_split(np.exp(record + model + 0.1 * random.standard_normal((10, 8))))
         parts.append([found.record, found.model, found.residual])
     assert np.mean(parts, axis=0) == pytest.approx([0.16, 0.04, 0.01], rel=0.06)
-
-
-@pytest.mark.parametrize(
-    ("values", "words"),
-    [
-        ([1.0, 2.0], r"shape \(2,\)"),
-        ([[1.0, 2.0]], r"shape \(1, 2\)"),
-        ([[1.0, np.inf], [1.0, 2.0]], "1 of 4 capacities are not known"),
-    ],
-)
-def test_bad_input_of_the_split(values, words):
-    with pytest.raises(InputError, match=words):
-        variance_split(values)
 
 
 def test_records_can_be_copied():

@@ -111,27 +111,6 @@ def test_strength_of_the_hinge_is_that_of_the_section():
     assert largest == pytest.approx(np.max(moment), rel=0.1)
 
 
-@pytest.mark.parametrize(
-    ("model", "options", "text"),
-    [
-        ("layered", {"n": 1}, "n = 1: the layered model needs a joint above the hinge; give 2"),
-        ("paper", {"n": 0}, "n = 0 must be from 1"),
-        ("layered", {"n": 2.5}, "n = 2.5 must be a whole number"),
-        ("bets", {}, "'bets' is not known; it is one of layered, paper"),
-    ],
-)
-def test_wrong_choices_are_refused(model, options, text):
-    with pytest.raises(InputError, match=text):
-        peer.column(SPECIMEN, model, **options)
-
-
-@pytest.mark.parametrize("load", [9e6, -1.5e6])
-def test_an_axial_load_over_the_capacity_is_refused(load):
-    crushed = replace(SPECIMEN, axial_load=load)
-    with pytest.raises(InputError, match=r"axial_load = .* N is more .*; compression is positive"):
-        peer.column(crushed, "layered")
-
-
 def test_numbers_to_fit_stand_between_their_bounds_and_come_back():
     column = peer.column(SPECIMEN, "layered")
     for name, number in column.parameters.items():
@@ -149,23 +128,6 @@ def test_numbers_to_fit_stand_between_their_bounds_and_come_back():
                 math.sqrt(number.low * number.high)
             )
         assert other.n == column.n
-
-
-@pytest.mark.parametrize(
-    ("changed", "text"),
-    [
-        ({"concrete_strength": 40.0}, "concrete_strength = 40 Pa .* 40 MPa is 40e6"),
-        ({"length": 1600.0}, "length = 1600 m .* 1600 mm is 1.6"),
-        ({"width": 0.0}, "width = 0 m must be"),
-        ({"axial_load": math.nan}, "axial_load = nan N must be"),
-        ({"longitudinal_number": 0}, "longitudinal_number = 0"),
-        ({"length": -1.0, "depth": 400.0}, "length = -1 m(.|\n)*depth = 400 m"),
-    ],
-)
-@pytest.mark.parametrize("model", ["paper", "layered"])
-def test_numbers_that_no_column_has_are_refused(model, changed, text):
-    with pytest.raises(InputError, match=text):
-        peer.column(replace(SPECIMEN, **changed), model)
 
 
 @pytest.mark.parametrize(("n", "error"), [(2, 0.05), (17, 0.005)])
@@ -258,21 +220,6 @@ def test_a_circular_section_makes_both_models():
         ]
     ]
     assert peaks[0] == pytest.approx(peaks[1], rel=0.3)
-
-
-@pytest.mark.parametrize(
-    ("options", "text"),
-    [
-        ({"height": 1600.0}, "height = 1600 m must be between .*; 1600 mm is 1.6"),
-        ({"model": "paper", "model_parameters": parameters()}, "is for model = 'layered'"),
-        ({"model": "paper", "round_core": True}, "round_core is for model = 'layered'"),
-        ({"axial_height": 0.0}, "axial_height = 0 m must be above zero"),
-        ({"axial_load": 9e6}, r"axial_load = 9e\+06 N is more compression"),
-    ],
-)
-def test_arguments_that_a_section_refuses(options, text):
-    with pytest.raises(InputError, match=text):
-        rbsdem.section.column(SECTION, **{"height": 1.6, "axial_load": 1.2e6} | options)
 
 
 # ---- versions of the parameters ------------------------------------------------------------------

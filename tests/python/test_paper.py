@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import importlib.util
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -402,19 +401,3 @@ def test_axes_of_the_caller_keep_the_style_of_the_caller():
         assert house.xaxis.label.get_fontfamily() == [plot.RC["font.family"]]
     finally:
         matplotlib.pyplot.close(house.figure)
-
-
-def test_what_cannot_be_drawn_is_refused():
-    pytest.importorskip("matplotlib")
-    from matplotlib.figure import Figure  # noqa: PLC0415
-
-    from rbsdem import plot  # noqa: PLC0415
-
-    with pytest.raises(InputError, match="0 panels"):
-        plot.four_panels([])
-    with pytest.raises(InputError, match="vectors of one length"):
-        plot.loop([0.0, 1.0], [0.0], ax=Figure().subplots())
-    with pytest.raises(InputError, match="neither"):
-        plot.loop(3.0, ax=Figure().subplots())
-    with pytest.raises(InputError, match="height"):
-        plot.four_panels([replace(panels()[0], height=-1.0)])

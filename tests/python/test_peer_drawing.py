@@ -10,7 +10,7 @@ import pytest
 
 import rbsdem
 from rbsdem import peer
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.errors import AccuracyWarning
 
 SQUARE = peer.Specimen(
     name="Square",
@@ -146,31 +146,6 @@ def test_faces_that_do_not_add_up_keep_the_number_of_bars():
         d = peer.draw(replace(SQUARE, longitudinal_number=24))
     assert d.section.steel_area == pytest.approx(4 * area(0.02) + 20 * area(0.016))
     assert "times 2.5" in d.assumed[0]
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"section": "hexagonal"}, "hexagonal"),
-        ({"corner_diameter": None, "intermediate_diameter": None}, "no diameter"),
-        ({"cover": 0.3}, "do not fit"),
-        ({"cover": 0.3, "section": "circular"}, "do not fit"),
-        ({"longitudinal_number": 8}, r"8 contradicts.*2 x 1 .*2 x 3 .*are 12"),
-        (
-            {"intermediate_perpendicular": 0, "intermediate_parallel": 0},
-            "12 contradicts.* are 4;",
-        ),
-        ({"longitudinal_number": 3, "intermediate_parallel": None}, "four corners"),
-        ({"longitudinal_number": 12.5}, "12.5 bars must be a whole number"),
-        ({"intermediate_parallel": -3}, "-3 bars must be a whole number"),
-        ({"corner_diameter": 20.0}, "corner_diameter = 20 m must be .* 16 mm is 0.016"),
-        ({"cover": 20.0}, "cover = 20 m must be .* 20 mm is 0.020"),
-        ({"corner_yield_stress": 450.0}, "450 Pa must be .* 450 MPa is 450e6"),
-    ],
-)
-def test_what_cannot_be_drawn(change, words):
-    with pytest.raises(InputError, match=words):
-        peer.draw(replace(SQUARE, **change))
 
 
 @pytest.mark.parametrize("specimen", [SQUARE, ROUND], ids=["square", "round"])

@@ -225,19 +225,6 @@ def test_broken_off_keeps_what_is_done(table):
     assert not found.all_completed
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ({"model": "nonsense"}, "'nonsense' is not known; it is one of layered, paper"),
-        ({"model_parameters": "1.0"}, "model_parameters = '1.0' must be a ModelParameters"),
-        ({"jobs": 0}, "jobs = 0"),
-    ],
-)
-def test_bad_arguments(table, arguments, words):
-    with pytest.raises(InputError, match=words):
-        peer.predict(table, **arguments)
-
-
 def test_the_papers_model_by_name(table):
     found = peer.predict(table[:1], "paper")
     assert found[0].status == "completed", found[0].error

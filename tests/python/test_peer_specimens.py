@@ -279,16 +279,6 @@ def test_net_force_by_code(tmp_path, code):
     assert test.base_moment[1] == pytest.approx(expected * 2 + 1000 * top * height / 2)
 
 
-def test_codes_that_cannot_be():
-    history = [0.0, 1.0], [0.0, 1.0]
-    with pytest.raises(InputError, match="top_length = None"):
-        peer.net_force(*history, code=4, axial_load=1.0, length=1.0)
-    with pytest.raises(InputError, match="code 7"):
-        peer.net_force(*history, code=7, axial_load=1.0, length=1.0)
-    with pytest.raises(InputError, match="2 rows, force 1"):
-        peer.net_force([0.0, 1.0], [0.0], code=2, axial_load=1.0, length=1.0)
-
-
 def test_code_2_gives_a_copy():
     force = np.array([0.0, 1.0])
     net = peer.net_force([0.0, 1.0], force, code=2, axial_load=1.0, length=1.0)

@@ -225,40 +225,6 @@ def test_utilisation():
     assert nominal == pytest.approx(1e5 / diagram.moment_at([0.0, 1e6]))
 
 
-@pytest.mark.parametrize(
-    ("call", "words"),
-    [
-        (lambda: rbsdem.section.interaction(SQUARE, "aci"), "'aci'"),
-        (lambda: rbsdem.section.interaction(SQUARE, "ec2", confined=True), "unconfined"),
-        (lambda: rbsdem.section.interaction(SQUARE, points=2), "points = 2"),
-        (
-            lambda: rbsdem.section.interaction(
-                rbsdem.RectangularSection(0.3, 0.3, rbsdem.Concrete(3e7)), "ec2"
-            ),
-            "bars",
-        ),
-        (
-            lambda: rbsdem.section.interaction(
-                rbsdem.RectangularSection(
-                    0.3, 0.3, rbsdem.Concrete(1e8), bars=[(0.1, 1e-3, STEEL)]
-                ),
-                "ec2",
-            ),
-            "90 MPa",
-        ),
-        (
-            lambda: rbsdem.plot.interaction(
-                rbsdem.section.interaction(SQUARE, "ec2"), demand=[1.0, 2.0, 3.0]
-            ),
-            "a row for each",
-        ),
-    ],
-)
-def test_faults_are_named(call, words):
-    with pytest.raises(InputError, match=words):
-        call()
-
-
 def test_figure_shows_both_strengths_and_the_demand():
     diagram = rbsdem.section.interaction(SQUARE, "ec2")
     ax = rbsdem.plot.interaction(diagram, demand=[(1e6, -2e5)])

@@ -7,7 +7,6 @@ written down a second time.
 from __future__ import annotations
 
 import math
-import warnings
 
 import numpy as np
 import pytest
@@ -279,32 +278,6 @@ def test_section_without_a_knee_has_one_line() -> None:
     assert found.spring.k * found.spring.d_y == pytest.approx(found.end.force)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ({"length": -1.0}, "length = -1"),
-        ({"length": math.nan}, "length = nan"),
-        ({"axial_load": math.inf}, "axial_load"),
-        ({"axial_load": 1e9}, "axial_load"),
-        ({"layers": 1}, "layers = 1"),
-        ({"knee": 1.2}, "knee = 1.2"),
-        ({"curvature": [0.01, 0.005]}, "must rise"),
-        ({"curvature": []}, "curvature is empty"),
-        ({"curvature": [30.0]}, "mrad/m"),
-        ({"furthest": -0.1}, "furthest"),
-        ({"points": 1}, "points = 1"),
-        ({"tension": "none"}, "tension"),
-        ({"confined": "yes"}, "confined"),
-        ({"coupled": 2}, "coupled"),
-    ],
-)
-def test_what_is_refused(arguments: dict, words: str) -> None:
-    section, length, load = column("zahn_7")
-    given = {"length": length, "axial_load": load} | arguments
-    with pytest.raises(rbsdem.InputError, match=words):
-        shear_diagram(section, **given)
-
-
 def test_figure_of_the_diagram() -> None:
     mpl = pytest.importorskip("matplotlib")
     mpl.use("Agg")
@@ -407,25 +380,3 @@ def test_drifts_of_elwood_and_moehle_2005_by_hand() -> None:
     drift = 0.04 * (1 + tangent**2) / (tangent + 375e3 / (ties * tangent))
     assert strength.axial_failure_drift(plain(), 375e3) == pytest.approx(drift, rel=1e-5)
     assert strength.axial_failure_drift(plain(ties=None), 375e3) == 0.0
-
-
-@pytest.mark.parametrize(
-    "call",
-    [
-        lambda: strength.shear_strength_mcft(plain(), 0.0, 1e5),
-        lambda: strength.shear_strength_sezen(plain(), math.nan, 1e5),
-        lambda: strength.shear_strength_sezen(plain(), 1.0, 1e5, -1.0),
-        lambda: strength.axial_failure_drift(plain(), 1e5, 90.0),
-        lambda: closed_form_shear(plain(), 1.0, -5.0),
-    ],
-)
-def test_strengths_refuse(call) -> None:
-    with pytest.raises(rbsdem.InputError):
-        call()
-
-
-def test_no_bars_no_strength() -> None:
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        bare = RectangularSection(0.3, 0.3, Concrete(25e6))
-        assert strength.shear_strength_mcft(bare, 1.0, 1e5) == 0.0

@@ -161,23 +161,6 @@ def test_report_names_what_was_found():
         assert words in report
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        ({"yield_rule": "C"}, "A, B, first"),
-        ({"ultimate": "never"}, "ultimate"),
-        ({"shear": "beam"}, "mcft, closed, none"),
-        ({"hinge_length": 0.0}, "hinge_length"),
-        ({"eps_cover": float("nan")}, "eps_cover"),
-        ({"b0": "x"}, "must be a number"),
-        ({"confined": 3}, "True or False"),
-    ],
-)
-def test_wrong_options_are_named(options, words):
-    with pytest.raises(InputError, match=words):
-        of_paper(paper_sections()["zahn_7"], **options)
-
-
 def test_paper_sections_are_those_of_table_2():
     for paper in paper_sections().values():
         section = paper.section
@@ -275,29 +258,6 @@ def test_springs_of_a_whole_column_are_refused_in_several_joints(kind):
         rbsdem.Column(1.6, 600.0, **(given | {kind: again}), n=2)
 
 
-def test_exchanged_springs_of_a_section_are_refused():
-    springs = rbsdem.section.springs(SECTION, 1.6, LOAD)
-    with pytest.raises(InputError, match="shear is the flexure spring of a section"):
-        rbsdem.Column(1.6, 600.0, springs.flexure, springs.shear)
-
-
-@pytest.mark.parametrize(
-    "call",
-    [
-        lambda length: rbsdem.section.springs(SECTION, length, LOAD),
-        lambda length: rbsdem.section.column(SECTION, length, axial_load=LOAD),
-        lambda length: rbsdem.section.shear_diagram(SECTION, length, LOAD),
-        lambda length: rbsdem.section.shear_strength(SECTION, length, LOAD),
-    ],
-    ids=["springs", "column", "shear_diagram", "shear_strength"],
-)
-def test_lengths_that_no_column_has_come_with_a_hint(call):
-    with pytest.raises(InputError, match=r"= 1600 m must be between .*; 1600 mm is 1.6"):
-        call(1600.0)
-    with pytest.raises(InputError, match="the length comes before the axial load"):
-        call(LOAD)
-
-
 def test_an_axial_load_in_kn_is_noticed():
     for call in (
         lambda: rbsdem.section.springs(SECTION, 1.6, 744.0),
@@ -305,17 +265,6 @@ def test_an_axial_load_in_kn_is_noticed():
     ):
         with pytest.warns(AccuracyWarning, match="744 N is only .* of f'c A; loads are in N"):
             call()
-
-
-@pytest.mark.parametrize("load", [744e6, -744e6, 1e12])
-def test_an_axial_load_that_no_section_carries_is_refused_as_such(load):
-    with pytest.raises(InputError, match=r"axial_load = .* is more .*: give -.* to .* N"):
-        rbsdem.section.column(SECTION, 1.6, axial_load=load)
-
-
-def test_a_hinge_longer_than_the_column_is_refused():
-    with pytest.raises(InputError, match=r"hinge_length = 1.7 m is longer than the column"):
-        rbsdem.section.springs(SECTION, 1.6, LOAD, hinge_length=1.7)
 
 
 def test_figures():

@@ -167,22 +167,6 @@ def test_outside_the_range_of_the_tests_it_says_so() -> None:
         rbsdem.section.column(replace(SECTION, ties=None, layout=None), 1.6, axial_load=1.2e6)
 
 
-def test_wrong_arguments() -> None:
-    with pytest.raises(InputError, match="must be 8 to 4096"):
-        rbsdem.section.spread(column(), PATH, samples=4)
-    with pytest.raises(InputError, match="does not change"):
-        rbsdem.section.spread(column(), [0.0, 0.0])
-    other = replace(column(), flexure=column().flexure[1])
-    with pytest.raises(InputError, match="flexure of this column is not that of its model"):
-        rbsdem.section.spread(other, PATH)
-    with pytest.raises(InputError, match="column = a Column must be a LayeredColumn"):
-        rbsdem.section.spread(rbsdem.peer.paper_columns()["zahn_7"], PATH)
-    own = replace(parameters(), version="mine")
-    mine = rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6, model_parameters=own)
-    with pytest.raises(InputError, match="no tests were left out of the fit of version 'mine'"):
-        rbsdem.section.spread(mine, PATH)
-
-
 def test_the_parameters_have_bands() -> None:
     found = rbsdem.section.spread(column(), PATH)
     assert np.all(found.lower < found.force)

@@ -7,7 +7,6 @@ from opening and rotation.
 from __future__ import annotations
 
 import csv
-import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -72,35 +71,3 @@ def test_a_column_from_its_drawing_knows_its_gauges(tmp_path: Path) -> None:
     with open(tmp_path / "strains.csv", encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert [float(row["bar_tension_1"]) for row in rows] == strains.bar_tension.tolist()
-
-
-@pytest.mark.parametrize(
-    ("call", "part"),
-    [
-        (lambda: rbsdem.cyclic(made(), displacement=[0.01]).strains(), "openings=True"),
-        (lambda: rbsdem.cyclic(made(), displacement=[0.01], openings=True).strains(2), "no layers"),
-        (
-            lambda: rbsdem.cyclic(
-                dataclasses.replace(
-                    made(), flexure=Layered([(-0.1, Elastic(1e9)), (0.1, Elastic(1e9))])
-                ),
-                displacement=[0.01],
-                openings=True,
-            ).strains(),
-            "not made from a section",
-        ),
-        (
-            lambda: rbsdem.cyclic(made(), displacement=[0.01], openings=True).strains(
-                gauge=Gauge(("bar",), (0.1,))
-            ),
-            "1 lengths for the",
-        ),
-        (lambda: Gauge(("bar", "core"), (0.1,)), "2 parts and 1 lengths"),
-        (lambda: Gauge(("steel",), (0.1,)), "'steel'"),  # type: ignore[arg-type]
-        (lambda: Gauge(("bar",), (0.0,)), "above 0"),
-    ],
-)
-def test_what_is_refused(call, part: str) -> None:
-    """Messages name the thing and the remedy."""
-    with pytest.raises(rbsdem.InputError, match=part):
-        call()
