@@ -13,8 +13,8 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from reference_chain import Linear, chain, deformations
 from scipy.integrate import solve_ivp
-from scipy.linalg import eigh
 
 import rbsdem
 from rbsdem.springs import Elastic
@@ -26,21 +26,6 @@ pytestmark = pytest.mark.filterwarnings(
 
 IMPLICIT = ("newmark", "hht", "generalised_alpha")
 METHODS = ("rk4", "rk45", *IMPLICIT)
-
-
-def elastic(values) -> list[Elastic]:
-    return [Elastic(float(k)) for k in values]
-
-
-def chain(lengths, masses, shear, flexure, **options) -> rbsdem.Column:
-    return rbsdem.Column(
-        float(np.sum(lengths)), None, elastic(shear), elastic(flexure), n=len(lengths),
-        lengths=list(lengths), masses=list(masses), **options,
-    )  # fmt: skip
-
-
-def deformations(run: rbsdem.Result) -> np.ndarray:
-    return np.hstack([run.slip, run.rotation])
 
 
 def exact_static(column: rbsdem.Column, force: float) -> tuple[list[Fraction], Fraction]:
@@ -86,54 +71,66 @@ def worst(seen, exact) -> float:
     )
 
 
-def critical_load(column: rbsdem.Column) -> float:
-    """Least compression that takes the stiffness away."""
-    n, lengths = column.n, np.asarray(column.lengths)
-    absolute = np.hstack([np.zeros((n, n)), np.tril(np.ones((n, n)))])
-    below = np.vstack([np.zeros(2 * n), absolute[:-1]])
-    slip = np.eye(2 * n)[:n]
-    second = absolute.T * lengths @ absolute + slip.T @ below + below.T @ slip
-    root = np.sqrt([s.k for s in (*column.joints("shear"), *column.joints("flexure"))])
-    return 1.0 / eigh(second / root / root[:, None], eigvals_only=True)[-1]
-
-
-# ---- ratios --------------------------------------------------------------------------------------
-
-
-def measure_static_ratio(n: int, ratio: float, share: float) -> float:
-    """Largest relative error of a deformation for k_V l^2/k_M = ratio, under axial load."""
+def loaded(n: int, ratio: float = 9.0, share: float = 0.0, **options) -> rbsdem.Column:
+    """Bodies none like another with k_V l^2/k_M = ratio, under a share of the critical load."""
     rng = np.random.default_rng(n)
     lengths = rng.uniform(0.5, 1.5, n)
     flexure = 1e7 * rng.uniform(1, 2, n)
-    shear = ratio * flexure / lengths**2
-    load = share * critical_load(chain(lengths, lengths, shear, flexure))
-    column = chain(lengths, lengths, shear, flexure, kinematics="pdelta", axial_load=load)
+    springs = ratio * flexure / lengths**2, flexure
+    critical = Linear(chain(lengths, lengths, *springs)).critical_load()
+    options = {"kinematics": "pdelta", "masses": rng.uniform(50, 100, n)} | options
+    masses = options.pop("masses")
+    return chain(lengths, masses, *springs, axial_load=share * critical, **options)
+
+
+def decades(n: int, seed: int) -> rbsdem.Column:
+    """Stiffnesses at random over 18 decades."""
+    rng = np.random.default_rng(seed)
+    return chain(rng.uniform(0.5, 1.5, n), np.ones(n), *10 ** rng.uniform(0, 18, (2, n)))
+
+
+# ---- ratios and axial loads ----------------------------------------------------------------------
+
+STATIC = [(loaded(n, ratio), 1e-13) for n in (1, 2, 5, 12) for ratio in (1e-9, 1e-3, 1e3, 1e9)]
+STATIC += [(loaded(n, ratio, 0.5), 1e-12) for n in (2, 12) for ratio in (1e-9, 1.0, 1e9)]
+STATIC += [(decades(n, seed), 1e-13) for n in (2, 5, 12) for seed in range(5)]
+
+
+@pytest.mark.filterwarnings("ignore:the (rotation of a body|top) goes beyond")
+@pytest.mark.parametrize(("column", "close"), STATIC)
+def test_static_path_has_all_digits_of_each_deformation(column, close):
     answer, top = exact_static(column, 1.0)
     run = rbsdem.cyclic(column, force=[1.0])
+    assert worst(deformations(run)[0], answer) < close
     back = rbsdem.cyclic(column, displacement=[float(top)])
-    return max(
-        worst(deformations(run)[0], answer), worst(deformations(back)[0], answer),
-        worst([back.force[0]], [Fraction(1)]),
-    )  # fmt: skip
+    assert worst([back.force[0]], [Fraction(1)]) < close
 
 
-@pytest.mark.filterwarnings("ignore:the (rotation of a body|top) goes beyond")
-@pytest.mark.parametrize("ratio", [1e-9, 1e-3, 1.0, 1e3, 1e9])
-@pytest.mark.parametrize("n", [1, 2, 5, 12])
-def test_static_path_for_stiffness_ratios(n, ratio):
-    assert measure_static_ratio(n, ratio, 0.0) < 1e-13
-    assert measure_static_ratio(n, ratio, 0.5) < 1e-12
-
-
-@pytest.mark.filterwarnings("ignore:the (rotation of a body|top) goes beyond")
-@pytest.mark.parametrize("n", [2, 5, 12])
-def test_static_path_for_random_stiffnesses_over_18_decades(n):
-    for seed in range(10):
-        rng = np.random.default_rng(seed)
-        k_v, k_m = 10 ** rng.uniform(0, 18, (2, n))
-        column = chain(rng.uniform(0.5, 1.5, n), np.ones(n), k_v, k_m)
-        answer, _ = exact_static(column, 1.0)
-        assert worst(deformations(rbsdem.cyclic(column, force=[1.0]))[0], answer) < 1e-13
+@pytest.mark.parametrize("share", [-1.0, 0.5, 0.999, 1.001, 2.0])
+@pytest.mark.parametrize("n", [1, 2, 10])
+def test_static_path_under_axial_load(n, share):
+    """Near the critical load an error of a stiffness grows by 1/|1 - share|."""
+    column = loaded(n, share=share)
+    answer, top = exact_static(column, 1.0)
+    way = 1e-4 if top > 0 else -1e-4
+    close = 1e-13 / abs(1 - share) * n
+    run = rbsdem.cyclic(column, displacement=[way])
+    scale = Fraction(way) / top
+    assert worst([run.force[0]], [scale]) < close
+    largest = max(abs(q) for q in answer)
+    wrong = [
+        abs(Fraction(float(q)) - e * scale)
+        for q, e in zip(deformations(run)[0], answer, strict=True)
+    ]
+    assert float(max(wrong) / abs(largest * scale)) < close
+    if share > 1:
+        # A dropping path: the column must be held back.
+        assert top < 0 and run.force[0] * way < 0  # noqa: PT018
+        with pytest.raises(rbsdem.SolveError, match=r"is [.\d]+ times the critical load"):
+            rbsdem.cyclic(column, force=[1.0])
+    bent = loaded(n, share=share, kinematics="finite")
+    small = rbsdem.cyclic(bent, displacement=[way * 1e-2])
+    assert small.force[0] == pytest.approx(float(scale) * 1e-2, rel=1e-6 / abs(1 - share))
 
 
 def measure_single_mode(column: rbsdem.Column, method: str, periods: float, steps: int = 0):
@@ -160,43 +157,29 @@ def measure_single_mode(column: rbsdem.Column, method: str, periods: float, step
     )
 
 
-@pytest.mark.parametrize("ratio", [1e-9, 1e-6, 1e-3, 1e3, 1e6, 1e9])
-@pytest.mark.parametrize("n", [1, 3])
-def test_motion_for_stiffness_ratios(n, ratio):
-    """`rk45` follows the slow mode over the fast ones, and `newmark` need not see them."""
-    length = 2.0 / n
-    column = chain([length] * n, [100.0 / n] * n, [ratio * 2e7 / length**2] * n, [2e7] * n)
-    assert max(measure_single_mode(column, "newmark", 20.0, 200)) < 1e-8
-    error, energy = measure_single_mode(column, "rk45", 0.25 if ratio in (1e-9, 1e9) else 2.0)
-    assert error < 1e-6
-    assert energy < 1e-6
-
-
-@pytest.mark.parametrize("ratio", [1e-6, 1e-3, 1e3, 1e6])
-@pytest.mark.parametrize("n", [2, 4])
-def test_motion_for_mass_ratios_of_neighbours(n, ratio):
+def uneven(n: int, ratio: float) -> rbsdem.Column:
+    """Masses of neighbours differ by a ratio."""
     masses = 100.0 * np.where(np.arange(n) % 2 == 0, 1.0, ratio)
-    column = chain([0.5] * n, masses, [3e7] * n, [2e7] * n)
-    assert max(measure_single_mode(column, "newmark", 20.0, 200)) < 1e-8
-    error, energy = measure_single_mode(column, "rk45", 0.5)
-    assert error < 1e-6
-    assert energy < 1e-6
+    return chain([0.5] * n, masses, [3e7] * n, [2e7] * n)
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_mass_at_the_top_a_million_times_that_of_the_column(method):
-    """One mass on a spring of three in series, its rotary inertia that of a point: none."""
-    k_v, k_m, mass = 3e8, 2e8, 1e6
-    column = rbsdem.Column(
-        3.0, 1.0, Elastic(k_v), Elastic(k_m), top_mass=mass, n=2
-    )  # fmt: skip
-    stiffness = 1.0 / (2 / k_v + (3.0**2 + 1.5**2) / k_m)
-    omega = np.sqrt(stiffness / mass)
-    force = 1e-3 * stiffness
-    initial = {"slip": [force / k_v] * 2, "rotation": [force * 3.0 / k_m, force * 1.5 / k_m]}
-    times = np.linspace(0.0, 2.0 / omega, 9)
-    run = rbsdem.time_history(column, times, method=method, initial=initial)
-    np.testing.assert_allclose(run.displacement, 1e-3 * np.cos(omega * times), atol=5e-6)
+MOTIONS = [(loaded(n, ratio), 0.25) for n in (1, 3) for ratio in (1e-9, 1e-3, 1e3, 1e9)]
+MOTIONS += [(uneven(n, ratio), 0.5) for n in (2, 4) for ratio in (1e-6, 1e-3, 1e3, 1e6)]
+MOTIONS += [(loaded(n, share=share), 2.0) for n in (1, 3, 10) for share in (-1.0, 0.5, 0.999)]
+
+
+@pytest.mark.parametrize(("column", "periods"), MOTIONS)
+def test_motion_in_the_lowest_mode(column, periods):
+    """`rk45` follows the slow mode over the fast ones, and `newmark` need not see them."""
+    near = 1.0
+    if column.axial_load:
+        near = 1 - column.axial_load / Linear(column).critical_load()
+    error, energy = measure_single_mode(column, "newmark", 5.0, 200)
+    assert error < 1e-8 / abs(near)
+    assert energy < 1e-8 or column.axial_load
+    error, energy = measure_single_mode(column, "rk45", periods)
+    assert error < 1e-6 / abs(near)
+    assert energy < 1e-6 or column.axial_load
 
 
 # ---- number of bodies ----------------------------------------------------------------------------
@@ -220,7 +203,7 @@ def measure_deflection(n: int, kinematics: str, load: float = 0.0) -> float:
     force = 1.0
     exact = HEIGHT**3 / (3 * BENDING) + HEIGHT / SHEAR
     if load:
-        stiff = elastic([1e18 * n] * n)
+        stiff = [Elastic(1e18 * n)] * n
         column = rbsdem.Column(
             HEIGHT, 800.0, stiff, column.flexure, n=n, kinematics=kinematics, axial_load=load
         )
@@ -229,9 +212,7 @@ def measure_deflection(n: int, kinematics: str, load: float = 0.0) -> float:
     return float(rbsdem.cyclic(column, force=[force]).displacement[0] / (force * exact) - 1)
 
 
-@pytest.mark.parametrize(
-    ("kinematics", "load"), [("small", 0.0), ("pdelta", 0.0), ("pdelta", 3e6), ("finite", 3e6)]
-)
+@pytest.mark.parametrize(("kinematics", "load"), [("small", 0.0), ("pdelta", 3e6), ("finite", 3e6)])
 def test_deflection_tends_to_the_beam_with_order_2_up_to_5000_bodies(kinematics, load):
     bodies = np.array([1, 5, 50, 500, 5000])
     wrong = np.array([measure_deflection(n, kinematics, load) for n in bodies])
@@ -240,7 +221,7 @@ def test_deflection_tends_to_the_beam_with_order_2_up_to_5000_bodies(kinematics,
     assert abs(wrong[-1]) < 0.65 * float(bodies[-1]) ** -2
 
 
-@pytest.mark.parametrize("n", [1, 2, 10, 100, 1000, 5000])
+@pytest.mark.parametrize("n", [2, 100, 5000])
 def test_implicit_run_stays_in_equilibrium(n):
     """From the static answer under force and axial load nothing may move."""
     column = cantilever(n, kinematics="pdelta", axial_load=2e6)
@@ -269,63 +250,13 @@ def test_let_go_5000_bodies_keep_their_energy(method):
     assert np.max(np.abs(whole / whole[0] - 1)) < 1e-7
 
 
-# ---- axial load ----------------------------------------------------------------------------------
-
-
-def loaded(n: int, share: float, **options) -> rbsdem.Column:
-    rng = np.random.default_rng(n)
-    lengths = rng.uniform(0.5, 1.5, n)
-    shear, flexure = rng.uniform(1e7, 3e7, n), rng.uniform(1e6, 3e6, n)
-    critical = critical_load(chain(lengths, lengths, shear, flexure))
-    masses = rng.uniform(50, 100, n)
-    options = {"kinematics": "pdelta"} | options
-    return chain(lengths, masses, shear, flexure, axial_load=share * critical, **options)
-
-
-@pytest.mark.parametrize("share", [-1.0, 0.5, 0.999, 1.001, 2.0])
-@pytest.mark.parametrize("n", [1, 2, 3, 10, 20])
-def test_static_path_under_axial_load(n, share):
-    """Near the critical load an error of a stiffness grows by 1/|1 - share|."""
-    column = loaded(n, share)
-    answer, top = exact_static(column, 1.0)
-    way = 1e-4 if top > 0 else -1e-4
-    run = rbsdem.cyclic(column, displacement=[way])
-    scale = Fraction(way) / top
-    assert worst([run.force[0]], [scale]) < 1e-13 / abs(1 - share) * n
-    largest = max(abs(q) for q in answer)
-    wrong = [
-        abs(Fraction(float(q)) - e * scale)
-        for q, e in zip(deformations(run)[0], answer, strict=True)
-    ]
-    assert float(max(wrong) / abs(largest * scale)) < 1e-13 / abs(1 - share) * n
-    if share > 1:
-        # A dropping path: the column must be held back.
-        assert top < 0 and run.force[0] * way < 0  # noqa: PT018
-        with pytest.raises(rbsdem.SolveError, match=r"is [.\d]+ times the critical load"):
-            rbsdem.cyclic(column, force=[1.0])
-    else:
-        forced = rbsdem.cyclic(column, force=[float(scale)])
-        assert forced.displacement[0] == pytest.approx(way, rel=1e-13 / abs(1 - share) * n)
-    bent = loaded(n, share, kinematics="finite")
-    small = rbsdem.cyclic(bent, displacement=[way * 1e-2])
-    assert small.force[0] == pytest.approx(float(scale) * 1e-2, rel=1e-6 / abs(1 - share))
-
-
-@pytest.mark.parametrize("share", [-1.0, 0.5, 0.999])
-@pytest.mark.parametrize("n", [1, 3, 10])
-def test_motion_under_axial_load(n, share):
-    column = loaded(n, share)
-    error, _ = measure_single_mode(column, "newmark", 5.0, 200)
-    assert error < 1e-8 / abs(1 - share)
-    error, _ = measure_single_mode(column, "rk45", 2.0)
-    assert error < 1e-6 / abs(1 - share)
+# ---- beyond the critical load --------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("share", [1.001, 2.0])
 @pytest.mark.parametrize("level", ["pdelta", "finite"])
-@pytest.mark.parametrize("n", [1, 3, 10])
-def test_motion_beyond_the_critical_load_is_refused_with_it(n, level, share):
-    column = loaded(n, share, kinematics=level)
+def test_motion_beyond_the_critical_load_is_refused_with_it(level, share):
+    column = loaded(3, share=share, kinematics=level)
     for run in (
         lambda: rbsdem.modes(column),
         *(
@@ -386,14 +317,9 @@ def follower_growth(n: int, load: float) -> tuple[rbsdem.Column, float]:
         [length] * n, [mass] * n, [k_v] * n, [k_m] * n, kinematics="finite", axial_load=load,
         axial_follows=True,
     )  # fmt: skip
-    m = rbsdem.matrices(column).mass
-    absolute = np.hstack([np.zeros((n, n)), np.tril(np.ones((n, n)))])
-    below = np.vstack([np.zeros(2 * n), absolute[:-1]])
-    slip = np.eye(2 * n)[:n]
-    second = absolute.T * length @ absolute + slip.T @ below + below.T @ slip
-    arm = np.concatenate([np.ones(n), 1.0 - np.arange(n) / n])
-    stiffness = np.diag([k_v] * n + [k_m] * n) - load * second + load * np.outer(arm, absolute[-1])
-    values = np.linalg.eigvals(np.linalg.solve(m, -stiffness)).astype(complex)
+    linear = Linear(column)
+    stiffness = linear.stiffness + load * np.outer(linear.arm, linear.turn[-1])
+    values = np.linalg.eigvals(np.linalg.solve(linear.mass, -stiffness)).astype(complex)
     return column, float(np.max(np.sqrt(values).real))
 
 
