@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from dataclasses import fields
+from functools import cache, partial
 from pathlib import Path
-from typing import Any, TypeVar
+from types import NoneType
+from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -177,7 +180,59 @@ def instance(value: Any, name: str, kind: type[T], remedy: str = "") -> T:
     if isinstance(value, kind):
         return value
     remedy = f"; {remedy}" if remedy else ""
-    raise InputError(f"{name} = {shown(value)} must be a {kind.__name__}{remedy}")
+    article = "" if kind.__name__.endswith("s") else "a "
+    raise InputError(f"{name} = {shown(value)} must be {article}{kind.__name__}{remedy}")
+
+
+# `dataclasses.replace` hands on what an object holds, whether it was given or not: a number that
+# followed from another must be known as such, or it would stay behind when the other changes.
+class Derived(float):
+    """A number that was not given."""
+
+    __slots__ = ()
+
+
+def given(value: float | None) -> float | None:
+    """Return a value if somebody gave it, else None."""
+    return None if isinstance(value, Derived) else value
+
+
+def convert(record: object, who: str) -> None:
+    """Make the fields of a new frozen record what their annotations say, or raise `InputError`.
+
+    Fields are numbers, whole numbers, switches, words or records; None and what followed from
+    another number stay where they may be. Fields of other types are left to the record.
+    """
+    for name, make, optional in _conversions(type(record)):
+        value = getattr(record, name)
+        if not optional or given(value) is not None:
+            object.__setattr__(record, name, make(value, f"{who}: {name}"))
+
+
+_PLAIN: dict[Any, Callable[[Any, str], Any]] = {
+    float: number, int: whole, bool: switch, str: text, Literal: text,
+}  # fmt: skip
+
+
+@cache
+def _conversions(record: type) -> list[tuple[str, Callable[[Any, str], Any], bool]]:
+    """Return name and conversion of the fields that have one, and whether they may be None."""
+    hints = get_type_hints(record)
+    found = []
+    for name in [field.name for field in fields(record)]:
+        kinds = [kind for kind in get_args(hints[name]) if kind is not NoneType]
+        optional = len(kinds) < len(get_args(hints[name]))
+        kind = kinds[0] if optional and len(kinds) == 1 else hints[name]
+        make = _PLAIN.get(get_origin(kind) or kind)
+        if make is None and isinstance(kind, type):
+            make = partial(_instance_of, kind)
+        if make is not None:
+            found.append((name, make, optional))
+    return found
+
+
+def _instance_of(kind: type[T], value: object, name: str) -> T:
+    return instance(value, name, kind)
 
 
 def several(values: Any, name: str, of: str = "whole numbers") -> list[Any]:

@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from numpy.typing import ArrayLike
@@ -34,16 +34,6 @@ Top = Literal["free", "fixed"]
 #: Whether notes on new columns are told. A context variable, as columns are made in threads too.
 _TELLING: ContextVar[bool] = ContextVar("_TELLING", default=True)
 
-_NUMBERS = (
-    "height",
-    "axial_load",
-    "axial_force_ratio",
-    "gravity",
-    "top_mass",
-    "top_inertia",
-    "depth",
-)
-_SWITCHES = ("self_weight", "axial_follows", "force_follows")
 #: Bodies of a column at the most.
 MOST_BODIES: int = next(
     key["most"] for key in _core.keys()["groups"]["column"] if key["name"] == "n"
@@ -171,22 +161,10 @@ class Column:
         def put(name: str, value: Any) -> None:
             object.__setattr__(self, name, value)
 
-        put("n", _arguments.whole(self.n, "column: n"))
-        for name in _NUMBERS:
-            put(name, _arguments.number(getattr(self, name), f"column: {name}"))
-        for name in _SWITCHES:
-            put(name, _arguments.switch(getattr(self, name), f"column: {name}"))
-        if self.mass is not None:
-            put("mass", _arguments.number(self.mass, "column: mass"))
-        if self.axial_height is not None:
-            put("axial_height", _arguments.number(self.axial_height, "column: axial_height"))
+        _arguments.convert(self, "column")
         for name in _LISTS:
             if getattr(self, name) is not None:
                 put(name, _parts(getattr(self, name), name))
-        if self.footing is not None:
-            _arguments.instance(self.footing, "column: footing", Footing)
-        for name in ("kinematics", "model", "top"):
-            _arguments.text(getattr(self, name), f"column: {name}")
         joints = self.n + (self.top == "fixed")
         put("shear", _springs(self.shear, "shear", joints))
         put("flexure", _springs(self.flexure, "flexure", joints))
@@ -370,11 +348,10 @@ class Column:
 
     def _state(self) -> _core.Statement:
         """Return the keys of the column, as the groups of a case file."""
-        own: dict[str, Any] = {"n": self.n, "kinematics": str(self.kinematics)}
-        own |= {name: getattr(self, name) for name in (*_NUMBERS, "mass", "axial_height", *_LISTS)}
-        own |= {name: True for name in _SWITCHES if getattr(self, name)}
-        own |= {"model": _core.Text(self.model)} if self.model else {}
-        own |= {"top": str(self.top)} if self.top != "free" else {}
+        usual = {"model": "", "top": "free"}
+        values = {name: getattr(self, name) for name in _OWN}
+        values["model"] = _core.Text(self.model)
+        own = {k: v for k, v in values.items() if v is not False and v != usual.get(k)}
         own |= self.footing.keys() if self.footing is not None else {}
         parts = [_core.group("column", own)]
         if self.damping is not None:
@@ -387,6 +364,12 @@ class Column:
             parts.append(layer_springs(ids))
         numbers = [number for part in parts for number in part.numbers]
         return _core.Statement("\n".join(part.text for part in parts), numbers)
+
+
+#: What of a column is no spring, and no record of its own.
+_OWN = tuple(
+    field.name for field in fields(Column) if field.name not in (*_PLACES, "damping", "footing")
+)
 
 
 def _doubled(parts: list[float]) -> list[float]:

@@ -39,10 +39,7 @@ class Damping:
     modal: float | Sequence[float] | None = None
 
     def __post_init__(self) -> None:
-        for name in ("mass", "stiffness"):
-            value = _arguments.number(getattr(self, name), f"damping: {name}")
-            object.__setattr__(self, name, value)
-        object.__setattr__(self, "tangent", _arguments.switch(self.tangent, "damping: tangent"))
+        _arguments.convert(self, "damping")
         if self.modal is None:
             return
         ratios = _arguments.vector(self.modal, "damping: modal", shape="1 or m")

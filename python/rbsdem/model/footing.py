@@ -43,15 +43,13 @@ class Footing:
     height: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("mass", "inertia", "height"):
-            value = _arguments.number(getattr(self, name), f"footing: {name}")
-            object.__setattr__(self, name, value)
         for name in ("shear", "flexure", "axial_spring"):
             spring = getattr(self, name)
             if isinstance(spring, Spring) or (spring is None and name == "axial_spring"):
                 continue
             names = ", ".join(classes_for("axial" if name == "axial_spring" else name))
             raise InputError(f"footing: {name} = {spring!r} must be a spring ({names})")
+        _arguments.convert(self, "footing")
 
     def __repr__(self) -> str:
         given = (

@@ -9,23 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
+from rbsdem._arguments import Array, Derived, given
 
 Tension = Literal["ts", "bare", "zero"]
 """Tension laws of concrete: with tension stiffening beyond f_t; up to f_t only; no tension."""
-
-
-# `dataclasses.replace` hands on what an object holds, whether it was given or not: a number that
-# followed from another must be known as such, or it would stay behind when the other changes.
-class Derived(float):
-    """A number that was not given."""
-
-    __slots__ = ()
-
-
-def given(value: float | None) -> float | None:
-    """Return a value if somebody gave it, else None."""
-    return None if isinstance(value, Derived) else value
 
 
 @dataclass(frozen=True)
@@ -62,14 +49,7 @@ class Concrete:
     eps_spall: float = 0.006
 
     def __post_init__(self) -> None:
-        for name in ("fc", "eps_spall"):
-            object.__setattr__(
-                self, name, _arguments.number(getattr(self, name), f"concrete: {name}")
-            )
-        for name in ("ft", "ec", "eps0"):
-            if getattr(self, name) is not None:
-                value = _arguments.number(getattr(self, name), f"concrete: {name}")
-                object.__setattr__(self, name, value)
+        _arguments.convert(self, "concrete")
         _core.concrete_response(self.statement(), "ts", np.zeros(1))
 
     def statement(self) -> _core.Statement:
@@ -96,10 +76,9 @@ class Concrete:
         InputError
             If a strain is not a finite number.
         """
-        given = _arguments.finite_vector(strain, "strain", shape="any")
-        flat = given.ravel()
-        stress = _core.concrete_response(self.statement(), tension, flat)
-        return stress.reshape(given.shape)[()]
+        strains = _arguments.finite_vector(strain, "strain", shape="any")
+        stress = _core.concrete_response(self.statement(), tension, strains.ravel())
+        return stress.reshape(strains.shape)[()]
 
 
 @dataclass(frozen=True)
@@ -134,11 +113,9 @@ class Steel:
     eps_u: float = 0.1
 
     def __post_init__(self) -> None:
-        for name in ("fy", "es", "eps_sh", "eps_u"):
-            object.__setattr__(self, name, _arguments.number(getattr(self, name), f"steel: {name}"))
-        fu = given(self.fu)
-        fu = Derived(1.5 * self.fy) if fu is None else _arguments.number(fu, "steel: fu")
-        object.__setattr__(self, "fu", fu)
+        _arguments.convert(self, "steel")
+        if given(self.fu) is None:
+            object.__setattr__(self, "fu", Derived(1.5 * self.fy))
         _core.steel_response(self.statement(), np.zeros(1))
 
     def statement(self, number: int | None = None) -> _core.Statement:
@@ -164,6 +141,5 @@ class Steel:
         InputError
             If a strain is not a finite number.
         """
-        given = _arguments.finite_vector(strain, "strain", shape="any")
-        flat = given.ravel()
-        return _core.steel_response(self.statement(), flat).reshape(given.shape)[()]
+        strains = _arguments.finite_vector(strain, "strain", shape="any")
+        return _core.steel_response(self.statement(), strains.ravel()).reshape(strains.shape)[()]

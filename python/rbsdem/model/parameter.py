@@ -46,11 +46,10 @@ class Parameter:
 
     def __post_init__(self) -> None:
         about = f"parameter{f' {self.what}' if self.what else ''}"
+        _arguments.convert(self, about)
         for name in ("value", "low", "high"):
-            number = _arguments.number(getattr(self, name), f"{about}: {name}")
-            if not math.isfinite(number):
-                raise InputError(f"{about}: {name} = {number} must be a finite number")
-            object.__setattr__(self, name, number)
+            if not math.isfinite(getattr(self, name)):
+                raise InputError(f"{about}: {name} = {getattr(self, name)} must be a finite number")
         if not self.low < self.high:
             raise InputError(
                 f"{about}: bounds {self.low:g} and {self.high:g} must be a lower and a higher one"

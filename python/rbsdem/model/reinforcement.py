@@ -10,8 +10,9 @@ from typing import ClassVar
 import numpy as np
 
 from rbsdem import _arguments, _core
+from rbsdem._arguments import Derived, given
 from rbsdem.errors import InputError
-from rbsdem.model.materials import Derived, Steel, given
+from rbsdem.model.materials import Steel
 
 #: Bars at mid-depth count half in tension; the others whole from this share of the depth on.
 _MIDDLE = 0.05
@@ -66,24 +67,10 @@ class Layout:
     between_steel: Steel | None = None
 
     def __post_init__(self) -> None:
-        def put(name: str, value: object) -> None:
-            object.__setattr__(self, name, value)
-
-        put("number", _arguments.whole(self.number, "layout: number"))
+        _arguments.convert(self, "layout")
         if self.number > _MOST_BARS:
             raise InputError(f"layout: number = {self.number} must not be above {_MOST_BARS}")
-        put("diameter", _positive(self.diameter, "layout: diameter", "m"))
-        if self.between_diameter is not None:
-            put(
-                "between_diameter",
-                _positive(self.between_diameter, "layout: between_diameter", "m"),
-            )
-        if self.face is not None:
-            put("face", _arguments.whole(self.face, "layout: face"))
-        if not isinstance(self.steel, Steel):
-            raise InputError(f"layout: steel = {self.steel!r} must be a Steel")
-        if not isinstance(self.between_steel, Steel | None):
-            raise InputError(f"layout: between_steel = {self.between_steel!r} must be a Steel")
+        _check_positive(self, "layout", diameter="m", between_diameter="m")
 
     @property
     def steels(self) -> list[Steel]:
@@ -223,17 +210,10 @@ class Ties:
     legs_across: float | None = None
 
     def __post_init__(self) -> None:
-        for name, unit in (("diameter", "m"), ("spacing", "m"), ("legs", "")):
-            value = _positive(getattr(self, name), f"ties: {name}", unit)
-            object.__setattr__(self, name, value)
-        across: float | None = given(self.legs_across)
-        if across is None:
-            across = Derived(self.legs)
-        else:
-            across = _positive(across, "ties: legs_across", "")
-        object.__setattr__(self, "legs_across", across)
-        if not isinstance(self.steel, Steel):
-            raise InputError(f"ties: steel = {self.steel!r} must be a Steel")
+        _arguments.convert(self, "ties")
+        if given(self.legs_across) is None:
+            object.__setattr__(self, "legs_across", Derived(self.legs))
+        _check_positive(self, "ties", diameter="m", spacing="m", legs="", legs_across="")
 
     def statement(self, steel: int) -> _core.Statement:
         """Return the keys of the ties with their values; `steel` is the number of their steel."""
@@ -274,12 +254,8 @@ class Spiral:
     hoops: bool = False
 
     def __post_init__(self) -> None:
-        for name in ("diameter", "spacing"):
-            value = _positive(getattr(self, name), f"spiral: {name}", "m")
-            object.__setattr__(self, name, value)
-        object.__setattr__(self, "hoops", _arguments.switch(self.hoops, "spiral: hoops"))
-        if not isinstance(self.steel, Steel):
-            raise InputError(f"spiral: steel = {self.steel!r} must be a Steel")
+        _arguments.convert(self, "spiral")
+        _check_positive(self, "spiral", diameter="m", spacing="m")
 
     def statement(self, steel: int) -> _core.Statement:
         """Return the keys of the spiral with their values; `steel` is the number of its steel."""
@@ -292,8 +268,10 @@ def _area(diameter: float) -> float:
     return 0.25 * math.pi * diameter * diameter
 
 
-def _positive(value: object, name: str, unit: str) -> float:
-    number = _arguments.number(value, name)
-    if not (math.isfinite(number) and number > 0):
-        raise InputError(f"{name} = {number} {unit}".rstrip() + " must be finite and above zero")
-    return number
+def _check_positive(record: object, who: str, **units: str) -> None:
+    """Refuse sizes of bars that are not above zero; their units are given by name."""
+    for name, unit in units.items():
+        value = getattr(record, name)
+        if value is not None and not 0 < value < math.inf:
+            given = f"{who}: {name} = {value} {unit}".rstrip()
+            raise InputError(f"{given} must be finite and above zero")

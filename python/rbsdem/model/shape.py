@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
+from rbsdem._arguments import Array, Derived, given
 from rbsdem.errors import InputError
-from rbsdem.model.materials import Concrete, Derived, Steel, given
+from rbsdem.model.materials import Concrete, Steel
 from rbsdem.model.reinforcement import Bar, Layout, Spiral, Ties, share_in_tension
 
 if TYPE_CHECKING:
@@ -166,17 +166,10 @@ class Section(_Parts, ABC):
     def _put(self, name: str, value: object) -> None:
         object.__setattr__(self, name, value)
 
-    def _take(self, *names: str) -> None:
-        """Make sizes floats."""
-        for name in names:
-            self._put(name, _arguments.number(getattr(self, name), f"section: {name}"))
-
-    def _follow(self, name: str, otherwise: float) -> None:
-        """Make a size a float that follows from another unless it is given."""
-        value = given(getattr(self, name))
-        follows = value is None
-        number = otherwise if follows else _arguments.number(value, f"section: {name}")
-        self._put(name, Derived(number) if follows else number)
+    def _follow(self, name: str, otherwise: float | None) -> None:
+        """Set a size that follows from another unless it is given."""
+        if given(getattr(self, name)) is None:
+            self._put(name, None if otherwise is None else Derived(otherwise))
 
     def _check_wall(self, name: str, size: float, what: str, cover: float) -> None:
         """Refuse a wall that leaves no void, or that hoops with their cover fill."""
@@ -194,12 +187,7 @@ class Section(_Parts, ABC):
 
     def _finish(self) -> None:
         """Set bars and bar diameter; state the section to the Fortran part, which checks it."""
-        if not isinstance(self.concrete, Concrete):
-            raise InputError(f"section: concrete = {self.concrete!r} must be a Concrete")
-        self._put("strips", _arguments.whole(self.strips, "section: strips"))
         ties = self.ties
-        if not isinstance(self.inner_layout, Layout | None):
-            raise InputError(f"section: inner_layout = {self.inner_layout!r} must be a Layout")
         if self.inner_layout is not None and self.layout is None:
             raise InputError("section: inner_layout goes with layout; give the bars outside, too")
         if self.inner_layout is not None and self.wall is None:
@@ -235,8 +223,6 @@ class Section(_Parts, ABC):
             # Those of a section that this one was made from by `dataclasses.replace` are laid anew.
             if len(self.bars) > 0 and not isinstance(self.bars, _LaidOut):
                 raise InputError("section: give bars or layout, not both")
-            if not isinstance(self.layout, Layout):
-                raise InputError(f"section: layout = {self.layout!r} must be a Layout")
             inset = cover + (transverse.diameter if transverse else 0.0)
             self._put("bars", _LaidOut(self._lay_out(self.layout, inset)))
             follows: float | None = self.layout.diameter
@@ -245,11 +231,7 @@ class Section(_Parts, ABC):
             areas = [area for _, area, _ in self.bars if area > 0.0]
             diameters = [math.sqrt(4.0 * area / math.pi) for area in areas]
             follows = np.average(diameters, weights=areas) if areas else None
-        diameter = given(self.bar_diameter)
-        if diameter is not None:
-            self._put("bar_diameter", _arguments.number(diameter, "section: bar_diameter"))
-        else:
-            self._put("bar_diameter", None if follows is None else Derived(follows))
+        self._follow("bar_diameter", follows)
 
     def drawing(self) -> _core.Statement:
         """Return the keys of the section as it was given, as groups of a case file."""
@@ -420,12 +402,9 @@ class RectangularSection(Section):
     inner_layout: Layout | None = None
 
     def __post_init__(self) -> None:
-        if not isinstance(self.ties, Ties | None):
-            raise InputError(f"section: ties = {self.ties!r} must be Ties")
-        self._take("width", "depth", "cover")
+        _arguments.convert(self, "section")
         self._follow("side_cover", self.cover)
         if self.wall is not None:
-            self._take("wall")
             self._follow("side_wall", self.wall)
             self._check_wall("wall", self.depth, "depth", self.cover)
             self._check_wall("side_wall", self.width, "width", float(self.side_cover or 0.0))
@@ -608,11 +587,8 @@ class CircularSection(Section):
     inner_layout: Layout | None = None
 
     def __post_init__(self) -> None:
-        if not isinstance(self.spiral, Spiral | None):
-            raise InputError(f"section: spiral = {self.spiral!r} must be a Spiral")
-        self._take("diameter", "cover")
+        _arguments.convert(self, "section")
         if self.wall is not None:
-            self._take("wall")
             self._check_wall("wall", self.diameter, "diameter", self.cover)
         self._finish()
 

@@ -71,13 +71,7 @@ class Spring:
     def __post_init__(self) -> None:
         if not self.rule:
             raise TypeError(f"Spring is the base of {', '.join(classes_for(''))}; use one of them")
-        for field, may_lack in _numbers(type(self)):
-            given = getattr(self, field)
-            if type(given) is not float and not (given is None and may_lack):
-                given = _arguments.number(given, f"{self.rule} spring: {field}")
-                object.__setattr__(self, field, given)
-        for field in _words(type(self)):
-            _arguments.text(getattr(self, field), f"{self.rule} spring: {field}")
+        _arguments.convert(self, f"{self.rule} spring")
         self._check()
 
     def _check(self) -> None:
@@ -239,23 +233,6 @@ def _names(kind: type[Spring]) -> tuple[str, ...]:
 
 
 @cache
-def _numbers(kind: type[Spring]) -> tuple[tuple[str, bool], ...]:
-    """Return the parameters of a rule that are numbers, and whether they may be None."""
-    return tuple(
-        (field.name, field.default is None)
-        for field in fields(kind)
-        if field.name not in ("inner", "layers")
-    )
-
-
-@cache
-def _words(kind: type[Spring]) -> tuple[str, ...]:
-    """Return the names of the parameters that are words."""
-    keys = _core.keys()["rules"][kind.rule]["keys"]
-    return tuple(key["name"] for key in keys if key["kind"] == "word")
-
-
-@cache
 def _defaults(kind: type[Spring]) -> dict[str, Any]:
     """Return the parameters of a rule that have a default."""
     return {field.name: field.default for field in fields(kind) if field.default is not MISSING}
@@ -276,12 +253,9 @@ def unchecked(kind: type[AnySpring], **values: Any) -> AnySpring:
     Spring
         The spring. Whoever makes it has to check it, see `check_springs`.
     """
-    whole = {**_defaults(kind), **values}
-    for name, _ in _numbers(kind):
-        if type(whole[name]) is not float and whole[name] is not None:
-            whole[name] = float(whole[name])
+    plain = {k: float(v) if isinstance(v, (int, np.floating)) else v for k, v in values.items()}
     spring = object.__new__(kind)
-    spring.__dict__.update(whole)
+    spring.__dict__.update(_defaults(kind), **plain)
     return spring
 
 

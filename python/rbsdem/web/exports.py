@@ -16,9 +16,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from rbsdem._arguments import Derived
 from rbsdem._files import whole_file
 from rbsdem.errors import InputError
-from rbsdem.model.materials import Derived
 from rbsdem.model.shape import Section
 from rbsdem.results.case import Case, read_case
 from rbsdem.results.result import Result
