@@ -35,7 +35,6 @@ contains
                unit_test('average acceleration keeps the energy of elastic chains', elastic_energy), &
                unit_test('axial load and vertical motion in time, against rk45', axial_history), &
                unit_test('modal damping: the exact decay of every mode', modal_decay), &
-               unit_test('present stiffness in the damping, against rk45', tangent_damping), &
                unit_test('a step much longer than all periods stays bounded', long_step), &
                unit_test('stiff chains that yield', stiff_yielding), &
                unit_test('a chain of contacts falls onto its base', impact), &
@@ -342,39 +341,6 @@ contains
          end do
       end do
    end subroutine modal_decay
-
-   subroutine tangent_damping(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(column_record) :: spec
-      type(scene_type) :: scene
-      type(state_type) :: reference, state
-      type(implicit_stepper) :: stepper
-      real(wp) :: wrong(3)
-      integer :: i, number
-
-      call new_scene(scene, 1)
-      spec = column_1('pdelta')
-      spec%axial_load = 1.0e6_wp
-      spec%damping%stiffness = 1.0e-5_wp
-      spec%damping%tangent = .true.
-      scene%column = made(spec)
-      call play_located(scene, 1.0e-12_wp, 1, reference, outcome)
-      call check_passed(error, outcome, 'rk45')
-      call play_located(scene, 0.0_wp, 4000, state, outcome)
-      call check_passed(error, outcome, 'rk4')
-      call check_true(error, distance(state, reference) < 1.0e-6_wp, 'rk4 against rk45')
-      do number = 1, methods, 4
-         do i = 1, 3
-            stepper = method(number)
-            call play(scene, stepper, 500*4**(i - 1), state, outcome)
-            call check_passed(error, outcome, 'method '//to_text(number))
-            wrong(i) = distance(state, reference)
-         end do
-         call check_true(error, wrong(3) < 0.05_wp*wrong(1) .and. wrong(3) < 1.0e-3_wp, 'method '// &
-                         to_text(number)//': '//to_text(wrong(3)))
-      end do
-   end subroutine tangent_damping
 
    !> Ten longest periods in one step.
    subroutine long_step(error)

@@ -133,33 +133,28 @@ contains
       end do
    end subroutine exact_work
 
-   !> Forces of a joint with elastic springs, by what the bodies have moved and by the axial force. Over the
-   !> step the forces are those of the middle of the lines; at one state those of the end.
-   subroutine forces_of(place, moved, k, tension, closed, at_end, on, opening)
+   !> A joint with elastic springs where the bodies have moved, and the forces of its springs: over the step
+   !> those of the middle of the lines; at one state those of the end.
+   subroutine stretch(place, moved, k, tension, closed, at_end, bodies, joint, change, f)
       real(wp), intent(in) :: place(3, 2), moved(3, 2), k(3), tension
       logical, intent(in) :: closed, at_end
-      real(wp), intent(out) :: on(3, 2), opening
-      type(turned_body) :: bodies(2)
-      type(joint_type) :: joint
-      real(wp) :: change(3), f(3), share, d(3)
+      type(turned_body), intent(out) :: bodies(2)
+      type(joint_type), intent(out) :: joint
+      real(wp), intent(out) :: change(3), f(3)
+      real(wp) :: d(3)
       integer :: i
 
       call over_step(place, moved, bodies, joint, change)
-      opening = change(3)
-      share = merge(1.0_wp, 0.5_wp, at_end)
-      f = share*k*change
+      f = merge(1.0_wp, 0.5_wp, at_end)*k*change
       if (closed) f(3) = tension
-      if (at_end) then
-         do i = 1, 2
-            call body_at(place(3, i) + moved(3, i), bodies(i))
-         end do
-         call deformations(place(:, 1) + moved(:, 1), place(:, 2) + moved(:, 2), d)
-         joint%finish = joint_at(bodies(1), joint, d)
-         joint%mean = joint%finish
-      end if
-      on = 0.0_wp
-      call add_joint_forces(bodies(1), bodies(2), joint, f, on(:, 1), on(:, 2))
-   end subroutine forces_of
+      if (.not. at_end) return
+      do i = 1, 2
+         call body_at(place(3, i) + moved(3, i), bodies(i))
+      end do
+      call deformations(place(:, 1) + moved(:, 1), place(:, 2) + moved(:, 2), d)
+      joint%finish = joint_at(bodies(1), joint, d)
+      joint%mean = joint%finish
+   end subroutine stretch
 
    subroutine tangent(error)
       type(error_type), allocatable, intent(inout) :: error
@@ -167,9 +162,9 @@ contains
       type(turned_body) :: bodies(2)
       type(joint_type) :: joint
       real(wp), parameter :: k(3) = [3.0_wp, 2.0_wp, 5.0_wp], tension = 0.7_wp, h = 1.0e-5_wp
-      real(wp) :: place(3, 2), moved(3, 2), near(3, 2), change(3), f(3), d(3), share
-      real(wp) :: plus(3, 2), minus(3, 2), opened(2), found(local, local), wanted(local, local), pull
-      integer :: i, j, side
+      real(wp) :: place(3, 2), moved(3, 2), near(3, 2), change(3), f(3), share, shift(local)
+      real(wp) :: on(3, 2, 2), opened(2), found(local, local), wanted(local, local)
+      integer :: i, j, way
       logical :: closed, at_end
 
       do i = 1, 40
@@ -177,38 +172,23 @@ contains
          at_end = mod(i, 4) > 1
          call random_step(random, merge(1.0_wp, 1.0e-3_wp, mod(i, 8) > 3), place, moved)
          wanted = 0.0_wp
+         ! Three unknowns of the lower body, the tension, three of the upper one.
          do j = 1, local
-            near = moved
-            pull = tension
-            side = merge(1, 2, j < 4)
-            if (j == 4) then
-               pull = tension + h
-            else
-               near(j - 4*(side - 1), side) = moved(j - 4*(side - 1), side) + h
-            end if
-            call forces_of(place, near, k, pull, closed, at_end, plus, opened(1))
-            if (j == 4) then
-               pull = tension - h
-            else
-               near(j - 4*(side - 1), side) = moved(j - 4*(side - 1), side) - h
-            end if
-            call forces_of(place, near, k, pull, closed, at_end, minus, opened(2))
-            wanted(1:3, j) = (minus(:, 1) - plus(:, 1))/(2.0_wp*h)
-            wanted(5:7, j) = (minus(:, 2) - plus(:, 2))/(2.0_wp*h)
+            do way = 1, 2
+               shift = 0.0_wp
+               shift(j) = (3 - 2*way)*h
+               near = moved + reshape([shift(:3), shift(5:)], [3, 2])
+               call stretch(place, near, k, tension + shift(4), closed, at_end, bodies, joint, change, f)
+               opened(way) = change(3)
+               on(:, :, way) = 0.0_wp
+               call add_joint_forces(bodies(1), bodies(2), joint, f, on(:, 1, way), on(:, 2, way))
+            end do
+            wanted(1:3, j) = (on(:, 1, 2) - on(:, 1, 1))/(2.0_wp*h)
+            wanted(5:7, j) = (on(:, 2, 2) - on(:, 2, 1))/(2.0_wp*h)
             wanted(4, j) = (opened(1) - opened(2))/(2.0_wp*h)
          end do
-         call over_step(place, moved, bodies, joint, change)
+         call stretch(place, moved, k, tension, closed, at_end, bodies, joint, change, f)
          share = merge(1.0_wp, 0.5_wp, at_end)
-         f = share*k*change
-         if (closed) f(3) = tension
-         if (at_end) then
-            do j = 1, 2
-               call body_at(place(3, j) + moved(3, j), bodies(j))
-            end do
-            call deformations(place(:, 1) + moved(:, 1), place(:, 2) + moved(:, 2), d)
-            joint%finish = joint_at(bodies(1), joint, d)
-            joint%mean = joint%finish
-         end if
          call joint_tangent(bodies(1), bodies(2), joint, share, f, share*k, closed, found)
          do j = 1, local
             call check_close(error, found(:, j), wanted(:, j), 0.0_wp, 1.0e-8_wp, 'column '//to_text(j))

@@ -2,16 +2,15 @@
 module test_results
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use check, only: unit_test, check_close, check_equal, check_same, check_true
-   use rbs_base_error, only: error_type, fatal_error
+   use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_base_units, only: unit_system
-   use rbs_structure_column_column_record, only: column_record
    use rbs_output_channels, only: channel_list, new_channels
    use rbs_structure_channel, only: energy_type
    use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: figure_type, summary_type
-   use samples, only: chain, made, random_type, rich_column
-   use row_places, only: row_time, row_displacement, row_force, row_residual, row_top, row_joints
+   use samples, only: made, random_type, rich_column
+   use row_places, only: row_joints
    implicit none
    private
 
@@ -22,49 +21,12 @@ contains
    subroutine collect_results(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('labels carry joint and unit', labels), &
-               unit_test('labels of joints that open', labels_of_openings), &
+      tests = [unit_test('labels of joints that open', labels_of_openings), &
                unit_test('recorder keeps rows until it is full', recorder), &
-               unit_test('recorder keeps nothing after an error', recorder_after_error), &
                unit_test('summary has peaks with sign, of kept and other rows', peaks), &
-               unit_test('summary has the energies of kept rows', energies), &
                unit_test('figures of a summary: those that apply', figures), &
                unit_test('how a run ends', ends)]
    end subroutine collect_results
-
-   subroutine labels(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(channel_list) :: channels
-      type(column_record) :: spec
-      character(len=32), allocatable :: label(:)
-      character(len=4), allocatable :: si(:)
-      type(unit_system) :: units
-
-      spec = chain(12, 'small')
-      channels = new_channels(made(spec), .true., .false., .false.)
-      call channels%get_labels(units, label, si)
-      call check_equal(error, size(label), row_joints + 4*12 - 1, 'number of labels')
-      call check_equal(error, trim(label(row_time)), 'time_s', 'dynamic')
-      call check_equal(error, trim(label(row_displacement)), 'displacement_m', 'displacement')
-      call check_equal(error, trim(label(row_force)), 'force_N', 'force')
-      call check_equal(error, trim(label(row_residual)), 'residual_J', 'residual')
-      call check_equal(error, trim(label(row_top)), 'top_height_m', 'height of the top')
-      call check_equal(error, trim(label(row_joints)), 'slip_1_m', 'first slip')
-      call check_equal(error, trim(label(row_joints + 12)), 'rotation_1_rad', 'first rotation')
-      call check_equal(error, trim(label(row_joints + 35)), 'shear_12_N', 'last shear')
-      call check_equal(error, trim(label(row_joints + 47)), 'moment_12_Nm', 'last moment')
-      channels = new_channels(made(spec), .false., .false., .true.)
-      call channels%get_labels(units, label, si)
-      call check_equal(error, trim(label(row_time)), 'step', 'static')
-      call check_equal(error, size(label), row_joints + 4*12 - 1, 'nothing moves')
-      spec%damping%mass = 1.0_wp
-      channels = new_channels(made(spec), .true., .true., .true.)
-      call channels%get_labels(units, label, si)
-      call check_equal(error, trim(label(row_joints + 49)), 'base_moment_Nm', 'forces at the base')
-      call check_equal(error, trim(label(row_joints + 52)), 'ground_acceleration_m/s2', 'motion')
-      call check_equal(error, trim(label(row_joints + 53)), 'opening_1_m', 'opening of a layered joint')
-      call check_equal(error, trim(label(size(label))), 'rest_12_rad', 'rotation at rest')
-   end subroutine labels
 
    subroutine labels_of_openings(error)
       type(error_type), allocatable, intent(inout) :: error
@@ -105,17 +67,6 @@ contains
       call check_same(error, pack(keeper%rows(:, :3), .true.), 1.0_wp*[1, 2, 3, 4, 5, 6, 7, 8, 9], 'rows')
    end subroutine recorder
 
-   subroutine recorder_after_error(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(array_recorder) :: keeper
-
-      call fatal_error(outcome, 1, 'before')
-      call keeper%record([1.0_wp], outcome)
-      call check_equal(error, keeper%count, 0, 'rows kept')
-      call check_true(error, allocated(outcome), 'the error is still there')
-   end subroutine recorder_after_error
-
    !> Energies that all differ.
    pure type(energy_type) function energy_of(input, residual) result(energy)
       real(wp), intent(in) :: input, residual
@@ -136,19 +87,6 @@ contains
       call check_same(error, summary%displacement_at_peak, 0.2_wp, 'displacement there')
       call check_equal(error, summary%rows, 0, 'no row')
    end subroutine peaks
-
-   subroutine energies(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(summary_type) :: summary
-
-      call summary%see_energies(energy_of(50.0_wp, 1.0e-9_wp))
-      call summary%see_energies(energy_of(-40.0_wp, -2.0e-9_wp))
-      call summary%see_energies(energy_of(-60.0_wp, 0.0_wp))
-      call check_same(error, [summary%energy%input, summary%energy%spring, summary%energy%damping], &
-                      [-60.0_wp, 2.0_wp, 3.0_wp], 'energies at the end')
-      call check_same(error, summary%residual, 2.0e-9_wp, 'largest residual')
-      call check_same(error, summary%largest, 60.0_wp, 'largest energy')
-   end subroutine energies
 
    subroutine figures(error)
       type(error_type), allocatable, intent(inout) :: error

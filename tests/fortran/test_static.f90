@@ -3,36 +3,26 @@
 module test_static
    use dense, only: is_positive, solve_general
    use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_same, check_true
-   use rbs_base_error, only: error_type, fatal_error, analysis_failed
+   use rbs_base_error, only: error_type, analysis_failed
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: to_text
    use rbs_structure_column_chain_matrices, only: geometric_stiffness
    use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_channels, only: new_channels
-   use rbs_output_recorder, only: array_recorder, recorder_type
+   use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: summary_type
    use rbs_solve_static_chain_equilibrium, only: chain_equilibrium
-   use rbs_solve_static_run_static, only: run_static
    use rbs_solve_static_straight, only: trace_straight
    use rbs_solve_task, only: task_type
    use rbs_structure_column_column_record, only: column_record
    use runs, only: run_path
    use samples, only: bilinear, chain, column_1, elastic, made, random_type, k_c, d_y, k_u, s_k, s_d, height_1
    use storeys, only: storeys_type, storeys_equilibrium, new_storeys, share
-   use row_places, only: row_time, row_displacement, row_force, row_axial, row_residual, row_joints, &
-                         row_input, row_top
+   use row_places, only: row_displacement, row_force, row_axial, row_residual, row_joints, row_input, row_top
    implicit none
    private
 
    public :: collect_static
-
-   !> Accepts a few rows, then fails like a full disk.
-   type, extends(recorder_type) :: failing_recorder
-      integer :: count = 0
-   contains
-      procedure :: record => record_and_fail
-   end type failing_recorder
 
 contains
 
@@ -41,7 +31,6 @@ contains
 
       tests = [unit_test('pdelta: elastic column below and beyond its critical load', pdelta_elastic), &
                unit_test('a mechanism of joints shares the motion by their stiffness', mechanism), &
-               unit_test('a recorder that fails ends the path', failing), &
                unit_test('bands and full matrices give the same line', bands), &
                unit_test('rates that are updated are those that are solved for', updated_rates), &
                unit_test('a mechanism in a band', band_mechanism), &
@@ -51,17 +40,6 @@ contains
                          other_structure), &
                unit_test('another structure is cut and goes on with the same bits', cut_structure)]
    end subroutine collect_static
-
-   subroutine record_and_fail(self, row, error)
-      class(failing_recorder), intent(inout) :: self
-      real(wp), intent(in) :: row(:)
-      type(error_type), allocatable, intent(inout) :: error
-
-      self%count = self%count + 1
-      if (self%count == 3) then
-         call fatal_error(error, analysis_failed, 'disk full at row '//to_text(row(row_time)))
-      end if
-   end subroutine record_and_fail
 
    !> Below the critical load, and beyond it, where the column pushes against the support at its top.
    subroutine pdelta_elastic(error)
@@ -116,19 +94,6 @@ contains
          call check_close(error, rows(row_force, :), [s_k*s_d, s_k*s_d], 1.0e-12_wp, 0.0_wp, 'force')
       end do
    end subroutine mechanism
-
-   subroutine failing(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(failing_recorder), target :: recorder
-      type(task_type) :: task
-
-      task%recorder => recorder
-      recorder%channels = new_channels(made(column_1('small')), .false., .false., .false.)
-      call run_static(made(column_1('small')), .false., [0.01_wp, 0.02_wp, 0.03_wp, 0.04_wp], task, outcome)
-      call check_failed(error, outcome, analysis_failed, 'disk full at row 2')
-      call check_equal(error, recorder%count, 3, 'rows offered')
-   end subroutine failing
 
    !> Springs of a column on lines through zero.
    subroutine put_on_lines(column, k, f0, springs)

@@ -175,9 +175,13 @@ def test_limit_of_file_sizes_is_told_and_the_old_output_stays(run_cli, case_text
 
 
 @pytest.mark.parametrize("points", [1, 20_000])
-def test_full_disk_is_told(run_cli, case_text, folder, points):
+@pytest.mark.parametrize("kind", ["static", "dynamic"])
+def test_full_disk_is_told(run_cli, case_text, dynamic_text, folder, points, kind):
     loading = f"drive = 'displacement', amplitudes = 0.01, points = {points}"
-    (folder / "case.nml").write_text(case_text(loading=loading))
+    text = case_text(loading=loading)
+    if kind == "dynamic":
+        text = dynamic_text(loading=loading.replace("displacement", "force") + ", period = 1.0")
+    (folder / "case.nml").write_text(text)
     text = faults(run_cli(["run", "case.nml", "--output", "/dev/full"], folder), 1)
     assert "cannot write all of /dev/full" in text
     assert "free some space" in text
