@@ -567,29 +567,6 @@ def test_report(fit):
     assert max(map(len, text.splitlines())) <= 110
 
 
-def test_table(fit):
-    frame = fit.to_frame()
-    assert list(frame["name"]) == list(fit.values)
-    assert list(frame["value"]) == list(fit.values.values())
-
-
-def test_plot(fit):
-    high = (fit.before.displacement, 3 * fit.before.test_force)
-    test = (fit.before.displacement, fit.before.test_force)
-    fit = replace(fit, before=rbsdem.compare(high, test))
-    axes = rbsdem.plot.calibration(fit)
-    assert len(axes) == 2
-    assert axes[0].get_ylim()[1] > 3e-3 * np.max(test[1])
-    assert axes[0].get_ylim() == axes[1].get_ylim()
-    texts = [text.get_text() for ax in axes for text in ax.texts]
-    assert f"(b) after: NRMSE {fit.nrmse:.3f}" in texts
-    again = rbsdem.plot.calibration(fit, axes=axes)
-    assert again is axes
-    with pytest.raises(InputError, match="1 axes; give two"):
-        rbsdem.plot.calibration(fit, axes=axes[:1])
-    mpl.pyplot.close("all")
-
-
 def test_progress_on_stderr(capsys, monkeypatch):
     monkeypatch.setenv("FORCE_COLOR", "1")
     quiet(COLUMNS["zahn_7"], (D, F), ["flexure.k_y"], progress=True, evaluations=30)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 import pickle
 import runpy
@@ -304,21 +303,3 @@ def test_nothing_reached_is_no_fault(curves):
 
 
 # ---- figure and table ----------------------------------------------------------------------------
-
-
-def test_figure_and_table(curves):
-    mpl = pytest.importorskip("matplotlib")
-    mpl.use("Agg")
-    rich = pytest.importorskip("rich.console")
-    d, f, m = curves
-    c = rbsdem.compare((d, m), (d, f), height=1.6)
-    ax = rbsdem.plot.comparison(c)
-    try:
-        assert [line.get_label() for line in ax.get_lines()[:2]] == ["Test", "Model"]
-        assert ax.get_lines()[1].get_ydata()[:5] == pytest.approx(m[:5] / 1e3)
-        assert f"{c.nrmse:.3f}" in ax.texts[0].get_text()
-    finally:
-        mpl.pyplot.close(ax.figure)
-    out = rich.Console(width=120, record=True, file=io.StringIO())
-    out.print(rbsdem.plot.table(c))
-    assert out.export_text().count("\n") >= len(c.test_cycles)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -151,11 +150,3 @@ def test_result_speaks_by_the_definitions_of_the_comparison():
     assert result.half_cycles().energy == pytest.approx(cycles.energy)
     assert np.isnan(result.strength_loss())
     assert result.idealise("park", -1) == result.envelope(-1).idealise("park")
-
-
-def test_figure():
-    ax = rbsdem.plot.envelope(WORKED, method="asce_41")
-    corners = ax.get_lines()[1].get_xydata()
-    assert corners[1] == pytest.approx([9.3827, 179.259], rel=1e-4)
-    assert ax.get_xlabel() == "Top displacement (mm)"
-    plt.close(ax.figure)

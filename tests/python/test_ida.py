@@ -11,7 +11,6 @@ from rbsdem.many.fragility import Hazard
 from rbsdem.many.ida import Hunt
 from rbsdem.many.uncertain import variance_split
 from rbsdem.output.tables import write_csv, write_parquet
-from rbsdem.plot import fragilities
 from rbsdem.springs import Elastic, PeakOriented
 
 HEIGHT = 2.0
@@ -304,17 +303,3 @@ def test_tables_and_files(hunted, tmp_path):
         hunted.runs.measures["peak_drift"], nan_ok=True
     )
     assert len(pandas.read_csv(tmp_path / "runs.csv")) == len(table)
-
-
-def test_figures(hunted, column, records, tmp_path):
-    pytest.importorskip("matplotlib")
-    assert len(rbsdem.plot.ida(hunted).get_lines()) >= 9
-    curves = hunted.fragilities({"light": 0.01, "collapse": ("collapse", None)})
-    assert len(fragilities(curves, level=0).get_lines()) == 4
-    assert rbsdem.plot.fragility(curves["light"], color="red").get_lines()[0].get_color() == "red"
-    levels = [2.0, 5.0]
-    assert rbsdem.plot.stripes(
-        rbsdem.fragility.stripes(column, records, levels, **SETTINGS)
-    ).get_lines()
-    found = rbsdem.fragility.cloud(column, records, scales=np.geomspace(0.2, 3, 6), **SETTINGS)
-    assert len(rbsdem.plot.cloud(found).get_lines()) == 4

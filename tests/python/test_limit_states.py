@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import io
 import math
 from dataclasses import replace
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from matplotlib.patches import Circle
-from rich.console import Console
 
 import rbsdem
-from rbsdem import InputError, plot
+from rbsdem import InputError
 from rbsdem.springs import Bilinear, Elastic, Layered, PeakOriented, SteelSpring
 
 SECTION = rbsdem.peer.paper_sections()["zahn_7"].section
@@ -237,37 +234,3 @@ def test_openings_are_asked_for():
     plain = rbsdem.cyclic(COLUMN, displacement=PATH[:700]).limit_states()
     kept = rbsdem.cyclic(COLUMN, displacement=PATH[:700], openings=True).limit_states()
     assert list(plain) == list(kept)
-
-
-def test_tables_and_figure():
-    states = RESULT.limit_states()
-    text = io.StringIO()
-    Console(file=text, width=200).print(rbsdem.plot.table(states))
-    assert "first_yield" in text.getvalue()
-    assert "Goodnight" in text.getvalue()
-    assert list(states.to_frame()["name"]) == states.names()
-    ax = rbsdem.plot.limit_states(states)
-    assert len(ax.get_legend().get_texts()) == len(states)
-    marks = [line for line in ax.get_lines() if line.get_label() == "first yield"]
-    assert marks[0].get_xdata()[0] == pytest.approx(1e3 * states["first_yield"].displacement)
-    plt.close(ax.figure)
-    with pytest.raises(KeyError, match="not reached"):
-        states["axial_failure"]
-
-
-def test_state_of_the_section():
-    """At the largest drift the bars in tension are beyond buckling, those in compression yield."""
-    row = int(np.argmax(RESULT.displacement))
-    section, strains = plot.section_state(RESULT, float(RESULT.time[row]))
-    value = RESULT.strains(1).value[row]
-    bars = RESULT.strains(1).part == "bar"
-    assert strains.get_lines()[1].get_xdata() == pytest.approx(100 * value[bars])
-    faces = [patch.get_facecolor()[0] for patch in section.patches if isinstance(patch, Circle)]
-    assert len(faces) == len(SECTION.bars)
-    assert faces.count(0.0) == 4
-    plt.close(section.figure)
-    with pytest.raises(InputError, match="outside"):
-        plot.section_state(RESULT, 1e9)
-    spring = rbsdem.cyclic(rbsdem.peer.paper_columns()["zahn_7"], displacement=[0.0, 0.01])
-    with pytest.raises(InputError, match="not made from a section"):
-        plot.section_state(spring, 0.0)

@@ -1,22 +1,145 @@
-"""Figures: keywords of matplotlib pass through, and nothing of the caller's is changed."""
+"""Figures, every one: what is drawn and in which units, keywords, styles, axes of the caller."""
 
 from __future__ import annotations
 
+import inspect
+from collections.abc import Callable
+from typing import Any
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib.patches import Circle
+from samples import SECTION, printed
 
 import rbsdem
-from rbsdem import plot
+from rbsdem import codes, fragility, plot
+from rbsdem.curves import Envelope
+from rbsdem.section import shear
+from rbsdem.springs import Elastic
 
-matplotlib = pytest.importorskip("matplotlib")
-matplotlib.use("Agg")
-plt = pytest.importorskip("matplotlib.pyplot")
+mpl.use("Agg")
 
+PAPER = rbsdem.peer.paper_sections()["soesianawati_1"]
 COLUMN = rbsdem.peer.paper_columns("pdelta")["zahn_7"]
-D = COLUMN.height * rbsdem.protocol([0.005, 0.01], cycles=1, points=20)
-RESULT = rbsdem.cyclic(COLUMN, displacement=D)
-TEST = (D, RESULT.force)
 HEIGHT = COLUMN.height
+D = HEIGHT * rbsdem.protocol([0.005, 0.01], cycles=1, points=20)
+RESULT = rbsdem.cyclic(COLUMN, displacement=D)
+TEST = (D, 1.1 * RESULT.force)
+LAYERED = rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6)
+BENT = rbsdem.cyclic(
+    LAYERED, displacement=1.6 * rbsdem.protocol([0.01, 0.04, 0.09], points=6), openings=True
+)
+MANY = {"method": "newmark", "dt": 0.01}
+
+
+def shaken(n: int = 3) -> rbsdem.Result:
+    """A column of n bodies that is shaken at its top."""
+    time = np.arange(0.0, 0.5, 0.01)
+    column = rbsdem.Column(
+        1.6, 600.0, COLUMN.shear, COLUMN.flexure, n=n, kinematics="pdelta", axial_load=1e5
+    )
+    return rbsdem.time_history(column, time, force=1e4 * np.sin(20 * time), method="rk4")
+
+
+@pytest.fixture(scope="module")
+def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]]:
+    """Function, arguments, and points that are drawn, in the units of the labels."""
+    elastic = rbsdem.Column(2.0, 1e3, Elastic(4e5), Elastic(4e9), damping=0.05)
+    records = rbsdem.motions.synthetic(3)
+    ida = rbsdem.ida(elastic, records, levels=[2.0, 5.0, 30.0], **MANY)
+    curve = fragility.fit_fragility("light", fragility.Capacities(*2 * [np.array([2.0, 3.0, 5.0])]))
+    curves = {"light": curve, "heavy": curve}
+    stripes = fragility.stripes(elastic, records, [2.0, 5.0], **MANY)
+    cloud = fragility.cloud(elastic, records, scales=[0.2, 1.0, 3.0], **MANY)
+    diagram = rbsdem.section.diagram(PAPER.section, PAPER.axial_load)
+    sheared = shear.shear_diagram(PAPER.section, 1.6, PAPER.axial_load, furthest=0.022)
+    code = rbsdem.section.interaction(PAPER.section, "ec2")
+    values = codes.code_values(SECTION, 1.6, 1.2e6)
+    states, history, spectrum = BENT.limit_states(), shaken(), records[0].spectrum()
+    line = Envelope(1, np.array([0.0, 0.02, 0.06]), np.array([0.0, 2e5, 2e5]))
+    band = rbsdem.section.spread(LAYERED, BENT.displacement, samples=8)
+    fit = rbsdem.calibrate(COLUMN, TEST, free=["flexure.k_u"])
+    study = rbsdem.compare_methods(COLUMN, displacement=D[:40], budget=0.5)
+    peak, first, p, knee = (
+        RESULT.force.argmax(),
+        states["first_yield"],
+        diagram.events,
+        sheared.knee,
+    )
+    x, y = 1e3 * D[peak], RESULT.force[peak] / 1e3
+    end = history.time[-1]
+    first_of = {of: 100 * of.runs.response("peak_drift")[0] for of in (stripes, cloud)}
+    return {
+        "loop": (plot.loop, (RESULT,), (x, y)),
+        "loops_over_test": (plot.loops_over_test, (RESULT, TEST), (x, 1.1 * y)),
+        "comparison": (plot.comparison, (rbsdem.compare(RESULT, TEST),), (x, y)),
+        "calibration": (plot.calibration, (fit,), (x, 1.1 * y)),
+        "envelope": (plot.envelope, (line,), (60.0, 200.0)),
+        "limit_states": (
+            plot.limit_states,
+            (states,),
+            (1e3 * first.displacement, first.force / 1e3),
+        ),
+        "code_comparison": (plot.code_comparison, (codes.compare(values, BENT),), None),
+        "moment_curvature": (
+            plot.moment_curvature,
+            (diagram,),
+            (1e3 * p.peak.curvature, p.peak.moment / 1e3),
+        ),
+        "shear_diagram": (
+            plot.shear_diagram,
+            (sheared,),
+            (1e3 * knee.strain, knee.force / 1e3),
+        ),
+        "interaction": (plot.interaction, (code,), (0.0, code.axial_load[-1] / 1e3)),
+        "section": (plot.section, (PAPER.section,), None),
+        "section_state": (plot.section_state, (BENT, 3.0), None),
+        "history": (plot.history, (history,), (end, 1e3 * history.displacement[-1])),
+        "energy": (plot.energy, (history,), (end, history.energy["input"][-1] / 1e3)),
+        "profile": (plot.profile, (history,), None),
+        "methods": (plot.methods, (study,), None),
+        "ida": (plot.ida, (ida,), (0.0, 0.0)),
+        "stripes": (plot.stripes, (stripes,), (first_of[stripes], 2.0)),
+        "cloud": (plot.cloud, (cloud,), (first_of[cloud], cloud.runs.intensity[0])),
+        "fragility": (plot.fragility, (curve,), (3.0, 0.5)),
+        "fragilities": (plot.fragilities, (curves,), (3.0, 0.5)),
+        "motion": (plot.motion, records[:1], (0.0, records[0].acceleration[0])),
+        "spectrum": (
+            plot.spectrum,
+            (spectrum,),
+            (spectrum.period[9], spectrum.pseudo_acceleration[9]),
+        ),
+        "spread": (plot.spread, (band,), (0.0, band.force[0] / 1e3)),
+    }
+
+
+#: Labels of the horizontal and the vertical axis.
+LABELS = {
+    **dict.fromkeys(
+        ("loop", "loops_over_test", "comparison", "calibration", "limit_states", "envelope"),
+        ("Top displacement (mm)", "Lateral force (kN)"),
+    ),
+    "code_comparison": ("Drift ratio (%)", "Lateral force (kN)"),
+    "moment_curvature": ("Curvature (mrad/m)", "Moment (kN m)"),
+    "shear_diagram": ("Shear strain (mm/m)", "Shear force (kN)"),
+    "interaction": ("Moment (kN m)", "Axial load (kN), compression positive"),
+    "section": ("Width (mm)", "$y$ (mm), tension below"),
+    "section_state": ("Width (mm)", "$y$ (mm)"),
+    "history": ("Time (s)", "Top displacement (mm)"),
+    "energy": ("Time (s)", "Energy (kJ)"),
+    "profile": ("Drift (%)", "Height (m)"),
+    "methods": ("Wall time (s)", "Relative error"),
+    "ida": ("Peak drift (%)", "Sa(0.314 s, 5 %) (m/s²)"),
+    "stripes": ("Peak drift (%)", "Sa(0.314 s, 5 %) (m/s²)"),
+    "cloud": ("Peak drift (%)", "Sa(0.314 s, 5 %) (m/s²)"),
+    "fragility": ("", "Probability"),
+    "fragilities": ("", "Probability"),
+    "motion": ("Time (s)", "Acceleration (m/s²)"),
+    "spectrum": ("Period (s)", "Pseudo-acceleration (m/s²)"),
+    "spread": ("Path of displacement (mm)", "Force (kN)"),
+}
 
 
 @pytest.fixture(autouse=True)
@@ -26,164 +149,157 @@ def closed():
     plt.close("all")
 
 
-@pytest.fixture(scope="module")
-def views():
-    """Whatever draws loops; each returns axes, the last line of which is the model's."""
-    pytest.importorskip("scipy")
-    fit = rbsdem.calibrate(COLUMN, TEST, free=["flexure.k_u"])
-    return {
-        "loop": lambda **line: plot.loop(RESULT, **line),
-        "drift": lambda **line: plot.loop(RESULT, height=HEIGHT, **line),
-        "over": lambda **line: plot.loops_over_test(RESULT, TEST, height=HEIGHT, **line),
-        "comparison": lambda **line: plot.comparison(rbsdem.compare(RESULT, TEST), **line),
-        "calibration": lambda **line: plot.calibration(fit, **line)[1],
-    }
-
-
-def ax_texts(drift):
-    """What an axis of drifts shows: the upper of its axes."""
-    return [*drift.get_xticklabels(), drift.xaxis.label]
-
-
-def fonts(figure):
-    """Family and size of every text."""
+def fonts(figure) -> set[tuple[str, float]]:
+    """Family and size of every text; of an axis of drifts those above."""
     figure.canvas.draw()
-    found = set()
-    for own in figure.axes:
-        for ax in (own, *own.child_axes):
-            texts = [*ax.get_xticklabels(), *ax.get_yticklabels(), ax.xaxis.label, ax.yaxis.label]
-            texts += [ax.title, *ax.texts]
-            texts += ax.get_legend().get_texts() if ax.get_legend() else []
-            found |= {
-                (text.get_fontfamily()[0], text.get_fontsize())
-                for text in texts
-                if text.get_text() and text.get_visible() and (ax is own or text in ax_texts(ax))
-            }
-    return found
+    found = []
+    for ax in figure.axes:
+        found += [*ax.get_xticklabels(), *ax.get_yticklabels(), ax.xaxis.label, ax.yaxis.label]
+        found += [ax.title, *ax.texts, *(ax.get_legend().get_texts() if ax.get_legend() else [])]
+        for drift in ax.child_axes:
+            found += [*drift.get_xticklabels(), drift.xaxis.label]
+    shown = [text for text in found if text.get_text() and text.get_visible()]
+    return {(text.get_fontfamily()[0], text.get_fontsize()) for text in shown}
 
 
-@pytest.mark.parametrize("name", ["loop", "drift", "over", "comparison", "calibration"])
-@pytest.mark.parametrize(
-    ("line", "expected"),
-    [
-        ({"lw": 1}, {"linewidth": 1, "color": "black"}),
-        ({"linewidth": 2.5}, {"linewidth": 2.5}),
-        ({"c": "red", "ls": ":"}, {"color": "red", "linestyle": ":"}),
-        ({"color": "blue", "marker": "o", "ms": 3}, {"color": "blue", "markersize": 3}),
-        ({"alpha": 0.5, "label": "mine"}, {"alpha": 0.5, "label": "mine"}),
-    ],
-)
-def test_keywords_of_the_line_and_their_short_names(views, name, line, expected):
-    ax = views[name](**line)
-    wanted = line.get("label") or ("Model" if name in ("over", "comparison", "calibration") else "")
-    drawn = [one for one in ax.get_lines() if one.get_gid() != "zero"]
-    drawn = [one for one in drawn if one.get_label() == wanted or not wanted][-1]
-    for key, value in expected.items():
-        assert getattr(drawn, f"get_{key}")() == value
+def parameters(function: Any) -> dict[str, inspect.Parameter]:
+    return dict(inspect.signature(function).parameters) if inspect.isfunction(function) else {}
 
 
-def test_no_figure_changes_the_style_of_the_session(views):
-    before = dict(matplotlib.rcParams)
-    for draw in views.values():
-        draw()
-        draw(lw=1)
-    assert {key for key in before if before[key] != matplotlib.rcParams[key]} == set()
+def test_every_figure_is_tried(figures):
+    found = {name for name in plot.__all__ if {"ax", "axes"} & set(parameters(vars(plot)[name]))}
+    assert set(figures) == set(LABELS) == found - {"style_of", "axes_or_new"}
 
 
-@pytest.mark.parametrize("name", ["loop", "drift", "over", "comparison", "calibration"])
-def test_new_figure_has_one_style(views, name):
-    """That of the house, on the drift axis and after a second loop with a legend, too."""
-    ax = views[name]()
-    assert {family for family, _ in fonts(ax.figure)} == {"STIXGeneral"}
-    plot.loops_over_test(RESULT, TEST, height=HEIGHT, title="again", ax=ax)
-    ax.set_xlim(-3, 3)  # new ticks
-    assert {family for family, _ in fonts(ax.figure)} == {"STIXGeneral"}
-    assert max(size for _, size in fonts(ax.figure)) == 9.0
+@pytest.mark.parametrize("name", LABELS)
+def test_figure(figures, name):
+    """Units, data, the one style of new axes, the keywords of lines, and axes of the caller."""
+    function, given, point = figures[name]
+    before = dict(mpl.rcParams)
+    axes = np.ravel(function(*given))
+    assert (axes[0].get_xlabel(), axes[0].get_ylabel()) == LABELS[name]
+    if point is not None:
+        drawn = np.vstack([line.get_xydata() for line in axes[-1].get_lines()])
+        scale = np.nanmax(np.abs(drawn), axis=0)
+        assert np.nanmin(np.abs((drawn - point) / scale).max(axis=1)) < 5e-3
+    assert {family for family, _ in fonts(axes[0].figure)} == {"STIXGeneral"}
+    assert 6 < max(size for _, size in fonts(axes[0].figure)) <= 9.6
+    if "line" in parameters(function):
+        for line in ({"lw": 2.5, "c": "red", "ls": ":"}, {"linewidth": 2.5, "color": "red"}):
+            for ax in np.ravel(function(*given, **line)):
+                ours = [one for one in ax.get_lines() if one.get_color() == "red"]
+                assert 2.5 in {one.get_linewidth() for one in ours}
+    assert {key for key in before if before[key] != mpl.rcParams[key]} == set()
+    with mpl.rc_context({"font.family": "monospace", "font.size": 13.0}):
+        own = list(plt.subplots(1, 3)[1][: axes.size])
+        where = {"axes": own} if "axes" in parameters(function) else {"ax": own[0]}
+        assert np.ravel(function(*given, **where)).tolist() == own
+        assert {family for family, _ in fonts(own[0].figure)} == {"monospace"}
 
 
-@pytest.mark.parametrize("family", [None, "serif", "monospace"])
-def test_axes_of_the_caller_keep_their_letters(family):
-    """The axis of drifts has those of the axis below, whether from the session or from a block."""
-    style = {} if family is None else {"font.family": family, "font.size": 13.0}
-    with matplotlib.rc_context(style):
-        figure, (left, right) = plt.subplots(1, 2)
-        for ax in (left, right):
-            ax.plot([-1, 1], [-1, 1])
-            ax.set(xlabel="x", ylabel="y", title="mine")
+def test_loops_of_the_caller_keep_their_letters():
+    """The axis of drifts has those of the axis below, also after new limits and a second loop."""
+    with mpl.rc_context({"font.family": "serif", "font.size": 13.0}):
+        figure, ax = plt.subplots()
+        ax.set(xlabel="x", ylabel="y", title="mine")
+        ax.plot([-1, 1], [-1, 1])
         before = fonts(figure)
-    plot.loop(RESULT, height=HEIGHT, ax=left)
-    plot.loop(RESULT, ax=right)
+    for _ in range(2):
+        plot.loop(RESULT, height=HEIGHT, ax=ax)
+    ax.set_xlim(-3, 3)
     assert fonts(figure) <= before
-    left.set_xlim(-3, 3)
-    assert fonts(figure) <= before
-    assert left.get_title() == "mine"
-    (drift,) = left.child_axes
-    assert drift.xaxis.label.get_fontfamily() == left.xaxis.label.get_fontfamily()
+    assert (ax.get_title(), len(ax.child_axes)) == ("mine", 1)
 
 
-def test_trade_passes_keywords_on():
-    found = rbsdem.compare_methods(COLUMN, displacement=D[:40], budget=2.0)
-    ax = plot.methods(found, lw=2.5)
-    assert {one.get_linewidth() for one in ax.get_lines() if one.get_marker() == "o"} == {2.5}
-    figure, own = plt.subplots()
-    before = {family for family, _ in fonts(figure)}
-    plot.methods(found, ax=own)
-    assert {family for family, _ in fonts(figure)} == before
-    assert np.isfinite(own.get_ylim()).all()
+def test_four_panels_are_lettered_symmetric_and_written(tmp_path):
+    panels = []
+    for key, section in rbsdem.peer.paper_sections().items():
+        points = rbsdem.peer.shipped_reversals(key)
+        half = (0.5 * points.displacement, points.force)
+        panels.append(plot.Panel(section.specimen, half, points, section.length, True))
+    before = dict(mpl.rcParams)
+    figure = plot.four_panels(panels)
+    for letter, ax, panel in zip("abcd", figure.axes, panels, strict=True):
+        assert ax.texts[0].get_text() == f"({letter}) {panel.title}"
+        for low, high in (ax.get_xlim(), ax.get_ylim()):
+            assert low == -high
+        furthest = 1e3 * np.abs(panel.test.displacement).max()
+        assert furthest < ax.get_xlim()[1] < 1.2 * furthest
+        (drift,) = ax.child_axes
+        assert drift.get_xlim()[1] == pytest.approx(0.1 * ax.get_xlim()[1] / panel.height)
+    assert len(figure.legends) == 1
+    files = plot.save(figure, tmp_path / "new" / "figure", pdf=True)
+    assert [file.name for file in files] == ["figure.png", "figure.pdf"]
+    assert [file.read_bytes()[:4] for file in files] == [b"\x89PNG", b"%PDF"]
+    assert dict(mpl.rcParams) == before
 
 
-# ---- over time and over the height ---------------------------------------------------------------
+def test_drawing_of_a_section():
+    assert len(plot.section(PAPER.section).patches) == 1 + 2 + 4 + 12  # concrete, hoop, legs, bars
+    texts = plot.moment_curvature(
+        rbsdem.section.diagram(PAPER.section, PAPER.axial_load)
+    ).get_legend()
+    labels = [text.get_text() for text in texts.get_texts()]
+    assert labels == ["Cracking", "Yielding", "Peak", "Ultimate"]
 
 
-def shaken(n=3):
-    """A column of n bodies that is shaken at its top."""
-    time = np.arange(0.0, 0.5, 0.01)
-    column = rbsdem.Column(
-        1.6, 600.0, COLUMN.shear, COLUMN.flexure, n=n, kinematics="pdelta", axial_load=1e5
-    )
-    return rbsdem.time_history(column, time, force=1e4 * np.sin(20 * time), method="rk4")
+def test_interaction_shows_both_strengths_and_the_demand():
+    diagram = rbsdem.section.interaction(SECTION, "ec2")
+    nominal, design, demand = plot.interaction(diagram, demand=[(1e6, -2e5)]).get_lines()[:3]
+    assert nominal.get_ydata()[-1] == pytest.approx(1e-3 * diagram.axial_load[-1])
+    assert design.get_xdata().max() == pytest.approx(1e-3 * diagram.design_moment.max())
+    assert demand.get_xydata()[0] == pytest.approx([200.0, 1000.0])
 
 
-def test_history_has_the_units_of_its_label():
-    result = shaken()
-    for over, factor, unit in (("drift", 100, "%"), ("base_shear", 1e-3, "kN")):
-        ax = plot.history(result, over)
-        assert ax.get_lines()[0].get_ydata() == pytest.approx(factor * getattr(result, over))
-        assert f"({unit})" in ax.get_ylabel()
-        assert ax.get_xlabel() == "Time (s)"
-    assert plot.history(RESULT).get_xlabel() == "Point of the path"
-    with pytest.raises(rbsdem.InputError, match="over = 'speed'"):
-        plot.history(result, "speed")
+def test_state_of_the_section():
+    """Strains of the row, and bars by their state: some are beyond buckling."""
+    row = int(np.argmax(BENT.displacement))
+    section, strains = plot.section_state(BENT, float(BENT.time[row]))
+    value = BENT.strains(1).value[row]
+    bars = BENT.strains(1).part == "bar"
+    assert strains.get_lines()[1].get_xdata() == pytest.approx(100 * value[bars])
+    faces = [patch.get_facecolor()[0] for patch in section.patches if isinstance(patch, Circle)]
+    buckled = rbsdem.checks.criteria.buckling_strain(SECTION, LAYERED)
+    assert (len(faces), faces.count(0.0)) == (8, int((value[bars] > buckled).sum()))
+    assert 0 < faces.count(0.0) < 8
 
 
 def test_energies_that_stay_zero_are_left_out():
-    ax = plot.energy(shaken())
-    texts = [text.get_text() for text in ax.get_legend().get_texts()]
+    texts = [text.get_text() for text in plot.energy(shaken()).get_legend().get_texts()]
     assert texts == ["input", "kinetic", "springs", "axial load and weight"]
-    assert ax.get_lines()[0].get_ydata()[-1] == pytest.approx(1e-3 * shaken().energy["input"][-1])
 
 
 def test_profile_is_that_of_the_bodies():
     """The top has its drift; the moment falls in a straight line where nothing acts in between."""
     result = rbsdem.cyclic(shaken().column, displacement=[0.0, 0.01])
-    drift, shear, moment = plot.profile(result)
-    heights, drifts = drift.get_lines()[0].get_ydata(), drift.get_lines()[0].get_xdata()
-    assert (heights[-1], drifts[-1]) == (pytest.approx(1.6), pytest.approx(100 * 0.01 / 1.6))
-    assert shear.get_lines()[0].get_xdata() == pytest.approx(1e-3 * result.force[-1], rel=0.02)
-    at = moment.get_lines()[0]
-    assert at.get_xdata()[0] == pytest.approx(1e-3 * result.base_moment[-1])
-    assert at.get_xdata()[-1] == 0
-    with pytest.raises(rbsdem.InputError, match="outside"):
-        plot.profile(result, [7.0])
-    with pytest.raises(rbsdem.InputError, match="one to"):
-        plot.profile(result, [0.0] * 9)
+    drift, sheared, moment = plot.profile(result)
+    at = drift.get_lines()[0].get_xydata()[-1]
+    assert at == pytest.approx([100 * 0.01 / 1.6, 1.6])
+    assert sheared.get_lines()[0].get_xdata() == pytest.approx(1e-3 * result.force[-1], rel=0.02)
+    found = moment.get_lines()[0].get_xdata()
+    assert found[[0, -1]] == pytest.approx([1e-3 * result.base_moment[-1], 0.0])
 
 
-def test_views_of_a_response_keep_the_axes_of_the_caller():
-    axes = plt.subplots(1, 3)[1]
-    result = shaken()
-    assert plot.profile(result, axes=axes) == list(axes)
-    assert plot.history(result, ax=axes[0], color="red").get_lines()[-1].get_color() != "black"
-    assert plot.energy(result, ax=axes[1]) is axes[1]
-    with pytest.raises(rbsdem.InputError, match="three"):
-        plot.profile(result, axes=axes[:2])
+def test_history_of_a_path_and_of_forces():
+    assert plot.history(RESULT).get_xlabel() == "Point of the path"
+    ax = plot.history(shaken(), "base_shear")
+    assert ax.get_ylabel() == "Base shear (kN)"
+    assert ax.get_lines()[0].get_ydata() == pytest.approx(1e-3 * shaken().base_shear)
+
+
+def test_records_as_tables():
+    """In mm, kN and per cent, with the words of the record."""
+    values = codes.code_values(SECTION, 1.6, 1.2e6)
+    states, found = BENT.limit_states(), rbsdem.compare(RESULT, TEST)
+    for record, words in (
+        (values, ["yield.shear", "False", f"{1e-3 * values['yield.shear']:.3g}"]),
+        (codes.compare(values, BENT), ["strength_loss", "ASCE 41"]),
+        (states, ["first_yield", "Goodnight", f"{1e3 * states['first_yield'].displacement:.3g}"]),
+        (found, ["Test peak force", f"{1e-3 * found.test_cycles.peak_force[0]:.3g}"]),
+        (RESULT, ["Displacement"]),
+    ):
+        shown = printed(record)
+        for word in words:
+            assert word in shown
+    assert list(states.to_frame()["name"]) == states.names()
+    assert list(values.to_frame()["name"]) == values.names()

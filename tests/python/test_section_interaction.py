@@ -33,7 +33,6 @@ ROUND = rbsdem.CircularSection(
     spiral=rbsdem.Spiral(0.01, 0.08, STEEL),
     **PLAIN,
 )
-BARE = rbsdem.RectangularSection(0.3, 0.3, rbsdem.Concrete(3e7))
 
 
 # Neutral axis [mm], axial load [kN], moment [kN m] by the program concreteproperties 0.7.0.
@@ -223,15 +222,3 @@ def test_utilisation():
     assert diagram.utilisation([2e7, -1e7], [0.0, 1.0]).tolist() == [math.inf, math.inf]
     nominal = diagram.utilisation([0.0, 1e6], [1e5, 1e5], design=False)
     assert nominal == pytest.approx(1e5 / diagram.moment_at([0.0, 1e6]))
-
-
-def test_figure_shows_both_strengths_and_the_demand():
-    diagram = rbsdem.section.interaction(SQUARE, "ec2")
-    ax = rbsdem.plot.interaction(diagram, demand=[(1e6, -2e5)])
-    nominal, design, demand = ax.get_lines()[:3]
-    assert nominal.get_ydata()[-1] == pytest.approx(1e-3 * diagram.axial_load[-1])
-    assert design.get_xdata().max() == pytest.approx(1e-3 * diagram.design_moment.max())
-    assert demand.get_xydata()[0] == pytest.approx([200.0, 1000.0])
-    rbsdem.plot.interaction(rbsdem.section.interaction(SQUARE, "aci318"), ax=ax)
-    assert ax.get_xlim()[1] > 1e-3 * diagram.moment.max()
-    plt.close(ax.figure)

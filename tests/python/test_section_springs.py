@@ -6,31 +6,22 @@ import dataclasses
 import pickle
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import InputError, Layout, RectangularSection
+from rbsdem import InputError
 from rbsdem.errors import AccuracyWarning
 from rbsdem.section.paper import KEYS, PaperSection, paper_columns, paper_sections
 from rbsdem.section.paper_springs import SectionSprings
 
-mpl.use("Agg")
-
 # By an independent program with the same laws and rules (not part of the project): K_c [N m/rad],
-# D_c [rad], K_y, D_y, K_u, B_1; shear K_y [N/m], D_y [m], K_u.
+# D_c [rad], K_y, D_y, K_u, B_1.
 REFERENCE = {
     "soesianawati_1": (2.5108e8, 3.0723e-4, 7.2997e7, 2.7202e-3, 7.3730e6, 0.26373),
     "tanaka_park_1": (1.6605e8, 4.4627e-4, 4.3916e7, 4.4219e-3, 4.0341e6, 0.33141),
     "tanaka_park_5": (6.0637e8, 2.4026e-4, 1.4567e8, 2.9170e-3, 1.4838e7, 0.23938),
     "zahn_7": (2.1163e8, 4.3067e-4, 6.7329e7, 3.0846e-3, 9.1183e6, 0.37334),
-}
-REFERENCE_SHEAR = {
-    "soesianawati_1": (7.0806e8, 1.2895e-4, 1.8737e7),
-    "tanaka_park_1": (5.6768e8, 1.5171e-4, 4.0512e7),
-    "tanaka_park_5": (1.1286e9, 1.4929e-4, 4.7981e7),
-    "zahn_7": (5.8831e8, 1.7618e-4, 3.5179e7),
 }
 
 
@@ -41,16 +32,19 @@ def of_paper(paper: PaperSection, **options: Any) -> SectionSprings:
 
 @pytest.mark.parametrize("key", KEYS)
 def test_flexure_agrees_with_the_other_program(key):
-    f = of_paper(paper_sections()[key]).flexure
+    """Its initial stiffness is E_c I/l_p with (E_s/E_c - 1) A_s y^2, within 3 per cent."""
+    paper = paper_sections()[key]
+    springs, section = of_paper(paper), paper.section
+    f = springs.flexure
     assert (f.k_c, f.d_c, f.k_y, f.d_y, f.k_u, f.b1) == pytest.approx(REFERENCE[key], rel=0.005)
-    assert f.b0 == 0.4
-    assert f.inner == "kc"
-
-
-@pytest.mark.parametrize("key", KEYS)
-def test_shear_agrees_with_the_other_program(key):
-    v = of_paper(paper_sections()[key]).shear
-    assert (v.k, v.d_y, v.k_post) == pytest.approx(REFERENCE_SHEAR[key], rel=0.03)
+    assert (f.b0, f.inner) == (0.4, "kc")
+    ec = section.concrete_law["ec"]
+    inertia = section.inertia + sum((200e9 / ec - 1) * a * y**2 for y, a, _ in section.bars)
+    assert f.k_c == pytest.approx(ec * inertia / springs.hinge_length, rel=0.03)
+    assert springs.hinge_length == pytest.approx(
+        0.08 * paper.length
+        + 0.022e-6 * paper.longitudinal_yield_stress * paper.longitudinal_diameter
+    )
 
 
 @pytest.mark.parametrize("key", KEYS)
@@ -69,22 +63,6 @@ def test_bands_of_table_3(key):
     assert 0.80 < v.k / s.k < 1.20
     assert 0.83 < v.d_y / s.d_y < 1.17
     assert 0.95 < v.k * v.d_y / (s.k * s.d_y) < 1.05
-
-
-@pytest.mark.parametrize("key", KEYS)
-def test_initial_stiffness_is_that_of_the_transformed_section(key):
-    """E_c I/l_p with (E_s/E_c - 1) A_s y^2, within 3 per cent."""
-    paper = paper_sections()[key]
-    section = paper.section
-    springs = of_paper(paper)
-    ec = section.concrete_law["ec"]
-    inertia = section.width * section.depth**3 / 12
-    inertia += sum((200e9 / ec - 1) * area * y**2 for y, area, _ in section.bars)
-    assert springs.flexure.k_c == pytest.approx(ec * inertia / springs.hinge_length, rel=0.03)
-    assert springs.hinge_length == pytest.approx(
-        0.08 * paper.length
-        + 0.022e-6 * paper.longitudinal_yield_stress * paper.longitudinal_diameter
-    )
 
 
 def test_the_line_goes_through_the_events():
@@ -120,31 +98,9 @@ def test_options_of_the_fit():
     assert other.b1 == pytest.approx((m_y[0] + f.k_c * f.d_c) / (f.d_c + f.d_y) / f.k_c)
     assert of_paper(paper, b1=0.5, shear="none").flexure.b1 == 0.5
     closed = of_paper(paper, shear="closed")
-    assert closed.shear.k == pytest.approx(plain_shear_stiffness(paper), rel=1e-12)
+    k = 0.48 * 0.5 * paper.section.concrete_law["ec"] * paper.gross_area / paper.length
+    assert closed.shear.k == pytest.approx(k, rel=1e-12)
     assert closed.shear.k_post == 0.0
-
-
-def plain_shear_stiffness(paper) -> float:
-    """0.48 (E_c/2) A/L."""
-    return 0.48 * 0.5 * paper.section.concrete_law["ec"] * paper.gross_area / paper.length
-
-
-def test_ranges_of_the_rules():
-    """The rules of yield, each against table 3 over the four columns."""
-    for rule, factor, low, high in (
-        ("A", 1.0, (1.00, 1.04, 0.92), (1.17, 1.19, 1.16)),
-        ("A", 0.95, (1.00, 0.99, 0.85), (1.17, 1.13, 1.08)),
-        ("B", 1.0, (0.89, 1.04, 1.01), (1.08, 1.19, 1.33)),
-        ("B", 0.95, (0.89, 0.99, 0.94), (1.08, 1.13, 1.23)),
-    ):
-        ratios = []
-        for key, paper in paper_sections().items():
-            f = of_paper(paper, yield_rule=rule, moment_factor=factor, shear="none").flexure
-            m = paper_columns()[key].flexure
-            m_y = [s.k_c * s.d_c + s.k_y * (s.d_y - s.d_c) for s in (f, m)]
-            ratios.append((f.d_y / m.d_y, m_y[0] / m_y[1], f.k_y / m.k_y))
-        np.testing.assert_allclose(np.min(ratios, axis=0), low, atol=0.006)
-        np.testing.assert_allclose(np.max(ratios, axis=0), high, atol=0.006)
 
 
 def test_a_falling_moment_is_told():
@@ -153,37 +109,9 @@ def test_a_falling_moment_is_told():
         springs = of_paper(paper, ultimate="drop", shear="none")
     assert springs.flexure.k_u == 0.0
     assert "K_u = -" in springs.report
-
-
-def test_report_names_what_was_found():
-    report = of_paper(paper_sections()["zahn_7"]).report
+    report = of_paper(paper).report
     for words in ("400 x 400 mm", "12 bars", "cracking", "yielding", "ultimate", "K_c", "hinge"):
         assert words in report
-
-
-def test_paper_sections_are_those_of_table_2():
-    for paper in paper_sections().values():
-        section = paper.section
-        assert isinstance(section, RectangularSection)
-        assert len(section.bars) == paper.longitudinal_number
-        assert section.steel_ratio == pytest.approx(paper.longitudinal_ratio, rel=1e-4)
-        assert isinstance(section.layout, Layout)
-
-
-def test_columns_with_computed_springs_run():
-    """From the drawing of the section to a loop."""
-    paper = paper_sections()["soesianawati_1"]
-    springs = of_paper(paper)
-    column = rbsdem.Column(
-        paper.length,
-        paper.mass,
-        springs.shear,
-        springs.flexure,
-        axial_load=paper.axial_load,
-        kinematics="pdelta",
-    )
-    result = rbsdem.cyclic(column, displacement=[0.0, 0.016, -0.016, 0.032])
-    assert 1.4e5 < result.force.max() < 2.5e5
 
 
 SECTION = paper_sections()["soesianawati_1"].section
@@ -225,23 +153,6 @@ def test_bodies_share_the_springs_of_a_section_as_theory_says():
     np.testing.assert_allclose(strength, strength[0], rtol=1e-6)
 
 
-def test_bodies_share_the_layered_model():
-    height = 1.6
-    several = [
-        without_load_layers(rbsdem.section.column(SECTION, height, axial_load=LOAD, n=n))
-        for n in (2, 3, 8)
-    ]
-    stiffness = [tip_stiffness(column) for column in several]
-    # The joints above the hinge are as flexible as the column there, but for the slip of joints
-    # that stand for none: each a thousandth of that of the foot.
-    np.testing.assert_allclose(stiffness, stiffness[0], rtol=1e-3)
-
-
-def without_load_layers(column: rbsdem.Column) -> rbsdem.Column:
-    """The layers keep their axial load, but it does no second-order work."""
-    return dataclasses.replace(column, kinematics="small")
-
-
 @pytest.mark.parametrize("kind", ["shear", "flexure"])
 def test_springs_of_a_whole_column_are_refused_in_several_joints(kind):
     springs = rbsdem.section.springs(SECTION, 1.6, LOAD)
@@ -265,20 +176,3 @@ def test_an_axial_load_in_kn_is_noticed():
     ):
         with pytest.warns(AccuracyWarning, match="744 N is only .* of f'c A; loads are in N"):
             call()
-
-
-def test_figures():
-    import matplotlib.pyplot as plt  # noqa: PLC0415
-
-    paper = paper_sections()["soesianawati_1"]
-    ax = rbsdem.plot.section(paper.section)
-    assert len(ax.patches) == 1 + 2 + 4 + 12  # concrete, hoop, legs, bars
-    ax = rbsdem.plot.moment_curvature(rbsdem.section.diagram(paper.section, paper.axial_load))
-    assert ax.get_xlabel() == "Curvature (mrad/m)"
-    assert [text.get_text() for text in ax.get_legend().get_texts()] == [
-        "Cracking",
-        "Yielding",
-        "Peak",
-        "Ultimate",
-    ]
-    plt.close("all")

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from samples import SPECIMEN, write_history, write_table
 
 import rbsdem
 from rbsdem import peer
@@ -17,27 +18,10 @@ from rbsdem.section.strength import shear_strength_mcft, shear_strength_sezen
 from rbsdem.springs import Elastic
 
 # Slender and well tied; the same squat, with few ties and much steel.
-SLENDER = peer.Specimen(
-    name="Slender",
-    section="rectangular",
-    length=2.0,
-    width=0.4,
-    depth=0.4,
-    concrete_strength=30e6,
-    axial_load=700e3,
-    longitudinal_number=8,
-    cover=0.025,
-    corner_diameter=0.016,
-    intermediate_diameter=0.016,
-    intermediate_perpendicular=1,
-    intermediate_parallel=1,
-    corner_yield_stress=450e6,
-    longitudinal_ultimate_stress=620e6,
-    transverse_yield_stress=400e6,
-    transverse_diameter=0.010,
-    transverse_spacing=0.08,
-    shear_legs=3.0,
-)
+SLENDER = replace(
+    SPECIMEN, name="Slender", length=2.0, concrete_strength=30e6, axial_load=700e3, cover=0.025,
+    corner_diameter=0.016, intermediate_diameter=0.016, longitudinal_ultimate_stress=620e6,
+)  # fmt: skip
 SQUAT = replace(
     SLENDER, name="Squat", length=0.8, corner_diameter=0.025, intermediate_diameter=0.025,
     transverse_diameter=0.006, transverse_spacing=0.2, shear_legs=2.0,
@@ -147,32 +131,6 @@ def test_a_squat_column_fails_in_shear():
     assert np.trapezoid(force, d) < 0.5 * np.trapezoid(strong, d)
 
 
-@pytest.mark.parametrize("specimen", [SLENDER, SQUAT], ids=lambda s: s.name)
-def test_the_number_of_bodies_does_not_matter(specimen):
-    d = cycles(specimen, 0.005, 0.015)
-    two, six = (
-        rbsdem.cyclic(peer.column(specimen, "layered", n=n), displacement=d).force for n in (2, 6)
-    )
-    assert np.max(np.abs(two - six)) < 0.01 * np.max(np.abs(two))
-
-
-def test_parameters_of_the_shear_spring_can_be_calibrated():
-    def values(column: rbsdem.section.layered.LayeredColumn) -> tuple[float, float]:
-        given = column.recipe.parameters
-        return given.shear_strength, given.steel_strength
-
-    column = peer.column(SQUAT, "layered")
-    found = column.parameters
-    assert found["shear_strength"].value == parameters().shear_strength
-    changed = column.with_parameters(shear_strength=1.5, steel_strength=1.2)
-    at_one = column.joints("shear")[0].f_y / parameters().shear_strength
-    assert changed.shear[0].f_y == pytest.approx(1.5 * at_one)
-    assert values(changed) == (1.5, 1.2)
-    # Both stay as the next ones change.
-    again = changed.with_parameters(r0=5.0)
-    assert values(again) == (1.5, 1.2)
-
-
 # ---- where displacement and axial load act -------------------------------------------------------
 
 
@@ -191,27 +149,19 @@ def test_axial_load_above_the_top(model):
 @pytest.mark.parametrize("measured_mm", [1500, 2000])
 def test_displacement_measured_below_the_top(tmp_path, measured_mm):
     """A test that the model made itself: predicted without error wherever it was measured."""
-    (tmp_path / "specimens.csv").write_text(
-        "name,file,section,L_mm,Lmeas_mm,b_mm,h_mm,cover_mm,fc_MPa,axial_kN,n_long,db_corner_mm,"
-        "n_interm_perp,n_interm_par,fy_long_MPa,fu_long_MPa,db_trans_mm,s_trans_mm,fy_trans_MPa,"
-        "legs_Nv,pdelta_code,Ltop_mm\n"
-        f"Own,own.csv,rectangular,2000,{measured_mm},400,400,25,30,700,8,16,1,1,450,620,10,80,400,"
-        "3,3,250\n"
+    (specimen,) = write_table(
+        tmp_path,
+        [{"Lmeas_mm": f"{measured_mm}", "L_mm": "2000", "pdelta_code": "3", "Ltop_mm": "250"}],
     )
-    (tmp_path / "own.csv").write_text("displacement_mm,force_kN\n0,0\n1,1\n")
-    (specimen,) = peer.read_specimens(tmp_path)
     top = cycles(specimen, 0.005, 0.01, 0.02)
     net = rbsdem.cyclic(peer.column(specimen, "layered"), displacement=top).force
     # Code 3: the hinge of the ram at L + L_top, its other end at the foot.
-    force = net + 700e3 * np.sin(np.arctan(top / 2.0))
-    rows = np.column_stack((top * measured_mm / 2000 * 1e3, force / 1e3))
-    np.savetxt(
-        tmp_path / "own.csv", rows, delimiter=",", header="displacement_mm,force_kN", comments=""
-    )
+    force = net + 1.2e6 * np.sin(np.arctan(top / 2.0))
+    write_history(tmp_path / "a.csv", top * measured_mm / 2000, force)
     test = specimen.test()
     assert test.displacement == pytest.approx(top, rel=1e-12, abs=1e-15)
     assert peer.predict_one(specimen, "layered").nrmse < 1e-9
-    assert test.base_moment == pytest.approx(net * 2.0 + 700e3 * 1.125 * top)
+    assert test.base_moment == pytest.approx(net * 2.0 + 1.2e6 * 1.125 * top)
 
 
 # ---- the database, where it is at hand -----------------------------------------------------------

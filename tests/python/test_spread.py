@@ -8,6 +8,7 @@ from statistics import NormalDist
 
 import numpy as np
 import pytest
+from samples import SECTION
 
 import rbsdem
 from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties
@@ -23,14 +24,6 @@ from rbsdem.section.spread import (
 )
 from rbsdem.solve.protocol import protocol
 
-SECTION = RectangularSection(
-    0.4,
-    0.4,
-    Concrete(40e6),
-    layout=Layout(8, 0.02, Steel(450e6, 650e6)),
-    ties=Ties(0.01, 0.08, Steel(400e6), legs=3),
-    cover=0.02,
-)
 PATH = 1.6 * protocol([0.005, 0.01, 0.02], cycles=2)
 NONE = Scatter(
     strength=(0.0, 0.0),
@@ -172,12 +165,6 @@ def test_the_parameters_have_bands() -> None:
     assert np.all(found.lower < found.force)
     assert np.all(found.force < found.upper)
     assert 0.1 < found.width < 0.6
-
-
-def test_figure() -> None:
-    found = rbsdem.section.spread(column(), PATH, scatter=NONE)
-    ax = rbsdem.plot.spread(found, test=found)
-    assert (len(ax.lines), len(ax.collections)) == (3, 1)
 
 
 def test_near_the_shear_strength_the_band_is_wider() -> None:
