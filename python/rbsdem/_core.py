@@ -272,7 +272,7 @@ Run = tuple[dict[str, Array], Array | None, dict[str, Any], SolveError | None, s
 
 def check_column(column: Statement) -> list[str]:
     """Raise `InputError` for everything wrong with a column; return notes on what is allowed."""
-    return _evaluate("check_column", column).text.splitlines()
+    return _evaluate("check_structure", column).text.splitlines()
 
 
 def to_namelist(statement: Statement) -> str:

@@ -10,7 +10,6 @@ module rbs_app_commands
    use rbs_base_text, only: to_text
    use rbs_case_key_list, only: keys_as_json, keys_as_table
    use rbs_case_text_buffer, only: text_buffer
-   use rbs_structure_column_column, only: column_type
    use rbs_io_case_file, only: case_history, load_case
    use rbs_io_csv, only: csv_recorder
    use rbs_io_namelist, only: read_case
@@ -18,14 +17,17 @@ module rbs_app_commands
    use rbs_io_state_file, only: read_state, write_state
    use rbs_io_posix, only: is_standard_output, same_file, standard_input
    use rbs_output_notes, only: drift_note, rotation_note
-   use rbs_structure_column_column_notes, only: column_notes
+   use rbs_output_structure_notes, only: structure_notes
    use rbs_output_channels, only: new_channels
    use rbs_output_summary, only: figure_type
-   use rbs_solve_make_column, only: make_column
+   use rbs_solve_begin_make_structure, only: make_structure
+   use rbs_solve_end_state, only: end_state
    use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_solve_static_run_static, only: run_static
    use rbs_solve_task, only: task_type
+   use rbs_structure_frame_frame, only: frame_type
+   use rbs_structure_structure, only: structure_type
    use rbs_solve_time_effort, only: long_run_note
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
@@ -46,7 +48,7 @@ module rbs_app_commands
       character(len=:), allocatable :: path
       type(case_record) :: case
       type(case_history) :: history
-      class(column_type), allocatable :: column
+      class(structure_type), allocatable :: structure
       type(csv_recorder) :: recorder
       type(task_type) :: task
    end type run_type
@@ -85,8 +87,8 @@ contains
       ! Among rows on standard output a summary would be in the way.
       if (.not. (quiet .or. is_standard_output(file))) then
          call print_summary(run, error)
-         call column_notes(run%case%column, notes)
-         call rotation_note(run%column, run%task%summary, notes)
+         call structure_notes(run%case, notes)
+         call rotation_note(run%structure, run%task%summary, notes)
          call print_notes(notes, error)
       end if
       if (.not. allocated(error)) call report_end(run, error)
@@ -137,19 +139,19 @@ contains
       if (allocated(error)) return
       associate (case => run%case)
          if (case%analysis%dynamic()) then
-            call plan_dynamic(run%column, case%analysis, run%history%time, run%history%loads, plan, error)
+            call plan_dynamic(run%structure, case%analysis, run%history%time, run%history%loads, plan, error)
             if (allocated(error)) return
          end if
          if (quiet) return
          call say(path//': no errors', error)
          if (plan%reason /= '') call say('method: '//method_text(plan%method, plan%reason), error)
-         call column_notes(case%column, notes)
+         call structure_notes(case, notes)
          if (case%analysis%dynamic()) then
-            call long_run_note(run%column, plan, text)
+            call long_run_note(run%structure, plan, text)
             if (text /= '') call notes%add(text)
          else if (all(case%loading(:case%loadings)%drive /= 'force') .and. &
                   case%column%kinematics /= 'finite') then
-            call drift_note(maxval(abs(run%history%target)), case%column%height, notes)
+            call drift_note(maxval(abs(run%history%target)), case%height(), notes)
          end if
       end associate
       call print_notes(notes, error)
@@ -163,7 +165,8 @@ contains
       logical, intent(in) :: with_matrices
       type(error_type), allocatable, intent(out) :: error
       type(case_record) :: case
-      class(column_type), allocatable :: column
+      class(structure_type), allocatable :: structure
+      type(end_state) :: before
       type(modes_type) :: modes
       type(matrices_type) :: matrices
       type(message_list) :: messages
@@ -175,14 +178,16 @@ contains
       call read_case(path, case, messages, understood)
       call messages%raise(error)
       if (allocated(error)) return
-      call make_column(case%column, column, error)
+      call make_structure(case, structure, before, error)
       if (allocated(error)) return
       if (count > 0) then
-         call find_modes(column, modes, error, count)
+         call find_modes(structure, modes, error, count)
       else
-         call find_modes(column, modes, error)
+         call find_modes(structure, modes, error)
       end if
-      if (.not. allocated(error) .and. with_matrices) call assemble_matrices(column, .false., matrices, error)
+      if (.not. allocated(error) .and. with_matrices) then
+         call assemble_matrices(structure, .false., matrices, error)
+      end if
       if (allocated(error)) return
       call say('mode,frequency_Hz,period_s,omega_rad/s', error)
       do i = 1, size(modes%omega)
@@ -252,7 +257,9 @@ contains
 
       run%path = path
       call load_case(path, run%case, run%history, error)
-      if (.not. allocated(error)) call make_column(run%case%column, run%column, error)
+      if (.not. allocated(error)) then
+         call make_structure(run%case, run%structure, run%task%before, error)
+      end if
    end subroutine prepare
 
    !> Solve the case and write its rows to a csv.
@@ -268,24 +275,26 @@ contains
       character(len=:), allocatable :: note
 
       plan%method = 'static'
-      associate (case => run%case, column => run%column, history => run%history, recorder => run%recorder, &
+      associate (case => run%case, structure => run%structure, history => run%history, &
+                 recorder => run%recorder, &
                  task => run%task)
          if (allocated(case%analysis%initial)) then
+            task%before = end_state()
             call read_state(beside(run%path, case%analysis%initial), task%before%stream, error)
-            if (.not. allocated(error)) call task%before%check(column, error)
+            if (.not. allocated(error)) call task%before%check(structure, error)
             if (allocated(error)) return
          end if
          if (case%analysis%dynamic()) then
-            call plan_dynamic(column, case%analysis, history%time, history%loads, plan, error)
+            call plan_dynamic(structure, case%analysis, history%time, history%loads, plan, error)
             if (allocated(error)) return
-            call long_run_note(column, plan, note)
+            call long_run_note(structure, plan, note)
             if (.not. (quiet .or. note == '')) then
                write (error_unit, '(a)') 'rbsdem: note: '//note
                flush (error_unit)
             end if
          end if
          recorder%units = case%units%system()
-         recorder%channels = new_channels(column, case%analysis%dynamic(), case%output%openings, &
+         recorder%channels = new_channels(structure, case%analysis%dynamic(), case%output%openings, &
                                           case%output%motion)
          call recorder%open(file, error)
          if (allocated(error)) return
@@ -299,9 +308,10 @@ contains
          task%collapse_drift = case%analysis%collapse_drift
          task%keeps_end = .true.
          if (case%analysis%dynamic()) then
-            call run_dynamic(column, case%analysis, plan, history%time, history%loads, at_rest, task, error)
+            call run_dynamic(structure, case%analysis, plan, history%time, history%loads, at_rest, task, &
+                             error)
          else
-            call run_static(column, any(case%loading(:case%loadings)%drive == 'force'), history%target, &
+            call run_static(structure, any(case%loading(:case%loadings)%drive == 'force'), history%target, &
                             task, error, history%axial_load)
          end if
          call progress%finish()
@@ -325,16 +335,18 @@ contains
       !> The method that is used, also where the program chooses it
       character(len=*), intent(in) :: method
       character(len=600) :: lines(3)
-      character(len=:), allocatable :: units
+      character(len=:), allocatable :: kinematics, units
 
       units = 'SI'
+      kinematics = trim(case%column%kinematics)
+      if (allocated(case%frame)) kinematics = trim(case%frame%kinematics)
       if (case%units%force /= 'N' .or. case%units%length /= 'm') then
          units = trim(case%units%force)//', '//trim(case%units%length)//', else SI'
       end if
       lines(1) = 'rbsdem '//version
       lines(2) = 'case: '//case%title
       lines(3) = 'units: '//units//', in the names of the columns; method: '//trim(method)// &
-                 ', kinematics: '//trim(case%column%kinematics)
+                 ', kinematics: '//kinematics
    end function header
 
    !> The rows must not go into a file that the case was read from.

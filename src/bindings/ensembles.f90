@@ -7,9 +7,10 @@ module rbs_bindings_ensembles
    use rbs_base_text, only: to_text
    use rbs_bindings_exchange, only: request_type, answer_type
    use rbs_bindings_runs, only: choose_method, watches_of
-   use rbs_bindings_statements, only: column_from_statements
+   use rbs_bindings_statements, only: structure_from_statements
    use rbs_case_case_record, only: case_record
    use rbs_case_text_buffer, only: text_buffer
+   use rbs_solve_end_state, only: end_state
    use rbs_solve_ensemble_block, only: plan_column, run_block
    use rbs_solve_ensemble_run_result, only: run_result, measure_count
    use rbs_solve_ensemble_ensemble_input, only: ensemble_column, ensemble_motion, run_type
@@ -133,6 +134,7 @@ contains
       type(ensemble_column), intent(inout) :: column
       type(error_type), allocatable, intent(out) :: error
       type(case_record) :: case
+      type(end_state) :: begin
       type(loads_type) :: loads
       integer :: next(4)
 
@@ -140,10 +142,11 @@ contains
                  before => request%array('before'))
          next(1) = at(1) + index(request%statement(at(1):), after)
          next(2:) = at(2:) + nint(counts(3*place - 2:3*place)*[1, 6, 1])
-         call column_from_statements(request%statement(at(1):next(1) - 2), &
-                                     request%number(at(2):next(2) - 1), column%column, case, error)
+         call structure_from_statements(request%statement(at(1):next(1) - 2), &
+                                     request%number(at(2):next(2) - 1), column%structure, begin, case, error)
          column%watch = watches_of(watches(at(3):next(3) - 1))
          if (allocated(column%before)) deallocate (column%before)
+         if (begin%is_given()) column%before = begin%stream%value(:begin%stream%count)
          if (next(4) > at(4)) column%before = before(at(4):next(4) - 1)
       end associate
       at = next

@@ -8,24 +8,26 @@ module rbs_bindings_evaluate
    use rbs_bindings_files, only: case_from_file, case_to_text, test_from_file
    use rbs_bindings_runs, only: run_analysis
    use rbs_bindings_sections, only: evaluate_section
-   use rbs_bindings_statements, only: case_from_statements, column_from_statements, spring_from_statements
+   use rbs_bindings_statements, only: case_from_statements, structure_from_statements, spring_from_statements
    use rbs_case_case_record, only: case_record
    use rbs_case_key_list, only: keys_as_json
    use rbs_case_methods, only: method_rows
    use rbs_case_text_buffer, only: text_buffer
-   use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: follow_path
    use rbs_loading_named_protocols, only: named_protocol
    use rbs_loading_protocol, only: protocol_values
    use rbs_loading_spectrum, only: response_spectrum
-   use rbs_structure_column_column_notes, only: column_notes
+   use rbs_output_structure_notes, only: structure_notes
    use rbs_output_channels, only: channel_units
    use rbs_section_flexural_spring, only: spring_figures
    use rbs_section_section_figures, only: point_values, profile_values, section_figures, shear_values
    use rbs_solve_ensemble_run_result, only: measure_names
+   use rbs_solve_end_state, only: end_state
    use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
    use rbs_solve_modal_modes, only: modes_type, find_modes
+   use rbs_structure_frame_frame, only: frame_type
+   use rbs_structure_structure, only: structure_type, horizontal
    use rbs_version, only: version
    implicit none
    private
@@ -53,8 +55,8 @@ contains
          call name_quantities(answer)
       case ('check_spring', 'spring_response')
          call evaluate_spring(request, answer)
-      case ('check_column', 'modes', 'matrices')
-         call evaluate_column(request, answer)
+      case ('check_structure', 'frame_parts', 'modes', 'matrices')
+         call evaluate_structure(request, answer)
       case ('cyclic', 'time_history')
          call run_analysis(request, answer)
       case ('plan_ensemble')
@@ -105,45 +107,112 @@ contains
       call follow_path(spring, path, answer%value)
    end subroutine evaluate_spring
 
-   !> Notes on a column that is allowed, a line each; its modes; or its matrices.
-   subroutine evaluate_column(request, answer)
+   !> Notes on a structure that is allowed, a line each; its parts; its modes; or its matrices.
+   subroutine evaluate_structure(request, answer)
       type(request_type), intent(in) :: request
       type(answer_type), intent(inout) :: answer
       type(case_record) :: case
-      class(column_type), allocatable :: column
+      class(structure_type), allocatable :: structure
+      type(end_state) :: before
       type(message_list) :: notes
+
+      call structure_from_statements(request%statement, request%number, structure, before, case, answer%error)
+      if (allocated(answer%error)) return
+      select case (request%what)
+      case ('check_structure')
+         call structure_notes(case, notes)
+         if (notes%count > 0) answer%text = notes%text
+      case ('frame_parts')
+         select type (structure)
+         class is (frame_type)
+            call tell_parts(structure, answer)
+         end select
+      case ('modes')
+         call tell_modes(request, structure, answer)
+      case default
+         call tell_matrices(structure, request%wants('paper'), answer)
+      end select
+   end subroutine evaluate_structure
+
+   subroutine tell_modes(request, structure, answer)
+      type(request_type), intent(in) :: request
+      class(structure_type), intent(in) :: structure
+      type(answer_type), intent(inout) :: answer
       type(modes_type) :: modes
+      integer :: i, j
+
+      if (size(request%array('count')) > 0) then
+         call find_modes(structure, modes, answer%error, request%whole('count'))
+      else
+         call find_modes(structure, modes, answer%error)
+      end if
+      if (allocated(answer%error)) return
+      answer%text = trim(modes%warning)
+      answer%value = [modes%stable_step, modes%omega]
+      select type (structure)
+      class is (frame_type)
+         ! Displacements of the nodes, held ones too: along x, upward, rotations; then the mass of each mode.
+         allocate (answer%rows(3*structure%n + 1, size(modes%omega)), source=0.0_c_double)
+         do i = 1, structure%n
+            do j = 1, 3
+               if (structure%number(j, i) == 0) cycle
+               answer%rows((j - 1)*structure%n + i, :) = modes%shapes(structure%number(j, i), :)
+            end do
+         end do
+         do i = 1, size(modes%omega)
+            answer%rows(3*structure%n + 1, i) = structure%work_of(horizontal, modes%shapes(:, i))**2
+         end do
+      class default
+         answer%rows = modes%shapes
+      end select
+   end subroutine tell_modes
+
+   !> Names of nodes, of members and of the springs of members ('C-1-1 flexure bilinear'), a line each with
+   !> tabs between. Values: for the nodes x, y and floor; for the members numbers of their nodes, compression
+   !> under dead load; for the springs place in the clear length; the total mass along x.
+   subroutine tell_parts(frame, answer)
+      type(frame_type), intent(in) :: frame
+      type(answer_type), intent(inout) :: answer
+      character(len=1), parameter :: tab = achar(9), line = new_line('a')
+      character(len=12), parameter :: kinds(3) = ['shear       ', 'flexure     ', 'axial_spring']
+      type(text_buffer) :: text
+      integer :: i
+
+      do i = 1, frame%n
+         call text%append(trim(frame%node_name(i))//tab)
+      end do
+      call text%append(line)
+      do i = 1, size(frame%element)
+         call text%append(trim(frame%member_name(i))//tab)
+      end do
+      call text%append(line)
+      do i = 1, frame%inside
+         call text%append(trim(frame%place(i)%owner)//' '//trim(kinds(frame%place(i)%kind))//' '// &
+                          trim(frame%spring(i)%rule)//tab)
+      end do
+      answer%text = text%text(:text%length)
+      answer%value = [frame%x, frame%y, real(frame%storey, c_double), &
+                      (real(frame%element(i)%node, c_double), i=1, size(frame%element)), frame%compression, &
+                      frame%spring_place, -sum(frame%pattern(horizontal)%force)]
+   end subroutine tell_parts
+
+   subroutine tell_matrices(structure, paper, answer)
+      class(structure_type), intent(in) :: structure
+      logical, intent(in) :: paper
+      type(answer_type), intent(inout) :: answer
       type(matrices_type) :: matrices
       integer :: i
 
-      call column_from_statements(request%statement, request%number, column, case, answer%error)
+      call assemble_matrices(structure, paper, matrices, answer%error)
       if (allocated(answer%error)) return
-      select case (request%what)
-      case ('check_column')
-         call column_notes(case%column, notes)
-         if (notes%count > 0) answer%text = notes%text
-      case ('modes')
-         if (size(request%array('count')) > 0) then
-            call find_modes(column, modes, answer%error, request%whole('count'))
-         else
-            call find_modes(column, modes, answer%error)
-         end if
-         if (allocated(answer%error)) return
-         answer%text = trim(modes%warning)
-         answer%value = [modes%stable_step, modes%omega]
-         answer%rows = modes%shapes
-      case default
-         call assemble_matrices(column, request%wants('paper'), matrices, answer%error)
-         if (allocated(answer%error)) return
-         answer%text = trim(matrices%unknown(1))
-         do i = 2, size(matrices%unknown)
-            answer%text = answer%text//' '//trim(matrices%unknown(i))
-         end do
-         answer%rows = reshape([transpose(matrices%mass), transpose(matrices%stiffness), &
-                                transpose(matrices%geometric), transpose(matrices%damping)], &
-                               [size(matrices%unknown), 4*size(matrices%unknown)])
-      end select
-   end subroutine evaluate_column
+      answer%text = trim(matrices%unknown(1))
+      do i = 2, size(matrices%unknown)
+         answer%text = answer%text//' '//trim(matrices%unknown(i))
+      end do
+      answer%rows = reshape([transpose(matrices%mass), transpose(matrices%stiffness), &
+                             transpose(matrices%geometric), transpose(matrices%damping)], &
+                            [size(matrices%unknown), 4*size(matrices%unknown)])
+   end subroutine tell_matrices
 
    !> Points of a cyclic protocol, the only loading of a case, in the unit of the amplitudes.
    subroutine make_protocol(request, answer)

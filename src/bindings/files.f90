@@ -5,12 +5,13 @@ module rbs_bindings_files
    use rbs_bindings_statements, only: case_from_statements
    use rbs_case_case_record, only: case_record
    use rbs_case_writer, only: case_text, write_case
-   use rbs_structure_column_column, only: column_type
    use rbs_io_case_file, only: case_history, load_case
    use rbs_io_loading_file, only: read_test
    use rbs_loading_loading_record, only: drive_names
    use rbs_loading_signal, only: signal_type
-   use rbs_solve_make_column, only: make_column
+   use rbs_solve_end_state, only: end_state
+   use rbs_solve_begin_make_structure, only: make_structure
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
@@ -28,12 +29,13 @@ contains
       type(answer_type), intent(inout) :: answer
       type(case_record) :: case
       type(case_history) :: history
-      class(column_type), allocatable :: column
+      class(structure_type), allocatable :: structure
+      type(end_state) :: before
       type(case_text) :: statements
       integer :: place, m
 
       call load_case(path, case, history, answer%error, unloaded=.true.)
-      if (.not. allocated(answer%error)) call make_column(case%column, column, answer%error)
+      if (.not. allocated(answer%error)) call make_structure(case, structure, before, answer%error)
       if (allocated(answer%error)) return
       m = size(history%time)
       allocate (answer%rows(1 + m, 0:drives), source=0.0_c_double)

@@ -7,9 +7,8 @@ module rbs_bindings_runs
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_bindings_exchange, only: request_type, answer_type
-   use rbs_bindings_statements, only: column_from_statements
+   use rbs_bindings_statements, only: structure_from_statements
    use rbs_case_case_record, only: case_record
-   use rbs_structure_column_column, only: column_type
    use rbs_loading_signal, only: signal_type
    use rbs_output_channels, only: new_channels
    use rbs_output_notes, only: rotation_note
@@ -25,6 +24,7 @@ module rbs_bindings_runs
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic
    use rbs_solve_time_sight, only: sight_type, watch_type
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
@@ -34,7 +34,7 @@ module rbs_bindings_runs
    integer, parameter :: long_run = 3
 
    type :: run_type
-      class(column_type), allocatable :: column
+      class(structure_type), allocatable :: structure
       !> Settings of analysis and output
       type(case_record) :: case
       type(array_recorder) :: recorder
@@ -62,10 +62,11 @@ contains
 
       watches => request%array('watches')
       call run%sight%watch_for(watches_of(watches), size(watches)/6)
-      call column_from_statements(request%statement, request%number, run%column, run%case, answer%error)
+      call structure_from_statements(request%statement, request%number, run%structure, run%task%before, &
+                                     run%case, answer%error)
       if (.not. allocated(answer%error)) then
          associate (output => run%case%output)
-            run%recorder%channels = new_channels(run%column, request%what /= 'cyclic', output%openings, &
+            run%recorder%channels = new_channels(run%structure, request%what /= 'cyclic', output%openings, &
                                                  output%motion)
          end associate
          run%task%recorder => run%recorder
@@ -81,7 +82,7 @@ contains
       end if
       note = ''
       if (.not. allocated(answer%error)) then
-         call rotation_note(run%column, run%task%summary, notes)
+         call rotation_note(run%structure, run%task%summary, notes)
          if (notes%count > 0) note = notes%text
       else if (answer%error%code /= analysis_failed) then
          return
@@ -124,7 +125,7 @@ contains
       associate (every => run%case%output%every)
          run%recorder%corners = request%wants('corners')
          run%recorder%expected = kept_rows(size(target), every)
-         call run_static(run%column, request%wants('by_force'), target, run%task, error, &
+         call run_static(run%structure, request%wants('by_force'), target, run%task, error, &
                          request%array('axial_load'))
       end associate
    end subroutine run_cyclic
@@ -188,23 +189,23 @@ contains
       call take_signal(request, 'axial_load', time, loads%axial, error)
       if (.not. allocated(error)) call choose_method(run%case, loads, error)
       if (allocated(error)) return
-      associate (column => run%column, analysis => run%case%analysis, output => run%case%output)
-         call plan_dynamic(column, analysis, time, loads, plan, error)
+      associate (structure => run%structure, analysis => run%case%analysis, output => run%case%output)
+         call plan_dynamic(structure, analysis, time, loads, plan, error)
          if (allocated(error)) return
-         if (.not. request%wants('told') .and. expected_seconds(column, plan) >= patience) then
-            call long_run_note(column, plan, note)
+         if (.not. request%wants('told') .and. expected_seconds(structure, plan) >= patience) then
+            call long_run_note(structure, plan, note)
             call fatal_error(error, long_run, note)
             return
          end if
          ! Deformations, then velocities; none: at rest.
          start => request%array('initial')
          if (size(start) > 0) then
-            initial%deformation = start(:column%unknowns)
-            initial%velocity = start(column%unknowns + 1:)
+            initial%deformation = start(:size(structure%place))
+            initial%velocity = start(size(structure%place) + 1:)
             initial%opening_given = request%wants('opening_given')
          end if
          run%recorder%expected = plan%rows(output%every)
-         call run_dynamic(column, analysis, plan, time, loads, initial, run%task, error, run%sight)
+         call run_dynamic(structure, analysis, plan, time, loads, initial, run%task, error, run%sight)
       end associate
    end subroutine run_time_history
 

@@ -8,15 +8,16 @@ module rbs_bindings_statements
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_case_case_record, only: case_record
    use rbs_case_group_reader, only: group_reader
-   use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_layered_layered_joint, only: check_axial_load
    use rbs_hysteresis_rule, only: rule_type
    use rbs_hysteresis_spring_record, only: spring_record
-   use rbs_solve_make_column, only: make_column
+   use rbs_solve_end_state, only: end_state
+   use rbs_solve_begin_make_structure, only: make_structure
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
-   public :: put_statements, case_from_statements, column_from_statements, spring_from_statements
+   public :: put_statements, case_from_statements, structure_from_statements, spring_from_statements
 
    character(len=1), parameter :: tab = achar(9)
 
@@ -105,17 +106,19 @@ contains
       case = setter%case
    end subroutine case_from_statements
 
-   !> Validate and make a column; the rest of the case is set but not validated.
-   subroutine column_from_statements(text, number, column, case, error)
+   !> Validate and make a structure; the rest of the case is set but not validated.
+   subroutine structure_from_statements(text, number, structure, before, case, error)
       character(len=*), intent(in) :: text
       real(c_double), intent(in) :: number(:)
-      class(column_type), allocatable, intent(out) :: column
+      class(structure_type), allocatable, intent(out) :: structure
+      !> The state that its analyses begin in, see `make_structure`
+      type(end_state), intent(out) :: before
       type(case_record), intent(out) :: case
       type(error_type), allocatable, intent(out) :: error
 
       call case_from_statements(text, number, case, error)
-      if (.not. allocated(error)) call make_column(case%column, column, error)
-   end subroutine column_from_statements
+      if (.not. allocated(error)) call make_structure(case, structure, before, error)
+   end subroutine structure_from_statements
 
    !> Validate a single spring, given as the only one of the group flexure.
    subroutine spring_from_statements(text, number, axial_load, spring, error)

@@ -1,12 +1,15 @@
 !> A whole case: the contents of a namelist file.
 module rbs_case_case_record
    use rbs_base_error, only: message_list
+   use rbs_base_kinds, only: wp
    use rbs_base_key_visitor, only: key_visitor, visited_record
    use rbs_base_units, only: unit_system, unit_named, length_units, force_units, mass_units
    use rbs_case_analysis_record, only: analysis_record, output_record
    use rbs_case_drawing_record, only: drawing_groups, drawing_record
    use rbs_structure_column_column_record, only: column_record
    use rbs_loading_loading_record, only: loading_record
+   use rbs_structure_frame_frame_parts, only: frame_parts
+   use rbs_structure_frame_frame_record, only: frame_groups, frame_record
    implicit none
    private
 
@@ -29,6 +32,8 @@ module rbs_case_case_record
       character(len=:), allocatable :: title
       type(units_record) :: units
       type(column_record) :: column
+      !> A frame in place of the column, whose damping it has then
+      type(frame_record), allocatable :: frame
       !> What its springs were drawn from, if that is known
       type(drawing_record), allocatable :: drawing
       !> Number of loadings
@@ -42,6 +47,7 @@ module rbs_case_case_record
       procedure :: visit_group
       procedure :: settle
       procedure :: validate
+      procedure :: height
    end type case_record
 
 contains
@@ -52,6 +58,10 @@ contains
       character(len=*), intent(in) :: group
 
       if (group == 'loading') self%loadings = self%loadings + 1
+      if (any(frame_groups == group)) then
+         if (.not. allocated(self%frame)) allocate (self%frame)
+         call self%frame%open_group(group)
+      end if
       if (all(drawing_groups /= group)) return
       if (.not. allocated(self%drawing)) allocate (self%drawing)
       call self%drawing%open_group(group)
@@ -84,7 +94,11 @@ contains
       case ('output')
          call self%output%visit(v)
       case default
-         call self%drawing%visit_group(group, v, number)
+         if (any(frame_groups == group)) then
+            call self%frame%visit_group(group, v, number)
+         else
+            call self%drawing%visit_group(group, v, number)
+         end if
       end select
    end subroutine visit_group
 
@@ -160,7 +174,11 @@ contains
       ! Numbers cannot be judged if their units are unknown.
       if (messages%count > known) return
       call self%settle()
-      call self%column%validate(messages)
+      if (allocated(self%frame)) then
+         call validate_frame(self, messages)
+      else
+         call self%column%validate(messages)
+      end if
       if (allocated(self%drawing)) call self%drawing%validate(messages)
       if (self%analysis%method == '') then
          call messages%add("analysis: the loading has times, so method must be named: 'static' for the "// &
@@ -182,6 +200,39 @@ contains
                            "remove it, or set method = 'auto' in the group analysis")
       end if
    end subroutine validate
+
+   !> What is wrong with the frame, and what belongs to columns alone.
+   subroutine validate_frame(self, messages)
+      class(case_record), intent(inout) :: self
+      type(message_list), intent(inout) :: messages
+      type(frame_parts) :: parts
+
+      call parts%find(self%frame, messages)
+      call self%column%damping%check('damping', messages)
+      if (allocated(self%column%damping%modal)) then
+         call messages%add('damping: modal damping is not followed in frames yet; give mass and '// &
+                           'stiffness (Rayleigh)')
+      end if
+      if (allocated(self%drawing)) then
+         call messages%add('drawing: a frame has members of several kinds, and no drawing of its own; '// &
+                           'remove the groups of the drawing')
+      end if
+      if (any(self%loading(:self%loadings)%drive == 'axial_load')) then
+         call messages%add("loading: drive = 'axial_load' is for columns; in a frame they carry the dead "// &
+                           'load of floors, beams and nodes')
+      end if
+   end subroutine validate_frame
+
+   !> What drifts are in proportion to: the height of the column or of the frame [m].
+   pure real(wp) function height(self)
+      class(case_record), intent(in) :: self
+
+      if (allocated(self%frame)) then
+         height = self%frame%total_height()
+      else
+         height = self%column%height
+      end if
+   end function height
 
    !> Refuse input that a static path cannot take before the path starts, with the message of the solver.
    subroutine check_static(self, messages)

@@ -10,9 +10,10 @@ module rbs_case_group_reader
    use rbs_base_units, only: unit_system
    use rbs_case_case_record, only: case_record, most_loadings
    use rbs_case_drawing_record, only: drawing_groups
-   use rbs_case_spring_entry, only: entry_list, spring_groups, place_springs
+   use rbs_case_spring_entry, only: entry_list, spring_groups, give_springs, place_springs
    use rbs_hysteresis_registry, only: rule_names, keys_of
    use rbs_section_events, only: diagram_record
+   use rbs_structure_frame_frame_record, only: frame_groups
    use rbs_section_flexural_spring, only: hinge_record
    use rbs_section_shape, only: shape_names
    use rbs_section_shear_diagram, only: shear_record
@@ -23,7 +24,8 @@ module rbs_case_group_reader
 
    !> The groups of a case.
    character(len=16), parameter, public :: group_names(*) = [character(len=16) :: &
-      'case', 'units', 'column', 'damping', spring_groups, drawing_groups, 'loading', 'analysis', 'output']
+      'case', 'units', 'column', frame_groups, 'damping', spring_groups, drawing_groups, 'loading', &
+      'analysis', 'output']
 
    !> The groups that Python gives of a section: the drawing, and last the three kinds of what is asked of it.
    character(len=16), parameter, public :: section_groups(9) = [character(len=16) :: &
@@ -31,7 +33,7 @@ module rbs_case_group_reader
 
    !> Groups that may appear several times.
    character(len=16), parameter :: repeated(*) = [character(len=16) :: &
-      spring_groups, 'steel', 'parameter', 'loading']
+      spring_groups, frame_groups(2:), 'steel', 'parameter', 'loading']
 
    !> The result of `find` for a key that is ignored because the rule of its spring is unknown.
    integer, parameter, public :: ignored = -1
@@ -245,7 +247,14 @@ contains
       integer :: i
 
       if (.not. self%of_section) then
-         call place_springs(self%entries, self%case%column, messages)
+         if (.not. allocated(self%case%frame)) then
+            call place_springs(self%entries, self%case%column, messages)
+            return
+         end if
+         if (self%seen(findloc(group_names == 'column', .true., dim=1))) then
+            call messages%add('a case has a group &column or a group &frame, not both; remove one')
+         end if
+         call give_springs(self%entries, self%case%frame, messages)
          return
       end if
       do i = size(section_groups) - 2, size(section_groups)

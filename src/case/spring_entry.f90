@@ -11,13 +11,17 @@ module rbs_case_spring_entry
    use rbs_hysteresis_registry, only: rule_names, suits
    use rbs_hysteresis_rule, only: in_layer
    use rbs_hysteresis_spring_record, only: spring_record
+   use rbs_structure_frame_frame_record, only: frame_record, frame_spring, name_length
    implicit none
    private
 
-   public :: spring_entry, entry_list, place_springs
+   public :: spring_entry, entry_list, place_springs, give_springs
 
    !> Most layers of a joint.
    integer, parameter :: most_layers = 10000
+
+   !> Most places of a spring in a member.
+   integer, parameter :: most_places = 20
 
    !> The groups that give springs.
    character(len=16), parameter, public :: spring_groups(5) = [character(len=16) :: &
@@ -31,6 +35,10 @@ module rbs_case_spring_entry
       character(len=80) :: where = ''
       !> Joints that have the spring; not allocated: all joints that no other group names
       integer, allocatable :: joint(:)
+      !> In a frame: the kind of members that has the spring, at places in shares of their length, or the node
+      !> that it holds to the ground
+      character(len=name_length) :: kind = '', node = ''
+      real(wp), allocatable :: place(:)
       !> Number by which layers refer to the spring
       integer :: id = unset_integer
       type(spring_record) :: spring
@@ -97,6 +105,12 @@ contains
                     'joints that have this spring, from 1 up, 0 beneath a footing, n + 1 at a fixed '// &
                     'top; without it all from 1 that are not named', most_bodies)
       end if
+      if (self%group /= 'layer_spring' .and. self%group /= 'layers') then
+         call v%word('kind', self%kind, 'frame: the kind of members that has the spring')
+         call v%key('place', self%place, '', not_negative, 'frame: where in a member, in shares of its '// &
+                    'clear length; without it flexure at both ends', most_places)
+         call v%word('node', self%node, "frame: node that it holds to the ground, or 'base'")
+      end if
       if (self%group == 'layers') then
          call v%key('y', self%y, 'm', any_number, 'distances from the middle of the section, '// &
                     'positive where positive rotation opens', most_layers, required=.true.)
@@ -117,6 +131,35 @@ contains
       if (len_trim(name) > len(self%spring%rule)) self%spring%rule(len(self%spring%rule):) = '~'
    end subroutine set_rule
 
+   !> Give the springs to the kinds of members of a frame and to its nodes.
+   subroutine give_springs(list, frame, messages)
+      type(entry_list), intent(in) :: list
+      type(frame_record), intent(inout) :: frame
+      type(message_list), intent(inout) :: messages
+      type(frame_spring), allocatable :: spring(:)
+      integer :: i
+
+      call frame%open_group('')
+      allocate (spring(list%count))
+      do i = 1, list%count
+         associate (entry => list%entry(i))
+            if (entry%group == 'layers' .or. entry%group == 'layer_spring') then
+               call messages%add_at(entry%where, '&'//trim(entry%group)//': layered joints are not '// &
+                                    'followed in frames yet; remove them')
+            else if (allocated(entry%joint)) then
+               call messages%add_at(entry%where, '&'//trim(entry%group)//' has joint, but joints of a '// &
+                                    'frame belong to its members; give kind and place')
+            end if
+            spring(i)%group = entry%group
+            spring(i)%kind = entry%kind
+            spring(i)%node = entry%node
+            spring(i)%spring = entry%spring
+            if (allocated(entry%place)) spring(i)%place = entry%place
+         end associate
+      end do
+      call move_alloc(spring, frame%spring)
+   end subroutine give_springs
+
    !> Give the springs to the joints of a column.
    subroutine place_springs(list, column, messages)
       type(entry_list), intent(in) :: list
@@ -133,6 +176,7 @@ contains
       range = to_text(first)//' to '//trim(merge('n + 1', 'n    ', column%top == 'fixed'))//' = '// &
               to_text(last)
       known = messages%count
+      call refuse_frame(list, messages)
       call check_ids(list, messages)
       numbered = messages%count == known
       call place_group('shear', column%shear)
@@ -241,6 +285,21 @@ contains
          end do
       end subroutine place_layers
    end subroutine place_springs
+
+   !> Keys that only springs of frames have.
+   subroutine refuse_frame(list, messages)
+      type(entry_list), intent(in) :: list
+      type(message_list), intent(inout) :: messages
+      integer :: i
+
+      do i = 1, list%count
+         associate (entry => list%entry(i))
+            if (entry%kind == '' .and. entry%node == '' .and. .not. allocated(entry%place)) cycle
+            call messages%add_at(entry%where, '&'//trim(entry%group)//': kind, place and node belong to '// &
+                                 'springs of a frame; give joint, or a group &frame')
+         end associate
+      end do
+   end subroutine refuse_frame
 
    !> Whether a spring is given for joint 0, beneath a footing.
    pure logical function any_beneath(list)

@@ -10,6 +10,7 @@ module rbs_case_writer
    use rbs_case_spring_entry, only: entry_list, spring_entry
    use rbs_case_text_buffer, only: text_buffer
    use rbs_structure_column_column_record, only: column_record
+   use rbs_structure_frame_frame_record, only: frame_groups
    use rbs_hysteresis_registry, only: keys_of
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_section_cross_section, only: no_ties
@@ -42,9 +43,13 @@ contains
       integer :: i
 
       call write_record(case, 'case', text)
-      call write_record(case, 'column', text)
+      if (allocated(case%frame)) then
+         call write_frame(case, text)
+      else
+         call write_record(case, 'column', text)
+      end if
       call write_record(case, 'damping', text)
-      call write_all_springs(case%column, text)
+      if (.not. allocated(case%frame)) call write_all_springs(case%column, text)
       if (allocated(case%drawing)) call write_drawing(case, text)
       do i = 1, case%loadings
          call write_record(case, 'loading', text, i)
@@ -52,6 +57,29 @@ contains
       call write_record(case, 'analysis', text)
       call write_record(case, 'output', text)
    end subroutine write_case
+
+   !> Write the groups of a frame and its springs.
+   subroutine write_frame(case, text)
+      type(case_record), intent(inout) :: case
+      type(case_text), intent(inout) :: text
+      type(spring_entry) :: entry
+      integer :: g, i
+
+      do g = 1, size(frame_groups)
+         do i = 1, case%frame%count_of(frame_groups(g))
+            call write_record(case, trim(frame_groups(g)), text, i)
+         end do
+      end do
+      do i = 1, size(case%frame%spring)
+         associate (given => case%frame%spring(i))
+            entry = spring_entry(group=given%group, spring=given%spring)
+            entry%kind = given%kind
+            entry%node = given%node
+            if (allocated(given%place)) entry%place = given%place
+            call write_spring(entry, text)
+         end associate
+      end do
+   end subroutine write_frame
 
    !> Write the values of a group that differ from those of a new record.
    subroutine write_record(case, group, text, number)
@@ -71,7 +99,7 @@ contains
       call new%visit_group(group, v)
       call v%list()
       call case%visit_group(group, v, number)
-      if (v%listed > 0 .or. group == 'column' .or. group == 'loading') then
+      if (v%listed > 0 .or. any(group == [character(len=7) :: 'column', 'loading', 'frame'])) then
          call text%group(group, v%entry(:v%listed))
       end if
    end subroutine write_record

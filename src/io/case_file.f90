@@ -77,9 +77,9 @@ contains
             select case (spec%source)
             case ('protocol')
                ! Amplitudes in drift need the height; a wrong height has been reported.
-               if (.not. ieee_is_finite(case%column%height)) cycle
-               if (case%column%height <= 0.0_wp) cycle
-               call protocol_values(spec, case%column%height, time, value, fault)
+               if (.not. ieee_is_finite(case%height())) cycle
+               if (case%height() <= 0.0_wp) cycle
+               call protocol_values(spec, case%height(), time, value, fault)
             case ('values')
                call spec%inline_values(time, value)
             case default

@@ -72,6 +72,7 @@ contains
             end if
          end do
       end do
+      if (allocated(reader%case%frame)) return
       do i = 1, size(required)
          if (any(scanned%group(:scanned%groups)%name == required(i))) cycle
          call messages%add(scanned%path//': the group &'//trim(required(i))//' is missing')

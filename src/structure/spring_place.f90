@@ -18,6 +18,8 @@ module rbs_structure_spring_place
       integer :: heard = 0
       !> Number of the joint among those of all members
       integer :: index = 0
+      !> Name of the member, or of the node that a spring from the ground belongs to; blank for a column
+      character(len=40) :: owner = ''
    end type spring_place
 
 contains
@@ -25,12 +27,18 @@ contains
    !> Which spring it is, for messages: 'the shear spring of joint 3'.
    pure function spring_name(place) result(name)
       type(spring_place), intent(in) :: place
-      character(len=40) :: name
+      character(len=80) :: name
       character(len=9), parameter :: kinds(3) = ['shear    ', 'flexural ', 'axial    ']
       character(len=12) :: joint
 
       write (joint, '(i0)') place%joint
       name = 'the '//trim(kinds(place%kind))//' spring of joint '//joint
+      if (place%owner == '') return
+      if (place%joint == 0) then
+         name = 'the '//trim(kinds(place%kind))//' spring from the ground to '//place%owner
+      else
+         name = 'the '//trim(kinds(place%kind))//' spring '//trim(joint)//' of member '//place%owner
+      end if
    end function spring_name
 
 end module rbs_structure_spring_place

@@ -137,6 +137,7 @@ module rbs_structure_structure
       procedure :: add_damping
       procedure :: spring_of
       procedure :: add_ground
+      procedure :: base_force
       procedure :: work_of
    end type structure_type
 
@@ -520,6 +521,16 @@ contains
          end associate
       end do
    end subroutine add_ground
+
+   !> What the ground holds the structure with along x where no springs alone tell it [N].
+   real(wp) function base_force(self, d, f) result(force)
+      class(structure_type), intent(in) :: self
+      !> Deformations and forces of the springs (springs)
+      real(wp), intent(in), contiguous :: d(:), f(:)
+
+      force = 0.0_wp
+      if (size(d) + size(f) < size(self%base_spring)) force = self%base_factor(1)
+   end function base_force
 
    !> Work of a load that keeps its direction, per unit of its signal.
    pure real(wp) function work_of(self, signal, moved) result(work)

@@ -22,7 +22,7 @@ program time_solver
    use rbs_output_channels, only: new_channels
    use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: summary_type
-   use rbs_solve_make_column, only: make_column
+   use rbs_solve_begin_make_column, only: make_column
    use rbs_solve_static_run_static, only: run_static
    use rbs_solve_task, only: task_type
    use rbs_loading_loads, only: loads_type

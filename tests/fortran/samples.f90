@@ -7,7 +7,7 @@ module samples
    use rbs_base_keys, only: key_type, find_key
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column, only: column_type
-   use rbs_solve_make_column, only: make_column
+   use rbs_solve_begin_make_column, only: make_column
    use rbs_structure_column_column_record, only: column_record
    use rbs_hysteresis_registry, only: keys_of
    use rbs_hysteresis_spring_record, only: spring_record

@@ -212,7 +212,7 @@ contains
       node(2)%held = .true.
       node(3:)%y = h
       node(:)%x = [0.0_wp, l, 0.0_wp, l/2.0_wp, l]
-      node(3)%push = 1.0_wp
+      node(3)%push(1) = 1.0_wp
       if (stiff) then
          node(3)%held(2) = .true.
          node(5)%held(2) = .true.
@@ -304,7 +304,7 @@ contains
 
       node(1)%held = .true.
       node(2)%y = h
-      node(2)%push = 1.0_wp
+      node(2)%push(1) = 1.0_wp
       node(2)%load(2) = -load
       member(1)%node = [1, 2]
       call put_springs(member(1), h, plastic/2.0_wp, 0.01_wp)

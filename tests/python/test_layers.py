@@ -35,6 +35,7 @@ FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 INNER: dict[str, tuple[str, ...]] = {
     "": (),
     "modal": (),
+    "begin": ("modal", "static"),
     "one_body": (),
     "static": (),
     "time": ("modal", "one_body"),

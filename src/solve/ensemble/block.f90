@@ -5,7 +5,8 @@ module rbs_solve_ensemble_block
    use rbs_output_recorder, only: array_recorder
    use rbs_solve_end_state, only: end_state, standing_type
    use rbs_solve_ensemble_lane_choice, only: takes_lanes, are_alike
-   use rbs_solve_ensemble_ensemble_input, only: ensemble_column, ensemble_motion, run_type, lane_task
+   use rbs_solve_ensemble_ensemble_input, only: column_of, ensemble_column, ensemble_motion, run_type, &
+                                                lane_task
    use rbs_solve_ensemble_run_result, only: run_result, collect
    use rbs_solve_ensemble_simd_batch, only: run_in_lanes
    use rbs_solve_task, only: task_type
@@ -47,7 +48,7 @@ contains
       do j = 1, size(motion)
          call plan_run(column, motion(j), plan, error)
          if (allocated(error)) return
-         seconds(j) = expected_seconds(column%column, plan)
+         seconds(j) = expected_seconds(column%structure, plan)
          in_lanes(j) = takes_lanes(column, plan, motion(j)%time)
       end do
       call check_start(column, motion(size(motion)), plan, error)
@@ -70,7 +71,7 @@ contains
       loads%ground%time = motion%time
       loads%ground%value = motion%acceleration
       plan = planned
-      call resume_state(state, column%column, loads, before, plan, standing, error)
+      call resume_state(state, column%structure, loads, before, plan, standing, error)
    end subroutine check_start
 
    !> The state that runs of a column begin in, if it is given one.
@@ -131,8 +132,8 @@ contains
          allocate (together(size(task)))
          do i = 1, size(task)
             together(i) = task(i)%plan%method == task(1)%plan%method .and. &
-                          are_alike(column(run(task(i)%run)%column)%column, &
-                                    column(run(task(1)%run)%column)%column)
+                          are_alike(column_of(column(run(task(i)%run)%column)), &
+                                    column_of(column(run(task(1)%run)%column)))
          end do
          others = pack(task, .not. together)
          if (count(together) >= fewest) then
@@ -201,7 +202,7 @@ contains
       end if
       loads%ground%time = motion%time
       loads%ground%value = motion%acceleration
-      call plan_dynamic(column%column, column%analysis, motion%time, loads, plan, error)
+      call plan_dynamic(column%structure, column%analysis, motion%time, loads, plan, error)
    end subroutine plan_run
 
    !> One run by itself.
@@ -230,7 +231,8 @@ contains
       loads%ground%time = motion%time
       loads%ground%value = scale*motion%acceleration
       call take_before(column, task%before)
-      call run_dynamic(column%column, column%analysis, plan, motion%time, loads, at_rest, task, error, sight)
+      call run_dynamic(column%structure, column%analysis, plan, motion%time, loads, at_rest, task, error, &
+                       sight)
       call collect(sight%reached, task%summary, error, result)
    end subroutine run_alone
 

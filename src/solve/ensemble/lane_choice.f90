@@ -26,15 +26,18 @@ contains
 
       takes_lanes = .false.
       if (allocated(of_runs%before)) return
-      associate (column => of_runs%column)
+      select type (column => of_runs%structure)
+      class is (column_type)
          if (column%opens .or. column%held .or. column%kinematics == finite) return
          if (any(column%spring%rule == 'layered')) return
-      end associate
+      class default
+         return
+      end select
       select case (plan%method)
       case ('rk4')
          if (plan%located .or. of_runs%analysis%events == 'located') return
       case ('newmark', 'hht', 'generalised_alpha')
-         if (of_runs%column%n > most_bodies) return
+         if (of_runs%structure%n > most_bodies) return
       case default
          return
       end select

@@ -11,7 +11,8 @@ module rbs_solve_ensemble_simd_batch
    use rbs_loading_loads, only: loads_type
    use rbs_output_summary, only: summary_type
    use rbs_solve_ensemble_dispatch, only: chosen_kernel
-   use rbs_solve_ensemble_ensemble_input, only: ensemble_column, ensemble_motion, run_type, lane_task
+   use rbs_solve_ensemble_ensemble_input, only: column_of, ensemble_column, ensemble_motion, run_type, &
+                                                lane_task
    use rbs_solve_ensemble_lane_arrays, only: lane_clock, lane_block, lane_method, kernel_type, lanes, few
    use rbs_solve_ensemble_lane_choice, only: is_plain_body
    use rbs_solve_ensemble_lane_state, only: fit_block, column_to_lane, springs_to_lane, motion_to_lane, &
@@ -77,7 +78,7 @@ contains
       integer :: next, busy, l
 
       if (size(task) == 0) return
-      call create_batch(batch, column(run(task(1)%run)%column)%column, motion, level)
+      call create_batch(batch, column_of(column(run(task(1)%run)%column)), motion, level)
       next = 0
       busy = 0
       do l = 1, lanes
@@ -250,9 +251,9 @@ contains
          lane%column = 0
          loads%ground%time = [x%begin(l), x%finish(l), x%next_finish(l)]
          loads%ground%value = [x%value(l), x%next_value(l), x%after_value(l)]
-         call start_state(lane%state, column%column, loads, at_rest, 0.0_wp, error)
+         call start_state(lane%state, column%structure, loads, at_rest, 0.0_wp, error)
          if (allocated(error)) return
-         call new_stepper(lane%stepper, column%column, column%analysis, task%plan)
+         call new_stepper(lane%stepper, column%structure, column%analysis, task%plan)
          select type (stepper => lane%stepper)
          type is (implicit_stepper)
             b%method = lane_method(.true., stepper%step%alpha_m, stepper%step%alpha_f, stepper%step%beta, &
@@ -262,7 +263,7 @@ contains
             lane%body = one_body_step()
             call body_to_lane(x, l, lane%state)
          else
-            call column_to_lane(b, l - b%base, column%column, lane%state%motion)
+            call column_to_lane(b, l - b%base, column_of(column), lane%state%motion)
          end if
       end associate
    end subroutine create_run

@@ -12,7 +12,7 @@ module rbs_solve_modal_matrices
    use rbs_structure_column_chain_matrices, only: symmetric_mass, paper_mass, geometric_stiffness
    use rbs_solve_modal_modes, only: modes_type, find_modes, most_numbers
    use rbs_structure_spring_place, only: flexure
-   use rbs_structure_structure, only: structure_type
+   use rbs_structure_structure, only: structure_type, signals
    implicit none
    private
 
@@ -31,7 +31,81 @@ module rbs_solve_modal_matrices
 
 contains
 
-   subroutine assemble_matrices(column, paper, matrices, error)
+   !> The matrices of a structure: those of a column in its coordinates, of others in the displacements of
+   !> their nodes.
+   subroutine assemble_matrices(structure, paper, matrices, error)
+      class(structure_type), intent(in) :: structure
+      !> Whether in the paper's form: unknowns (slip, absolute rotation), rows of its eqs 1 and 2. Else in
+      !> (slip, relative rotation), where all are symmetric
+      logical, intent(in) :: paper
+      type(matrices_type), intent(out) :: matrices
+      type(error_type), allocatable, intent(out) :: error
+
+      select type (structure)
+      class is (column_type)
+         call assemble_column(structure, paper, matrices, error)
+      class default
+         if (paper) then
+            call fatal_error(error, bad_input, &
+                             "matrices: the paper's form is that of a column; ask for the "// &
+                             'other one')
+            return
+         end if
+         call assemble_bands(structure, matrices)
+      end select
+   end subroutine assemble_matrices
+
+   !> From the bands that the solvers take.
+   subroutine assemble_bands(structure, matrices)
+      class(structure_type), intent(in) :: structure
+      type(matrices_type), intent(inout) :: matrices
+      real(wp) :: band(structure%half_width + 1, structure%unknowns), axial(structure%axial_count)
+      real(wp) :: tangent(structure%tangent_numbers)
+      character(len=2), parameter :: along(3) = ['x_', 't_', 'y_']
+      integer :: i, m, unstable
+
+      m = structure%unknowns
+      allocate (matrices%mass(m, m), matrices%stiffness(m, m), matrices%geometric(m, m), &
+                matrices%damping(m, m), source=0.0_wp)
+      allocate (matrices%unknown(m))
+      do i = 1, m
+         matrices%mass(i, i) = structure%inertias(i)
+         associate (place => structure%place(size(structure%place) - m + i))
+            matrices%unknown(i) = along(place%kind)//trim(place%owner(6:))
+         end associate
+      end do
+      band = 0.0_wp
+      call structure%add_stiffness(structure%initial_stiffness, band)
+      call fill(band, matrices%stiffness)
+      if (structure%axially_loaded) then
+         band = 0.0_wp
+         call structure%axial_forces([(0.0_wp, i=1, signals)], axial)
+         call structure%add_geometric(axial, band)
+         call fill(band, matrices%geometric)
+      end if
+      if (.not. structure%damped) return
+      band = 0.0_wp
+      call structure%linearise(structure%initial_stiffness, tangent, unstable)
+      call structure%add_damping(1.0_wp, tangent, band)
+      call fill(band, matrices%damping)
+      matrices%damping = matrices%damping + structure%mass_damping*matrices%mass
+   end subroutine assemble_bands
+
+   !> A symmetric matrix in full from its lower band.
+   pure subroutine fill(band, a)
+      real(wp), intent(in) :: band(:, :)
+      real(wp), intent(inout) :: a(:, :)
+      integer :: i, j
+
+      do j = 1, size(a, 2)
+         do i = j, min(j + size(band, 1) - 1, size(a, 1))
+            a(i, j) = band(1 + i - j, j)
+            a(j, i) = a(i, j)
+         end do
+      end do
+   end subroutine fill
+
+   subroutine assemble_column(column, paper, matrices, error)
       class(column_type), intent(in) :: column
       !> Whether in the paper's form: unknowns (slip, absolute rotation), rows of its eqs 1 and 2. Else in
       !> (slip, relative rotation), where all are symmetric
@@ -73,7 +147,7 @@ contains
       call transform(column, paper, matrices%damping)
       if (column%held) matrices%unknown = pack(matrices%unknown, [(i /= column%at(flexure, n), i=1, m)])
       if (paper .and. .not. column%held) call paper_mass(column, matrices%mass(:2*n, :2*n))
-   end subroutine assemble_matrices
+   end subroutine assemble_column
 
    !> Take the rotation of a held top out, which is minus the sum of those below, and pass to absolute
    !> rotations: a relative one is the difference of two.

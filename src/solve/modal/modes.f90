@@ -3,6 +3,7 @@ module rbs_solve_modal_modes
    use rbs_base_band_matrix, only: band_matrix
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
+   use rbs_base_linalg, only: symmetric_modes
    use rbs_base_text, only: to_text
    use rbs_structure_column_column, only: column_type
    use rbs_structure_column_column_record, only: most_dense
@@ -10,7 +11,7 @@ module rbs_solve_modal_modes
                                          check_inertia_of_ends
    use rbs_solve_modal_mode_search, only: mode_search
    use rbs_structure_spring_place, only: shear, flexure, axial
-   use rbs_structure_structure, only: structure_type, signals
+   use rbs_structure_structure, only: structure_type, horizontal, signals
    implicit none
    private
 
@@ -50,7 +51,98 @@ contains
 
    !> Modes of the uncracked column; the axial forces count where the kinematics let them. Openings are
    !> modes of their own.
-   subroutine find_modes(column, modes, error, count)
+   subroutine find_modes(structure, modes, error, count)
+      class(structure_type), intent(in) :: structure
+      type(modes_type), intent(out) :: modes
+      type(error_type), allocatable, intent(out) :: error
+      !> How many, the lowest first; without it all
+      integer, intent(in), optional :: count
+
+      if (present(count)) then
+         if (count < 1) then
+            call fatal_error(error, bad_input, 'modes: count = '//to_text(count)//' must be above zero')
+            return
+         end if
+      end if
+      select type (structure)
+      class is (column_type)
+         call find_column_modes(structure, modes, error, count)
+      class default
+         call find_assembled_modes(structure, modes, error, count)
+      end select
+   end subroutine find_modes
+
+   !> Modes of a structure from its matrices: what has no mass follows the rest, and with the flexibility
+   !> F = (K + K_G)^-1 between the masses M^(1/2) F M^(1/2) y = y/omega^2, by LAPACK. Shapes are those of the
+   !> unknowns, and the stable step of RK4 is that of none where unknowns have no mass.
+   subroutine find_assembled_modes(structure, modes, error, count)
+      class(structure_type), intent(in) :: structure
+      type(modes_type), intent(inout) :: modes
+      type(error_type), allocatable, intent(out) :: error
+      integer, intent(in), optional :: count
+      type(band_matrix) :: matrix
+      real(wp), allocatable :: flexible(:, :), all_of(:, :), square(:), root(:)
+      integer, allocatable :: heavy(:)
+      integer :: i, wanted
+      logical :: found
+
+      call frequency_bounds(structure, modes%condition, modes%stable_step, error)
+      modes%condition = 1.0_wp
+      modes%stable_step = 0.0_wp
+      if (allocated(error)) return
+      heavy = pack([(i, i=1, structure%unknowns)], structure%inertias > 0.0_wp .and. .not. structure%is_held)
+      if (size(heavy) == 0) then
+         call fatal_error(error, bad_input, 'modes: nothing has mass; give &floor mass, or mass to nodes')
+         return
+      end if
+      wanted = size(heavy)
+      if (present(count)) wanted = min(wanted, count)
+      call assemble_initial(structure, structure%axially_loaded, matrix)
+      call matrix%factor()
+      allocate (all_of(structure%unknowns, size(heavy)), source=0.0_wp)
+      root = sqrt(structure%inertias(heavy))
+      do i = 1, size(heavy)
+         all_of(heavy(i), i) = root(i)
+      end do
+      call matrix%solve(all_of, found)
+      flexible = all_of(heavy, :)*spread(root, 2, size(heavy))
+      allocate (square(size(heavy)))
+      if (found) call symmetric_modes(flexible, square, found)
+      if (.not. found) then
+         call fatal_error(error, bad_input, 'modes: the stiffness has no inverse; look for parts that '// &
+                          'can move without force')
+         return
+      end if
+      allocate (modes%omega(wanted), modes%shapes(structure%unknowns, wanted))
+      do i = 1, wanted
+         associate (from => size(heavy) + 1 - i)
+            modes%omega(i) = 1.0_wp/sqrt(max(square(from), tiny(1.0_wp)))
+            ! F M^(1/2) y omega^2 is the shape of all unknowns, with unit modal mass.
+            modes%shapes(:, i) = matmul(all_of, flexible(:, from))*modes%omega(i)
+         end associate
+         if (structure%work_of(horizontal, modes%shapes(:, i)) > 0.0_wp) then
+            modes%shapes(:, i) = -modes%shapes(:, i)
+         end if
+      end do
+   end subroutine find_assembled_modes
+
+   !> Stiffness before any spring yields, with the axial forces at rest.
+   subroutine assemble_initial(structure, axial, matrix)
+      class(structure_type), intent(in) :: structure
+      logical, intent(in) :: axial
+      type(band_matrix), intent(out) :: matrix
+      real(wp) :: force(structure%axial_count), at_rest(signals)
+
+      call matrix%create(structure%unknowns, structure%half_width)
+      matrix%band = 0.0_wp
+      call structure%add_stiffness(structure%initial_stiffness, matrix%band)
+      if (.not. axial) return
+      at_rest = 0.0_wp
+      call structure%axial_forces(at_rest, force)
+      call structure%add_geometric(force, matrix%band)
+   end subroutine assemble_initial
+
+   subroutine find_column_modes(column, modes, error, count)
       class(column_type), intent(in) :: column
       type(modes_type), intent(out) :: modes
       type(error_type), allocatable, intent(out) :: error
@@ -66,10 +158,6 @@ contains
       wanted = column%unknowns - merge(1, 0, column%held)
       if (present(count)) then
          wanted = min(wanted, count)
-         if (count < 1) then
-            call fatal_error(error, bad_input, 'modes: count = '//to_text(count)//' must be above zero')
-            return
-         end if
          if (real(wanted, wp)*column%unknowns > most_numbers) then
             call fatal_error(error, bad_input, 'modes: the shapes of '//to_text(wanted)//' modes of n = '// &
                              to_text(n)//' bodies take too much memory; ask for '// &
@@ -118,7 +206,7 @@ contains
          call search(b)%find(next(b), next(b), squares(:, b), shapes(:, :, :, b))
          lowest(b) = squares(next(b), b)
       end do
-   end subroutine find_modes
+   end subroutine find_column_modes
 
    !> Condition of the modes under axial load.
    subroutine set_condition(column, modes)
@@ -176,7 +264,8 @@ contains
          highest = max(highest, search%frequency(search%chain%modes))
       class default
          lowest = frequency_of(structure, axial, 1)
-         highest = frequency_of(structure, axial, count(.not. structure%is_held))
+         highest = frequency_of(structure, axial, &
+                                count(structure%inertias > 0.0_wp .and. .not. structure%is_held))
       end select
    end subroutine frequency_range
 
@@ -216,17 +305,9 @@ contains
       !> [rad/s]
       real(wp), intent(in) :: omega
       type(band_matrix) :: matrix
-      real(wp) :: force(structure%axial_count), at_rest(signals)
       integer :: i
 
-      call matrix%create(structure%unknowns, structure%half_width)
-      matrix%band = 0.0_wp
-      call structure%add_stiffness(structure%initial_stiffness, matrix%band)
-      if (axial) then
-         at_rest = 0.0_wp
-         call structure%axial_forces(at_rest, force)
-         call structure%add_geometric(force, matrix%band)
-      end if
+      call assemble_initial(structure, axial, matrix)
       matrix%band(1, :) = matrix%band(1, :) - omega**2*structure%inertias
       do i = 1, structure%unknowns
          if (structure%is_held(i)) call matrix%hold(i, 1.0_wp)

@@ -399,7 +399,7 @@ contains
    !> The spring that has least of its initial stiffness left, for a message.
    pure function weakest_spring(path) result(text)
       class(static_path), intent(in) :: path
-      character(len=40) :: text
+      character(len=80) :: text
 
       associate (structure => path%structure, m => path%moving)
          text = spring_name(structure%place(minloc(path%springs%k(:m)/structure%initial_stiffness(:m), &

@@ -8,8 +8,11 @@ module rbs_solve_static_run_static
    use rbs_solve_check_values, only: check_values
    use rbs_solve_static_chain_equilibrium, only: chain_equilibrium
    use rbs_solve_static_curved, only: trace_curved
+   use rbs_solve_static_frame_equilibrium, only: frame_equilibrium
    use rbs_solve_static_straight, only: trace_straight
    use rbs_solve_task, only: task_type
+   use rbs_structure_frame_frame, only: frame_type
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
@@ -21,15 +24,60 @@ module rbs_solve_static_run_static
 contains
 
    !> Static path through displacements of the top or lateral forces.
-   subroutine run_static(column, by_force, target, task, error, axial_load)
-      class(column_type), intent(in), target :: column
+   subroutine run_static(structure, by_force, target, task, error, axial_load)
+      class(structure_type), intent(in), target :: structure
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
       !> Targets (m)
       real(wp), intent(in) :: target(:)
       type(task_type), intent(inout) :: task
       type(error_type), allocatable, intent(out) :: error
-      !> Axial load at the top at each target (m), instead of the constant one; empty: constant [N]
+      !> Axial load at the top of a column at each target (m), not the constant one; empty: constant [N]
+      real(wp), intent(in), optional :: axial_load(:)
+
+      call check_values(target, trim(merge('force       ', 'displacement', by_force)), error)
+      if (allocated(error)) return
+      select type (structure)
+      class is (column_type)
+         call trace_column(structure, by_force, target, task, error, axial_load)
+      class is (frame_type)
+         call trace_frame(structure, by_force, target, task, error, axial_load)
+      end select
+      ! Without inertia the ground holds what drives the structure.
+      task%summary%peak_base_shear = task%summary%peak_force
+      task%summary%method = 'static'
+   end subroutine run_static
+
+   subroutine trace_frame(frame, by_force, target, task, error, axial_load)
+      class(frame_type), intent(in), target :: frame
+      logical, intent(in) :: by_force
+      real(wp), intent(in) :: target(:)
+      type(task_type), intent(inout) :: task
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), intent(in), optional :: axial_load(:)
+      type(frame_equilibrium) :: equilibrium
+
+      if (present(axial_load)) then
+         if (size(axial_load) > 0) then
+            call fatal_error(error, bad_input, 'axial_load: a frame has none that varies; its columns '// &
+                             'carry the dead load of floors, beams and nodes')
+            return
+         end if
+      end if
+      call equilibrium%create(frame, .false.)
+      call trace_straight(frame, equilibrium, by_force, target, task, error)
+      if (.not. allocated(error) .or. equilibrium%unstable == 0) return
+      error%message = error%message//'. Member '//trim(frame%member_name(equilibrium%unstable))// &
+                      ' snaps back: its springs soften faster than the rest of it gives back; give it a '// &
+                      'softer rest, or springs that soften less'
+   end subroutine trace_frame
+
+   subroutine trace_column(column, by_force, target, task, error, axial_load)
+      class(column_type), intent(in), target :: column
+      logical, intent(in) :: by_force
+      real(wp), intent(in) :: target(:)
+      type(task_type), intent(inout) :: task
+      type(error_type), allocatable, intent(out) :: error
       real(wp), intent(in), optional :: axial_load(:)
       class(column_type), allocatable, target :: other
       class(column_type), pointer :: loaded
@@ -59,8 +107,6 @@ contains
                           'stability; use a dynamic analysis')
          return
       end if
-      call check_values(target, trim(merge('force       ', 'displacement', by_force)), error)
-      if (allocated(error)) return
       if (curved) then
          call trace_curved(loaded, by_force, target, pack(load, varies), task, error)
       else
@@ -70,10 +116,7 @@ contains
       if (allocated(error) .and. by_force .and. .not. abs(task%summary%peak_displacement) > 0.0_wp) then
          call explain_buckling(loaded, task%summary%steps, error)
       end if
-      ! Without inertia the ground holds what drives the column.
-      task%summary%peak_base_shear = task%summary%peak_force
-      task%summary%method = 'static'
-   end subroutine run_static
+   end subroutine trace_column
 
    !> A column that could not be moved by a force may have buckled before.
    subroutine explain_buckling(column, row, error)

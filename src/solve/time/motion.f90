@@ -257,6 +257,9 @@ contains
             end if
             force = force + structure%base_factor(j)*of_spring
          end do
+         if (size(structure%base_spring) == 0) then
+            force = structure%base_force(q, springs%f0 + springs%k*(q - springs%d0))
+         end if
          if (structure%mass_damping > 0.0_wp) then
             call structure%speeds(q, v, speed)
             force = force - structure%mass_damping*speed(horizontal)

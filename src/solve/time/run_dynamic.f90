@@ -52,7 +52,11 @@ contains
       call check_times(time, error)
       if (allocated(error)) return
       plan%method = analysis%method
-      if (analysis%method == 'auto') then
+      if (structure%tangent_numbers > 0) then
+         call choose_implicit(structure, plan, error)
+         if (allocated(error)) return
+      end if
+      if (plan%method == 'auto') then
          call choose_method(structure, analysis, time, plan, error)
          if (allocated(error)) return
       end if
@@ -60,6 +64,28 @@ contains
       if (allocated(error)) return
       call check_effort(structure, analysis%max_seconds, plan, error)
    end subroutine plan_dynamic
+
+   !> What has no mass follows from an implicit step alone.
+   subroutine choose_implicit(structure, plan, error)
+      class(structure_type), intent(in) :: structure
+      type(time_plan), intent(inout) :: plan
+      type(error_type), allocatable, intent(out) :: error
+      type(method_type) :: method
+
+      if (.not. any(structure%inertias > 0.0_wp)) then
+         call fatal_error(error, bad_input, 'frame: nothing has mass; give &floor mass, or mass to nodes')
+         return
+      end if
+      if (plan%method == 'auto') then
+         plan%method = 'generalised_alpha'
+         plan%reason = 'nodes of a frame without mass of their own need an implicit method'
+      end if
+      method = method_named(plan%method)
+      if (method%implicit) return
+      call fatal_error(error, bad_input, &
+                       "analysis: method = '"//trim(plan%method)//"' takes explicit steps, "// &
+                       'and a frame has unknowns without mass; choose newmark, hht or generalised_alpha')
+   end subroutine choose_implicit
 
    !> Steps of the method chosen.
    subroutine plan_steps(structure, analysis, time, loads, plan, error)

@@ -4,18 +4,40 @@
 !> The springs of the elements come first, then one from the ground to each unknown: soil, a brace, a
 !> bearing, or one of no account, whose deformation is the displacement.
 module rbs_structure_frame_frame
+   use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_channel, only: channel_type, response_type, row_contents
    use rbs_structure_frame_element, only: frame_element, find_tangent
-   use rbs_structure_structure, only: structure_type, lateral, horizontal
+   use rbs_structure_frame_frame_record, only: name_length
+   use rbs_structure_spring_place, only: shear
+   use rbs_structure_structure, only: structure_type, motion_result, lateral, horizontal, signals, top_axial
    implicit none
    private
 
-   public :: frame_type
+   public :: frame_type, frame_channel
+
+   !> What rows of a frame hold besides what all structures have: displacements of the nodes along x and
+   !> upward and clockwise rotations; axial forces of the members (compression positive) and moments of their
+   !> ends; deformations and forces of their springs by kind, in the order of the members; on demand
+   !> accelerations of the nodes along x relative to the ground, and that of the ground.
+   type(channel_type), parameter :: frame_channel(15) = [ &
+      channel_type('base_shear', 'N'), channel_type('x', 'm'), channel_type('y', 'm'), &
+      channel_type('turn', 'rad'), channel_type('member_axial', 'N'), channel_type('moment_from', 'N m'), &
+      channel_type('moment_to', 'N m'), channel_type('slip', 'm'), channel_type('shear', 'N'), &
+      channel_type('rotation', 'rad'), channel_type('moment', 'N m'), channel_type('opening', 'm'), &
+      channel_type('axial_force', 'N'), channel_type('node_acceleration', 'm/s2'), &
+      channel_type('ground_acceleration', 'm/s2')]
 
    type, extends(structure_type) :: frame_type
       type(frame_element), allocatable :: element(:)
+      !> Names, floors of the grid (-1 for nodes that are none of it) and places [m] of the nodes (nodes), and
+      !> names of the members
+      character(len=name_length), allocatable :: node_name(:), member_name(:)
+      integer, allocatable :: storey(:)
+      real(wp), allocatable :: x(:), y(:)
+      !> Where the springs of the members are, in shares of the clear length (inside)
+      real(wp), allocatable :: spring_place(:)
       !> Number of the unknown of each displacement, 0 where a support holds it (3, nodes)
       integer, allocatable :: number(:, :)
       !> Number of springs in elements
@@ -59,6 +81,10 @@ module rbs_structure_frame_frame
       procedure :: acceleration_scale
       procedure :: channels
       procedure :: fill_row
+      procedure :: springs_of
+      procedure :: base_force
+      procedure :: accelerations
+      procedure :: check_loads
    end type frame_type
 
 contains
@@ -553,20 +579,34 @@ contains
       scale = abs(springs%force(spring))/maxval(self%inertias) + abs(load(horizontal))
    end function acceleration_scale
 
-   !> Displacements of the nodes, then deformations and forces of the springs in the elements.
+   !> Displacements of the nodes, forces of the members, deformations and forces of their springs by kind.
    pure subroutine channels(self, contents, channel)
       class(frame_type), intent(in) :: self
       type(row_contents), intent(in) :: contents
       type(channel_type), allocatable, intent(out) :: channel(:)
+      logical :: held(size(frame_channel))
+      integer :: kind
 
-      ! In time and on a path alike
-      allocate (channel(5), source=channel_type('', '', merge(0, 0, contents%in_time)))
-      channel(1) = channel_type('x', 'm', self%n)
-      channel(2) = channel_type('y', 'm', self%n)
-      channel(3) = channel_type('rotation', 'rad', self%n)
-      channel(4) = channel_type('deformation', '', self%inside)
-      channel(5) = channel_type('spring_force', '', self%inside)
+      held = .true.
+      held(14:15) = contents%motion
+      channel = frame_channel
+      channel(2:4)%count = self%n
+      channel(5:7)%count = size(self%element)
+      do kind = 1, 3
+         held(6 + 2*kind:7 + 2*kind) = self%springs_of(kind) > 0
+         channel(6 + 2*kind:7 + 2*kind)%count = self%springs_of(kind)
+      end do
+      channel(14)%count = self%n
+      channel = pack(channel, held)
    end subroutine channels
+
+   !> Springs of a kind in the members.
+   pure integer function springs_of(self, kind)
+      class(frame_type), intent(in) :: self
+      integer, intent(in) :: kind
+
+      springs_of = count(self%place(:self%inside)%kind == kind)
+   end function springs_of
 
    pure subroutine fill_row(self, contents, response, springs, d, row)
       class(frame_type), intent(in) :: self
@@ -575,19 +615,127 @@ contains
       type(spring_array), intent(in) :: springs
       real(wp), intent(in), contiguous :: d(:)
       real(wp), intent(out), contiguous :: row(:)
-      integer :: i, j
+      real(wp) :: f(size(d)), s(3), correction(size(d))
+      integer :: at, i, j, kind, m
 
-      row = 0.0_wp
+      f = springs%f0 + springs%k*(d - springs%d0)
+      row(1) = self%base_force(d, f)
+      if (contents%in_time .and. self%damped) row(1) = response%base_shear
+      row(2:3*self%n + 1) = 0.0_wp
       do i = 1, self%n
          do j = 1, 3
-            if (self%number(j, i) > 0) row((j - 1)*self%n + i) = d(self%inside + self%number(j, i))
+            if (self%number(j, i) > 0) row(1 + (j - 1)*self%n + i) = d(self%inside + self%number(j, i))
          end do
       end do
-      do i = 1, self%inside
-         row(3*self%n + i) = d(i)
-         row(3*self%n + self%inside + i) = springs%force(i)
+      at = 1 + 3*self%n
+      m = size(self%element)
+      do i = 1, m
+         call self%end_forces(i, self%basic(i, d(self%inside + 1:)), d, f, 1.0_wp, self%initial_tangent, s, &
+                              correction)
+         ! Compression is positive, as everywhere.
+         row(at + i) = -s(1)
+         row(at + m + i) = s(2)
+         row(at + 2*m + i) = s(3)
       end do
-      if (contents%in_time) row(3*self%n + self%inside + 1:) = response%f(:self%inside)
+      at = at + 3*m
+      do kind = 1, 3
+         associate (of_kind => self%place(:self%inside)%kind == kind, number => self%springs_of(kind))
+            row(at + 1:at + number) = pack(d(:self%inside), of_kind)
+            row(at + number + 1:at + 2*number) = pack(f(:self%inside), of_kind)
+            at = at + 2*number
+         end associate
+      end do
+      if (.not. contents%motion) return
+      row(at + 1:) = 0.0_wp
+      do i = 1, self%n
+         if (self%number(1, i) > 0) row(at + i) = response%a(self%inside + self%number(1, i))
+      end do
+      row(at + self%n + 1) = response%ground
    end subroutine fill_row
+
+   !> What supports and springs from the ground hold the frame with along x [N].
+   pure real(wp) function base_force(self, d, f) result(force)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), f(:)
+      real(wp) :: s(3), correction(size(d))
+      integer :: i, j
+
+      force = 0.0_wp
+      do i = 1, size(self%element)
+         associate (e => self%element(i))
+            if (all(self%number(1, e%node) > 0)) cycle
+            call self%end_forces(i, self%basic(i, d(self%inside + 1:)), d, f, 1.0_wp, self%initial_tangent, &
+                                 s, &
+                                 correction)
+            do j = 1, 2
+               if (self%number(1, e%node(j)) > 0) cycle
+               force = force - sum(s*e%to_basic(:, 3*j - 2))
+               if (self%axially_loaded) then
+                  force = force + leaning_of(self, i, j, d(self%inside + 1:))
+               end if
+            end do
+         end associate
+      end do
+      ! A spring of no account carries nothing that counts.
+      do i = self%inside + 1, size(d)
+         if (self%place(i)%kind == shear) force = force + f(i)
+      end do
+   end function base_force
+
+   !> What a leaning element presses a node with along x.
+   pure real(wp) function leaning_of(frame, element, node, x) result(force)
+      class(frame_type), intent(in) :: frame
+      !> Which of its two nodes
+      integer, intent(in) :: element, node
+      real(wp), intent(in) :: x(:)
+      real(wp) :: row(6, 3), moved(6)
+      integer :: number(6), i
+
+      call second_order_rows(frame, element, row)
+      number = reshape(frame%number(:, frame%element(element)%node), [6])
+      moved = 0.0_wp
+      do i = 1, 6
+         if (number(i) > 0) moved(i) = x(number(i))
+      end do
+      force = frame%compression(element)*sum(frame%lengths(:, element)*matmul(moved, row)*row(3*node - 2, :))
+   end function leaning_of
+
+   !> Accelerations of what has mass; where there is none they follow from the motion, not from forces.
+   subroutine accelerations(self, d, v, load, pressing, result)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in) :: d(size(self%place)), v(size(self%place)), load(signals)
+      integer, intent(in) :: pressing
+      type(motion_result), intent(inout) :: result
+      integer :: i
+
+      associate (x => result%force)
+         call self%forces(d, load, result%axial(:pressing), result%f, x)
+         if (self%stiffness_damping > 0.0_wp) call self%damp(v(self%inside + 1:), self%initial_tangent, x)
+         call self%add_ground(load, x)
+         do i = 1, self%unknowns
+            if (self%inertias(i) > 0.0_wp) then
+               x(i) = x(i)/self%inertias(i) - self%mass_damping*v(self%inside + i)
+            else
+               x(i) = 0.0_wp
+            end if
+         end do
+         call self%spring_rates(x, result%a)
+      end associate
+   end subroutine accelerations
+
+   !> Refuse an axial load with time: what columns carry follows from the dead load.
+   subroutine check_loads(self, acts, error)
+      class(frame_type), intent(in) :: self
+      logical, intent(in) :: acts(signals)
+      type(error_type), allocatable, intent(inout) :: error
+
+      if (acts(top_axial)) then
+         call fatal_error(error, bad_input, 'axial_load: a frame has none that varies in time; its '// &
+                          'columns carry the dead load of floors, beams and nodes')
+      else if (acts(lateral) .and. .not. any(abs(self%pattern(lateral)%force) > 0.0_wp)) then
+         call fatal_error(error, bad_input, 'force: the pattern of the lateral load has no share of any '// &
+                          'node; choose pattern')
+      end if
+   end subroutine check_loads
 
 end module rbs_structure_frame_frame

@@ -5,6 +5,7 @@ module rbs_structure_frame_new_frame
    use rbs_hysteresis_spring_record, only: spring_record, make_rules
    use rbs_structure_frame_element, only: frame_element, tangent_size
    use rbs_structure_frame_frame, only: frame_type
+   use rbs_structure_frame_frame_record, only: name_length
    use rbs_structure_frame_numbering, only: order_nodes
    use rbs_structure_spring_place, only: spring_place, shear, flexure, axial
    use rbs_structure_structure, only: unknown_group, pdelta, lateral, horizontal, vertical, signals
@@ -18,18 +19,26 @@ module rbs_structure_frame_new_frame
 
    !> A node: place [m], what supports hold (x, y, theta), mass [kg, kg, kg m2], dead load [N, N, N m].
    type :: frame_node
+      character(len=name_length) :: name = ''
+      !> Floor of the grid, -1 for a node that is none of it
+      integer :: storey = -1
       real(wp) :: x = 0.0_wp, y = 0.0_wp
       logical :: held(3) = .false.
       real(wp) :: mass(3) = 0.0_wp, load(3) = 0.0_wp
-      !> Share of the lateral load
-      real(wp) :: push = 0.0_wp
+      !> Shares of the lateral load, along x and upward
+      real(wp) :: push(2) = 0.0_wp
+      !> Springs to the ground along x, upward and in rotation; without a rule: none
+      type(spring_record) :: ground(3)
       !> The node whose displacement along x this one shares, as along a floor; 0: none
       integer :: like = 0
    end type frame_node
 
    !> A member from node to node: rigid ends, and springs in what is elastic otherwise.
    type :: frame_member
+      character(len=name_length) :: name = ''
       integer :: node(2) = 0
+      !> Number of its kind in what the user gave
+      integer :: kind_of = 0
       !> Lengths of the rigid ends [m]
       real(wp) :: rigid(2) = 0.0_wp
       !> E A [N], E I [N m2] and G A_s [N] of the elastic rest; 0 where it is rigid
@@ -45,18 +54,26 @@ module rbs_structure_frame_new_frame
 contains
 
    !> Make a frame of nodes and members that have been checked.
-   subroutine new_frame(frame, node, member, kinematics, top)
+   subroutine new_frame(frame, node, member, kinematics, top, vertical)
       type(frame_type), intent(out) :: frame
       type(frame_node), intent(in) :: node(:)
       type(frame_member), intent(in) :: member(:)
       integer, intent(in) :: kinematics
-      !> The node whose displacement along x is that of the top
+      !> The node whose displacement is that of the top
       integer, intent(in) :: top
-      integer :: i, springs
+      !> Whether that is the one upward, not the one along x
+      logical, intent(in), optional :: vertical
+      integer :: i, springs, direction
 
       frame%kinematics = kinematics
       frame%n = size(node)
-      frame%length = [(0.0_wp, i=1, size(node))]
+      frame%node_name = node%name
+      frame%member_name = member%name
+      frame%storey = node%storey
+      frame%x = node%x
+      frame%y = node%y
+      ! What tells frames apart: each node by its distance from a point that is on no axis of it.
+      frame%length = [(hypot(node(i)%x + 1.0_wp/3.0_wp, node(i)%y + 0.7_wp), i=1, size(node))]
       frame%height = maxval(node%y) - minval(node%y)
       ! A beam alone has none.
       if (.not. frame%height > 0.0_wp) frame%height = maxval(node%x) - minval(node%x)
@@ -67,9 +84,12 @@ contains
       end do
       call number_unknowns(frame, node, member)
       springs = frame%inside + frame%unknowns
-      allocate (frame%spring(springs), frame%place(springs), frame%arm(springs))
+      allocate (frame%spring(springs), frame%place(springs), frame%arm(springs), &
+                frame%spring_place(frame%inside))
       frame%arm = 0.0_wp
-      frame%arm(frame%inside + frame%number(1, top)) = 1.0_wp
+      direction = 1
+      if (present(vertical)) direction = merge(2, 1, vertical)
+      frame%arm(frame%inside + frame%number(direction, top)) = 1.0_wp
       call set_ground(frame, node)
       call set_elements(frame, node, member)
       call make_rules(frame%spring, frame%rules)
@@ -139,10 +159,18 @@ contains
                frame%dead(at) = frame%dead(at) + node(i)%load(j)
                frame%part(at) = i
                if (j == 3) frame%reach(at) = frame%total_height
-               frame%place(frame%inside + at) = spring_place(kind_of(j), 0, i, index=i)
-               frame%spring(frame%inside + at)%rule = 'elastic'
-               frame%spring(frame%inside + at)%value(1) = of_no_account
-               if (j == 1) frame%pattern(lateral)%force(at) = frame%pattern(lateral)%force(at) + node(i)%push
+               if (frame%place(frame%inside + at)%kind == 0) then
+                  frame%place(frame%inside + at) = spring_place(kind_of(j), 0, 0, index=i, &
+                                                                owner='node '//node(i)%name)
+                  frame%spring(frame%inside + at) = node(i)%ground(j)
+               end if
+               if (frame%spring(frame%inside + at)%rule == '') then
+                  frame%spring(frame%inside + at)%rule = 'elastic'
+                  frame%spring(frame%inside + at)%value(1) = of_no_account
+               end if
+               associate (push => [node(i)%push, 0.0_wp])
+                  frame%pattern(lateral)%force(at) = frame%pattern(lateral)%force(at) + push(j)
+               end associate
                if (j == 1) frame%pattern(horizontal)%force(at) = -frame%inertias(at)
                if (j == 2) frame%pattern(vertical)%force(at) = -frame%inertias(at)
             end associate
@@ -187,7 +215,8 @@ contains
                call set_rest(e, m, clear)
                do j = 1, size(m%kind)
                   frame%spring(before + j) = m%spring(j)
-                  frame%place(before + j) = spring_place(m%kind(j), i, j, index=i)
+                  frame%spring_place(before + j) = m%place(j)
+                  frame%place(before + j) = spring_place(m%kind(j), i, j, index=i, owner=m%name)
                   if (m%kind(j) == flexure) e%share(:, j) = [m%place(j) - 1.0_wp, m%place(j)]
                   if (m%kind(j) == shear) e%share(:, j) = -1.0_wp/clear
                end do

@@ -1,5 +1,5 @@
 !> The column that the user has described.
-module rbs_solve_make_column
+module rbs_solve_begin_make_column
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_text, only: to_text
    use rbs_structure_column_column, only: column_type
@@ -40,4 +40,4 @@ contains
       end do
    end subroutine make_column
 
-end module rbs_solve_make_column
+end module rbs_solve_begin_make_column

@@ -1,0 +1,73 @@
+!> Notes on the structure of a case: what is allowed but perhaps not intended.
+module rbs_output_structure_notes
+   use rbs_base_error, only: message_list
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
+   use rbs_case_case_record, only: case_record
+   use rbs_structure_column_column_notes, only: column_notes
+   use rbs_structure_frame_frame_record, only: frame_record
+   implicit none
+   private
+
+   public :: structure_notes
+
+   !> Storeys and bays outside of these are in another unit, or none of a building [m].
+   real(wp), parameter :: lowest_storey = 1.0_wp, widest_bay = 60.0_wp
+
+   !> Young's moduli of building materials [Pa].
+   real(wp), parameter :: least_modulus = 1.0e8_wp, largest_modulus = 1.0e12_wp
+
+contains
+
+   subroutine structure_notes(case, notes)
+      !> Validated
+      type(case_record), intent(in) :: case
+      type(message_list), intent(inout) :: notes
+
+      if (allocated(case%frame)) then
+         call frame_notes(case%frame, notes)
+      else
+         call column_notes(case%column, notes)
+      end if
+   end subroutine structure_notes
+
+   !> Sizes in a wrong unit, and masses without weight.
+   subroutine frame_notes(frame, notes)
+      type(frame_record), intent(in) :: frame
+      type(message_list), intent(inout) :: notes
+      integer :: i
+      logical :: heavy, loaded
+
+      if (allocated(frame%storeys)) call check_lengths('storeys', frame%storeys)
+      if (allocated(frame%bays)) call check_lengths('bays', frame%bays)
+      do i = 1, size(frame%kind)
+         associate (modulus => frame%kind(i)%modulus)
+            if (modulus >= least_modulus .and. modulus <= largest_modulus) cycle
+            call notes%add("member_kind '"//trim(frame%kind(i)%name)//"': modulus = "//to_text(modulus)// &
+                           ' Pa is that of no building material; 30 GPa is 30e9')
+         end associate
+      end do
+      heavy = any(frame%floor%mass > 0.0_wp) .or. any(frame%node%mass > 0.0_wp)
+      loaded = any(abs(frame%floor%load) > 0.0_wp) .or. any(abs(frame%node%load_y) > 0.0_wp) .or. &
+               any(abs(frame%member%load) > 0.0_wp)
+      if (heavy .and. .not. loaded) then
+         call notes%add('frame: it has mass and no dead load; the weight of masses acts as far as it is '// &
+                        'given as load of beams or load_y of nodes')
+      end if
+      if (frame%kinematics == 'pdelta' .and. .not. loaded) then
+         call notes%add("frame: kinematics = 'pdelta' does nothing without dead load; give some")
+      end if
+
+   contains
+
+      subroutine check_lengths(name, length)
+         character(len=*), intent(in) :: name
+         real(wp), intent(in) :: length(:)
+
+         if (minval(length) >= lowest_storey .and. maxval(length) <= widest_bay) return
+         call notes%add('frame: '//name//' has lengths of '//to_text(minval(length))//' to '// &
+                        to_text(maxval(length))//' m; lengths are in m, and 3200 mm is 3.2')
+      end subroutine check_lengths
+   end subroutine frame_notes
+
+end module rbs_output_structure_notes

@@ -1,0 +1,105 @@
+!> The structure that the user has described, a column or a frame, and the state that its analyses begin in.
+module rbs_solve_begin_make_structure
+   use rbs_base_band_matrix, only: band_matrix
+   use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
+   use rbs_base_kinds, only: wp
+   use rbs_case_case_record, only: case_record
+   use rbs_solve_end_state, only: end_state
+   use rbs_solve_begin_make_column, only: make_column
+   use rbs_solve_modal_modes, only: modes_type, find_modes
+   use rbs_solve_static_dead_load, only: put_dead_load
+   use rbs_structure_column_column, only: column_type
+   use rbs_structure_frame_frame, only: frame_type
+   use rbs_structure_frame_frame_parts, only: frame_parts
+   use rbs_structure_frame_new_frame, only: new_frame
+   use rbs_structure_structure, only: structure_type, small, pdelta, lateral, horizontal
+   implicit none
+   private
+
+   public :: make_structure
+
+contains
+
+   !> Validate the structure of a case and make it.
+   subroutine make_structure(case, structure, before, error)
+      type(case_record), intent(inout) :: case
+      class(structure_type), allocatable, intent(out) :: structure
+      !> A frame begins under its dead load; empty: without any
+      type(end_state), intent(out) :: before
+      type(error_type), allocatable, intent(out) :: error
+      class(column_type), allocatable :: column
+      type(frame_type), allocatable :: frame
+
+      if (allocated(case%frame)) then
+         allocate (frame)
+         call make_frame(case, frame, before, error)
+         call move_alloc(frame, structure)
+      else
+         call make_column(case%column, column, error)
+         call move_alloc(column, structure)
+      end if
+   end subroutine make_structure
+
+   subroutine make_frame(case, frame, before, error)
+      type(case_record), intent(inout) :: case
+      type(frame_type), intent(inout) :: frame
+      type(end_state), intent(out) :: before
+      type(error_type), allocatable, intent(out) :: error
+      type(message_list) :: messages
+      type(frame_parts) :: parts
+      type(modes_type) :: modes
+
+      call parts%find(case%frame, messages)
+      call case%column%damping%check('damping', messages)
+      call messages%raise(error)
+      if (allocated(error)) return
+      call new_frame(frame, parts%node, parts%member, merge(pdelta, small, &
+                     case%frame%kinematics == 'pdelta'), &
+                     parts%top, case%frame%control == 'y')
+      associate (damping => case%column%damping)
+         frame%mass_damping = damping%mass
+         frame%stiffness_damping = damping%stiffness
+         frame%tangent_damping = damping%tangent
+         frame%damped = damping%mass > 0.0_wp .or. damping%stiffness > 0.0_wp
+      end associate
+      call check_stable(frame, error)
+      if (allocated(error)) return
+      call put_dead_load(frame, before, error)
+      if (allocated(error) .or. case%frame%pattern /= 'modal') return
+      call find_modes(frame, modes, error, 1)
+      if (allocated(error)) return
+      associate (push => frame%pattern(lateral)%force)
+         push = -frame%pattern(horizontal)%force*modes%shapes(:, 1)
+         push = push/sum(push)
+      end associate
+   end subroutine make_frame
+
+   !> A frame that can move without force, or whose member has springs that leave its inside undetermined.
+   subroutine check_stable(frame, error)
+      type(frame_type), intent(in) :: frame
+      type(error_type), allocatable, intent(out) :: error
+      type(band_matrix) :: matrix
+      character(len=12), parameter :: motion(3) = [character(len=12) :: 'move along x', 'move up', 'turn']
+      real(wp) :: tangent(frame%tangent_numbers), band(frame%half_width + 1, frame%unknowns)
+      integer :: at(2), unstable
+
+      call frame%linearise(frame%initial_stiffness, tangent, unstable)
+      if (unstable > 0) then
+         call fatal_error(error, bad_input, 'member '//trim(frame%member_name(unstable))//': its springs '// &
+                          'have no stiffness at the start that determines how it bends; give them some')
+         return
+      end if
+      band = 0.0_wp
+      call frame%add_stiffness(frame%initial_stiffness, band)
+      call matrix%create(frame%unknowns, frame%half_width, band(1, :))
+      matrix%band(:frame%half_width + 1, :) = band
+      call matrix%factor()
+      if (matrix%positive) return
+      at = findloc(frame%number, maxloc(abs(matrix%triangle(1, :)), dim=1))
+      call fatal_error(error, bad_input, 'frame: it is a mechanism, '// &
+                       'node '//trim(frame%node_name(at(2)))// &
+                       ' can '//trim(motion(at(1)))//' without any force; give it a support, a spring or '// &
+                       'a stiffer member')
+   end subroutine check_stable
+
+end module rbs_solve_begin_make_structure

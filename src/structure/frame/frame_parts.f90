@@ -1,0 +1,735 @@
+!> Nodes and members of a frame from what the user gave: the grid is laid out, names are found, and everything
+!> that is wrong gets a message with its remedy.
+module rbs_structure_frame_frame_parts
+   use rbs_base_check, only: is_given
+   use rbs_base_error, only: message_list
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: list_of, nearest_name, to_text
+   use rbs_hysteresis_registry, only: rule_names, suits
+   use rbs_hysteresis_spring_record, only: spring_record
+   use rbs_structure_frame_frame_record, only: frame_record, frame_spring, kind_record, cell_record, &
+                                               name_length
+   use rbs_structure_frame_new_frame, only: frame_node, frame_member
+   use rbs_structure_spring_place, only: shear, flexure, axial
+   implicit none
+   private
+
+   public :: frame_parts
+
+   !> Shares of the length in the rule of Gauss and Lobatto with three points.
+   real(wp), parameter :: share(3) = [1.0_wp/6.0_wp, 2.0_wp/3.0_wp, 1.0_wp/6.0_wp]
+   real(wp), parameter :: point(3) = [0.0_wp, 0.5_wp, 1.0_wp]
+
+   !> Nodes nearer than this share of the size of the frame are at one place.
+   real(wp), parameter :: one_place = 1.0e-9_wp
+
+   !> Groups of springs, in the order of their kinds.
+   character(len=*), parameter :: group_of(3) = [character(len=12) :: 'shear', 'flexure', 'axial_spring']
+   character(len=*), parameter :: place_of(3) = [character(len=8) :: 'shear', 'flexure', 'axial']
+
+   type :: frame_parts
+      type(frame_node), allocatable :: node(:)
+      type(frame_member), allocatable :: member(:)
+      !> The node whose displacement is that of the top
+      integer :: top = 0
+   contains
+      procedure :: find
+   end type frame_parts
+
+contains
+
+   !> Lay out the frame; all messages together.
+   subroutine find(self, record, messages)
+      class(frame_parts), intent(out) :: self
+      class(frame_record), intent(inout) :: record
+      type(message_list), intent(inout) :: messages
+      integer :: known
+
+      known = messages%count
+      call check_values(record, messages)
+      if (messages%count > known) return
+      allocate (self%node(0), self%member(0))
+      call lay_grid(self, record, messages)
+      call put_nodes(self, record, messages)
+      call put_members(self, record, messages)
+      if (size(self%node) == 0) then
+         call messages%add('frame: it has no storeys and no nodes; give storeys (and bays), or groups '// &
+                           '&node and &member')
+      end if
+      if (messages%count > known) return
+      call put_ground_springs(self, record, messages)
+      call put_kinds(self, record, messages)
+      call check_geometry(self, messages)
+      if (messages%count > known) return
+      call choose_top(self, record, messages)
+      call push(self, record, messages)
+   end subroutine find
+
+   !> What each group gives by itself.
+   subroutine check_values(record, messages)
+      type(frame_record), intent(inout) :: record
+      type(message_list), intent(inout) :: messages
+      character(len=:), allocatable :: name, from
+      integer :: i, j, known, kind
+
+      call record%check('frame', messages)
+      do i = 1, size(record%floor)
+         call record%floor(i)%check('floor', messages)
+      end do
+      do i = 1, size(record%kind)
+         associate (k => record%kind(i))
+            known = messages%count
+            call k%check("member_kind '"//trim(k%name)//"'", messages)
+            if (messages%count == known) call check_kind(record, k, messages)
+            do j = 1, i - 1
+               if (record%kind(j)%name == k%name) then
+                  call messages%add("member_kind '"//trim(k%name)//"' is given twice; remove one")
+               end if
+            end do
+         end associate
+      end do
+      do i = 1, size(record%column_of)
+         call record%column_of(i)%check('column_of', messages)
+      end do
+      do i = 1, size(record%beam_of)
+         call record%beam_of(i)%check('beam_of', messages)
+      end do
+      do i = 1, size(record%node)
+         if (record%node(i)%name == '') call messages%add('node: the name is missing; give each a name')
+         call record%node(i)%check("node '"//trim(record%node(i)%name)//"'", messages)
+      end do
+      do i = 1, size(record%member)
+         if (record%member(i)%name == '') call messages%add('member: the name is missing; give each a name')
+         call record%member(i)%check("member '"//trim(record%member(i)%name)//"'", messages)
+      end do
+      do i = 1, size(record%spring)
+         associate (s => record%spring(i))
+            call s%spring%place(from)
+            kind = findloc(group_of == s%group, .true., dim=1)
+            name = from//trim(place_of(kind))//' spring of '
+            if ((s%kind == '') .eqv. (s%node == '')) then
+               call messages%add(from//'&'//trim(s%group)//': a spring of a frame belongs to a kind of '// &
+                                 'members or stands between a node and the ground; give kind or node')
+               cycle
+            else if (s%kind /= '') then
+               name = name//"member_kind '"//trim(s%kind)//"'"
+               call check_reference(s%kind, record%kind%name, name, 'kind', messages)
+            else
+               name = name//"node '"//trim(s%node)//"'"
+            end if
+            call s%spring%validate(name, messages)
+            if (s%spring%rule == 'layered') then
+               call messages%add(name//': layered joints are not followed in frames yet; take a rule for '// &
+                                 'the moment alone, such as takeda or peak_oriented')
+            else if (all(rule_names /= s%spring%rule)) then
+               cycle                                ! reported by the spring
+            else if (.not. suits(s%spring%rule, place_of(kind))) then
+               call messages%add(name//" cannot be of the rule '"//trim(s%spring%rule)//"'; it is one of "// &
+                                 list_of(pack(rule_names, suits(rule_names, place_of(kind)))))
+            end if
+            if (s%node /= '' .and. allocated(s%place)) then
+               call messages%add(name//': place is for springs of members; remove it')
+            else if (allocated(s%place)) then
+               if (any(s%place < 0.0_wp) .or. any(s%place > 1.0_wp)) then
+                  call messages%add(name//': place is a share of the clear length, from 0 to 1')
+               end if
+            end if
+         end associate
+      end do
+   end subroutine check_values
+
+   !> A kind is elastic, yields at its points, or has springs of its own.
+   subroutine check_kind(record, kind, messages)
+      type(frame_record), intent(in) :: record
+      type(kind_record), intent(in) :: kind
+      type(message_list), intent(inout) :: messages
+      integer :: i, bending
+      real(wp) :: least, most
+
+      if (kind%name == '') then
+         call messages%add('member_kind: the name is missing; give each a name')
+         return
+      end if
+      bending = 0
+      least = 2.0_wp
+      most = -1.0_wp
+      do i = 1, size(record%spring)
+         associate (s => record%spring(i))
+            if (s%kind /= kind%name .or. s%group /= 'flexure') cycle
+            if (.not. allocated(s%place)) then
+               bending = bending + 2
+               least = 0.0_wp
+               most = 1.0_wp
+            else
+               bending = bending + size(s%place)
+               least = min(least, minval(s%place))
+               most = max(most, maxval(s%place))
+            end if
+         end associate
+      end do
+      associate (name => "member_kind '"//trim(kind%name)//"'")
+         if (is_given(kind%yield_moment) .and. any(record%spring%kind == kind%name)) then
+            call messages%add(name//': it has a yield_moment and springs of its own; keep one of them')
+         else if (abs(kind%hardening) > 0.0_wp .and. .not. is_given(kind%yield_moment)) then
+            call messages%add(name//': hardening does nothing without yield_moment; give one, or remove it')
+         else if (kind%between == 'rigid' .and. .not. most > least) then
+            call messages%add(name//": with between = 'rigid' all bending is in springs; give it two "// &
+                              'flexural springs or more, at different places')
+         end if
+      end associate
+   end subroutine check_kind
+
+   !> A name that must be one of a list.
+   subroutine check_reference(word, names, owner, key, messages)
+      character(len=*), intent(in) :: word, names(:), owner, key
+      type(message_list), intent(inout) :: messages
+
+      if (any(names == word)) return
+      if (size(names) == 0) then
+         call messages%add(owner//': there is no '//key//" '"//trim(word)//"'; give one")
+      else if (word == '') then
+         call messages%add(owner//': '//key//' is missing; it is one of '//list_of(names))
+      else
+         call messages%add(owner//': there is no '//key//" '"//trim(word)//"'; did you mean '"// &
+                           nearest_name(word, names)//"'?")
+      end if
+   end subroutine check_reference
+
+   !> Nodes, columns and beams of the grid.
+   subroutine lay_grid(self, record, messages)
+      type(frame_parts), intent(inout) :: self
+      type(frame_record), intent(in) :: record
+      type(message_list), intent(inout) :: messages
+      integer :: bays, i, l, lines, s, storeys
+
+      storeys = 0
+      bays = 0
+      if (allocated(record%storeys)) storeys = size(record%storeys)
+      if (allocated(record%bays)) bays = size(record%bays)
+      call check_cells(record, storeys, bays, messages)
+      if (storeys == 0) then
+         if (bays > 0) call messages%add('frame: bays need storeys; give their heights')
+         return
+      end if
+      lines = bays + 1
+      deallocate (self%node)
+      allocate (self%node(lines*(storeys + 1)))
+      i = 0
+      do s = 0, storeys
+         do l = 1, lines
+            i = i + 1
+            associate (node => self%node(i))
+               node%name = 'N-'//to_text(l)//'-'//to_text(s)
+               node%storey = s
+               if (l > 1) node%x = sum(record%bays(:l - 1))
+               node%y = sum(record%storeys(:s))
+               if (s == 0) call hold(node, record%base)
+               if (s > 0) call put_mass(node, record, s, l, lines)
+               if (s > 0 .and. l > 1 .and. record%diaphragm) node%like = i - l + 1
+            end associate
+         end do
+      end do
+      do s = 1, storeys
+         do l = 1, lines
+            call add_cell(self, record, 'C', l, s, [(s - 1)*lines + l, s*lines + l], messages)
+         end do
+      end do
+      do s = 1, storeys
+         do l = 1, bays
+            call add_cell(self, record, 'B', l, s, [s*lines + l, s*lines + l + 1], messages)
+         end do
+      end do
+   end subroutine lay_grid
+
+   !> Groups of a grid must lie in it.
+   subroutine check_cells(record, storeys, bays, messages)
+      type(frame_record), intent(in) :: record
+      integer, intent(in) :: storeys, bays
+      type(message_list), intent(inout) :: messages
+      integer :: i
+
+      do i = 1, size(record%floor)
+         call check_storey('floor', record%floor(i)%storey)
+         if (abs(record%floor(i)%load) > 0.0_wp .and. bays == 0) then
+            call messages%add('floor: load acts on beams, and there are none; give it to the nodes as load_y')
+         end if
+      end do
+      do i = 1, size(record%column_of)
+         call check_storey('column_of', record%column_of(i)%storey)
+         call check_reference(record%column_of(i)%kind, record%kind%name, 'column_of', 'kind', messages)
+         if (record%column_of(i)%line > bays + 1) call refuse('column_of: line', record%column_of(i)%line, &
+                                                              'lines of columns', bays + 1)
+      end do
+      do i = 1, size(record%beam_of)
+         call check_storey('beam_of', record%beam_of(i)%storey)
+         call check_reference(record%beam_of(i)%kind, record%kind%name, 'beam_of', 'kind', messages)
+         if (record%beam_of(i)%line > bays) call refuse('beam_of: bay', record%beam_of(i)%line, 'bays', bays)
+      end do
+
+   contains
+
+      subroutine check_storey(group, storey)
+         character(len=*), intent(in) :: group
+         integer, intent(in) :: storey
+
+         if (storey > storeys) call refuse(group//': storey', storey, 'storeys', storeys)
+      end subroutine check_storey
+
+      subroutine refuse(key, value, what, most)
+         character(len=*), intent(in) :: key, what
+         integer, intent(in) :: value, most
+
+         call messages%add(key//' = '//to_text(value)//', but the frame has '//to_text(most)//' '//what// &
+                           '; correct it, or give 0 for all')
+      end subroutine refuse
+   end subroutine check_cells
+
+   !> Shares of the mass of a floor by the widths of the bays beside a node.
+   subroutine put_mass(node, record, storey, line, lines)
+      type(frame_node), intent(inout) :: node
+      type(frame_record), intent(in) :: record
+      integer, intent(in) :: storey, line, lines
+      real(wp) :: mass, part
+      integer :: i
+
+      mass = 0.0_wp
+      do i = 1, size(record%floor)
+         if (record%floor(i)%storey == 0 .or. record%floor(i)%storey == storey) mass = record%floor(i)%mass
+      end do
+      part = 1.0_wp
+      if (lines > 1) then
+         part = 0.0_wp
+         if (line > 1) part = record%bays(line - 1)
+         if (line < lines) part = part + record%bays(line)
+         part = part/(2.0_wp*sum(record%bays))
+      end if
+      node%mass(:2) = mass*part
+   end subroutine put_mass
+
+   !> A column or a beam of the grid.
+   subroutine add_cell(self, record, letter, line, storey, node, messages)
+      type(frame_parts), intent(inout) :: self
+      type(frame_record), intent(in) :: record
+      character(len=1), intent(in) :: letter
+      integer, intent(in) :: line, storey, node(2)
+      type(message_list), intent(inout) :: messages
+      type(frame_member) :: member
+      integer :: i
+
+      member%name = letter//'-'//to_text(line)//'-'//to_text(storey)
+      member%node = node
+      if (letter == 'C') then
+         call choose(record%column_of)
+         if (member%kind_of == 0) then
+            call messages%add('column '//trim(member%name)//' has no kind; give &column_of, with line = '// &
+                              '0 and storey = 0 for all')
+         end if
+      else
+         call choose(record%beam_of)
+         if (member%kind_of == 0) then
+            call messages%add('beam '//trim(member%name)//' has no kind; give &beam_of, with bay = 0 and '// &
+                              'storey = 0 for all')
+         end if
+         do i = 1, size(record%floor)
+            if (any(record%floor(i)%storey == [0, storey])) member%load = record%floor(i)%load
+         end do
+      end if
+      call append_member(self, member)
+
+   contains
+
+      !> The last group that fits.
+      subroutine choose(cell)
+         type(cell_record), intent(in) :: cell(:)
+         integer :: j
+
+         do j = 1, size(cell)
+            if (all(cell(j)%line /= [0, line]) .or. all(cell(j)%storey /= [0, storey])) cycle
+            member%kind_of = findloc(record%kind%name == cell(j)%kind, .true., dim=1)
+            member%rigid = cell(j)%panel
+            if (letter == 'C' .and. storey == 1) member%rigid(1) = 0.0_wp
+         end do
+      end subroutine choose
+   end subroutine add_cell
+
+   subroutine append_member(self, member)
+      type(frame_parts), intent(inout) :: self
+      type(frame_member), intent(in) :: member
+      type(frame_member), allocatable :: longer(:)
+      integer :: n
+
+      n = size(self%member)
+      allocate (longer(n + 1))
+      longer(:n) = self%member
+      longer(n + 1) = member
+      call move_alloc(longer, self%member)
+   end subroutine append_member
+
+   subroutine hold(node, support)
+      type(frame_node), intent(inout) :: node
+      character(len=*), intent(in) :: support
+
+      node%held = .false.
+      select case (support)
+      case ('fixed')
+         node%held = .true.
+      case ('pinned')
+         node%held(1) = .true.
+         node%held(2) = .true.
+      case ('roller')
+         node%held(2) = .true.
+      case default                                  ! free
+      end select
+   end subroutine hold
+
+   !> Nodes by name: new ones, and what those of the grid have in addition.
+   subroutine put_nodes(self, record, messages)
+      type(frame_parts), intent(inout) :: self
+      type(frame_record), intent(in) :: record
+      type(message_list), intent(inout) :: messages
+      type(frame_node), allocatable :: longer(:)
+      integer :: grid, i, n, number
+
+      grid = size(self%node)
+      do i = 1, size(record%node)
+         associate (given => record%node(i))
+            number = findloc(self%node%name == given%name, .true., dim=1)
+            if (number > grid) then
+               call messages%add("node '"//trim(given%name)//"' is given twice; remove one")
+               cycle
+            else if (number == 0) then
+               if (.not. (is_given(given%x) .and. is_given(given%y))) then
+                  if (grid > 0) then
+                     call messages%add("node '"//trim(given%name)//"' is none of the grid, "// &
+                                       'whose nodes are '// &
+                                       'called N-line-floor, and has no place; give x and y, or one of '// &
+                                       'those names')
+                  else
+                     call messages%add("node '"//trim(given%name)//"' has no place; give x and y")
+                  end if
+                  cycle
+               end if
+               n = size(self%node)
+               allocate (longer(n + 1))
+               longer(:n) = self%node
+               call move_alloc(longer, self%node)
+               number = n + 1
+               self%node(number)%name = given%name
+               self%node(number)%x = given%x
+               self%node(number)%y = given%y
+            else if (is_given(given%x) .or. is_given(given%y)) then
+               call messages%add("node '"//trim(given%name)//"' belongs to the grid, which places it; "// &
+                                 'remove x and y')
+            end if
+            associate (node => self%node(number))
+               if (given%support /= '') call hold(node, given%support)
+               node%mass = node%mass + [given%mass, given%mass, given%inertia]
+               node%load = node%load + [given%load_x, given%load_y, given%load_moment]
+               node%push = [given%push_x, given%push_y]
+            end associate
+         end associate
+      end do
+      do i = 1, size(record%node)
+         associate (given => record%node(i))
+            if (given%moves_with == '') cycle
+            call check_reference(given%moves_with, self%node%name, "node '"//trim(given%name)// &
+                                 "': moves_with", 'node', messages)
+            number = findloc(self%node%name == given%name, .true., dim=1)
+            n = findloc(self%node%name == given%moves_with, .true., dim=1)
+            if (number == 0 .or. n == 0) cycle
+            if (self%node(n)%like > 0) n = self%node(n)%like
+            if (n == number) then
+               call messages%add("node '"//trim(given%name)//"' moves with itself; name another one")
+               cycle
+            end if
+            self%node(number)%like = n
+         end associate
+      end do
+   end subroutine put_nodes
+
+   subroutine put_members(self, record, messages)
+      type(frame_parts), intent(inout) :: self
+      type(frame_record), intent(in) :: record
+      type(message_list), intent(inout) :: messages
+      type(frame_member) :: member
+      character(len=:), allocatable :: name
+      integer :: i
+
+      do i = 1, size(record%member)
+         associate (given => record%member(i))
+            name = "member '"//trim(given%name)//"'"
+            if (any(self%member%name == given%name)) then
+               call messages%add(name//' is given twice; give each a name of its own')
+            end if
+            call check_reference(given%from, self%node%name, name//': from', 'node', messages)
+            call check_reference(given%to, self%node%name, name//': to', 'node', messages)
+            call check_reference(given%kind, record%kind%name, name, 'kind', messages)
+            member = frame_member()
+            member%name = given%name
+            member%node = [findloc(self%node%name == given%from, .true., dim=1), &
+                           findloc(self%node%name == given%to, .true., dim=1)]
+            member%kind_of = findloc(record%kind%name == given%kind, .true., dim=1)
+            member%rigid = [given%panel_from, given%panel_to]
+            member%load = given%load
+            call append_member(self, member)
+         end associate
+      end do
+   end subroutine put_members
+
+   !> Springs between nodes and the ground; 'base' means all nodes of floor 0.
+   subroutine put_ground_springs(self, record, messages)
+      type(frame_parts), intent(inout) :: self
+      type(frame_record), intent(in) :: record
+      type(message_list), intent(inout) :: messages
+      integer, parameter :: direction(3) = [1, 3, 2]
+      integer :: i, j, k
+      logical :: any_node
+
+      do i = 1, size(record%spring)
+         associate (s => record%spring(i))
+            if (s%node == '') cycle
+            k = direction(findloc(group_of == s%group, .true., dim=1))
+            any_node = .false.
+            do j = 1, size(self%node)
+               associate (node => self%node(j))
+                  if (node%name /= s%node .and. .not. (s%node == 'base' .and. node%storey == 0)) cycle
+                  any_node = .true.
+                  if (node%held(k)) then
+                     call messages%add('the '//trim(s%group)//" spring of node '"//trim(node%name)// &
+                                       "' does nothing, as its support holds it; change support (or base)")
+                  else if (k == 1 .and. node%like > 0) then
+                     call messages%add("the spring of node '"//trim(node%name)//"' stands where another "// &
+                                       "node moves alike; give it to node '"// &
+                                       trim(self%node(node%like)%name)//"'")
+                  else if (node%ground(k)%rule /= '') then
+                     call messages%add("node '"//trim(node%name)//"' has two springs &"//trim(s%group)// &
+                                       '; remove one')
+                  end if
+                  node%ground(k) = s%spring
+               end associate
+            end do
+            if (.not. any_node) call check_reference(s%node, self%node%name, '&'//trim(s%group), 'node', &
+                                                     messages)
+         end associate
+      end do
+   end subroutine put_ground_springs
+
+   !> What members are of, where their lengths are known.
+   subroutine put_kinds(self, record, messages)
+      type(frame_parts), intent(inout) :: self
+      type(frame_record), intent(in) :: record
+      type(message_list), intent(inout) :: messages
+      real(wp) :: clear, whole
+      integer :: i
+
+      do i = 1, size(self%member)
+         associate (m => self%member(i))
+            associate (a => self%node(m%node(1)), b => self%node(m%node(2)))
+               whole = hypot(b%x - a%x, b%y - a%y)
+               clear = whole - sum(m%rigid)
+               if (.not. whole > 0.0_wp) then
+                  call messages%add('member '//trim(m%name)//' has no length: nodes '//trim(a%name)// &
+                                    ' and '//trim(b%name)//' are at one place; move one of them')
+                  cycle
+               else if (.not. clear > 0.0_wp) then
+                  call messages%add('member '//trim(m%name)//': its rigid ends of '//to_text(sum(m%rigid))// &
+                                    ' m leave nothing of its length of '//to_text(whole)// &
+                                    ' m; shorten panel')
+                  cycle
+               end if
+               if (abs(m%load) > 0.0_wp .and. abs(b%x - a%x) <= one_place*whole) then
+                  call messages%add('member '//trim(m%name)//' stands upright, and a load per length '// &
+                                    'along x does nothing on it; give load_y to its nodes')
+               end if
+            end associate
+            call put_kind(m, record%kind(m%kind_of), record%spring, clear)
+         end associate
+      end do
+   end subroutine put_kinds
+
+   subroutine put_kind(m, kind, spring, clear)
+      type(frame_member), intent(inout) :: m
+      type(kind_record), intent(in) :: kind
+      type(frame_spring), intent(in) :: spring(:)
+      real(wp), intent(in) :: clear
+      type(spring_record) :: one
+      integer :: i, j, k, group
+
+      allocate (m%kind(0), m%place(0), m%spring(0))
+      m%axial = kind%modulus*kind%area
+      if (is_given(kind%yield_moment)) then
+         do i = 1, 3
+            associate (k => kind%modulus*kind%inertia/(share(i)*clear))
+               one%rule = 'bilinear'
+               one%value(:3) = [k, kind%yield_moment/k, kind%hardening*k]
+            end associate
+            call append_spring(m, flexure, point(i), one)
+         end do
+         if (.not. kind%shear_rigidity > 0.0_wp) return
+         one = spring_record()
+         one%rule = 'elastic'
+         one%value(1) = kind%shear_rigidity/clear
+         call append_spring(m, shear, 0.5_wp, one)
+         return
+      end if
+      if (kind%between == 'elastic') then
+         m%bending = kind%modulus*kind%inertia
+         m%sliding = kind%shear_rigidity
+      end if
+      ! Those that open come last.
+      do group = 1, 3
+         do j = 1, size(spring)
+            if (spring(j)%kind /= kind%name .or. spring(j)%group /= group_of(group)) cycle
+            if (allocated(spring(j)%place)) then
+               do k = 1, size(spring(j)%place)
+                  call append_spring(m, group, spring(j)%place(k), spring(j)%spring)
+               end do
+            else if (group == flexure) then
+               call append_spring(m, flexure, 0.0_wp, spring(j)%spring)
+               call append_spring(m, flexure, 1.0_wp, spring(j)%spring)
+            else
+               call append_spring(m, group, 0.5_wp, spring(j)%spring)
+            end if
+         end do
+      end do
+   end subroutine put_kind
+
+   subroutine append_spring(m, kind, place, spring)
+      type(frame_member), intent(inout) :: m
+      integer, intent(in) :: kind
+      real(wp), intent(in) :: place
+      type(spring_record), intent(in) :: spring
+      type(spring_record), allocatable :: longer(:)
+      integer :: n
+
+      n = size(m%kind)
+      m%kind = [m%kind, kind]
+      m%place = [m%place, place]
+      allocate (longer(n + 1))
+      longer(:n) = m%spring
+      longer(n + 1) = spring
+      call move_alloc(longer, m%spring)
+   end subroutine append_spring
+
+   !> Nodes at one place, without a member, or all held; members between the same nodes.
+   subroutine check_geometry(self, messages)
+      type(frame_parts), intent(in) :: self
+      type(message_list), intent(inout) :: messages
+      real(wp) :: near
+      integer :: i, j
+
+      near = one_place*(maxval(self%node%x) - minval(self%node%x) + maxval(self%node%y) - minval(self%node%y))
+      do i = 1, size(self%node)
+         associate (node => self%node(i))
+            do j = 1, i - 1
+               if (hypot(node%x - self%node(j)%x, node%y - self%node(j)%y) > near) cycle
+               call messages%add('nodes '//trim(self%node(j)%name)//' and '//trim(node%name)// &
+                                 ' are at one place; move one of them, or use one in place of both')
+            end do
+            if (.not. is_connected(self, i)) then
+               call messages%add("node '"//trim(node%name)//"' has no member; connect it, or remove it")
+            end if
+            if (all(node%held) .and. any(abs(node%load) > 0.0_wp)) then
+               call messages%add("node '"//trim(node%name)//"' is held, "// &
+                                 'and its load does nothing; remove '// &
+                                 'the load, or free the node')
+            end if
+         end associate
+      end do
+      do i = 1, size(self%member)
+         do j = 1, i - 1
+            if (any(self%member(i)%node /= self%member(j)%node) .and. &
+                any(self%member(i)%node([2, 1]) /= self%member(j)%node)) cycle
+            call messages%add('members '//trim(self%member(j)%name)//' and '//trim(self%member(i)%name)// &
+                              ' join the same two nodes; remove one')
+         end do
+      end do
+      if (all([(all(self%node(i)%held), i=1, size(self%node))])) then
+         call messages%add('frame: every node is held, and nothing can move; free one of them')
+      else if (.not. any([(any(self%node(i)%held) .or. any(self%node(i)%ground%rule /= ''), &
+                           i=1, size(self%node))])) then
+         call messages%add('frame: nothing holds it; give nodes a support, or springs to the ground')
+      end if
+   end subroutine check_geometry
+
+   pure logical function is_connected(self, node)
+      type(frame_parts), intent(in) :: self
+      integer, intent(in) :: node
+      integer :: i
+
+      is_connected = .false.
+      do i = 1, size(self%member)
+         is_connected = is_connected .or. any(self%member(i)%node == node)
+      end do
+   end function is_connected
+
+   !> The node that is controlled, and stands for the top.
+   subroutine choose_top(self, record, messages)
+      type(frame_parts), intent(inout) :: self
+      type(frame_record), intent(in) :: record
+      type(message_list), intent(inout) :: messages
+      integer :: i, direction
+
+      direction = merge(2, 1, record%control == 'y')
+      if (record%control_node == '') then
+         do i = 1, size(self%node)
+            if (self%node(i)%held(direction)) cycle
+            if (self%top == 0) self%top = i
+            if (self%node(i)%y > self%node(self%top)%y) self%top = i
+         end do
+         if (self%top == 0) call messages%add('frame: no node can move along '//trim(record%control)// &
+                                              '; free one, or give control')
+         return
+      end if
+      call check_reference(record%control_node, self%node%name, 'frame: control_node', 'node', messages)
+      self%top = findloc(self%node%name == record%control_node, .true., dim=1)
+      if (self%top == 0) return
+      if (self%node(self%top)%held(direction)) then
+         call messages%add("frame: control_node = '"//trim(record%control_node)//"' cannot move along "// &
+                           trim(record%control)//'; name another one')
+      end if
+   end subroutine choose_top
+
+   !> Shares of the lateral load; those of the first mode are found later, from the frame.
+   subroutine push(self, record, messages)
+      type(frame_parts), intent(inout) :: self
+      type(frame_record), intent(in) :: record
+      type(message_list), intent(inout) :: messages
+      real(wp) :: mass(size(self%node)), lowest
+      logical :: has_mass
+      integer :: i
+
+      if (record%pattern == 'nodes') then
+         if (all([(all(.not. abs(self%node(i)%push) > 0.0_wp), i=1, size(self%node))])) then
+            call messages%add("frame: pattern = 'nodes' needs push_x or push_y of some node; give one")
+         end if
+         return
+      else if (any([(any(abs(self%node(i)%push) > 0.0_wp), i=1, size(self%node))])) then
+         call messages%add("frame: push_x and push_y belong to pattern = 'nodes'; choose that, or remove "// &
+                           'them')
+         return
+      end if
+      mass = [(merge(0.0_wp, self%node(i)%mass(1), self%node(i)%held(1)), i=1, size(self%node))]
+      has_mass = any(mass > 0.0_wp)
+      lowest = minval(self%node%y)
+      do i = 1, size(self%node)
+         associate (node => self%node(i))
+            ! Where no mass is given all nodes count alike.
+            if (.not. (has_mass .or. node%held(1))) mass(i) = 1.0_wp
+            node%push = [mass(i), 0.0_wp]
+            if (record%pattern == 'triangular') node%push = node%push*(node%y - lowest)
+         end associate
+      end do
+      associate (all_of_it => sum([(self%node(i)%push(1), i=1, size(self%node))]))
+         if (all_of_it > 0.0_wp) then
+            do i = 1, size(self%node)
+               self%node(i)%push = self%node(i)%push/all_of_it
+            end do
+         else if (record%pattern /= 'modal') then
+            call messages%add("frame: pattern = '"//trim(record%pattern)//"' finds no node that can be "// &
+                              "pushed along x; choose pattern = 'nodes' with push_x or push_y")
+         end if
+      end associate
+   end subroutine push
+
+end module rbs_structure_frame_frame_parts

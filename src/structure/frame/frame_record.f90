@@ -1,0 +1,302 @@
+!> What the user asked of a frame: a grid of storeys and bays, single nodes and members, and kinds of members,
+!> each stated once. A grid only names its nodes and members: node N-2-1 is on line 2 of columns and floor 1,
+!> with floor 0 at the base; column C-2-1 is below it, beam B-2-1 is in bay 2 of that floor.
+module rbs_structure_frame_frame_record
+   use rbs_base_check, only: is_given
+   use rbs_base_constants, only: unset
+   use rbs_base_key_visitor, only: key_visitor, visited_record
+   use rbs_base_keys, only: above_zero, any_number, bound_type, not_negative
+   use rbs_base_kinds, only: wp
+   use rbs_hysteresis_spring_record, only: spring_record
+   implicit none
+   private
+
+   public :: frame_record, frame_spring, name_length
+
+   integer, parameter :: name_length = 32
+
+   !> Most storeys, and most bays, of a grid.
+   integer, parameter :: most_storeys = 200
+
+   character(len=*), parameter :: support_names = 'free roller pinned fixed'
+
+   !> The groups of a frame; all but the first may appear several times.
+   character(len=12), parameter, public :: frame_groups(7) = [character(len=12) :: &
+      'frame', 'floor', 'member_kind', 'column_of', 'beam_of', 'node', 'member']
+
+   !> Mass and load of floors.
+   type, extends(visited_record), public :: floor_record
+      integer :: storey = 0
+      real(wp) :: mass = 0.0_wp, load = 0.0_wp
+   contains
+      procedure :: visit => visit_floor
+   end type floor_record
+
+   !> What members are of: an elastic beam, springs at the points of a Gauss-Lobatto rule that yield, or
+   !> springs that are given one by one.
+   type, extends(visited_record), public :: kind_record
+      character(len=name_length) :: name = ''
+      real(wp) :: modulus = unset, area = unset, inertia = unset, shear_rigidity = 0.0_wp
+      real(wp) :: yield_moment = unset, hardening = 0.0_wp
+      character(len=8) :: between = 'elastic'
+   contains
+      procedure :: visit => visit_kind
+   end type kind_record
+
+   !> The kind of columns or beams of a grid, 0: of all lines or bays, and of all storeys.
+   type, extends(visited_record), public :: cell_record
+      logical :: is_beam = .false.
+      integer :: line = 0, storey = 0
+      character(len=name_length) :: kind = ''
+      real(wp) :: panel = 0.0_wp
+   contains
+      procedure :: visit => visit_cell
+   end type cell_record
+
+   !> A node, or what one of a grid has in addition.
+   type, extends(visited_record), public :: node_record
+      character(len=name_length) :: name = ''
+      real(wp) :: x = unset, y = unset
+      character(len=8) :: support = ''
+      real(wp) :: mass = 0.0_wp, inertia = 0.0_wp
+      real(wp) :: load_x = 0.0_wp, load_y = 0.0_wp, load_moment = 0.0_wp
+      real(wp) :: push_x = 0.0_wp, push_y = 0.0_wp
+      character(len=name_length) :: moves_with = ''
+   contains
+      procedure :: visit => visit_node
+   end type node_record
+
+   !> A member between two nodes.
+   type, extends(visited_record), public :: member_record
+      character(len=name_length) :: name = '', from = '', to = '', kind = ''
+      real(wp) :: panel_from = 0.0_wp, panel_to = 0.0_wp, load = 0.0_wp
+   contains
+      procedure :: visit => visit_member
+   end type member_record
+
+   !> A spring of a kind of members, at places in shares of the clear length, or from the ground to a node.
+   type :: frame_spring
+      !> Group that it stands in: 'shear', 'flexure' or 'axial_spring'
+      character(len=16) :: group = ''
+      character(len=name_length) :: kind = '', node = ''
+      real(wp), allocatable :: place(:)
+      type(spring_record) :: spring
+   end type frame_spring
+
+   type, extends(visited_record) :: frame_record
+      real(wp), allocatable :: storeys(:), bays(:)
+      character(len=16) :: kinematics = 'small', base = 'fixed', pattern = 'triangular'
+      logical :: diaphragm = .false.
+      character(len=name_length) :: control_node = ''
+      character(len=8) :: control = 'x'
+      type(floor_record), allocatable :: floor(:)
+      type(kind_record), allocatable :: kind(:)
+      type(cell_record), allocatable :: column_of(:), beam_of(:)
+      type(node_record), allocatable :: node(:)
+      type(member_record), allocatable :: member(:)
+      type(frame_spring), allocatable :: spring(:)
+   contains
+      procedure :: open_group
+      procedure :: visit => visit_frame
+      procedure :: visit_group
+      procedure :: count_of
+      procedure :: total_height
+   end type frame_record
+
+contains
+
+   !> Make room for what a group gives.
+   subroutine open_group(self, group)
+      class(frame_record), intent(inout) :: self
+      character(len=*), intent(in) :: group
+      type(cell_record) :: beam
+
+      if (.not. allocated(self%floor)) then
+         allocate (self%floor(0), self%kind(0), self%column_of(0), self%beam_of(0), self%node(0), &
+                   self%member(0), self%spring(0))
+      end if
+      select case (group)
+      case ('floor')
+         self%floor = [self%floor, floor_record()]
+      case ('member_kind')
+         self%kind = [self%kind, kind_record()]
+      case ('column_of')
+         self%column_of = [self%column_of, cell_record()]
+      case ('beam_of')
+         beam%is_beam = .true.
+         self%beam_of = [self%beam_of, beam]
+      case ('node')
+         self%node = [self%node, node_record()]
+      case ('member')
+         self%member = [self%member, member_record()]
+      case default                                  ! the frame itself
+      end select
+   end subroutine open_group
+
+   !> How many groups of a name were given.
+   pure integer function count_of(self, group) result(number)
+      class(frame_record), intent(in) :: self
+      character(len=*), intent(in) :: group
+
+      select case (group)
+      case ('floor')
+         number = size(self%floor)
+      case ('member_kind')
+         number = size(self%kind)
+      case ('column_of')
+         number = size(self%column_of)
+      case ('beam_of')
+         number = size(self%beam_of)
+      case ('node')
+         number = size(self%node)
+      case ('member')
+         number = size(self%member)
+      case default
+         number = 1
+      end select
+   end function count_of
+
+   !> Present the keys of a group.
+   subroutine visit_group(self, group, v, number)
+      class(frame_record), intent(inout) :: self
+      character(len=*), intent(in) :: group
+      type(key_visitor), intent(inout) :: v
+      !> Which of several; without it the last
+      integer, intent(in), optional :: number
+      integer :: i
+
+      i = self%count_of(group)
+      if (present(number)) i = number
+      select case (group)
+      case ('floor')
+         call self%floor(i)%visit(v)
+      case ('member_kind')
+         call self%kind(i)%visit(v)
+      case ('column_of')
+         call self%column_of(i)%visit(v)
+      case ('beam_of')
+         call self%beam_of(i)%visit(v)
+      case ('node')
+         call self%node(i)%visit(v)
+      case ('member')
+         call self%member(i)%visit(v)
+      case default
+         call self%visit(v)
+      end select
+   end subroutine visit_group
+
+   subroutine visit_frame(self, v)
+      class(frame_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%key('storeys', self%storeys, 'm', above_zero, 'heights of the storeys from the ground up', &
+                 most_storeys)
+      call v%key('bays', self%bays, 'm', above_zero, 'widths of the bays from the left; without them one '// &
+                 'line of columns', most_storeys)
+      call v%word('kinematics', self%kinematics, &
+                  'small rotations, or the same with second-order work of the dead load', 'small pdelta')
+      call v%word('base', self%base, 'how the columns of the grid stand', 'fixed pinned free')
+      call v%key('diaphragm', self%diaphragm, 'whether all nodes of a floor of the grid move alike along x')
+      call v%word('pattern', self%pattern, 'shares of the lateral load: as mass, mass times height, '// &
+                  'first mode, or push_x and push_y of the nodes', 'uniform triangular modal nodes')
+      call v%word('control_node', self%control_node, 'node whose displacement is that of the top; '// &
+                  'without it the first of the highest')
+      call v%word('control', self%control, 'direction of that displacement', 'x y')
+   end subroutine visit_frame
+
+   subroutine visit_floor(self, v)
+      class(floor_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%key('storey', self%storey, '', not_negative, 'floor that is meant, 0 for all')
+      call v%key('mass', self%mass, 'kg', not_negative, 'mass of the floor, shared by its nodes as the '// &
+                 'widths beside them; its weight acts as far as it is given as a load')
+      call v%key('load', self%load, 'N/m', any_number, 'dead load on the beams of the floor, downward')
+   end subroutine visit_floor
+
+   subroutine visit_kind(self, v)
+      class(kind_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%word('name', self%name, 'name of the kind', required=.true.)
+      call v%key('modulus', self%modulus, 'Pa', above_zero, 'Young''s modulus')
+      call v%key('area', self%area, 'm2', above_zero, 'area of the section')
+      call v%key('inertia', self%inertia, 'm4', above_zero, 'second moment of area; of the cracked '// &
+                 'section, if that is meant')
+      call v%key('shear_rigidity', self%shear_rigidity, 'N', not_negative, &
+                 'shear modulus times shear area; 0: no deformation by shear')
+      call v%key('yield_moment', self%yield_moment, 'N m', above_zero, 'moment at which sections yield; '// &
+                 'without it and without springs the member stays elastic', optional=.true.)
+      call v%key('hardening', self%hardening, '', bound_type(-1.0_wp, 1.0_wp, .true., .true.), &
+                 'stiffness after yielding over the one before')
+      call v%word('between', self%between, 'what is between springs that are given one by one', &
+                  'elastic rigid')
+   end subroutine visit_kind
+
+   subroutine visit_cell(self, v)
+      class(cell_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      if (self%is_beam) then
+         call v%key('bay', self%line, '', not_negative, 'bay from the left, 0 for all')
+      else
+         call v%key('line', self%line, '', not_negative, 'line of columns from the left, 0 for all')
+      end if
+      call v%key('storey', self%storey, '', not_negative, 'storey from the ground up, 0 for all')
+      call v%word('kind', self%kind, 'name of the kind of member; the last group that fits counts', &
+                  required=.true.)
+      call v%key('panel', self%panel, 'm', not_negative, &
+                 'rigid length in each node that it ends in, not at the base')
+   end subroutine visit_cell
+
+   subroutine visit_node(self, v)
+      class(node_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%word('name', self%name, 'name of the node; one of the grid gets the rest in addition', &
+                  required=.true.)
+      call v%key('x', self%x, 'm', any_number, 'place to the right', optional=.true.)
+      call v%key('y', self%y, 'm', any_number, 'place above the ground', optional=.true.)
+      call v%word('support', self%support, 'what holds it: a roller only along y, a pin along x and y', &
+                  support_names)
+      call v%key('mass', self%mass, 'kg', not_negative, 'mass')
+      call v%key('inertia', self%inertia, 'kg m2', not_negative, 'rotary inertia')
+      call v%key('load_x', self%load_x, 'N', any_number, 'dead load to the right')
+      call v%key('load_y', self%load_y, 'N', any_number, 'dead load upward; a weight is negative')
+      call v%key('load_moment', self%load_moment, 'N m', any_number, 'dead moment, clockwise')
+      call v%key('push_x', self%push_x, '', any_number, 'share of the lateral load to the right')
+      call v%key('push_y', self%push_y, '', any_number, 'share of the lateral load upward')
+      call v%word('moves_with', self%moves_with, 'node whose displacement along x it shares')
+   end subroutine visit_node
+
+   subroutine visit_member(self, v)
+      class(member_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%word('name', self%name, 'name of the member', required=.true.)
+      call v%word('from', self%from, 'name of the node that it begins at', required=.true.)
+      call v%word('to', self%to, 'name of the node that it ends at', required=.true.)
+      call v%word('kind', self%kind, 'name of its kind', required=.true.)
+      call v%key('panel_from', self%panel_from, 'm', not_negative, 'rigid length at its beginning')
+      call v%key('panel_to', self%panel_to, 'm', not_negative, 'rigid length at its end')
+      call v%key('load', self%load, 'N/m', any_number, 'dead load downward, per length along x')
+   end subroutine visit_member
+
+   !> Height of the grid or of the nodes [m]; what is not given counts as zero.
+   pure real(wp) function total_height(self) result(height)
+      class(frame_record), intent(in) :: self
+      real(wp) :: lowest
+      integer :: i
+
+      height = 0.0_wp
+      lowest = 0.0_wp
+      if (allocated(self%storeys)) height = sum(self%storeys)
+      do i = 1, size(self%node)
+         if (.not. is_given(self%node(i)%y)) cycle
+         height = max(height, self%node(i)%y)
+         lowest = min(lowest, self%node(i)%y)
+      end do
+      height = height - lowest
+   end function total_height
+
+end module rbs_structure_frame_frame_record
