@@ -78,6 +78,9 @@ RECIPES: dict[str, Callable[[Rng, float, float], dict[str, Any]]] = {
     "steel": _steel,
 }
 
+#: Values that each rule takes.
+GOOD = {rule: made(np.random.default_rng(1), 1e5, 1e-3) for rule, made in RECIPES.items()}
+
 
 def rules(place: str) -> list[str]:
     """Return the rules that may stand in a place."""

@@ -60,17 +60,3 @@ def test_keys_of_one_rule_or_group(run_cli):
         key["name"] for key in _core.keys()["rules"]["takeda"]["keys"]
     }
     assert run_cli(["keys", "column"]).stdout.startswith("&column\n")
-
-
-@pytest.mark.parametrize(
-    ("words", "text"),
-    [
-        (["takedo"], "there is no group or rule 'takedo'; did you mean 'takeda'?"),
-        (["takeda", "column"], "one argument too many: 'column'"),
-        (["takeda", "--json"], "--json prints all keys; leave takeda away"),
-    ],
-)
-def test_keys_that_are_not_there(run_cli, words, text):
-    done = run_cli(["keys", *words])
-    assert done.returncode == 2
-    assert text in done.stderr

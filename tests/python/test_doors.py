@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -357,42 +357,6 @@ def test_columns_of_a_file_are_found_by_their_drives(case_text, tmp_path):
     assert rbsdem.read_case(write(tmp_path, text)).axial_load.tolist() == [500e3, 600e3, 550e3]
 
 
-def test_faults_of_a_case_are_those_of_check(run_cli, case_text, tmp_path):
-    texts = [
-        case_text(column="hieght = 1.6, mass = 6"),
-        case_text(column="height = -1, mass = 0", loading="drive = 'force', file = 'none.csv'"),
-        case_text(
-            column="height = 1.6, mass = 1e3, kinematics = 'pdelta', axial_load = 1e12",
-            loading=GROUND,
-            analysis="method = 'rk4', duration = -1",
-        ),
-        case_text(
-            column="height = 1.6, mass = 1e3, kinematics = 'finite', axial_load = 1e3, "
-            "axial_follows = T",
-        ),
-        "no case",
-        "",
-    ]
-    for text in texts:
-        path = write(tmp_path, text)
-        said = run_cli(["check", path]).stderr.splitlines()
-        with pytest.raises(rbsdem.InputError) as caught:
-            rbsdem.read_case(path)
-        assert [f"rbsdem: {line}" for line in str(caught.value).splitlines()] == said
-
-
-def test_loads_that_follow_have_no_static_path_through_either_door(run_cli, case_text, tmp_path):
-    column = "height = 1.6, mass = 614.4, kinematics = 'finite'"
-    write(tmp_path, case_text(column=column + ", axial_load = 1e5, axial_follows = T"))
-    said = run_cli(["check", "case.nml"], tmp_path).stderr
-    finite = rbsdem.Column(
-        1.6, 614.4, BILINEAR, TAKEDA, kinematics="finite", axial_load=1e5, axial_follows=True
-    )
-    with pytest.raises(rbsdem.InputError) as caught:
-        rbsdem.cyclic(finite, displacement=[0.01])
-    assert said == f"rbsdem: {caught.value}\n"
-
-
 def test_title_and_paths_with_letters_beyond_ascii(case_text, tmp_path):
     folder = tmp_path / "Säulen"
     folder.mkdir()
@@ -517,66 +481,6 @@ def test_collapse_of_a_static_path_is_told_by_exit_code_and_status(
     run = rbsdem.read_case(path).run()
     assert run.summary["status"] == "collapsed"
     assert np.array_equal(run.force, rows["force_N"])
-
-
-@pytest.mark.parametrize(
-    ("column", "springs", "words"),
-    [
-        (
-            "axial_load = 744e3",
-            {},
-            ["axial_load = 744000 N does nothing .*set kinematics = 'pdelta'"],
-        ),
-        ("self_weight = .true.", {}, ["self_weight does nothing .*set kinematics = 'pdelta'"]),
-        (
-            "top_mass = 75e3, kinematics = 'pdelta'",
-            {},
-            ["top_mass = 75000 kg has no weight.*axial_load = 735499 N .*or gravity = 0"],
-        ),
-        (
-            "top_mass = 75e3, self_weight = .true.",
-            {},
-            ["self_weight does nothing", "top_mass = 75000 kg has no weight"],
-        ),
-        ("height = 1750", {}, ["height = 1750 m .* 1750 mm is 1.75"]),
-        ("", {"shear": TAKEDA, "flexure": BILINEAR}, ["shear has the rule 'takeda' and flexure"]),
-        ("axial_load = 744e3, kinematics = 'finite'", {}, []),
-        ("top_mass = 75e3, axial_load = 1", {"kinematics": "pdelta"}, []),
-        ("top_mass = 75e3, gravity = 0", {}, []),
-    ],
-)
-def test_what_does_nothing_in_a_column_is_told_through_both_doors(
-    run_cli, tmp_path, column, springs, words
-):
-    given = {"height": "1.6", "mass": "600"}
-    for item in filter(None, column.split(", ")):
-        name, value = item.split(" = ")
-        given[name] = value
-    if "kinematics" in springs:
-        given["kinematics"] = "'pdelta'"
-    text = "&column " + ", ".join(f"{name} = {value}" for name, value in given.items()) + " /\n"
-    for kind, spring in (("shear", BILINEAR), ("flexure", TAKEDA)):
-        placed = springs.get(kind, spring)
-        values = ", ".join(f"{key} = {value}" for key, value in vars_of(placed).items())
-        text += f"&{kind} rule = '{placed.rule}', {values} /\n"
-    text += "&loading drive = 'displacement', values = 1e-4 /\n"
-    path = write(tmp_path, text)
-    for command in ("check", "run"):
-        result = run_cli([command, "case.nml"], tmp_path)
-        assert (result.returncode, result.stderr) == (0, "")
-        notes = [line for line in result.stdout.splitlines() if line.startswith("note: ")]
-        assert len(notes) == len(words)
-        for note, word in zip(notes, words, strict=True):
-            assert re.search(word, note)
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        rbsdem.read_case(path)
-    assert [f"note: {warning.message}" for warning in caught] == notes
-    assert run_cli(["run", "case.nml", "--quiet"], tmp_path).stdout == ""
-
-
-def vars_of(spring: rbsdem.springs.Spring) -> dict[str, float]:
-    return {f.name: getattr(spring, f.name) for f in fields(spring) if f.name != "inner"}
 
 
 SOFT = {"shear": "rule = 'elastic', k = 7e8", "flexure": "rule = 'elastic', k = 2.5e8"}

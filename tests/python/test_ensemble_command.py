@@ -107,28 +107,6 @@ def test_parts(
     assert len((out / "runs.csv").read_text().splitlines()) == 30
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (["--scales", "1;2"], "--scales 1;2: give numbers"),
-        (["--shard", "2"], "--shard 2: give part"),
-        (["--shard", "3/2"], "shard = (3, 2)"),
-        (["--jobs", "0"], "jobs = 0"),
-        (["missing.csv"], "missing.csv"),
-    ],
-)
-def test_wrong_input(
-    case: Path,
-    words: list[str],
-    message: str,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    assert command(monkeypatch, case, *words, "--out", case.parent / "out") == 2
-    assert message in capsys.readouterr().err
-    assert not (case.parent / "out" / "runs.csv").exists()
-
-
 def test_cases_without_motion(
     case: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

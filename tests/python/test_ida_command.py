@@ -118,30 +118,3 @@ def test_the_command_starts_from_the_shell(folder, tmp_path):
     )
     assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
     assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (["missing.nml", "synthetic"], "missing.nml"),
-        ([str(CASE), "nowhere.AT2"], "nowhere.AT2: cannot be read"),
-        ([str(CASE), "a.AT2", "b.AT2"], "b.AT2: cannot be read"),
-        ([str(CASE), "synthetic", "--levels", "1,x"], "--levels 1,x: give intensities"),
-        ([str(CASE), "synthetic", "--levels", "-1"], "levels must be intensities above 0"),
-        ([str(CASE), "synthetic", "--limit", "0.01"], "--limit 0.01: give a name and a drift"),
-        ([str(CASE), "synthetic", "--beta", "light=0.4"], "give a limit state (yield, collapse)"),
-        ([str(CASE), "synthetic", "--beta", "yield"], "--beta yield: give a limit state"),
-        ([str(CASE), "synthetic", "--intensity", "sa"], "intensity = 'sa' is not known"),
-        ([str(CASE), "synthetic", "--jobs", "0"], "jobs = 0 must be 1 or more"),
-        ([str(CASE), "synthetic", "--parquet"], "give its folder with --out"),
-        ([str(CASE), "synthetic", "--hazard", "no.csv"], "no.csv: cannot be read"),
-        ([str(CASE), "synthetic", "--method", "euler"], "euler"),
-    ],
-)
-def test_bad_input_of_the_command(words, told, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    assert main(["ida", *words]) == 2
-    error = capsys.readouterr().err
-    assert told in error
-    assert all(line.startswith("rbsdem: ida: ") for line in error.splitlines())
-    assert not list(tmp_path.iterdir())

@@ -13,6 +13,7 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import pytest
 from conftest import REPOSITORY
+from strategies import GOOD
 
 import rbsdem
 from rbsdem import _core
@@ -91,20 +92,6 @@ def test_places_of_a_rule_are_where_a_column_takes_it(rule):
         except rbsdem.InputError:
             pass
     assert taken == set(RULES[rule]["places"].split())
-
-
-#: Values that each rule takes.
-CAPPED = {"d_y": 1e-3, "f_y": 1e5, "d_cap": 1e-2, "f_cap": 1.2e5, "d_pc": 0.1}
-GOOD = {
-    "elastic": {"k": 1e8},
-    "bilinear": {"k": 1e8, "d_y": 1e-3, "k_post": 1e6},
-    "takeda": {"k_c": 2e8, "d_c": 1e-3, "k_y": 1e8, "d_y": 2e-3, "k_u": 1e6},
-    "compression": {"k": 1e8},
-    "peak_oriented": CAPPED,
-    "pinching": CAPPED | {"kappa_f": 0.5, "kappa_d": 0.5},
-    "concrete": {"k": 1e9, "f_peak": 1e6, "d_peak": 2e-3, "k_soft": 1e8},
-    "steel": {"k": 1e9, "f_y": 1e6, "k_post": 1e7},
-}
 
 
 def test_fields_of_a_column_are_the_keys_of_its_group():

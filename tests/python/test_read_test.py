@@ -89,69 +89,6 @@ def test_units(tmp_path, units, scale):
     np.testing.assert_allclose(test.force, F, rtol=1e-7)
 
 
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        ({"pdelta_code": None}, ["pdelta_code is needed", "1: the base moment", "4: the actuator"]),
-        ({"pdelta_code": 5}, ["pdelta_code = 5 is not known", "2: the net horizontal force"]),
-        ({"pdelta_code": 1, "length": None}, ["pdelta_code = 1", "needs length"]),
-        ({"pdelta_code": 3}, ["pdelta_code = 3", "needs axial_load"]),
-        ({"pdelta_code": 4, "axial_load": LOAD}, ["top_length", "hinge"]),
-        ({"columns": 2}, ["columns = 2 must be two"]),
-        ({"columns": ("d", "f", "g")}, ["must be two"]),
-        ({"columns": ("e", "f")}, ["column 'e' is not there", "2 'd'", "a number from 1"]),
-        ({"columns": (2, 4)}, ["force = 4", "1 't'"]),
-        ({"columns": (3, 3)}, ["both column 3"]),
-        ({"columns": {"deflection": 2}}, ["'deflection' is neither"]),
-        ({"units": None}, ["column 'd', has no unit", "units=", "m, mm, cm, in"]),
-        ({"units": ("mm", "psi")}, ["the force, column 'f', has the unit 'psi'", "kip"]),
-        (
-            {"units": ("m", "kN")},
-            [f"the largest displacement is {max(abs(D)) * 1e3:.4g} m", "read in m", "units="],
-        ),
-        ({"units": ("mm", "N")}, [f"the largest force is {max(abs(F)) * 1e-3:.4g} N", "read in N"]),
-        ({"columns": (3, 2)}, ["the loop runs backward", "exchanged"]),
-        ({"force_sign": -1}, ["against the displacement", "force_sign=-1"]),
-        ({"force_sign": 2}, ["force_sign = 2 must be"]),
-        ({"length": 1600}, ["length = 1600 m", "metres"]),
-        ({"length": -1}, ["length = -1 m must be positive"]),
-        ({"axial_load": 744}, ["axial_load = 744 N", "newtons"]),
-        ({"separator": "|"}, ["separator = '|' must be"]),
-        ({"decimal": ","}, ["no rows", "decimal = ','"]),
-        ({"decimal": ",", "separator": ","}, ["both a comma"]),
-        ({"header": 1000}, ["header = 1000", "lines"]),
-    ],
-)
-def test_mistakes_are_named_with_a_remedy(tmp_path, given, words):
-    path = write(tmp_path / "t.csv", "t,d,f\n", ",")
-    with pytest.raises(InputError) as caught:
-        read_test(path, **{**NAMED, "units": ("mm", "kN"), **given})
-    for word in words:
-        assert word in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("content", "words"),
-    [
-        (b"", "is empty"),
-        (b"one column\n1\n2\n3\n", "no rows of two or more numbers"),
-        (b"PK\x03\x04\0\0", "not a text file; save it as csv"),
-        (b"d_mm,f_kN\n1,2\n3,4\n5,6\n7,x\n", "line 5, value 2: 'x' is not a number"),
-        (b"d_mm,f_kN\n1,2\n3,4\n5,6\n7\n", "line 5: has 1 values"),
-    ],
-)
-def test_files_that_are_no_tests(tmp_path, content, words):
-    (tmp_path / "t.csv").write_bytes(content)
-    with pytest.raises(InputError, match=words):
-        read_test(tmp_path / "t.csv", **NAMED)
-
-
-def test_paths_that_are_no_files(tmp_path):
-    for path, words in ((tmp_path, "is a folder"), (tmp_path / "none", "cannot be read")):
-        with pytest.raises(InputError, match=words):
-            read_test(path, **NAMED)
-
-
 def test_offset_of_the_first_row(tmp_path):
     """Refused until the user says what it is."""
     rows = np.column_stack((1e3 * D + 4, 1e-3 * F + 1))

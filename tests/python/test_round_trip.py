@@ -209,31 +209,6 @@ def drawn_text(**changes: str) -> str:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "words"),
-    [
-        ("drawing", "", "a section is there without the group &drawing"),
-        ("'rectangle'", "'star'", "shape = 'star' is not known; it is one of rectangle, circle"),
-        ("width = 0.4", "diameter = 0.4", "&section has no 'diameter'"),
-        ("cover = 0.013", "cover = -1", "section: cover = -1 m must not be negative"),
-        ("layout", "", "layout|bars"),
-        ("number = 12", "number = 0", "layout: number = 0 must be 1 or more"),
-        ("number = 12", "number = 11", "number = 11 does not spread"),
-        ("0.016, steel = 1", "0.016, steel = 3", "layout: steel is not one of the steels"),
-        ("&ties", "&bars y = 0.1, area = 1e-4, steel = 1 /\n&ties", "there is a layout too"),
-        ("&ties", "&spiral diameter = 0.01, spacing = 0.1, steel = 1 /\n&ties", "a spiral too"),
-        ("'2026.5', h", "'1066.1', h", "version = '1066.1' is not known; this program has 2026.5"),
-        ("&ties", "&parameter name = 'ware', value = 1 /\n&ties", "did you mean 'wear'"),
-        ("'rectangle'", "'hollow_rectangle'", "section: wall = 0 m must be above zero"),
-        ("&concrete fc = 46500000 /", "", "concrete: fc is missing"),
-        ("fc = 46500000", "fc = 46.5", "30 MPa is fc = 30e6"),
-    ],
-)  # fmt: skip
-def test_a_wrong_drawing_is_named(tmp_path, old, new, words):
-    with pytest.raises(rbsdem.InputError, match=words):
-        read_back(tmp_path, drawn_text(**{old: new}))
-
-
-@pytest.mark.parametrize(
     ("old", "new"), [("lambda_s = 46.9", "lambda_s = 40"), ("width = 0.4", "width = 0.41")]
 )
 def test_springs_that_are_not_as_drawn_are_told(tmp_path, old, new):

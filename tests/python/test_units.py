@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -195,25 +194,3 @@ def test_unit_of_a_loading_comes_before_those_of_the_case(tmp_path, unit):
     case = read(tmp_path, "case.nml", text(OPENING + loading, {"length": "cm"}))
     assert case.displacement is not None
     assert case.displacement[1] == 8 * LENGTHS[unit or "cm"]
-
-
-@pytest.mark.parametrize(
-    ("entries", "said"),
-    [
-        ("force = 'kn'", "units: force = 'kn' is not known; it is one of N, kN, MN, kip"),
-        ("force = 'kn'", "did you mean 'kN'?"),
-        ("length = 'MM'", "did you mean 'mm'?"),
-        ("length = 'ft'", "it is one of m, mm, cm, in"),
-        ("mass = 'to'", "it is one of kg, t (did you mean 't'?)"),
-        ("mass = ''", "units: mass = '' is not known"),
-        ("time = 'ms'", "&units has no 'time'"),
-        ("lenght = 'mm'", "did you mean 'length'?"),
-        ("length = mm", "length = mm must be a text in quotes: 'mm'"),
-    ],
-)
-def test_unit_that_is_not_known_is_refused_with_a_hint(tmp_path, run_cli, case_text, entries, said):
-    (tmp_path / "case.nml").write_text(f"&units {entries} /\n" + case_text())
-    result = run_cli(["check", "case.nml"], tmp_path)
-    assert result.returncode == 2
-    assert said in result.stderr
-    assert re.fullmatch(r"rbsdem: .*\n", result.stderr), "one fault, one line"
