@@ -32,7 +32,7 @@ def executable() -> str:
         If the package was built without it.
     """
     program = "rbsdem.exe" if os.name == "nt" else "rbsdem"
-    path = os.fspath(files("rbsdem").joinpath("bin", program))
+    path = str(files("rbsdem").joinpath("bin", program))
     if not os.path.isfile(path):
         raise FileNotFoundError(
             f"rbsdem: the executable {path} is missing; install the package anew"

@@ -203,7 +203,8 @@ def convert(record: object, who: str) -> None:
     Fields are numbers, whole numbers, switches, words or records; None and what followed from
     another number stay where they may be. Fields of other types are left to the record.
     """
-    for name, make, optional in _conversions(type(record)):
+    kind: type = type(record)
+    for name, make, optional in _conversions(kind):
         value = getattr(record, name)
         if not optional or given(value) is not None:
             object.__setattr__(record, name, make(value, f"{who}: {name}"))

@@ -91,7 +91,7 @@ def group(name: str, values: Mapping[str, Any]) -> Statement:
 def _number_or_switch(value: Any, name: str) -> float:
     """Return what a key takes that is no word."""
     if isinstance(value, (bool, np.bool_)):
-        return value
+        return float(value)
     try:
         return number(value, name)
     except InputError:
@@ -119,7 +119,9 @@ _FLOAT = np.dtype(float).str
 class _Rows:
     """Rows that Fortran keeps, for numpy; the last array that shows them releases them."""
 
-    def __init__(self, answer: Array, address: Array, shape: tuple[int, int]) -> None:
+    def __init__(
+        self, answer: NDArray[np.int32], address: NDArray[np.int32], shape: tuple[int, int]
+    ) -> None:
         self.answer = answer
         self.__array_interface__ = {
             "shape": shape,
@@ -128,7 +130,7 @@ class _Rows:
             "version": 3,
         }
 
-    def __del__(self, release: Callable[[Array], None] = _rbsdem.rbs_release) -> None:
+    def __del__(self, release: Callable[[NDArray[np.int32]], None] = _rbsdem.rbs_release) -> None:
         release(self.answer)
 
 

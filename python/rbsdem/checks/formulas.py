@@ -339,7 +339,7 @@ def ec_8_confinement(q: Quantities) -> float:
 def ec_8_ultimate_rotation(q: Quantities) -> float:
     """Return theta_um of (A.1), the whole chord rotation [rad]."""
     ratio = _steel(q)
-    return (
+    return float(
         0.016
         * 0.3 ** _nu(q)
         * (ratio * q.fc) ** 0.225
@@ -350,7 +350,7 @@ def ec_8_ultimate_rotation(q: Quantities) -> float:
 
 def ec_8_plastic_rotation(q: Quantities) -> float:
     """Return theta_um,pl of (A.3), its plastic part [rad]."""
-    return (
+    return float(
         0.0145
         * 0.25 ** _nu(q)
         * _steel(q) ** 0.3
@@ -386,7 +386,7 @@ def ec_8_cracks_in_shear(q: Quantities) -> bool:
     pressed = min(q.load / q.gross_area, 0.2 * q.fc)
     stress = 0.18 * size * (100.0 * steel * q.fc) ** (1.0 / 3.0)
     stress = max(stress, 0.035 * size**1.5 * math.sqrt(q.fc)) + 0.15 * pressed
-    return stress * q.width * q.d < yield_point(q)[1] / q.span
+    return bool(stress * q.width * q.d < yield_point(q)[1] / q.span)
 
 
 def ec_8_shear_resistance(q: Quantities, plastic_ductility: float = 0.0) -> float:
@@ -520,7 +520,7 @@ class Haselton:
             for force in (q.compression * q.fy_compression, q.tension * q.fy)
         )
         slender = q.spacing / q.bar * math.sqrt(q.fy / 100.0) if q.tie_area > 0 else 20.0
-        return (
+        return float(
             0.12
             * (1.0 + 0.55 * self._slip)
             * 0.16**self._nu
@@ -534,12 +534,12 @@ class Haselton:
     @property
     def post_capping_rotation(self) -> float:
         """Rotation from the cap to no strength, theta_pc (2016, eq 8), at most 0.1 [rad]."""
-        return min(0.76 * 0.031**self._nu * self._ties**1.02, 0.10)
+        return float(min(0.76 * 0.031**self._nu * self._ties**1.02, 0.10))
 
     @property
     def hardening(self) -> float:
         """Moment at the cap over that at yield, M_c/M_y (2008, eq 3.17)."""
-        return 1.25 * 0.89**self._nu * 0.91 ** (0.01 * self._q.fc)
+        return float(1.25 * 0.89**self._nu * 0.91 ** (0.01 * self._q.fc))
 
     @property
     def yield_stiffness(self) -> float:
@@ -553,7 +553,7 @@ class Haselton:
 
     def _stiffness(self, factor: float, power: float, least: float, most: float) -> float:
         pressed = max(0.1 + self._nu, 0.0) ** 0.80
-        return min(max(factor * pressed * self._q.slenderness**power, least), most)
+        return float(min(max(factor * pressed * self._q.slenderness**power, least), most))
 
 
 def berry_buckling_rotation(q: Quantities) -> float:

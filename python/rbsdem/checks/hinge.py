@@ -52,7 +52,8 @@ class Hinge:
     def plastic_rotation(self) -> Array:
         """Rotation beyond that at yield, with the sign of the rotation [rad], shape (rows,)."""
         limit = np.where(self.rotation >= 0, *self.yield_rotation)
-        return np.sign(self.rotation) * np.maximum(np.abs(self.rotation) - limit, 0.0)
+        beyond: Array = np.maximum(np.abs(self.rotation) - limit, 0.0)
+        return np.sign(self.rotation) * beyond
 
     @property
     def curvature(self) -> Array:

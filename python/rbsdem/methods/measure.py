@@ -115,8 +115,8 @@ def compare_methods(
         "vertical_acceleration": vertical_acceleration,
         "axial_load": axial_load,
     }
-    time, loads = acting(time, loads, "compare_methods")
-    scene = make_scene(column, time, loads, initial, collapse_drift)
+    time, arrays = acting(time, loads, "compare_methods")
+    scene = make_scene(column, time, arrays, initial, collapse_drift)
     clock = Budget(budget)
     with _telling(progress, clock) as told:
         told("first look")

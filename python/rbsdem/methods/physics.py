@@ -6,14 +6,16 @@ import dataclasses
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
 
 from rbsdem.errors import InputError
 from rbsdem.methods.answer import Run, Setting
 from rbsdem.methods.ladder import LEVELS, Budget, Probe, predicted, too_expensive
 from rbsdem.methods.reference import Reference
 from rbsdem.methods.scene import VERTICAL, Scene
-from rbsdem.model.column import Column, without_notes
+from rbsdem.model.column import PLACES, Column, bodies, without_notes
 from rbsdem.model.damping import Damping
 from rbsdem.model.springs import Spring
 from rbsdem.results.accuracy import Answer, errors_of
@@ -144,67 +146,36 @@ def split_bodies(column: Column) -> Column:
     that both together slip, rotate and open under a given force as the one did. What changes is the
     place along the height where the column rotates.
     """
-
-    def twice(values: object) -> list | None:
-        return None if values is None else [v / 2 for v in values for _ in range(2)]
-
-    def springs(given: object) -> object:
-        if given is None:
-            return None
-        if isinstance(given, Spring):
-            return given.split(2)
-        return [spring.split(2) for spring in given for _ in range(2)]
-
-    return dataclasses.replace(
-        column,
-        n=2 * column.n,
-        lengths=twice(column.lengths),
-        masses=twice(column.masses),
-        rotary_inertia=_halves_inertia(column),
-        shear=springs(column.shear),
-        flexure=springs(column.flexure),
-        axial_spring=springs(column.axial_spring),
-    )
-
-
-def _halves_inertia(column: Column) -> list[float] | None:
-    """Return rotary inertias of the half bodies about their centroids; two make the given one."""
-    if column.rotary_inertia is None:
-        return None
-    n = column.n
-    lengths, masses = bodies(column)
-    given = list(column.rotary_inertia)
-    given = given * n if len(given) == 1 else given
-    # Two masses m/2, each l/4 from the middle; very compact bodies keep the share of a rod.
-    halves = [
-        max(0.5 * inertia - m * length**2 / 32, inertia / 8)
-        for inertia, m, length in zip(given, masses, lengths, strict=True)
-    ]
-    return [half for half in halves for _ in range(2)]
-
-
-def bodies(column: Column) -> tuple[list[float], list[float]]:
-    """Return lengths [m] and masses [kg] of the bodies."""
-    n = column.n
-    lengths = list(column.lengths or [column.height / n] * n)
-    masses = column.masses or [column.mass * length / column.height for length in lengths]
-    return lengths, list(masses)
+    lengths, masses, inertias = bodies(column)
+    halves: dict[str, list[float]] = {}
+    if column.lengths is not None:
+        halves["lengths"] = [length / 2 for length in lengths]
+    if column.masses is not None:
+        halves["masses"] = [mass / 2 for mass in masses]
+    if column.rotary_inertia is not None:
+        # About their own centroids: two masses m/2, each l/4 from the middle, make the given one;
+        # very compact bodies keep the share of a rod.
+        halves["rotary_inertia"] = [
+            max(0.5 * inertia - mass * length**2 / 32, inertia / 8)
+            for length, mass, inertia in zip(lengths, masses, inertias, strict=True)
+        ]
+    parts: dict[str, Any] = {"n": 2 * column.n}
+    parts |= {name: np.repeat(values, 2) for name, values in halves.items()}
+    for name in PLACES:
+        springs = [spring.split(2) for spring in column.joints(name) for _ in range(2)]
+        parts[name] = springs or None
+    return dataclasses.replace(column, **parts)
 
 
 def _little_inertia(column: Column) -> Column:
-    lengths, masses = bodies(column)
-    depth = column.depth
-    given = column.rotary_inertia or [
-        m * (length**2 + depth**2) / 12 for m, length in zip(masses, lengths, strict=True)
-    ]
-    few = [LITTLE_INERTIA * value for value in given]
+    few = [LITTLE_INERTIA * value for value in bodies(column)[2]]
     return dataclasses.replace(column, rotary_inertia=few, depth=0.0, top_inertia=0.0)
 
 
 def variants(scene: Scene, axial: Spring | None) -> Iterator[Variant]:
     """Yield the models to compare with; each has one part changed."""
     column, moving = scene.column, not scene.static
-    straight = {"axial_follows": False, "force_follows": False}
+    straight: dict[str, object] = {"axial_follows": False, "force_follows": False}
     switches: list[tuple[object, str, dict[str, object]]] = [
         (column.axial_load, "no axial load", {"axial_load": 0.0}),
         (column.self_weight, "no self-weight", {"self_weight": False}),
@@ -236,7 +207,7 @@ def variants(scene: Scene, axial: Spring | None) -> Iterator[Variant]:
         yield Variant(f"{2 * column.n} bodies", lambda: split_bodies(column))
 
 
-def _replacing(column: Column, fields: dict[str, object]) -> Callable[[], Column]:
+def _replacing(column: Column, fields: dict[str, Any]) -> Callable[[], Column]:
     return lambda: dataclasses.replace(column, **fields)
 
 
@@ -257,7 +228,7 @@ def find_physics(
     if isinstance(base, str):
         return base
     resolution = math.nan
-    if reference is not None:
+    if reference is not None and base.answer is not None:
         resolution = max(errors_of(base.answer, reference.answer).largest, reference.resolution)
     limit = USUAL_TOLERANCE if tolerance is None else tolerance
     effects = []

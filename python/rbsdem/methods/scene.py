@@ -188,7 +188,7 @@ def times_or(times: list[float], start: float) -> float:
 def make_scene(
     column: Column,
     time: ArrayLike | None,
-    loads: Mapping[str, ArrayLike | None],
+    loads: Mapping[str, ArrayLike],
     initial: Mapping[str, ArrayLike] | None,
     collapse_drift: float | None,
 ) -> Scene:
@@ -200,11 +200,7 @@ def make_scene(
         If the loads do not go together.
     """
     checked_column(column, "compare_methods: ")
-    given = {
-        name: _arguments.finite_vector(values, name)
-        for name, values in loads.items()
-        if values is not None
-    }
+    given = {name: _arguments.finite_vector(values, name) for name, values in loads.items()}
     if time is None:
         if set(given) not in ({"displacement"}, {"force"}):
             names = ", ".join(given) or "none"

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast
 
 from numpy.typing import ArrayLike
 
@@ -38,7 +38,8 @@ _TELLING: ContextVar[bool] = ContextVar("_TELLING", default=True)
 MOST_BODIES: int = next(
     key["most"] for key in _core.keys()["groups"]["column"] if key["name"] == "n"
 )
-_PLACES = ("shear", "flexure", "axial_spring")
+Place = Literal["shear", "flexure", "axial_spring"]
+PLACES: tuple[Place, ...] = ("shear", "flexure", "axial_spring")
 _LISTS = ("lengths", "masses", "rotary_inertia")
 
 
@@ -235,7 +236,7 @@ class Column:
             raise InputError(f"joint = {joint} must be from {numbers[0]} to {last}")
         return numbers.index(joint)
 
-    def joints(self, name: Literal["shear", "flexure", "axial_spring"]) -> tuple[Spring, ...]:
+    def joints(self, name: Place) -> tuple[Spring, ...]:
         """Return the springs of one kind, one for each of `joint_numbers`.
 
         Parameters
@@ -243,7 +244,7 @@ class Column:
         name : {"shear", "flexure", "axial_spring"}
             Which springs. Without axial springs the result for them is empty.
         """
-        springs = getattr(self, _arguments.choice(name, "joints: name", _PLACES))
+        springs = getattr(self, _arguments.choice(name, "joints: name", PLACES))
         if springs is None:
             return ()
         if isinstance(springs, Spring):
@@ -309,7 +310,7 @@ class Column:
                     "give the ends of the whole column afterwards, with dataclasses.replace"
                 )
         n = 2 * self.n - 1
-        lengths = list(self.lengths or [self.height / self.n] * self.n)
+        lengths, masses, inertias = bodies(self)
         changes: dict[str, Any] = {
             "height": 2 * self.height,
             "n": n,
@@ -320,15 +321,12 @@ class Column:
         if self.mass is not None:
             changes["mass"] = 2 * self.mass
         if self.masses is not None:
-            changes["masses"] = _doubled(list(self.masses))
-        inertia = self.rotary_inertia
-        if inertia is not None:
-            parts = list(inertia) * self.n if len(inertia) == 1 else list(inertia)
-            masses = list(self.masses or [self.mass * part / self.height for part in lengths])
+            changes["masses"] = _doubled(masses)
+        if self.rotary_inertia is not None:
             # Two halves side by side, each half its length from the middle of their body.
-            middle = 2 * (parts[-1] + masses[-1] * (lengths[-1] / 2) ** 2)
-            changes["rotary_inertia"] = [*parts[:-1], middle, *parts[-2::-1]]
-        for name in ("shear", "flexure", "axial_spring"):
+            middle = 2 * (inertias[-1] + masses[-1] * (lengths[-1] / 2) ** 2)
+            changes["rotary_inertia"] = [*inertias[:-1], middle, *inertias[-2::-1]]
+        for name in PLACES:
             # The spring of a whole cantilever is one of each half here.
             springs = [part.split(1) if whole_column(part) else part for part in self.joints(name)]
             if springs:
@@ -354,7 +352,7 @@ class Column:
         own = {k: v for k, v in values.items() if v is not False and v != usual.get(k)}
         own |= self.footing.keys() if self.footing is not None else {}
         parts = [_core.group("column", own)]
-        if self.damping is not None:
+        if isinstance(self.damping, Damping):
             parts.append(self.damping.statement())
         ids: dict[Spring, int] = {}
         for name in ("shear", "flexure", "axial_spring"):
@@ -368,8 +366,24 @@ class Column:
 
 #: What of a column is no spring, and no record of its own.
 _OWN = tuple(
-    field.name for field in fields(Column) if field.name not in (*_PLACES, "damping", "footing")
+    field.name for field in fields(Column) if field.name not in (*PLACES, "damping", "footing")
 )
+
+
+def bodies(column: Column) -> tuple[list[float], list[float], list[float]]:
+    """Return lengths [m], masses [kg] and rotary inertias [kg m2] of the bodies from the ground up.
+
+    Those of a column without mass are zero.
+    """
+    n, mass = column.n, column.mass or 0.0
+    given = (column.lengths, column.masses, column.rotary_inertia)
+    lengths, masses, inertias = (list(cast("tuple[float, ...]", each or ())) for each in given)
+    lengths = lengths or [column.height / n] * n
+    masses = masses or [mass * length / column.height for length in lengths]
+    inertias = inertias or [
+        m * (length**2 + column.depth**2) / 12 for m, length in zip(masses, lengths, strict=True)
+    ]
+    return lengths, masses, inertias * n if len(inertias) == 1 else inertias
 
 
 def _doubled(parts: list[float]) -> list[float]:
@@ -451,7 +465,8 @@ def _springs(springs: Any, name: str, n: int) -> Spring | tuple[Spring, ...]:
             "give one, or one for each joint"
         )
     if all(spring == several[0] for spring in several[1:]):
-        return several[0]
+        first: Spring = several[0]
+        return first
     return several
 
 

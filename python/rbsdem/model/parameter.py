@@ -76,7 +76,7 @@ class Parameter:
         if place <= 0 or place >= 1:
             return self.low if place <= 0 else self.high
         if self.logarithmic:
-            value = self.low * (self.high / self.low) ** place
+            value = self.low * math.pow(self.high / self.low, place)
         else:
             value = self.low + place * (self.high - self.low)
         return min(max(value, self.low), self.high)

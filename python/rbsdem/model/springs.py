@@ -93,7 +93,7 @@ class Spring:
             Keys that place the spring: `joint` or `id`.
         """
         if "_own" not in self.__dict__:
-            own = {"rule": self.rule} | {name: getattr(self, name) for name in _names(type(self))}
+            own = {"rule": self.rule} | {name: getattr(self, name) for name in _names(self.rule)}
             object.__setattr__(self, "_own", _core.group("", own))
         own = self.__dict__["_own"]
         head = _core.group(group, place) if place else _core.Statement(group, [])
@@ -227,15 +227,16 @@ def _both_sides(name: LandmarkName, at: float, source: str) -> list[Landmark]:
 
 
 @cache
-def _names(kind: type[Spring]) -> tuple[str, ...]:
+def _names(rule: str) -> tuple[str, ...]:
     """Return the names of the parameters of a rule, in the order of its class."""
-    return tuple(field.name for field in fields(kind) if field.name != "layers")
+    return tuple(field.name for field in fields(SPRINGS[rule]) if field.name != "layers")
 
 
 @cache
-def _defaults(kind: type[Spring]) -> dict[str, Any]:
+def _defaults(rule: str) -> dict[str, Any]:
     """Return the parameters of a rule that have a default."""
-    return {field.name: field.default for field in fields(kind) if field.default is not MISSING}
+    known = fields(SPRINGS[rule])
+    return {field.name: field.default for field in known if field.default is not MISSING}
 
 
 def unchecked(kind: type[AnySpring], **values: Any) -> AnySpring:
@@ -255,7 +256,7 @@ def unchecked(kind: type[AnySpring], **values: Any) -> AnySpring:
     """
     plain = {k: float(v) if isinstance(v, (int, np.floating)) else v for k, v in values.items()}
     spring = object.__new__(kind)
-    spring.__dict__.update(_defaults(kind), **plain)
+    spring.__dict__.update(_defaults(kind.rule), **plain)
     return spring
 
 

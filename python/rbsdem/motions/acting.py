@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from rbsdem.errors import InputError
 from rbsdem.motions.motion import GroundMotion
@@ -13,7 +13,9 @@ from rbsdem.motions.motion import GroundMotion
 _OF_THE_GROUND = ("ground_acceleration", "vertical_acceleration")
 
 
-def acting(time: Any, loads: Mapping[str, Any], who: str) -> tuple[Any, dict[str, Any]]:
+def acting(
+    time: ArrayLike | None, loads: Mapping[str, ArrayLike | GroundMotion | None], who: str
+) -> tuple[ArrayLike | None, dict[str, ArrayLike]]:
     """Return times and loads as arrays, where loads may be ground motions.
 
     Parameters
@@ -28,16 +30,22 @@ def acting(time: Any, loads: Mapping[str, Any], who: str) -> tuple[Any, dict[str
     Returns
     -------
     tuple
-        The times, and the loads. Of two motions the shorter one is followed by rest.
+        The times, and the loads that are given. Of two motions the shorter one is followed by rest.
 
     Raises
     ------
     InputError
         If the times are given twice, or two motions have different steps.
     """
-    motions = {name: load for name, load in loads.items() if isinstance(load, GroundMotion)}
+    given: dict[str, ArrayLike] = {}
+    motions: dict[str, GroundMotion] = {}
+    for name, load in loads.items():
+        if isinstance(load, GroundMotion):
+            motions[name] = load
+        elif load is not None:
+            given[name] = load
     if not motions:
-        return time, dict(loads)
+        return time, given
     for name in motions:
         if name not in _OF_THE_GROUND:
             raise InputError(
@@ -50,14 +58,12 @@ def acting(time: Any, loads: Mapping[str, Any], who: str) -> tuple[Any, dict[str
         )
     steps = {motion.dt for motion in motions.values()}
     if len(steps) > 1:
-        given = " and ".join(f"{name} {motion.dt:g} s" for name, motion in motions.items())
+        told = " and ".join(f"{name} {motion.dt:g} s" for name, motion in motions.items())
         raise InputError(
-            f"{who}: steps differ ({given}); motions.resampled brings a motion to another step"
+            f"{who}: steps differ ({told}); motions.resampled brings a motion to another step"
         )
     longest = max(motions.values(), key=lambda motion: motion.acceleration.size)
     size = longest.acceleration.size
-    values = {
-        name: np.pad(motion.acceleration, (0, size - motion.acceleration.size))
-        for name, motion in motions.items()
-    }
-    return longest.time, {**loads, **values}
+    for name, motion in motions.items():
+        given[name] = np.pad(motion.acceleration, (0, size - motion.acceleration.size))
+    return longest.time, {name: given[name] for name in loads if name in given}

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
+from rbsdem.model.column import bodies
 from rbsdem.model.response import ENERGIES, Response
 from rbsdem.output.style import MODEL_LINE, ZERO_LINE, axes_or_new, line_of, new_axes, style_of
 
@@ -181,11 +182,11 @@ def profile(
 
 def _lengths(result: Response) -> Array:
     column = result.column
-    lengths = column.lengths or (column.height / column.n,) * column.n
+    lengths, *_ = bodies(column)
     beneath = () if column.footing is None else (column.footing.height,)
     # What holds a fixed top has no length.
     above = (0.0,) if column.top == "fixed" else ()
-    return np.array([*beneath, *np.asarray(lengths), *above], dtype=np.float64)
+    return np.array([*beneath, *lengths, *above], dtype=np.float64)
 
 
 def _displacements(state: dict[str, Any], joints: Array) -> tuple[Array, Array]:

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from rbsdem._arguments import Array
 from rbsdem.checks.criteria import buckling_strain
 from rbsdem.errors import InputError
+from rbsdem.model.materials import Tension
 from rbsdem.model.response import Response
 from rbsdem.model.shape import Section
 from rbsdem.output.style import (
@@ -165,10 +166,11 @@ def section_springs(springs: SectionSprings) -> Figure:
             label="Spring",
         )
         curvature = last * np.linspace(0.0, 1.0, 150) ** 2
-        for tension, look, label in (
+        laws: tuple[tuple[Tension, dict[str, Any], str], ...] = (
             ("ts", {**MODEL_LINE, "color": "0.6"}, "Tension stiffening"),
             ("bare", MODEL_LINE, "No stiffening"),
-        ):
+        )
+        for tension, look, label in laws:
             moments, _ = strains(drawing, load, curvature, tension, springs.confined)
             ax.plot(1e3 * curvature, moments / 1e3, **look, label=label)
         _draw_events(events, last, ax, ("cracking", "yielding", "ultimate"))

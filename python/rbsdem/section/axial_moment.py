@@ -23,6 +23,7 @@ from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Steel
+from rbsdem.model.reinforcement import Spiral
 from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Layered, SteelSpring
 from rbsdem.section.curvature import largest_moment
@@ -168,7 +169,8 @@ def joint_loads(joint: Layered, closing: float) -> tuple[float, float]:
     together = -closing * np.linspace(0.0, 1.0, 400)
     numbers = Counter(spring for _, spring in joint.layers)
     least = -sum(n * layer.response([apart])[0] for layer, n in numbers.items())
-    most = max(-sum(n * layer.response(together) for layer, n in numbers.items()))
+    forces = sum((n * layer.response(together) for layer, n in numbers.items()), np.zeros(400))
+    most = -forces.min()
     return float(least), float(most)
 
 
@@ -343,7 +345,7 @@ def _aci_318(section: Section, count: int) -> InteractionDiagram:
             [-ultimate],
         )
     )
-    spiral = section.ties is not None and section.ties.is_round and not section.ties.hoops
+    spiral = isinstance(section.ties, Spiral) and not section.ties.hoops
     pressed_factor, cap = (0.75, 0.85) if spiral else (0.65, 0.80)
     factor = pressed_factor + (0.9 - pressed_factor) * np.clip((tension - yields) / 0.003, 0.0, 1.0)
     design = _capped(factor * load, factor * moment, pressed_factor * cap * load[-1])
@@ -387,7 +389,8 @@ def _ec_2(section: Section, count: int) -> InteractionDiagram:
         ([math.inf], [-strains(x)(np.array([outermost]))[0] for x in axes], [-plateau])
     )
     axis = np.concatenate(([0.0], axes, [math.inf]))
-    return InteractionDiagram("ec2", *curves[0], *curves[1], axis, tension)
+    (load, moment), (design_load, design_moment) = curves
+    return InteractionDiagram("ec2", load, moment, design_load, design_moment, axis, tension)
 
 
 def _capped(load: Array, moment: Array, most: float) -> tuple[Array, Array]:

@@ -88,7 +88,7 @@ class Diagram:
 
     section: Section
     axial_load: float
-    tension: str
+    tension: Tension
     confined: bool
     curvature: Array
     moment: Array
@@ -285,7 +285,8 @@ def diagram(
 def largest_moment(section: Section, axial_load: float, confined: bool) -> float:
     """Return the largest moment of a diagram [N m], in a confined core until its hoops break."""
     settings = {"axial_load": axial_load, "confined": confined}
-    rule = "mander" if confined and section.confinement.eps_cu < 1.0 else "cover"
+    core = section.confinement if confined else None
+    rule = "mander" if core is not None and core.eps_cu < 1.0 else "cover"
     events, _, _ = _find(section, settings | {"ultimate": rule})
     broken, peak = events.ultimate, events.peak
     if peak is None:

@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cache
+from typing import cast
 
 from rbsdem import _core
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Steel
 from rbsdem.model.shape import Section
 from rbsdem.model.springs import ConcreteSpring, Layered, SteelSpring, unchecked
-from rbsdem.model.strains import Gauge
+from rbsdem.model.strains import Gauge, Part
 from rbsdem.section.parameters import ModelParameters
 
 _STRIPS = 14
@@ -152,7 +153,7 @@ def _hoops(
     corners = min(max(3.0 - ties.legs, 0.0), 1.0)
     clear = core_width - bar, core_depth - bar
     parabolas = corners * 2 * (clear[0] ** 2 + clear[1] ** 2) / 6
-    bars = max(4, _restrained(section) if restrained is None else restrained)
+    bars = max(4, _restrained(section, ties.legs) if restrained is None else restrained)
     clear_one = max(0.0, 2 * (core_width + core_depth) / bars - bar)
     parabolas += (1 - corners) * bars * clear_one**2 / 6
     gap = ties.spacing - ties.diameter
@@ -161,19 +162,19 @@ def _hoops(
     return effective * ratio * ties.steel.fy, 2 * ratio
 
 
-def _restrained(section: Section) -> float:
+def _restrained(section: Section, legs: float) -> float:
     """Return how many bars the legs hold: the corners, and four for each leg beyond two.
 
     A diagonal leg is a part of one, and holds that part of four bars.
     """
     if section.layout is not None:
-        number = section.layout.number
+        number: float = section.layout.number
     elif not section.bars:
         number = 0
     else:
         # An entry of `bars` may be a row of them.
-        number = section.steel_area / (math.pi / 4 * section.bar_diameter**2)
-    return min(number, 4 + 4 * (section.ties.legs - 2))
+        number = section.steel_area / (math.pi / 4 * cast(float, section.bar_diameter) ** 2)
+    return min(number, 4 + 4 * (legs - 2))
 
 
 def _spiral(section: Section, diameter: float) -> tuple[float, float]:
@@ -293,7 +294,7 @@ def hinge_joint(
     tie_yield = section.ties.steel.fy if section.ties else 0.0
     core_ultimate = 0.004 + 0.14 * strips.tie_ratio * tie_yield / core
     yield_stress = max(steel.fy for _, _, steel in section.bars)
-    bond = yield_stress / 1e6 * section.bar_diameter
+    bond = yield_stress / 1e6 * cast(float, section.bar_diameter)
     one_length = by_axial(1.0, given.hinge_axial) * (0.08 * length + 0.022 * bond)
     steel_length = by_axial(given.hinge_length, given.hinge_axial) * (0.08 * length + 0.022 * bond)
     steel_length = min(steel_length + given.hinge_depth * depth, _LONGEST_STEEL * length)
@@ -341,7 +342,7 @@ def hinge_joint(
 
     @cache
     def bar(area: float, steel: Steel) -> SteelSpring:
-        fy, fu = given.steel_strength * steel.fy, given.steel_strength * steel.fu
+        fy, fu = (given.steel_strength * stress for stress in (steel.fy, cast(float, steel.fu)))
         stiffness = steel.es * area / (steel_length + slip)
         return unchecked(
             SteelSpring,
@@ -370,9 +371,7 @@ def hinge_joint(
         moment * _yield_curvature(section, yield_stress) * (steel_length + slip),
         strips.confining_stress / cylinder,
         Gauge(
-            ("core",) * len(strips.core)
-            + ("cover",) * len(strips.cover)
-            + ("bar",) * len(section.bars),
+            _parts(strips, len(section.bars)),
             (concrete_length,) * (len(strips.core) + len(strips.cover))
             + (steel_length + slip,) * len(section.bars),
         ),
@@ -412,6 +411,12 @@ def _bond_demand(force: float, cylinder: float, length: float) -> float:
     return max(force / (10 * math.sqrt(cylinder / 1e6) * length * 0.12), 1e-3)
 
 
+def _parts(strips: Strips, bars: int) -> tuple[Part, ...]:
+    """Return what the layers stand for, in their order."""
+    numbers: dict[Part, int] = {"core": len(strips.core), "cover": len(strips.cover), "bar": bars}
+    return tuple(part for part, number in numbers.items() for _ in range(number))
+
+
 def _yield_moment(section: Section, axial_load: float, ratio: float, stress: float) -> float:
     """Return the moment at yield (AIJ 1999) [N m]."""
     pressed = max(0.0, 0.5 * axial_load * section.depth * (1 - ratio))
@@ -426,7 +431,10 @@ def _yield_curvature(section: Section, stress: float) -> float:
 
 def _least_hardening(section: Section, given: ModelParameters) -> float:
     """Return the factor below which no bar hardens less."""
-    rises = [given.steel_strength * (steel.fu - steel.fy) / steel.es for *_, steel in section.bars]
+    rises = [
+        given.steel_strength * (cast(float, steel.fu) - steel.fy) / steel.es
+        for *_, steel in section.bars
+    ]
     return _LEAST_HARDENING * 0.08 / max(rises) if max(rises) > 0 else math.inf
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from rbsdem import _package
 from rbsdem.errors import InputError
-from rbsdem.model.column import Column, without_notes
+from rbsdem.model.column import Column, Kinematics, without_notes
 from rbsdem.model.materials import Concrete, Steel
 from rbsdem.model.reinforcement import Layout, Ties
 from rbsdem.model.shape import RectangularSection
@@ -154,7 +154,7 @@ def paper_sections() -> dict[str, PaperSection]:
     return {key: PaperSection(**fields[key]) for key in KEYS}
 
 
-def paper_columns(kinematics: str = "small", **changes: Any) -> dict[str, Column]:
+def paper_columns(kinematics: Kinematics = "small", **changes: Any) -> dict[str, Column]:
     """Build the one-component columns of table 3 of the paper.
 
     Height and axial load are those of table 2, the mass is the gross volume times 2400 kg/m3. The
@@ -200,7 +200,9 @@ def paper_columns(kinematics: str = "small", **changes: Any) -> dict[str, Column
             raise InputError(f"paper_columns: {error}") from error
 
 
-def _column(section: PaperSection, s: dict[tuple[str, str], float], kinematics: str) -> Column:
+def _column(
+    section: PaperSection, s: dict[tuple[str, str], float], kinematics: Kinematics
+) -> Column:
     return Column(
         height=section.length,
         mass=section.mass,

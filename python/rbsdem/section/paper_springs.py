@@ -182,19 +182,27 @@ def springs(
             f"K_u = {found['k_u_found']:.4g} N m/rad: the moment falls from yield to the ultimate "
             "point; the spring has K_u = 0"
         )
-    names = ("k_c", "d_c", "k_y", "d_y", "k_u", "b0", "b1")
-    flexure = Takeda(**({n: found[n] for n in names} | ({} if b1 is None else {"b1": b1})))
+    flexure = Takeda(
+        k_c=found["k_c"],
+        d_c=found["d_c"],
+        k_y=found["k_y"],
+        d_y=found["d_y"],
+        k_u=found["k_u"],
+        b0=found["b0"],
+        b1=found["b1"] if b1 is None else b1,
+    )
     for_whole_column(flexure, "flexure")
     events = Events(*(make_point(point) for point in points))
+    cracking, last = events.cracking, events.ultimate
     spring, shear_fit = None, None
     if shear == "mcft":
-        shear_fit = fit_shear_spring(
-            section, length, axial_load, events.ultimate.curvature, confined=confined
-        )
+        assert last is not None
+        shear_fit = fit_shear_spring(section, length, axial_load, last.curvature, confined=confined)
         spring = shear_fit.spring
         notes += shear_fit.notes
     elif shear == "closed":
-        spring = Bilinear(*closed_form_shear(section, length, events.cracking.moment), k_post=0.0)
+        assert cracking is not None
+        spring = Bilinear(*closed_form_shear(section, length, cracking.moment), k_post=0.0)
     if spring is not None:
         for_whole_column(spring, "shear")
     for note in notes:

@@ -511,7 +511,7 @@ def near_shear(column: Column, peak: float) -> float:
     peak : float
         Largest force [N].
     """
-    foot = column.shear[0]
+    foot = column.joints("shear")[0]
     strength = getattr(foot, "f_y", math.inf)
     strength = min(strength, getattr(foot, "f_y_neg", None) or strength)
     low, high = _NEAR

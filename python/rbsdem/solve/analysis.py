@@ -207,11 +207,11 @@ def cyclic(
     AccuracyWarning
         If a body turns by more than 0.1 rad with `kinematics` "small" or "pdelta".
     """
-    if (displacement is None) == (force is None):
+    given = {"displacement": displacement, "force": force}
+    driven = [(name, values) for name, values in given.items() if values is not None]
+    if len(driven) != 1:
         raise InputError("cyclic: give exactly one of displacement and force")
-    by_force = displacement is None
-    name = "force" if by_force else "displacement"
-    values = _arguments.vector(force if by_force else displacement, name)
+    name, values = driven[0][0], _arguments.vector(driven[0][1], driven[0][0])
     if values.size == 0:
         raise InputError(f"{name} is empty; give at least one point")
     load = None if axial_load is None else _arguments.vector(axial_load, "axial_load")
@@ -219,7 +219,7 @@ def cyclic(
     settings = settings_of(every, kept, collapse_drift=collapse_drift)
     run = _core.cyclic(
         column._statement + settings,
-        by_force,
+        name == "force",
         values,
         load,
         None if initial is None else state_of(initial, "cyclic"),
@@ -322,8 +322,8 @@ def time_history(
         "vertical_acceleration": vertical_acceleration,
         "axial_load": axial_load,
     }
-    time, given = acting(time, given, "time_history")
-    loads = {name: _loading(values, name) for name, values in given.items() if values is not None}
+    time, arrays = acting(time, given, "time_history")
+    loads = {name: _loading(values, name) for name, values in arrays.items()}
     if not loads and not initial:
         raise InputError(
             "time_history: nothing acts; give a load (" + ", ".join(given) + ") or an initial state"
@@ -335,17 +335,20 @@ def time_history(
     moves = _arguments.switch(motion, "motion")
     settings = settings_of(every, kept, moves, **chosen)
     times = _arguments.vector(time, "time")
-    from_end = initial is not None and not isinstance(initial, Mapping)
+    if initial is None or isinstance(initial, Mapping):
+        begin, state, kept_initial = _initial_state(initial, column), None, initial
+    else:
+        begin, state = (_NONE, False), state_of(initial, "time_history")
+        kept_initial = _recorded_state(initial)
     run, reached = _core.time_history(
         column._statement + settings,
         times,
         loads,
-        *((_NONE, False) if from_end else _initial_state(initial, column)),
-        state_of(initial, "time_history") if from_end else None,
+        *begin,
+        state,
         watch(column, kept),
         lambda note: _tell(note, LongRunWarning, 6),
     )
-    kept_initial = _recorded_state(initial) if from_end else initial
     call = {"time": times, **loads, "initial": kept_initial, **chosen, "every": every}
     return _return(column, run, {"analysis": "dynamic"}, call, reached)
 
