@@ -7,8 +7,9 @@ import math
 import os
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field, fields
 from difflib import get_close_matches
+from functools import cache, partial
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, overload
 
@@ -23,6 +24,54 @@ if TYPE_CHECKING:
 
 # Spellings of one author.
 _AUTHORS = {"Petrovsky": "Petrovski"}
+
+
+# Texts that mean "not reported". So does a zero where zero has no meaning.
+_NOT_REPORTED = ("", "-", "--", "n/a", "na", "nan", "none", "not reported")
+
+
+@dataclass(frozen=True, slots=True)
+class _Column:
+    """Where an attribute comes from: its column, the factor to SI, whether zero is a value."""
+
+    column: str
+    kind: type = float
+    factor: float = 1.0
+    divide: bool = False
+    zero: bool = False
+    needed: bool = False
+
+    def value(self, text: str) -> Any:
+        """Return the value in SI, or None if it was not reported."""
+        text = text.strip()
+        if text.lower() in _NOT_REPORTED:
+            return None
+        if self.kind is str:
+            return text
+        number = float(text.replace(",", ""))
+        if not math.isfinite(number):
+            raise ValueError
+        if number == 0 and not self.zero:
+            return None
+        if self.kind is int:
+            if number != round(number):
+                raise ValueError
+            return round(number)
+        # Dividing by a whole number keeps 400 mm the same number as 0.4 m.
+        return number / self.factor if self.divide else number * self.factor
+
+
+def _from(column: str, kind: type = float, *, needed: bool = False, **how: Any) -> Any:
+    """Return a field that comes from a column of the table; None where it is not needed."""
+    source = {"column": _Column(column, kind, needed=needed, **how)}
+    return field(metadata=source) if needed else field(default=None, metadata=source)
+
+
+_mm = partial(_from, factor=1000, divide=True)
+_kilo = partial(_from, factor=1000)
+_mega = partial(_from, factor=1000**2)
+_count = partial(_from, kind=int)
+_text = partial(_from, kind=str)
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,20 +100,20 @@ class Observed:
         Name of the test there.
     """
 
-    points: int | None = None
-    largest_force: float | None = None
-    smallest_force: float | None = None
-    largest_displacement: float | None = None
-    smallest_displacement: float | None = None
-    reversals: int | None = None
-    cycles: int | None = None
-    stiffness_25: float | None = None
-    stiffness_50: float | None = None
-    stiffness_75: float | None = None
-    published_shear: float | None = None
-    published_moment: float | None = None
-    published_yield_displacement: float | None = None
-    published_label: str | None = None
+    points: int | None = _count("n_points")
+    largest_force: float | None = _kilo("F_max_kN", zero=True)
+    smallest_force: float | None = _kilo("F_min_kN", zero=True)
+    largest_displacement: float | None = _mm("d_max_mm", zero=True)
+    smallest_displacement: float | None = _mm("d_min_mm", zero=True)
+    reversals: int | None = _count("reversals", zero=True)
+    cycles: int | None = _count("cycles", zero=True)
+    stiffness_25: float | None = _mega("K_sec25_kN_mm")
+    stiffness_50: float | None = _mega("K_sec50_kN_mm")
+    stiffness_75: float | None = _mega("K_sec75_kN_mm")
+    published_shear: float | None = _kilo("manual_Vmax_kN")
+    published_moment: float | None = _kilo("manual_Mmax_kNm")
+    published_yield_displacement: float | None = _mm("manual_dy_mm")
+    published_label: str | None = _text("manual_label")
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,44 +191,44 @@ class Specimen:
         What was measured.
     """
 
-    name: str
-    section: str
-    length: float
-    width: float
-    depth: float
-    concrete_strength: float
-    axial_load: float
-    longitudinal_number: int
-    peer_id: int | None = None
-    file: str | None = None
+    name: str = _text("name", needed=True)
+    section: str = _text("section", needed=True)
+    length: float = _mm("L_mm", needed=True)
+    width: float = _mm("b_mm", needed=True)
+    depth: float = _mm("h_mm", needed=True)
+    concrete_strength: float = _mega("fc_MPa", needed=True)
+    axial_load: float = _kilo("axial_kN", zero=True, needed=True)
+    longitudinal_number: int = _count("n_long", needed=True)
+    peer_id: int | None = _count("peer_id")
+    file: str | None = _text("file")
     folder: Path | None = None
-    author: str | None = None
-    year: str | None = None
-    config: str | None = None
-    measured_length: float | None = None
-    cover: float | None = None
-    cover_perpendicular: float | None = None
-    cover_definition: str | None = None
-    corner_diameter: float | None = None
-    intermediate_diameter: float | None = None
-    intermediate_perpendicular: int | None = None
-    intermediate_parallel: int | None = None
-    corner_yield_stress: float | None = None
-    intermediate_yield_stress: float | None = None
-    longitudinal_ultimate_stress: float | None = None
-    transverse_yield_stress: float | None = None
-    transverse_ultimate_stress: float | None = None
-    transverse_diameter: float | None = None
-    transverse_spacing: float | None = None
-    shear_legs: float | None = None
-    confinement: str | None = None
-    failure_mode: str | None = None
-    pdelta_code: int | None = None
-    top_length: float | None = None
-    bottom_length: float | None = None
-    beam_length: float | None = None
-    splice_length: float | None = None
-    notes: str = ""
+    author: str | None = _text("author")
+    year: str | None = _text("year")
+    config: str | None = _text("config")
+    measured_length: float | None = _mm("Lmeas_mm")
+    cover: float | None = _mm("cover_mm")
+    cover_perpendicular: float | None = _mm("cover_perp_mm")
+    cover_definition: str | None = _text("cover_definition")
+    corner_diameter: float | None = _mm("db_corner_mm")
+    intermediate_diameter: float | None = _mm("db_interm_mm")
+    intermediate_perpendicular: int | None = _count("n_interm_perp", zero=True)
+    intermediate_parallel: int | None = _count("n_interm_par", zero=True)
+    corner_yield_stress: float | None = _mega("fy_long_MPa")
+    intermediate_yield_stress: float | None = _mega("fy_interm_MPa")
+    longitudinal_ultimate_stress: float | None = _mega("fu_long_MPa")
+    transverse_yield_stress: float | None = _mega("fy_trans_MPa")
+    transverse_ultimate_stress: float | None = _mega("fu_trans_MPa")
+    transverse_diameter: float | None = _mm("db_trans_mm")
+    transverse_spacing: float | None = _mm("s_trans_mm")
+    shear_legs: float | None = _from("legs_Nv")
+    confinement: str | None = _text("confinement")
+    failure_mode: str | None = _text("failure_mode")
+    pdelta_code: int | None = _count("pdelta_code")
+    top_length: float | None = _mm("Ltop_mm", zero=True)
+    bottom_length: float | None = _mm("Lbottom_mm", zero=True)
+    beam_length: float | None = _mm("Lbeam_mm")
+    splice_length: float | None = _mm("Lsplice_mm")
+    notes: str = field(default="", metadata={"column": _Column("notes", str)})
     duplicate_of: int | None = None
     observed: Observed = Observed()
 
@@ -348,118 +397,6 @@ def _stays_below(file: str) -> bool:
 TABLE = "specimens.csv"
 """Name of the table in its folder."""
 
-# Texts that mean "not reported". So does a zero where zero has no meaning.
-_NOT_REPORTED = ("", "-", "--", "n/a", "na", "nan", "none", "not reported")
-
-
-@dataclass(frozen=True, slots=True)
-class _Column:
-    """Where an attribute comes from: its column, the factor to SI, whether zero is a value."""
-
-    column: str
-    kind: type = float
-    factor: float = 1.0
-    divide: bool = False
-    zero: bool = False
-    needed: bool = False
-
-    def value(self, text: str) -> Any:
-        """Return the value in SI, or None if it was not reported."""
-        text = text.strip()
-        if text.lower() in _NOT_REPORTED:
-            return None
-        if self.kind is str:
-            return text
-        number = float(text.replace(",", ""))
-        if not math.isfinite(number):
-            raise ValueError
-        if number == 0 and not self.zero:
-            return None
-        if self.kind is int:
-            if number != round(number):
-                raise ValueError
-            return round(number)
-        # Dividing by a whole number keeps 400 mm the same number as 0.4 m.
-        return number / self.factor if self.divide else number * self.factor
-
-
-def _text(column: str, **more: Any) -> _Column:
-    return _Column(column, kind=str, **more)
-
-
-def _count(column: str, **more: Any) -> _Column:
-    return _Column(column, kind=int, **more)
-
-
-def _mm(column: str, **more: Any) -> _Column:
-    return _Column(column, factor=1000, divide=True, **more)
-
-
-def _kilo(column: str, **more: Any) -> _Column:
-    return _Column(column, factor=1000, **more)
-
-
-def _mega(column: str, **more: Any) -> _Column:
-    return _Column(column, factor=1000**2, **more)
-
-
-_COLUMNS = {
-    "name": _text("name", needed=True),
-    "section": _text("section", needed=True),
-    "length": _mm("L_mm", needed=True),
-    "width": _mm("b_mm", needed=True),
-    "depth": _mm("h_mm", needed=True),
-    "concrete_strength": _mega("fc_MPa", needed=True),
-    "axial_load": _kilo("axial_kN", zero=True, needed=True),
-    "longitudinal_number": _count("n_long", needed=True),
-    "peer_id": _count("peer_id"),
-    "file": _text("file"),
-    "author": _text("author"),
-    "year": _text("year"),
-    "config": _text("config"),
-    "measured_length": _mm("Lmeas_mm"),
-    "cover": _mm("cover_mm"),
-    "cover_perpendicular": _mm("cover_perp_mm"),
-    "cover_definition": _text("cover_definition"),
-    "corner_diameter": _mm("db_corner_mm"),
-    "intermediate_diameter": _mm("db_interm_mm"),
-    "intermediate_perpendicular": _count("n_interm_perp", zero=True),
-    "intermediate_parallel": _count("n_interm_par", zero=True),
-    "corner_yield_stress": _mega("fy_long_MPa"),
-    "intermediate_yield_stress": _mega("fy_interm_MPa"),
-    "longitudinal_ultimate_stress": _mega("fu_long_MPa"),
-    "transverse_yield_stress": _mega("fy_trans_MPa"),
-    "transverse_ultimate_stress": _mega("fu_trans_MPa"),
-    "transverse_diameter": _mm("db_trans_mm"),
-    "transverse_spacing": _mm("s_trans_mm"),
-    "shear_legs": _Column("legs_Nv"),
-    "confinement": _text("confinement"),
-    "failure_mode": _text("failure_mode"),
-    "pdelta_code": _count("pdelta_code"),
-    "top_length": _mm("Ltop_mm", zero=True),
-    "bottom_length": _mm("Lbottom_mm", zero=True),
-    "beam_length": _mm("Lbeam_mm"),
-    "splice_length": _mm("Lsplice_mm"),
-    "notes": _text("notes"),
-}
-
-_OBSERVED = {
-    "points": _count("n_points"),
-    "largest_force": _kilo("F_max_kN", zero=True),
-    "smallest_force": _kilo("F_min_kN", zero=True),
-    "largest_displacement": _mm("d_max_mm", zero=True),
-    "smallest_displacement": _mm("d_min_mm", zero=True),
-    "reversals": _count("reversals", zero=True),
-    "cycles": _count("cycles", zero=True),
-    "stiffness_25": _mega("K_sec25_kN_mm"),
-    "stiffness_50": _mega("K_sec50_kN_mm"),
-    "stiffness_75": _mega("K_sec75_kN_mm"),
-    "published_shear": _kilo("manual_Vmax_kN"),
-    "published_moment": _kilo("manual_Mmax_kNm"),
-    "published_yield_displacement": _mm("manual_dy_mm"),
-    "published_label": _text("manual_label"),
-}
-
 
 class Specimens(Sequence[Specimen]):
     """Tested columns in the order of their table.
@@ -596,7 +533,8 @@ def read_specimens(path: str | os.PathLike[str]) -> Specimens:
             reader = csv.DictReader(file, skipinitialspace=True)
             names = [name.strip() for name in reader.fieldnames or ()]
             reader.fieldnames = names
-            missing = [c.column for c in _COLUMNS.values() if c.needed and c.column not in names]
+            needed = [column.column for _, column in _columns(Specimen) if column.needed]
+            missing = [name for name in needed if name not in names]
             if missing:
                 raise InputError(f"{table}: no column {', '.join(missing)}; add it to the header")
             rows = [_specimen(row, f"{table}: line {reader.line_num}", table) for row in reader]
@@ -610,7 +548,7 @@ def read_specimens(path: str | os.PathLike[str]) -> Specimens:
 
 
 def _specimen(row: dict[str, str | None], where: str, table: Path) -> Specimen:
-    values = _values(row, _COLUMNS, where)
+    values = _values(row, Specimen, where)
     notes = values.pop("notes", None) or ""
     again = re.search(r"identical to PEER id (\d+)", notes)
     year = values.pop("year", None)
@@ -623,14 +561,20 @@ def _specimen(row: dict[str, str | None], where: str, table: Path) -> Specimen:
         notes=notes,
         duplicate_of=int(again[1]) if again else None,
         folder=table.parent,
-        observed=Observed(**_values(row, _OBSERVED, where)),
+        observed=Observed(**_values(row, Observed, where)),
     )
 
 
-def _values(row: dict[str, str | None], columns: dict[str, _Column], where: str) -> dict[str, Any]:
+@cache
+def _columns(record: type) -> list[tuple[str, _Column]]:
+    """Return the attributes of a record that come from the table, with their columns."""
+    return [(f.name, f.metadata["column"]) for f in fields(record) if "column" in f.metadata]
+
+
+def _values(row: dict[str, str | None], record: type, where: str) -> dict[str, Any]:
     """Return the attributes that the row has columns for."""
     found = {}
-    for name, column in columns.items():
+    for name, column in _columns(record):
         text = row.get(column.column)
         try:
             value = column.value(text or "")

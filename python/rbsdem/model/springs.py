@@ -6,7 +6,7 @@ below are those of a shear spring.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, TypeVar
@@ -31,8 +31,6 @@ LandmarkName = Literal["cracking", "yield", "cap"]
 
 #: A deformation that no spring reaches [m or rad].
 _NEVER = 1e30
-
-_SIDES: tuple[Literal[1, -1], ...] = (1, -1)
 
 
 class Landmark(NamedTuple):
@@ -63,6 +61,10 @@ class Spring:
 
     #: Name of the rule in the Fortran part.
     rule: ClassVar[str] = ""
+    #: Parameters at which the virgin spring cracks, yields and caps, and on which sides; a rule
+    #: without them neither cracks nor yields, or does so as its axial load has it.
+    turns: ClassVar[Mapping[LandmarkName, str]] = {}
+    sides: ClassVar[tuple[Literal[1, -1], ...]] = (1, -1)
 
     def __init_subclass__(cls) -> None:
         """Enter the class in the list of springs under its rule."""
@@ -79,8 +81,18 @@ class Spring:
         _core.check_spring(self.statement("flexure"), 0.0)
 
     def landmarks(self) -> list[Landmark]:
-        """Return where the virgin spring cracks, yields and caps; each rule says it of itself."""
-        raise NotImplementedError(f"{type(self).__name__} does not say where it cracks and yields")
+        """Return where the virgin spring cracks, yields and caps, by the table of its rule."""
+        found: list[Landmark] = []
+        for name, key in self.turns.items():
+            for side in self.sides:
+                # A side without values of its own has those of the other.
+                own = f"{key}_neg"
+                known = own if side < 0 and getattr(self, own, None) is not None else key
+                above, _, below = known.partition("/")
+                at = getattr(self, above) / (getattr(self, below) if below else 1.0)
+                if at > 0:
+                    found.append(Landmark(name, side, at, known))
+        return found
 
     def statement(self, group: str, **place: Any) -> _core.Statement:
         """Return the keys of the spring as a group of a case.
@@ -221,11 +233,6 @@ def classes_for(place: str) -> list[str]:
     ]
 
 
-def _both_sides(name: LandmarkName, at: float, source: str) -> list[Landmark]:
-    """Return a landmark of a rule whose two sides are alike."""
-    return [Landmark(name, 1, at, source), Landmark(name, -1, at, source)]
-
-
 @cache
 def _names(rule: str) -> tuple[str, ...]:
     """Return the names of the parameters of a rule, in the order of its class."""
@@ -281,10 +288,6 @@ class Elastic(Spring):
     rule: ClassVar[str] = "elastic"
     k: float
 
-    def landmarks(self) -> list[Landmark]:
-        """Return nothing: it neither cracks nor yields."""
-        return []
-
 
 @dataclass(frozen=True)
 class Bilinear(Spring):
@@ -306,13 +309,10 @@ class Bilinear(Spring):
     """
 
     rule: ClassVar[str] = "bilinear"
+    turns: ClassVar[Mapping[LandmarkName, str]] = {"yield": "d_y"}
     k: float
     d_y: float
     k_post: float
-
-    def landmarks(self) -> list[Landmark]:
-        """Return yield."""
-        return _both_sides("yield", self.d_y, "d_y")
 
 
 @dataclass(frozen=True)
@@ -346,6 +346,7 @@ class Takeda(Spring):
     """
 
     rule: ClassVar[str] = "takeda"
+    turns: ClassVar[Mapping[LandmarkName, str]] = {"cracking": "d_c", "yield": "d_y"}
     k_c: float
     d_c: float
     k_y: float
@@ -354,10 +355,6 @@ class Takeda(Spring):
     b0: float = 0.4
     b1: float = 1.0
     inner: Literal["kc", "kr", "one"] = "kc"
-
-    def landmarks(self) -> list[Landmark]:
-        """Return cracking and yield."""
-        return _both_sides("cracking", self.d_c, "d_c") + _both_sides("yield", self.d_y, "d_y")
 
 
 @dataclass(frozen=True)
@@ -409,6 +406,9 @@ class PeakOriented(Spring):
     """
 
     rule: ClassVar[str] = "peak_oriented"
+    turns: ClassVar[Mapping[LandmarkName, str]] = {
+        "cracking": "d_c", "yield": "d_y", "cap": "d_cap"
+    }  # fmt: skip
     d_y: float
     f_y: float
     d_cap: float
@@ -436,20 +436,6 @@ class PeakOriented(Spring):
     lambda_h: float = 0.0
     s_min: float = 0.0
     fade: float = 0.0
-
-    def landmarks(self) -> list[Landmark]:
-        """Return cracking, where the spring has it, yield and cap of each side."""
-        found: list[Landmark] = []
-        keys: dict[LandmarkName, str]
-        keys = {"cracking": "d_c", "yield": "d_y", "cap": "d_cap"}
-        for name, key in keys.items():
-            for side in _SIDES:
-                # A side without values of its own has those of the other.
-                own = f"{key}_neg"
-                known = own if side < 0 and getattr(self, own) is not None else key
-                if getattr(self, known) > 0:
-                    found.append(Landmark(name, side, getattr(self, known), known))
-        return found
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -504,10 +490,6 @@ class Compression(Spring):
     k: float
     gap: float = 0.0
 
-    def landmarks(self) -> list[Landmark]:
-        """Return nothing: a contact that opens has not failed."""
-        return []
-
 
 @dataclass(frozen=True)
 class ConcreteSpring(Spring):
@@ -549,6 +531,8 @@ class ConcreteSpring(Spring):
     """
 
     rule: ClassVar[str] = "concrete"
+    turns: ClassVar[Mapping[LandmarkName, str]] = {"cap": "d_peak"}
+    sides: ClassVar[tuple[Literal[1, -1], ...]] = (-1,)
     k: float
     f_peak: float
     d_peak: float
@@ -560,10 +544,6 @@ class ConcreteSpring(Spring):
     wear: float = 0.0
     friction: float = 0.0
     seating: float = 0.0
-
-    def landmarks(self) -> list[Landmark]:
-        """Return the cap, at its largest compression."""
-        return [Landmark("cap", -1, self.d_peak, "d_peak")]
 
 
 @dataclass(frozen=True)
@@ -609,6 +589,7 @@ class SteelSpring(Spring):
     """
 
     rule: ClassVar[str] = "steel"
+    turns: ClassVar[Mapping[LandmarkName, str]] = {"yield": "f_y/k"}
     k: float
     f_y: float
     k_post: float
@@ -622,10 +603,6 @@ class SteelSpring(Spring):
     endurance: float = 0.0
     d_buckle: float | None = None
     buckling: float = 0.0
-
-    def landmarks(self) -> list[Landmark]:
-        """Return yield; where hardening ends, the force does not fall."""
-        return _both_sides("yield", self.f_y / self.k, "f_y/k")
 
     def mirrored(self) -> Self:
         """Return the same spring, unless it buckles on one side only, which is refused."""
@@ -685,10 +662,6 @@ class Layered(Spring):
     def _check(self) -> None:
         # The column checks whether the layers can carry its axial load.
         _core.check_spring(self._alone(), 0.0)
-
-    def landmarks(self) -> list[Landmark]:
-        """Return nothing: at which rotation a layer yields depends on the axial load."""
-        return []
 
     def _alone(self) -> _core.Statement:
         """Return the spring with its layers, as a case of one joint."""
