@@ -9,31 +9,45 @@ from typing import TYPE_CHECKING, Any
 from rbsdem._core import version as _version
 
 if TYPE_CHECKING:
-    from rbsdem import codes, fragility, peer, plot, section, springs
+    from rbsdem import codes as codes
     from rbsdem import curves as curves
     from rbsdem import errors as errors
+    from rbsdem import fragility as fragility
     from rbsdem import motions as motions
-    from rbsdem.calibration.fit import calibrate
-    from rbsdem.curves.scores import compare
-    from rbsdem.errors import InputError, Interrupted, SolveError
-    from rbsdem.many.ensemble import ensemble
-    from rbsdem.many.ida import ida
-    from rbsdem.measured.laboratory import read_test
-    from rbsdem.methods.measure import compare_methods
-    from rbsdem.model.column import Column
-    from rbsdem.model.damping import Damping
-    from rbsdem.model.footing import Footing
-    from rbsdem.model.materials import Concrete, Steel
-    from rbsdem.model.reinforcement import Layout, Spiral, Ties
-    from rbsdem.model.shape import CircularSection, RectangularSection
-    from rbsdem.motions.motion import GroundMotion
-    from rbsdem.motions.read import read_motions
-    from rbsdem.results.case import read_case
-    from rbsdem.results.result import Result, cyclic, time_history
-    from rbsdem.results.saved import read_result
-    from rbsdem.solve.analysis import matrices, modes
-    from rbsdem.solve.protocol import protocol
-    from rbsdem.solve.solver import Solver
+    from rbsdem import peer as peer
+    from rbsdem import plot as plot
+    from rbsdem import section as section
+    from rbsdem import springs as springs
+    from rbsdem.calibration.fit import calibrate as calibrate
+    from rbsdem.curves.scores import compare as compare
+    from rbsdem.errors import InputError as InputError
+    from rbsdem.errors import Interrupted as Interrupted
+    from rbsdem.errors import SolveError as SolveError
+    from rbsdem.many.ensemble import ensemble as ensemble
+    from rbsdem.many.ida import ida as ida
+    from rbsdem.measured.laboratory import read_test as read_test
+    from rbsdem.methods.measure import compare_methods as compare_methods
+    from rbsdem.model.column import Column as Column
+    from rbsdem.model.damping import Damping as Damping
+    from rbsdem.model.footing import Footing as Footing
+    from rbsdem.model.materials import Concrete as Concrete
+    from rbsdem.model.materials import Steel as Steel
+    from rbsdem.model.reinforcement import Layout as Layout
+    from rbsdem.model.reinforcement import Spiral as Spiral
+    from rbsdem.model.reinforcement import Ties as Ties
+    from rbsdem.model.shape import CircularSection as CircularSection
+    from rbsdem.model.shape import RectangularSection as RectangularSection
+    from rbsdem.motions.motion import GroundMotion as GroundMotion
+    from rbsdem.motions.read import read_motions as read_motions
+    from rbsdem.results.case import read_case as read_case
+    from rbsdem.results.result import Result as Result
+    from rbsdem.results.result import cyclic as cyclic
+    from rbsdem.results.result import time_history as time_history
+    from rbsdem.results.saved import read_result as read_result
+    from rbsdem.solve.analysis import matrices as matrices
+    from rbsdem.solve.analysis import modes as modes
+    from rbsdem.solve.protocol import protocol as protocol
+    from rbsdem.solve.solver import Solver as Solver
 
 __version__ = _version()
 
@@ -62,62 +76,16 @@ _HOMES = {
     "solve.solver": ("Solver",),
 }
 _MODULE_OF = {name: home for home, names in _HOMES.items() for name in names}
-#: Public modules; curves, errors and motions hold what the names above return, raise or read.
-_MODULES = (
-    "codes",
-    "curves",
-    "errors",
-    "fragility",
-    "motions",
-    "peer",
-    "plot",
-    "section",
-    "springs",
-)
+#: Public modules, and those that hold what the names above return, raise or read.
+_MODULES = ("codes", "fragility", "peer", "plot", "section", "springs")
+_RECORDS = ("curves", "errors", "motions")
 
-__all__ = [
-    "CircularSection",
-    "Column",
-    "Concrete",
-    "Damping",
-    "Footing",
-    "GroundMotion",
-    "InputError",
-    "Interrupted",
-    "Layout",
-    "RectangularSection",
-    "Result",
-    "SolveError",
-    "Solver",
-    "Spiral",
-    "Steel",
-    "Ties",
-    "calibrate",
-    "codes",
-    "compare",
-    "compare_methods",
-    "cyclic",
-    "ensemble",
-    "fragility",
-    "ida",
-    "matrices",
-    "modes",
-    "peer",
-    "plot",
-    "protocol",
-    "read_case",
-    "read_motions",
-    "read_result",
-    "read_test",
-    "section",
-    "springs",
-    "time_history",
-]
+__all__ = sorted([*_MODULE_OF, *_MODULES])  # noqa: PLE0605
 
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first asked for."""
-    if name in _MODULES:
+    if name in (*_MODULES, *_RECORDS):
         return import_module(f"rbsdem.{name}")
     if name not in _MODULE_OF:
         raise AttributeError(f"module 'rbsdem' has no attribute {name!r}")
@@ -127,4 +95,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return [*__all__, "__version__", "curves", "errors", "motions"]
+    return [*__all__, "__version__", *_RECORDS]

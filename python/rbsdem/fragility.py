@@ -1,33 +1,23 @@
 """Incremental dynamic analysis, stripes, clouds, fragility, hazard, uncertain columns."""
 
-from rbsdem.many.cloud import Cloud, CloudFragility, cloud
-from rbsdem.many.ensemble import Ensemble
-from rbsdem.many.fragility import Capacities, Counts, Fragility, Hazard, fit_fragility
-from rbsdem.many.ida import IDA, Hunt
-from rbsdem.many.measures import LIMIT_STATES, MEASURES, STATUSES
-from rbsdem.many.stripes import Stripes, stripes
-from rbsdem.many.uncertain import Sample, Uncertain, VarianceSplit, lognormal, variance_split
-
-__all__ = [
-    "IDA",
-    "LIMIT_STATES",
-    "MEASURES",
-    "STATUSES",
-    "Capacities",
-    "Cloud",
-    "CloudFragility",
-    "Counts",
-    "Ensemble",
-    "Fragility",
-    "Hazard",
-    "Hunt",
-    "Sample",
-    "Stripes",
-    "Uncertain",
-    "VarianceSplit",
-    "cloud",
-    "fit_fragility",
-    "lognormal",
-    "stripes",
-    "variance_split",
-]
+from rbsdem.many.cloud import Cloud as Cloud
+from rbsdem.many.cloud import CloudFragility as CloudFragility
+from rbsdem.many.cloud import cloud as cloud
+from rbsdem.many.ensemble import Ensemble as Ensemble
+from rbsdem.many.fragility import Capacities as Capacities
+from rbsdem.many.fragility import Counts as Counts
+from rbsdem.many.fragility import Fragility as Fragility
+from rbsdem.many.fragility import Hazard as Hazard
+from rbsdem.many.fragility import fit_fragility as fit_fragility
+from rbsdem.many.ida import IDA as IDA
+from rbsdem.many.ida import Hunt as Hunt
+from rbsdem.many.measures import LIMIT_STATES as LIMIT_STATES
+from rbsdem.many.measures import MEASURES as MEASURES
+from rbsdem.many.measures import STATUSES as STATUSES
+from rbsdem.many.stripes import Stripes as Stripes
+from rbsdem.many.stripes import stripes as stripes
+from rbsdem.many.uncertain import Sample as Sample
+from rbsdem.many.uncertain import Uncertain as Uncertain
+from rbsdem.many.uncertain import VarianceSplit as VarianceSplit
+from rbsdem.many.uncertain import lognormal as lognormal
+from rbsdem.many.uncertain import variance_split as variance_split

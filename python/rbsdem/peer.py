@@ -5,59 +5,37 @@ The histories belong to the database and are no part of rbsdem; a user gets them
 points come with rbsdem.
 """
 
-from rbsdem.measured.doubts import Checked, Doubt, Indicators, check, indicators
-from rbsdem.measured.drawing import DrawnSpecimen, column, draw
-from rbsdem.measured.laboratory import read_test
-from rbsdem.measured.measured import PDELTA_CODES, MeasuredTest, PeerTest, net_force, read_peer
-from rbsdem.measured.nearest import nearest
-from rbsdem.measured.predict import predict, predict_one
-from rbsdem.measured.predictions import Neighbour, Prediction, Predictions
-from rbsdem.measured.shipped import (
-    FOLDER_VARIABLE,
-    HISTORY_FILES,
-    Reversals,
-    find_history,
-    measured_loops,
-    shipped_reversals,
-)
-from rbsdem.measured.specimens import Observed, Specimen, Specimens, read_specimens
-from rbsdem.section.paper import paper_columns, paper_sections
-from rbsdem.section.spread import likeness
-from rbsdem.web.gallery import gallery
-
-__all__ = [
-    "FOLDER_VARIABLE",
-    "HISTORY_FILES",
-    "PDELTA_CODES",
-    "Checked",
-    "Doubt",
-    "DrawnSpecimen",
-    "Indicators",
-    "MeasuredTest",
-    "Neighbour",
-    "Observed",
-    "PeerTest",
-    "Prediction",
-    "Predictions",
-    "Reversals",
-    "Specimen",
-    "Specimens",
-    "check",
-    "column",
-    "draw",
-    "find_history",
-    "gallery",
-    "indicators",
-    "likeness",
-    "measured_loops",
-    "nearest",
-    "net_force",
-    "paper_columns",
-    "paper_sections",
-    "predict",
-    "predict_one",
-    "read_peer",
-    "read_specimens",
-    "read_test",
-    "shipped_reversals",
-]
+from rbsdem.measured.doubts import Checked as Checked
+from rbsdem.measured.doubts import Doubt as Doubt
+from rbsdem.measured.doubts import Indicators as Indicators
+from rbsdem.measured.doubts import check as check
+from rbsdem.measured.doubts import indicators as indicators
+from rbsdem.measured.drawing import DrawnSpecimen as DrawnSpecimen
+from rbsdem.measured.drawing import column as column
+from rbsdem.measured.drawing import draw as draw
+from rbsdem.measured.laboratory import read_test as read_test
+from rbsdem.measured.measured import PDELTA_CODES as PDELTA_CODES
+from rbsdem.measured.measured import MeasuredTest as MeasuredTest
+from rbsdem.measured.measured import PeerTest as PeerTest
+from rbsdem.measured.measured import net_force as net_force
+from rbsdem.measured.measured import read_peer as read_peer
+from rbsdem.measured.nearest import nearest as nearest
+from rbsdem.measured.predict import predict as predict
+from rbsdem.measured.predict import predict_one as predict_one
+from rbsdem.measured.predictions import Neighbour as Neighbour
+from rbsdem.measured.predictions import Prediction as Prediction
+from rbsdem.measured.predictions import Predictions as Predictions
+from rbsdem.measured.shipped import FOLDER_VARIABLE as FOLDER_VARIABLE
+from rbsdem.measured.shipped import HISTORY_FILES as HISTORY_FILES
+from rbsdem.measured.shipped import Reversals as Reversals
+from rbsdem.measured.shipped import find_history as find_history
+from rbsdem.measured.shipped import measured_loops as measured_loops
+from rbsdem.measured.shipped import shipped_reversals as shipped_reversals
+from rbsdem.measured.specimens import Observed as Observed
+from rbsdem.measured.specimens import Specimen as Specimen
+from rbsdem.measured.specimens import Specimens as Specimens
+from rbsdem.measured.specimens import read_specimens as read_specimens
+from rbsdem.section.paper import paper_columns as paper_columns
+from rbsdem.section.paper import paper_sections as paper_sections
+from rbsdem.section.spread import likeness as likeness
+from rbsdem.web.gallery import gallery as gallery

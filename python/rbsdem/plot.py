@@ -5,85 +5,45 @@ take SI and draw millimetres and kilonewtons. Without axes they make a figure in
 the dictionary `RC`; axes that are given keep the style of the caller.
 """
 
-from rbsdem.output.loops import (
-    Panel,
-    calibration,
-    code_comparison,
-    comparison,
-    envelope,
-    four_panels,
-    limit_states,
-    loop,
-    loops_over_test,
-)
-from rbsdem.output.many import cloud, fragilities, fragility, ida, motion, spectrum, stripes
-from rbsdem.output.measured import band_sheet, contact_sheet, prediction, spread
-from rbsdem.output.methods import methods
-from rbsdem.output.response import energy, history, profile
-from rbsdem.output.section import (
-    interaction,
-    moment_curvature,
-    section,
-    section_springs,
-    section_state,
-    shear_diagram,
-)
-from rbsdem.output.style import (
-    MODEL_LINE,
-    RC,
-    TEST_LINE,
-    TEST_POINTS,
-    ZERO_LINE,
-    axes_or_new,
-    line_of,
-    new_axes,
-    save,
-    style,
-    style_of,
-)
-from rbsdem.output.tables import table
-
-__all__ = [
-    "MODEL_LINE",
-    "RC",
-    "TEST_LINE",
-    "TEST_POINTS",
-    "ZERO_LINE",
-    "Panel",
-    "axes_or_new",
-    "band_sheet",
-    "calibration",
-    "cloud",
-    "code_comparison",
-    "comparison",
-    "contact_sheet",
-    "energy",
-    "envelope",
-    "four_panels",
-    "fragilities",
-    "fragility",
-    "history",
-    "ida",
-    "interaction",
-    "limit_states",
-    "line_of",
-    "loop",
-    "loops_over_test",
-    "methods",
-    "moment_curvature",
-    "motion",
-    "new_axes",
-    "prediction",
-    "profile",
-    "save",
-    "section",
-    "section_springs",
-    "section_state",
-    "shear_diagram",
-    "spectrum",
-    "spread",
-    "stripes",
-    "style",
-    "style_of",
-    "table",
-]
+from rbsdem.output.loops import Panel as Panel
+from rbsdem.output.loops import calibration as calibration
+from rbsdem.output.loops import code_comparison as code_comparison
+from rbsdem.output.loops import comparison as comparison
+from rbsdem.output.loops import envelope as envelope
+from rbsdem.output.loops import four_panels as four_panels
+from rbsdem.output.loops import limit_states as limit_states
+from rbsdem.output.loops import loop as loop
+from rbsdem.output.loops import loops_over_test as loops_over_test
+from rbsdem.output.many import cloud as cloud
+from rbsdem.output.many import fragilities as fragilities
+from rbsdem.output.many import fragility as fragility
+from rbsdem.output.many import ida as ida
+from rbsdem.output.many import motion as motion
+from rbsdem.output.many import spectrum as spectrum
+from rbsdem.output.many import stripes as stripes
+from rbsdem.output.measured import band_sheet as band_sheet
+from rbsdem.output.measured import contact_sheet as contact_sheet
+from rbsdem.output.measured import prediction as prediction
+from rbsdem.output.measured import spread as spread
+from rbsdem.output.methods import methods as methods
+from rbsdem.output.response import energy as energy
+from rbsdem.output.response import history as history
+from rbsdem.output.response import profile as profile
+from rbsdem.output.section import interaction as interaction
+from rbsdem.output.section import moment_curvature as moment_curvature
+from rbsdem.output.section import section as section
+from rbsdem.output.section import section_springs as section_springs
+from rbsdem.output.section import section_state as section_state
+from rbsdem.output.section import shear_diagram as shear_diagram
+from rbsdem.output.style import MODEL_LINE as MODEL_LINE
+from rbsdem.output.style import RC as RC
+from rbsdem.output.style import TEST_LINE as TEST_LINE
+from rbsdem.output.style import TEST_POINTS as TEST_POINTS
+from rbsdem.output.style import ZERO_LINE as ZERO_LINE
+from rbsdem.output.style import axes_or_new as axes_or_new
+from rbsdem.output.style import line_of as line_of
+from rbsdem.output.style import new_axes as new_axes
+from rbsdem.output.style import save as save
+from rbsdem.output.style import style as style
+from rbsdem.output.style import style_of as style_of
+from rbsdem.output.tables import table as table

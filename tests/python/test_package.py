@@ -33,7 +33,8 @@ ROOT = Path(__file__).resolve().parents[2]
 NAMES = [f"rbsdem.{name}" for name in rbsdem.__all__] + [
     f"rbsdem.{module}.{name}"
     for module in ("errors", "springs")
-    for name in importlib.import_module(f"rbsdem.{module}").__all__
+    for name, thing in vars(importlib.import_module(f"rbsdem.{module}")).items()
+    if getattr(thing, "__module__", "").startswith("rbsdem.") and name[0] != "_"
 ]
 PUBLIC = [operator.attrgetter(name.partition(".")[2])(rbsdem) for name in NAMES]
 FUNCTIONS = [thing for thing in PUBLIC if inspect.isfunction(thing)]

@@ -4,16 +4,10 @@ The parameters are paths into the column, such as ``flexure.k_y``, or those that
 a recipe offers.
 """
 
-from rbsdem.calibration.fit import calibrate, free_names, undetermined
-from rbsdem.calibration.outcome import Calibration, Fitted
-from rbsdem.model.parameter import Parameter, Recipe
-
-__all__ = [
-    "Calibration",
-    "Fitted",
-    "Parameter",
-    "Recipe",
-    "calibrate",
-    "free_names",
-    "undetermined",
-]
+from rbsdem.calibration.fit import calibrate as calibrate
+from rbsdem.calibration.fit import free_names as free_names
+from rbsdem.calibration.fit import undetermined as undetermined
+from rbsdem.calibration.outcome import Calibration as Calibration
+from rbsdem.calibration.outcome import Fitted as Fitted
+from rbsdem.model.parameter import Parameter as Parameter
+from rbsdem.model.parameter import Recipe as Recipe

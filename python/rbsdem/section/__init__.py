@@ -5,35 +5,22 @@ axial loads are positive in compression, y is positive to the face that a positi
 tension.
 """
 
-from rbsdem.section.axial_moment import InteractionDiagram, interaction
-from rbsdem.section.columns import column
-from rbsdem.section.curvature import Diagram, diagram, moment_curvature, strains
-from rbsdem.section.layered import LayeredColumn
-from rbsdem.section.paper import paper_columns, paper_sections
-from rbsdem.section.paper_springs import SectionSprings, springs
-from rbsdem.section.parameters import ModelParameters, parameters
-from rbsdem.section.shear import ShearDiagram, shear_diagram
-from rbsdem.section.spread import Spread, spread
-from rbsdem.section.strength import shear_strength
-
-__all__ = [
-    "Diagram",
-    "InteractionDiagram",
-    "LayeredColumn",
-    "ModelParameters",
-    "SectionSprings",
-    "ShearDiagram",
-    "Spread",
-    "column",
-    "diagram",
-    "interaction",
-    "moment_curvature",
-    "paper_columns",
-    "paper_sections",
-    "parameters",
-    "shear_diagram",
-    "shear_strength",
-    "spread",
-    "springs",
-    "strains",
-]
+from rbsdem.section.axial_moment import InteractionDiagram as InteractionDiagram
+from rbsdem.section.axial_moment import interaction as interaction
+from rbsdem.section.columns import column as column
+from rbsdem.section.curvature import Diagram as Diagram
+from rbsdem.section.curvature import diagram as diagram
+from rbsdem.section.curvature import moment_curvature as moment_curvature
+from rbsdem.section.curvature import strains as strains
+from rbsdem.section.layered import LayeredColumn as LayeredColumn
+from rbsdem.section.paper import paper_columns as paper_columns
+from rbsdem.section.paper import paper_sections as paper_sections
+from rbsdem.section.paper_springs import SectionSprings as SectionSprings
+from rbsdem.section.paper_springs import springs as springs
+from rbsdem.section.parameters import ModelParameters as ModelParameters
+from rbsdem.section.parameters import parameters as parameters
+from rbsdem.section.shear import ShearDiagram as ShearDiagram
+from rbsdem.section.shear import shear_diagram as shear_diagram
+from rbsdem.section.spread import Spread as Spread
+from rbsdem.section.spread import spread as spread
+from rbsdem.section.strength import shear_strength as shear_strength
