@@ -365,7 +365,7 @@ MUTANTS = (
         "share = swing[at - 1] / (swing[at - 1] - swing[at])",
         "share = 1.0",
         "energy",
-        "test_metrics test_compare",
+        "test_curves",
     ),
     Mutant(
         "peak-of-the-core",
