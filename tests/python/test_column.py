@@ -264,6 +264,8 @@ BAD = [
     ({"height": "tall"}, ["height", "tall"]),
     ({"height": None}, ["height", "None"]),
     ({"mass": None}, ["mass", "missing"]),
+    ({"mass": 0.0}, ["mass = 0 kg must be above zero"]),
+    ({"rotary_inertia": [1.0, 0.0], "n": 2}, ["rotary_inertia(2) = 0 kg m2 must be above"]),
     ({"mass": [1.0, 2.0]}, ["mass"]),
     ({"n": 2.0}, ["n = 2.0"]),
     ({"n": True}, ["n = True"]),

@@ -17,6 +17,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import strategies
 from reference_chain import Linear, as_initial, bodies_of
 from strategies import (
     MOST_STEPS,
@@ -27,6 +28,7 @@ from strategies import (
     rules,
     static_path,
     two_sided,
+    walk,
     waves,
 )
 
@@ -34,7 +36,7 @@ import rbsdem
 from rbsdem import _core
 from rbsdem.many.inputs import Motion
 from rbsdem.many.plan import Plan, compute
-from rbsdem.springs import Elastic, Layered, Spring
+from rbsdem.springs import SPRINGS, Elastic, Layered, Spring
 
 TIMES = float(os.environ.get("RBSDEM_CASES", "1"))
 SEED = int(os.environ.get("RBSDEM_SEED", "0"))
@@ -140,6 +142,38 @@ def difference(name: str, one: np.ndarray, other: np.ndarray) -> str:
     share = np.abs(one - other) / (size or 1)
     row = np.unravel_index(np.argmax(share), share.shape)[0]
     return f"{name}: by {share.max():.1e} of {size:.3g} in row {row} of {len(one)}"
+
+
+# ---- springs -------------------------------------------------------------------------------------
+
+
+@relation(600, judged=0.9)
+def test_springs_alone(rng: Rng) -> None:
+    """Waiting, a path cut short, other units, the other side: bits. More points: round-off.
+
+    The sum of layers from the other side is one in another order.
+    """
+    rule = str(rng.choice([name for name in SPRINGS if name]))
+    sizes = 1e5, between(rng, 1e-4, 1e-2)
+    one = strategies.spring(rng, rule, *sizes, options=0.5)
+    path = walk(rng, sizes[1] * between(rng, 0.3, 20), 40)
+    if rule == "layered" and not any(layer.rule != "compression" for _, layer in one.layers):
+        raise Discard  # contacts without a load carry nothing
+    force = one.response(path)
+    largest = np.abs(force).max()
+    assert np.array_equal(one.response(np.repeat(path, 3)), np.repeat(force, 3)), "waiting"
+    cut = int(rng.integers(0, path.size))
+    assert np.array_equal(one.response(path[:cut]), force[:cut]), "cut short"
+    parts = int(rng.integers(2, 6))
+    apart = np.abs(one.response(put_between(path, parts))[parts - 1 :: parts] - force).max()
+    assert apart <= 1e-9 * largest, f"{rule}: points on the way, {apart / largest:.1e}"
+    size, way = 2.0 ** rng.integers(-20, 20, 2)
+    if rule != "layered":
+        other = scaled_spring(one, size, way).response(path * way)
+        assert np.array_equal(other, size * force), f"{rule}: other units"
+    if rule not in ("compression", "concrete") and not getattr(one, "d_buckle", None):
+        apart = np.abs(one.mirrored().response(-path) + force).max()
+        assert apart <= (rule == "layered") * 1e-9 * largest, f"{rule}: mirror, {apart:.1e}"
 
 
 # ---- static paths --------------------------------------------------------------------------------
