@@ -30,9 +30,7 @@ contains
       tests = [unit_test('a bouncing contact: closed form', bounce), &
                unit_test('a bilinear spring, yielding both ways: closed form', yielding), &
                unit_test('located rk4 without events is rk4, to the last bit', no_events), &
-               unit_test('located: order 4 through yielding and unloading, energy too', located_order), &
-               unit_test('events at the end of a step: order 2', step_order), &
-               unit_test('rk45: errors in proportion to the tolerance, energy too', tolerances), &
+               unit_test('orders of located and plain steps, errors of rk45, energies', orders), &
                unit_test('the pair: order 5, and an estimate of order 5', pair_order), &
                unit_test('an event at the exact end of a step', exact_end), &
                unit_test('a contact that is just touched', grazing), &
@@ -164,91 +162,58 @@ contains
       end do
    end subroutine no_events
 
-   !> The longest step of a scene, in whole steps.
-   pure integer function coarse(scene)
-      type(scene_type), intent(in) :: scene
-
-      coarse = merge(360, 2000, scene%column%n == 1)
-   end function coarse
-
-   subroutine located_order(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(scene_type) :: scene
-      type(state_type) :: reference, state
-      real(wp) :: wrong(5), residual(5)
-      integer :: i, number
-
-      do number = 1, scenes
-         call new_scene(scene, number)
-         call find_reference(scene, reference, error)
-         do i = 1, 5
-            call play_located(scene, 0.0_wp, coarse(scene)*2**(i - 1), state, outcome)
-            call check_passed(error, outcome, 'scene '//to_text(number))
-            wrong(i) = distance(state, reference)
-            residual(i) = abs(residual_of(state))/sum(state%springs%work)
-         end do
-         call check_order(error, wrong, 3.7_wp, 4.5_wp, 'scene '//to_text(number))
-         call check_order(error, residual(:4), 4.0_wp, 6.0_wp, 'scene '//to_text(number)//': energy')
-         call check_true(error, residual(4) < 1.0e-8_wp, 'scene '//to_text(number)//': residual')
-         call check_true(error, wrong(5) < 2.0e-7_wp, 'scene '//to_text(number)//': error '// &
-                         to_text(wrong(5)))
-         call check_equal(error, state%springs%events, reference%springs%events, 'events')
-         if (allocated(error)) return
-      end do
-   end subroutine located_order
-
-   !> A change of line at the end of the step reduces the order by two; the error varies randomly, so the mean
-   !> over five halvings is taken.
-   subroutine step_order(error)
+   !> Steps that end at events are of order 4. A change of line at the end of a step reduces the order by two;
+   !> the error varies randomly, so the mean over five halvings is taken. Errors of some hundred steps of the
+   !> pair add up, and some twenty changes of stiffness increase them.
+   subroutine orders(error)
       type(error_type), allocatable, intent(inout) :: error
       type(error_type), allocatable :: outcome
       type(scene_type) :: scene
       type(state_type) :: reference, state
       type(rk4_stepper) :: stepper
-      real(wp) :: wrong(6)
-      integer :: i, number
+      character(len=:), allocatable :: name
+      real(wp) :: located(5), residual(5), by_step(6), pair(4:12), slope
+      integer :: coarse, i, number
 
       do number = 1, scenes
          call new_scene(scene, number)
          call find_reference(scene, reference, error)
+         name = 'scene '//to_text(number)
+         coarse = merge(360, 2000, scene%column%n == 1)
+         do i = 1, 5
+            call play_located(scene, 0.0_wp, coarse*2**(i - 1), state, outcome)
+            call check_passed(error, outcome, name//', located')
+            located(i) = distance(state, reference)
+            residual(i) = abs(residual_of(state))/sum(state%springs%work)
+         end do
+         call check_order(error, located, 3.7_wp, 4.5_wp, name//', located')
+         call check_true(error, located(5) < 2.0e-7_wp, name//', located: error '//to_text(located(5)))
+         call check_order(error, residual(:4), 4.0_wp, 6.0_wp, name//', located: energy')
+         call check_true(error, residual(4) < 1.0e-8_wp, name//', located: residual')
+         call check_equal(error, state%springs%events, reference%springs%events, name//': events')
          do i = 1, 6
             stepper = rk4_stepper()
             call stepper%scheme%create(scene%column)
-            call play(scene, stepper, coarse(scene)*2**(i - 1), state, outcome)
-            call check_passed(error, outcome, 'scene '//to_text(number))
-            wrong(i) = distance(state, reference)
+            call play(scene, stepper, coarse*2**(i - 1), state, outcome)
+            call check_passed(error, outcome, name//', by steps')
+            by_step(i) = distance(state, reference)
          end do
-         call check_order(error, wrong, 1.4_wp, 2.8_wp, 'scene '//to_text(number))
-      end do
-   end subroutine step_order
-
-   subroutine tolerances(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(scene_type) :: scene
-      type(state_type) :: reference, state
-      real(wp) :: wrong(4:12), slope
-      integer :: i, number
-
-      do number = 1, scenes
-         call new_scene(scene, number)
-         call find_reference(scene, reference, error)
+         call check_order(error, by_step, 1.4_wp, 2.8_wp, name//', by steps')
          do i = 4, 12
             call play_located(scene, 10.0_wp**(-i), 1, state, outcome)
-            call check_passed(error, outcome, 'scene '//to_text(number))
-            wrong(i) = distance(state, reference)
-            ! Errors of some hundred steps add up, and some twenty changes of stiffness increase them.
-            call check_true(error, wrong(i) < 1.0e4_wp*10.0_wp**(-i), 'scene '//to_text(number)// &
-                            ', tolerance 1e-'//to_text(i)//': error '//to_text(wrong(i)))
+            call check_passed(error, outcome, name//', rk45')
+            pair(i) = distance(state, reference)
+            call check_true(error, pair(i) < 1.0e4_wp*10.0_wp**(-i), name//', tolerance 1e-'//to_text(i)// &
+                            ': error '//to_text(pair(i)))
             call check_close(error, residual_of(state)/sum(state%springs%work), 0.0_wp, 0.0_wp, &
-                             10.0_wp**(1 - i), 'scene '//to_text(number)//': residual')
+                             10.0_wp**(1 - i), name//', rk45: residual')
          end do
-         slope = log10(wrong(5)/wrong(11))/6.0_wp
-         call check_true(error, slope > 0.85_wp .and. slope < 1.2_wp, 'scene '//to_text(number)// &
+         slope = log10(pair(5)/pair(11))/6.0_wp
+         call check_true(error, slope > 0.85_wp .and. slope < 1.2_wp, name// &
                          ': the error goes with the tolerance to the power '//to_text(slope))
+         if (allocated(error)) return
       end do
-   end subroutine tolerances
+   end subroutine orders
 
    !> Fixed steps of the pair by hand, without control: a damped chain in its highest mode.
    subroutine pair_order(error)
