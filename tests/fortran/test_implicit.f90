@@ -7,7 +7,7 @@ module test_implicit
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_structure_column_column, only: column_type
-   use rbs_solve_modal_modes, only: modes_type, find_modes, frequency_bounds
+   use rbs_solve_modal_modes, only: frequency_bounds
    use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha
    use rbs_loading_loads, only: loads_type
    use rbs_solve_time_state, only: state_type
@@ -34,7 +34,6 @@ contains
                unit_test('order 2 through yielding and unloading', yielding_order), &
                unit_test('average acceleration keeps the energy of elastic chains', elastic_energy), &
                unit_test('axial load and vertical motion in time, against rk45', axial_history), &
-               unit_test('modal damping: the exact decay of every mode', modal_decay), &
                unit_test('a step much longer than all periods stays bounded', long_step), &
                unit_test('stiff chains that yield', stiff_yielding), &
                unit_test('a chain of contacts falls onto its base', impact), &
@@ -284,63 +283,6 @@ contains
       end do
    end subroutine axial_history
 
-   !> Each mode separately: exp(-zeta w t) (cos w_d t + ...), every mode with its own ratio.
-   subroutine modal_decay(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(column_record) :: spec
-      type(scene_type) :: scene
-      type(modes_type) :: modes
-      type(state_type) :: state
-      type(implicit_stepper) :: stepper
-      real(wp) :: exact, z, w, wrong(3), rest(6)
-      integer :: i, mode, number
-
-      spec = chain(2, 'pdelta')
-      spec%axial_load = 1.0e7_wp
-      spec%damping%modal = [0.02_wp, 0.3_wp, 0.9_wp]
-      allocate (spec%axial_spring(1))
-      spec%axial_spring(1) = elastic(2.0e9_wp)
-      scene%column = made(spec)
-      ! The openings vibrate about their values under the axial load.
-      rest = 0.0_wp
-      rest(5:) = -1.0e7_wp/2.0e9_wp
-      call find_modes(scene%column, modes, outcome)
-      call check_passed(error, outcome, 'find_modes')
-      do mode = 1, 6
-         z = 0.0_wp
-         if (mode <= 3) z = spec%damping%modal(mode)
-         w = modes%omega(mode)*sqrt(1.0_wp - z**2)
-         scene%finish = 4.7_wp/w
-         scene%q = rest + modes%shapes(:, mode)
-         scene%v = 0.0_wp*scene%q
-         exact = exp(-z*modes%omega(mode)*scene%finish)*(cos(4.7_wp) + z/sqrt(1.0_wp - z**2)*sin(4.7_wp))
-         call play_located(scene, 1.0e-11_wp, 1, state, outcome)
-         call check_passed(error, outcome, 'rk45')
-         call check_close(error, state%q, rest + exact*modes%shapes(:, mode), 0.0_wp, &
-                          1.0e-8_wp*maxval(abs(scene%q)), 'rk45, mode '//to_text(mode))
-         call check_close(error, residual_of(state), 0.0_wp, 0.0_wp, 1.0e-8_wp*state%at_begin, 'energy')
-         do number = 1, methods
-            do i = 1, 3
-               stepper = method(number)
-               call play(scene, stepper, 100*2**i, state, outcome)
-               call check_passed(error, outcome, 'method '//to_text(number))
-               wrong(i) = maxval(abs(state%q - rest - exact*modes%shapes(:, mode))) &
-                          /maxval(abs(modes%shapes(:, mode)))
-            end do
-            call check_order(error, wrong, 1.8_wp, 2.2_wp, &
-                             'mode '//to_text(mode)//', method '//to_text(number))
-            call check_true(error, wrong(3) < 5.0e-4_wp, 'error '//to_text(wrong(3)))
-            call check_equal(error, stepper%cut_steps, 0, 'no step is cut')
-            if (number == 1) then
-               call check_close(error, residual_of(state), 0.0_wp, 0.0_wp, 1.0e-6_wp*state%at_begin, &
-                                'energy of the average acceleration')
-            end if
-            if (allocated(error)) return
-         end do
-      end do
-   end subroutine modal_decay
-
    !> Ten longest periods in one step.
    subroutine long_step(error)
       type(error_type), allocatable, intent(inout) :: error
@@ -479,7 +421,8 @@ contains
                   stepper%acceptable = -1.0_wp
                   call stepper%advance(state, h, outcome)
                   call check_failed(error, outcome, analysis_failed, &
-                                    's at time '//to_text(before%time)//' s does not converge although it was cut')
+                                    's at time '//to_text(before%time)//' s does not converge although it was &
+                                    &cut')
                   call check_failed(error, outcome, analysis_failed, ' spring of joint ')
                   ! If there is an error already, nothing moves.
                   call stepper%advance(state, h, outcome)

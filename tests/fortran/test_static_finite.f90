@@ -6,13 +6,10 @@ module test_static_finite
    use rbs_base_error, only: error_type, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_structure_column_column, only: column_type
-   use rbs_hysteresis_springs, only: follow_path
-   use rbs_output_summary, only: summary_type
    use rbs_structure_column_column_record, only: column_record
    use runs, only: run_path
-   use samples, only: set_value, value_of, bilinear, chain, column_1, compression, elastic, made, &
-                      random_type, takeda, takeda_1, f_y, d_y, k_u, s_k, height_1
+   use samples, only: set_value, bilinear, chain, column_1, compression, elastic, takeda, f_y, d_y, k_u, &
+                      s_k, height_1
    use row_places, only: row_displacement, row_force, row_axial, row_residual, row_joints, row_input, row_top
    implicit none
    private
@@ -24,9 +21,7 @@ contains
    subroutine collect_static_finite(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('every row of a yielding chain, open or not, is in equilibrium', equilibrium), &
-               unit_test('springs are on their paths', on_their_paths), &
-               unit_test('back to a peak, and on', back_to_a_peak), &
+      tests = [unit_test('back to a peak, and on', back_to_a_peak), &
                unit_test('the residual of the energy decreases with the fourth power', energy_order), &
                unit_test('softening column: capacity under a force, peak under a displacement', softening), &
                unit_test('a smooth peak of the force', smooth_peak), &
@@ -35,17 +30,6 @@ contains
                unit_test('an axial spring yields before the path starts', axial_yield), &
                unit_test('a joint that cannot carry tension is named', no_tension)]
    end subroutine collect_static_finite
-
-   subroutine random_targets(random, x, largest)
-      type(random_type), intent(inout) :: random
-      real(wp), intent(out) :: x(:)
-      real(wp), intent(in) :: largest
-      integer :: i
-
-      do i = 1, size(x)
-         x(i) = random%uniform(-largest, largest)*i/size(x)
-      end do
-   end subroutine random_targets
 
    !> A chain for an elastic beam of EI = 1 and length 1 in n parts: a joint represents the two half parts
    !> next to it, so that the curvature is summed by the trapezoidal rule (it is zero at the top).
@@ -62,151 +46,6 @@ contains
       spec%flexure = [(elastic(1.0_wp*n), i=1, n)]
       call set_value(spec%flexure(1), 'k', 2.0_wp*n)
    end function beam
-
-   !> A nonlinear chain.
-   type(column_record) function yielding_chain(n) result(spec)
-      integer, intent(in) :: n
-      integer :: i
-
-      spec = column_1('finite')
-      spec%n = n
-      spec%axial_load = 5.0e5_wp
-      spec%lengths = [(1.0_wp + 0.3_wp*sin(1.0_wp*i), i=1, n)]
-      spec%lengths = spec%lengths*(spec%height/sum(spec%lengths))
-      spec%flexure = [(takeda_1('kc'), i=1, n)]
-      do i = 1, n
-         call set_value(spec%flexure(i), 'k_c', value_of(spec%flexure(i), 'k_c')* &
-                        (1.0_wp + 0.3_wp*sin(1.0_wp*i)))
-         call set_value(spec%flexure(i), 'k_u', value_of(spec%flexure(i), 'k_u')* &
-                        (1.0_wp + 0.2_wp*cos(1.0_wp*i)))
-      end do
-   end function yielding_chain
-
-   !> Forces and moments of everything above each joint, from the positions of the bodies alone.
-   subroutine check_statics(error, column, row, tolerance)
-      type(error_type), allocatable, intent(inout) :: error
-      class(column_type), intent(in) :: column
-      real(wp), intent(in) :: row(:), tolerance
-      real(wp), dimension(column%n) :: x, y, x_middle, below
-      real(wp) :: top(2), th, shear, moment, tension, weight, down, largest(2)
-      integer :: i, n, m
-
-      n = column%n
-      m = column%unknowns
-      top = 0.0_wp
-      th = 0.0_wp
-      do i = 1, n
-         below(i) = th
-         x(i) = top(1) + row(row_joints - 1 + i)*cos(th)
-         y(i) = top(2) - row(row_joints - 1 + i)*sin(th)
-         if (column%opens) then
-            x(i) = x(i) + row(row_joints - 1 + 2*n + i)*sin(th)
-            y(i) = y(i) + row(row_joints - 1 + 2*n + i)*cos(th)
-         end if
-         th = th + row(row_joints - 1 + n + i)
-         x_middle(i) = x(i) + 0.5_wp*column%length(i)*sin(th)
-         top = [x(i), y(i)] + column%length(i)*[sin(th), cos(th)]
-      end do
-      call check_close(error, row(row_displacement), top(1), 1.0e-12_wp, 1.0e-13_wp, 'displacement')
-      call check_close(error, row(row_top), top(2), 1.0e-12_wp, 0.0_wp, 'height')
-      associate (force => row(row_joints + m:))
-         largest = [maxval(abs(force(:n))), maxval(abs(force(n + 1:2*n)))]
-         down = column%axial_load
-         moment = 0.0_wp
-         do i = n, 1, -1
-            weight = column%gravity*column%mass(i)
-            down = down + weight
-            shear = row(row_force)*cos(below(i)) + down*sin(below(i))
-            tension = row(row_force)*sin(below(i)) - down*cos(below(i))
-            moment = row(row_force)*(top(2) - y(i)) + column%axial_load*(top(1) - x(i)) &
-                     + sum(column%gravity*column%mass(i:)*(x_middle(i:) - x(i)))
-            call check_close(error, force(i), shear, 0.0_wp, tolerance*largest(1), 'shear '//to_text(i))
-            call check_close(error, force(n + i), moment, 0.0_wp, tolerance*largest(2), 'moment '//to_text(i))
-            if (column%opens) call check_close(error, force(2*n + i), tension, tolerance, &
-                                               tolerance*abs(down), 'axial force '//to_text(i))
-         end do
-      end associate
-   end subroutine check_statics
-
-   !> Closed joints, and joints that open with springs of three rules.
-   subroutine equilibrium(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(random_type) :: random
-      type(column_record) :: spec
-      class(column_type), allocatable :: column
-      type(summary_type) :: summary
-      real(wp), allocatable :: rows(:, :)
-      real(wp) :: x(60), largest
-      integer :: i, kind, n
-
-      do n = 1, 13, 4
-         do kind = 0, 3
-            spec = yielding_chain(n)
-            spec%self_weight = .true.
-            if (kind == 1) spec%axial_spring = [elastic(1.0e7_wp)]
-            if (kind == 2) spec%axial_spring = [bilinear(1.0e7_wp, 0.06_wp, 1.0e6_wp)]
-            if (kind == 3) spec%axial_spring = [compression(2.0e7_wp)]
-            column = made(spec)
-            call random_targets(random, x, merge(0.8_wp, 0.4_wp, kind == 0))
-            call run_path(spec, .false., x, rows, outcome, summary)
-            call check_passed(error, outcome, 'static path')
-            if (allocated(error)) return
-            do i = 1, size(x)
-               call check_statics(error, column, rows(:, i), 1.0e-9_wp)
-            end do
-            largest = maxval(abs(rows(row_input, :)))
-            call check_true(error, maxval(abs(rows(row_residual, :))) < 1.0e-6_wp*largest, 'energy balance')
-            if (kind > 0) cycle
-            call check_true(error, minval(rows(row_axial, :)) < -0.001_wp*largest, &
-                            'the axial load does work')
-            call check_true(error, summary%events > 50, 'springs yield')
-            call check_true(error, summary%peak_rotation > 0.2_wp, 'rotations are large')
-         end do
-      end do
-   end subroutine equilibrium
-
-   !> The path to each target in many increments.
-   subroutine divide(x, parts, fine)
-      real(wp), intent(in) :: x(:)
-      integer, intent(in) :: parts
-      real(wp), intent(out) :: fine(:)
-      real(wp) :: from
-      integer :: i, j
-
-      from = 0.0_wp
-      do i = 1, size(x)
-         do j = 1, parts
-            fine((i - 1)*parts + j) = from + (x(i) - from)*j/parts
-         end do
-         fine(i*parts) = x(i)
-         from = x(i)
-      end do
-   end subroutine divide
-
-   !> Rows so close that no spring can turn back between them unnoticed.
-   subroutine on_their_paths(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(random_type) :: random
-      class(column_type), allocatable :: column
-      real(wp), allocatable :: rows(:, :)
-      integer, parameter :: m = 15, parts = 200, n = 3
-      real(wp) :: x(m), fine(m*parts), f(m*parts)
-      integer :: i
-
-      column = made(yielding_chain(n))
-      call random_targets(random, x, 0.4_wp)
-      call divide(x, parts, fine)
-      call run_path(yielding_chain(n), .false., fine, rows, outcome)
-      call check_passed(error, outcome, 'static path')
-      if (allocated(error)) return
-      do i = 1, 2*n
-         call follow_path(column%spring(i), rows(row_joints - 1 + i, :), f)
-         call check_close(error, rows(row_joints - 1 + 2*n + i, :), f, 1.0e-8_wp, 1.0e-2_wp, &
-                          'unknown '//to_text(i)//' alone')
-      end do
-   end subroutine on_their_paths
 
    !> Where a target is a former peak, springs meet the ends of their lines in its last digits.
    subroutine back_to_a_peak(error)

@@ -171,8 +171,8 @@ def test_the_drift_of_collapse_counts_the_height_of_the_column(analysis, sign):
     subject = column(1, footing=beneath)
     result = solve(analysis, subject, sign, collapse_drift=0.01)
     assert result.summary["status"] == "collapsed"
-    before, after = np.abs(result.displacement[-2:]) / 1.6
-    assert before < 0.01 <= after
+    drift = np.abs(result.displacement) / 1.6
+    assert drift[:-1].max() < 0.01 <= drift[-1]
 
 
 def test_a_response_in_time_tells_its_base_shear():
