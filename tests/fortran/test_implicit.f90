@@ -421,8 +421,7 @@ contains
                   stepper%acceptable = -1.0_wp
                   call stepper%advance(state, h, outcome)
                   call check_failed(error, outcome, analysis_failed, &
-                                    's at time '//to_text(before%time)//' s does not converge although it was &
-                                    &cut')
+                                    's at time '//to_text(before%time)//' s does not converge although')
                   call check_failed(error, outcome, analysis_failed, ' spring of joint ')
                   ! If there is an error already, nothing moves.
                   call stepper%advance(state, h, outcome)
