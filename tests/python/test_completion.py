@@ -10,7 +10,6 @@ import sys
 import click
 import pytest
 
-from rbsdem import _core
 from rbsdem.__main__ import COMMANDS
 from rbsdem.cli import COMPLETE, app, main
 
@@ -49,14 +48,3 @@ def test_completions(words, offered):
         env=os.environ | given, capture_output=True, text=True, check=True, timeout=20,
     )  # fmt: skip
     assert done.stdout.splitlines() == offered
-
-
-def test_keys_of_one_rule_or_group(run_cli):
-    whole = run_cli(["keys"]).stdout
-    one = run_cli(["keys", "takeda"]).stdout
-    assert one in whole
-    assert one.startswith("rule = 'takeda'")
-    assert {line.split()[0] for line in one.splitlines()[1:]} == {
-        key["name"] for key in _core.keys()["rules"]["takeda"]["keys"]
-    }
-    assert run_cli(["keys", "column"]).stdout.startswith("&column\n")
