@@ -306,7 +306,7 @@ MUTANTS = (
         "arches(section, b_c, d_c)/(6.0_wp*core)",
         "arches(section, b_c, d_c)/(3.0_wp*core)",
         "confinement",
-        "test_section_strips",
+        "section",
     ),
     Mutant(
         "moment-factor",

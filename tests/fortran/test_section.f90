@@ -7,8 +7,9 @@ module test_section
    use rbs_section_balance, only: follow
    use rbs_section_concrete_law, only: concrete_both, concrete_stress, concrete_type, confined_concrete, &
                                        plain_concrete, spalling_concrete, tension_ts, tension_zero
+   use rbs_section_confinement, only: volumetric_ratio
    use rbs_section_resultants, only: laws_type, resultants, resultants_type, section_laws
-   use rbs_section_cross_section, only: section_type
+   use rbs_section_cross_section, only: section_type, ties
    use rbs_section_section_build, only: build_section
    use rbs_section_shape, only: new_shape, shape_names, shape_type
    use rbs_section_steel_law, only: steel_type
@@ -25,6 +26,7 @@ contains
       tests = [unit_test('concrete: slope is that of the stress', concrete_slope), &
                unit_test('concrete: Mander core, spalling cover', confined_law), &
                unit_test('shapes agree with sums of their width', shapes_agree), &
+               unit_test('confinement: square ties by hand', confinement), &
                unit_test('axial stiffness is the slope of the axial force', axial_slope), &
                unit_test('no tension, no bars: the moment of a rocking block', rocking)]
    end subroutine collect_section
@@ -135,6 +137,30 @@ contains
       call check_close(error, shape%leg_share([0.18_wp, -0.24_wp, 0.4_wp]), [0.8_wp, 0.6_wp, 0.0_wp], &
                        1.0e-13_wp, 1.0e-7_wp, 'circle: legs')
    end subroutine shapes_agree
+
+   subroutine confinement(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(section_type) :: section
+      real(wp) :: k_e, rho, core
+
+      section = beam(.true., 400)
+      section%transverse%kind = ties
+      section%transverse%diameter = 0.01_wp
+      section%transverse%spacing = 0.11_wp
+      section%transverse%legs = 2.0_wp
+      section%transverse%legs_across = 3.0_wp
+      section%transverse%steel = steel_type(400.0e6_wp, 600.0e6_wp)
+      call build_section(section, 0.006_wp, 400)
+      ! Core 330 x 430; clear between bars 330 - 30 - 20 = 280 (one gap), 400/2 - 20 = 180 (two).
+      core = 0.33_wp*0.43_wp
+      k_e = (1.0_wp - (2.0_wp*0.28_wp**2 + 4.0_wp*0.18_wp**2)/(6.0_wp*core))*(1.0_wp - 0.1_wp/0.66_wp)* &
+            (1.0_wp - 0.1_wp/0.86_wp)/(1.0_wp - 2.0e-3_wp/core)
+      rho = 0.25_wp*pi*1.0e-4_wp/0.11_wp*(2.0_wp/0.33_wp + 3.0_wp/0.43_wp)
+      call check_close(error, [section%effectiveness, volumetric_ratio(section), section%lateral_stress], &
+                       [k_e, rho, 0.5_wp*k_e*rho*400.0e6_wp], 1.0e-12_wp, 0.0_wp, 'ties: k_e, rho_s, f_l')
+      call check_close(error, section%core%eps_cu, 0.004_wp + 1.4_wp*rho*400.0e6_wp*0.1_wp/section%core%fc, &
+                       1.0e-12_wp, 0.0_wp, 'eps_cu')
+   end subroutine confinement
 
    !> Also where the tip of the crack moves through the strips; to the error of the midpoint rule in the one
    !> that is cut.
