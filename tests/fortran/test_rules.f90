@@ -4,12 +4,10 @@ module test_rules
    use, intrinsic :: iso_fortran_env, only: int64
    use any_rule, only: detours, loops, detour_result, loop_result, random_spring, random_path, yield_of
    use check, only: unit_test, check_close, check_equal, check_same, check_true
-   use rbs_base_constants, only: unset
    use rbs_base_error, only: error_type
-   use rbs_base_keys, only: key_type
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
-   use rbs_hysteresis_registry, only: keys_of, rule_names
+   use rbs_hysteresis_registry, only: rule_names
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use samples, only: random_type
@@ -21,8 +19,6 @@ module test_rules
    !> Rules that depend on their path discontinuously: Takeda's at a former peak and where the force is zero
    !> (docs/takeda.md), and a joint whose layers soften.
    character(len=*), parameter :: exceptions(*) = [character(len=16) :: 'takeda', 'layered']
-   !> Rules that push and pull differently, and layers of any of them.
-   character(len=*), parameter :: one_sided(*) = [character(len=16) :: 'compression', 'concrete', 'layered']
 
 contains
 
@@ -33,7 +29,6 @@ contains
                          continuous), &
                unit_test('property 9: no loop and no path gives energy', dissipative), &
                unit_test('property 3: forces are continuous where lines meet', lines_meet), &
-               unit_test('property 6: the mirror path, to the last bit', mirror), &
                unit_test('property 2: 1, 7, 1000 increments, to the last bit', increments), &
                unit_test('property 13: copies and trial moves leave no trace', trials), &
                unit_test('what a spring remembers is all that it goes on by', resumes)]
@@ -106,32 +101,6 @@ contains
          end do
       end do
    end subroutine lines_meet
-
-   !> Of springs with two equal sides.
-   subroutine mirror(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(key_type), allocatable :: keys(:)
-      type(spring_record) :: spec
-      real(wp) :: d(24), f(24), mirrored(24)
-      integer :: rule, history, i
-
-      do rule = 1, size(rule_names)
-         if (any(one_sided == rule_names(rule))) cycle
-         call keys_of(rule_names(rule), keys)
-         do history = 1, 200
-            call random_history(trim(rule_names(rule)), history, spec, d)
-            do i = 1, size(keys)
-               associate (name => keys(i)%name)
-                  if (index(name, '_neg') + index(name, 'buckl') > 0) spec%value(i) = unset
-               end associate
-            end do
-            call follow_path(spec, d, f)
-            call follow_path(spec, -d, mirrored)
-            ! + 0: makes zeros of both signs equal.
-            call check_same(error, 0.0_wp - mirrored, f + 0.0_wp, trim(rule_names(rule)))
-         end do
-      end do
-   end subroutine mirror
 
    !> On a path cut into increments every move ends at the same force.
    subroutine increments(error)
