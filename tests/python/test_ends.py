@@ -82,16 +82,6 @@ def test_double_curvature_is_two_cantilevers(kinematics, flexure):
     np.testing.assert_allclose(both.energy["input"], 2 * one.energy["input"], atol=1e-8 * scale)
 
 
-@pytest.mark.parametrize("kinematics", ["pdelta", "finite"])
-def test_double_curvature_under_axial_load_that_varies(kinematics):
-    """The same symmetry where the axial load has a history, and joints carry it."""
-    half = cantilever(UNEVEN, kinematics=kinematics, n=2)
-    load = 4e5 + 2e5 * np.sin(np.arange(PATH.size))
-    one = rbsdem.cyclic(half, displacement=PATH, axial_load=load)
-    both = rbsdem.cyclic(half.double_curvature(), displacement=2 * PATH, axial_load=load)
-    np.testing.assert_allclose(both.force, one.force, rtol=0, atol=1e-8 * np.abs(one.force).max())
-
-
 TIME = np.arange(0, 1.005, 0.01)
 SHAKE = 3.0 * np.sin(9 * TIME) + 2.0 * np.sin(23 * TIME)
 STEPS = {"newmark": 5e-4, "hht": 2e-4, "generalised_alpha": 2e-4}
@@ -100,32 +90,6 @@ STEPS = {"newmark": 5e-4, "hht": 2e-4, "generalised_alpha": 2e-4}
 def shaken(column, method, **loads):
     events = {"events": "located"} if method == "rk4" else {}
     return rbsdem.time_history(column, TIME, method=method, dt=STEPS.get(method), **events, **loads)
-
-
-@pytest.mark.parametrize("opens", [False, True])
-def test_energy_of_a_held_column_in_time(opens):
-    """Finite rotations and slips of a fifth of them: what comes in is what there is."""
-    column = rbsdem.Column(
-        2.0,
-        800.0,
-        Elastic(2e7),
-        Elastic(1e7),
-        n=2,
-        kinematics="finite",
-        axial_load=3e5,
-        top="fixed",
-        top_mass=2e4,
-        self_weight=True,
-        axial_spring=Elastic(2e9) if opens else None,
-    )
-    result = rbsdem.time_history(
-        column, TIME, ground_acceleration=SHAKE, method="rk45", tolerance=1e-8
-    )
-    assert np.abs(result.displacement).max() > 0.04
-    assert result.summary["relative_energy_residual"] < 1e-11
-    implicit = shaken(column, "newmark", ground_acceleration=SHAKE)
-    assert implicit.summary["relative_energy_residual"] < 1e-11
-    np.testing.assert_allclose(implicit.top, result.top, rtol=0, atol=1e-5)
 
 
 def test_stiffness_and_frequency_of_a_column_held_at_both_ends():
@@ -213,30 +177,6 @@ def test_methods_agree_on_a_column_with_both_ends(kinematics, opens):
         assert result.summary["relative_energy_residual"] < 1e-3
 
 
-def test_moment_that_holds_the_top_is_that_of_equilibrium():
-    """Of the column between both joints, slipped: M_b = F h + P (x - u_1 - u_3) + M_top."""
-    column = cantilever(TAKEDA, n=2, shear=Elastic(4e8))
-    column = dataclasses.replace(
-        column, top="fixed", flexure=[TAKEDA, Elastic(2e8), Elastic(1.5e8)]
-    )
-    result = rbsdem.cyclic(column, displacement=PATH)
-    second = 4e5 * (result.displacement - result.slip[:, 0] - result.slip[:, 2])
-    moment = 1.6 * result.force + second + result.moment[:, -1]
-    np.testing.assert_allclose(result.moment[:, 0], moment, atol=1e-12 * np.abs(moment).max())
-
-
-def test_double_curvature_in_time_with_the_mass_at_the_top():
-    """A cantilever with 2 m under F(t) is the lower half of the column with m under F(t)."""
-    half = cantilever(TAKEDA, top_mass=4e4)
-    half = dataclasses.replace(half, mass=1e-4, shear=Elastic(1e12))
-    whole = dataclasses.replace(half, top_mass=0.0).double_curvature(top_mass=2e4)
-    force = 1.3e5 * np.sin(15 * TIME)
-    one, both = (shaken(column, "newmark", force=force) for column in (half, whole))
-    peak = np.abs(one.displacement).max()
-    assert peak > 0.01
-    np.testing.assert_allclose(both.displacement, 2 * one.displacement, rtol=0, atol=1e-4 * peak)
-
-
 def test_a_footing_is_one_body_more():
     """The chain knows no difference: the same bits as a column whose first body is the footing."""
     springs = [Elastic(6e8), Elastic(4e8)], [Takeda(4e8, 4e-4, 1e8, 3e-3, 1e7), TAKEDA]
@@ -268,22 +208,6 @@ def test_a_footing_is_one_body_more():
             np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
     assert list(column.joint_numbers) == [0, 1]
     assert len(column.joints("flexure")) == 2
-
-
-@pytest.mark.parametrize("kinematics", LEVELS)
-def test_springs_beneath_a_footing_are_in_series(kinematics):
-    """x = F (1/k_0x + 1/k_V + h^2/k_0 + h^2/k_M), and no footing where they are rigid."""
-
-    def flexible(along, about):
-        footing = Footing(Elastic(along), Elastic(about))
-        column = rbsdem.Column(
-            2.0, 500.0, Elastic(3e8), Elastic(1e8), kinematics=kinematics, footing=footing
-        )
-        return rbsdem.cyclic(column, force=[1e2]).displacement[0] / 1e2
-
-    series = 1 / 2e8 + 1 / 3e8 + 4 / 5e7 + 4 / 1e8
-    assert flexible(2e8, 5e7) == pytest.approx(series, rel=1e-9)
-    assert flexible(2e16, 5e16) == pytest.approx(1 / 3e8 + 4 / 1e8, rel=1e-8)
 
 
 def rocking(kinematics="pdelta", **more):

@@ -149,7 +149,7 @@ def difference(name: str, one: np.ndarray, other: np.ndarray) -> str:
 
 @relation(600, judged=0.9)
 def test_springs_alone(rng: Rng) -> None:
-    """Waiting, a path cut short, other units, the other side: bits. More points: round-off.
+    """Waiting, a path cut short, other units, the other side: bits. More points, halves in series: round-off.
 
     The sum of layers from the other side is one in another order.
     """
@@ -167,6 +167,8 @@ def test_springs_alone(rng: Rng) -> None:
     parts = int(rng.integers(2, 6))
     apart = np.abs(one.response(put_between(path, parts))[parts - 1 :: parts] - force).max()
     assert apart <= 1e-9 * largest, f"{rule}: points on the way, {apart / largest:.1e}"
+    apart = np.abs(one.split(2).response(path / 2) - force).max()
+    assert apart <= 1e-9 * max(largest, 1e-6), f"{rule}: two in series, {apart / largest:.1e}"
     size, way = 2.0 ** rng.integers(-20, 20, 2)
     if rule != "layered":
         other = scaled_spring(one, size, way).response(path * way)
@@ -275,6 +277,11 @@ def test_a_path_is_in_balance(rng: Rng) -> None:
     most = max(np.abs(slips).max(), np.abs(openings).max(), np.abs(turns).max() / column.height)
     share = most / (sizes_of(run)["force"] + np.abs(load).max() + weight.sum())
     assert share <= (1e-7 if finite else 1e-9), f"a joint by {most:.1e} N, {share:.1e}"
+    most = (
+        np.abs(run.base_shear - run.force).max(),
+        np.abs(run.base_moment - run.moment[:, 0]).max(),
+    )
+    assert max(most) <= 1e-9 * (1e-9 + np.abs(run.moment).max() + np.abs(run.shear).max()), most
     residual, limit = run.summary["relative_energy_residual"], 1e-7 if finite else 1e-9
     nothing = run.summary["energy_residual"] < 1e-20  # contacts that carry nothing do no work
     assert residual <= limit or nothing, f"energy by {residual:.1e}"
@@ -496,6 +503,29 @@ def test_points_on_the_way(rng: Rng) -> None:
     same_but_round_off(
         lambda: one, coarse, lambda: follow(column, changed(loading)), 1e-6 if curved else ROUND_OFF
     )
+
+
+@relation(150, judged=0.4)
+def test_a_constant_axial_history(rng: Rng) -> None:
+    """A load is stated as a number or as a history, for which there is another solver: round-off.
+
+    With exact rotations to the tolerance of their equilibrium.
+    """
+    column, loading = static_case(rng, varying=False)
+    if not axial_matters(column) or not column.axial_load:
+        raise Discard
+    history = loading | {"axial_load": np.full(points(loading), column.axial_load)}
+    other = replace(column, axial_load=float(rng.choice([0.0, 0.5, 1.0])) * column.axial_load)
+    one = follow(column, loading)
+    if one.summary["status"] != "completed":
+        raise Discard
+    same_but_round_off(
+        lambda: one, lambda: follow(other, history), lambda: follow(column, changed(loading)), 1e-7
+    )
+    size = max(np.abs(values).max() for values in one.energy.values())
+    for name, values in follow(other, history).energy.items():
+        apart = np.abs(values - one.energy[name]).max()
+        assert apart <= 1e-5 * size, f"{name}: by {apart} J of {size}"
 
 
 @relation(300, judged=0.8)
@@ -849,10 +879,14 @@ def test_elastic_columns_respond_as_the_equation_of_motion(rng: Rng) -> None:
         assert linear.distance(found, exact) <= 1e-5
         return
     parts = round(time[1] / chosen["dt"])
+    found = move(column, loads, **chosen)
+    carried = linear.k * start[: 2 * n] + linear.damping @ start[2 * n :]
+    at_base = np.array([found.base_shear[0], found.base_moment[0]])
+    assert np.abs(at_base - carried[[0, n]]).max() <= 1e-9 * np.abs(carried).max(), "at the base"
     at = np.arange(parts * (time.size - 1) + 1) / parts
     fine = np.column_stack([np.interp(at, np.arange(time.size), x) for x in (force, ground)])
     rows = linear.steps(method, fine, chosen["dt"], chosen.get("rho_infinity", 1.0), start)[::parts]
-    apart = linear.distance(move(column, loads, **chosen), rows)
+    apart = linear.distance(found, rows)
     assert apart <= 1e-5, f"{method}: by {apart:.1e}"
 
 

@@ -20,23 +20,16 @@ import rbsdem
 from rbsdem import compare_methods
 from rbsdem.cli import main
 from rbsdem.methods import scene
-from rbsdem.methods.answer import Setting
 from rbsdem.methods.physics import split_bodies
-from rbsdem.methods.rows import MethodStudy, seconds_text
-from rbsdem.methods.scene import make_scene, reversals
+from rbsdem.methods.rows import MethodStudy
+from rbsdem.methods.scene import make_scene
 from rbsdem.output.methods import report
 from rbsdem.output.tables import write_csv
 from rbsdem.results.accuracy import Answer, at_times, common_interval, errors_of
 from rbsdem.springs import (
     Bilinear,
     Compression,
-    ConcreteSpring,
     Elastic,
-    Layered,
-    PeakOriented,
-    Pinching,
-    SteelSpring,
-    Takeda,
 )
 
 LENGTH, MASS = 1.6, 614.4
@@ -101,24 +94,12 @@ def test_common_interval_divides_what_can_be_divided():
     assert interval == pytest.approx(0.1 * math.sqrt(2))
 
 
-def test_reversals_of_a_path():
-    path = np.array([0.0, 1.0, 2.0, 2.0, 1.0, -1.0, 0.0, 0.5])
-    assert reversals(path).tolist() == [0, 3, 5, 7]
-
-
 def test_a_loading_of_few_times_is_the_same_at_more_of_them():
     made = make_scene(ELASTIC, [0.0, 1.0, 3.0], {"force": [0.0, 2.0, -2.0]}, None, None)
     assert made.time.size > scene.LEAST_ROWS
     assert {0.0, 1.0, 3.0} <= set(made.time)
     expected = np.interp(made.time, [0.0, 1.0, 3.0], [0.0, 2.0, -2.0])
     np.testing.assert_allclose(made.loads["force"], expected, atol=1e-15)
-
-
-@pytest.mark.parametrize(
-    ("seconds", "text"), [(3.21e-4, "321 us"), (0.0042, "4.2 ms"), (2.0, "2.0 s"), (75.4, "75 s")]
-)
-def test_times_have_units(seconds, text):
-    assert seconds_text(seconds) == text
 
 
 # ---- reference, errors, front, choice ------------------------------------------------------------
@@ -362,12 +343,6 @@ def test_static_path_and_its_inverse(kinematics):
     assert not [e for e in found.physics.effects if "inertia" in e.part]
 
 
-def test_static_force():
-    found = compare_methods(PAPER, force=1.2e5 * CYCLES / CYCLES.max())
-    assert found.response == "displacement"
-    assert found.reference.digits > 10
-
-
 def test_falling_force_cannot_be_driven_back():
     """Past its peak: increments are compared instead."""
     column = rbsdem.Column(
@@ -463,11 +438,6 @@ def test_effects_of_a_column_with_everything():
     assert 0 < found.physics.resolution < 1e-3
 
 
-def test_joints_that_open_can_be_tried():
-    found = compare_methods(PAPER, displacement=CYCLES, axial_spring=Elastic(2.4e9))
-    assert effect_of(found, "joints open").matters is not None
-
-
 def test_split_bodies_keeps_mass_height_and_inertia():
     column = rbsdem.Column(
         2.0,
@@ -485,58 +455,6 @@ def test_split_bodies_keeps_mass_height_and_inertia():
     expected = [m * length**2 / 12 for m, length in zip(halves.masses, halves.lengths, strict=True)]
     assert halves.rotary_inertia == pytest.approx(expected)
     assert [spring.k for spring in halves.flexure] == [2e8, 2e8, 4e8, 4e8]
-
-
-#: A spring of each rule, in arbitrary units.
-SPRINGS = [
-    Elastic(3.0),
-    Bilinear(3.0, 1.0, 0.5),
-    Takeda(10.0, 0.1, 4.0, 1.0, 0.4, b1=0.3),
-    Takeda(10.0, 0.1, 4.0, 1.0, 0.4, b1=0.6, inner="kr"),
-    Compression(3.0),
-    PeakOriented(1.0, 3.0, 3.0, 3.5, 6.0),
-    PeakOriented(1.0, 3.0, 3.0, 3.5, 6.0, 0.2, d_c=0.1, f_c=0.8, lambda_s=40, d_u=20),
-    Pinching(1.0, 3.0, 3.0, 3.5, 6.0, kappa_f=0.3, kappa_d=0.4, lambda_a=50),
-    ConcreteSpring(3.0, 2.0, 1.5, 0.3, contact=0.3, misfit=0.2, wear=0.05),
-    SteelSpring(3.0, 2.0, 0.1, isotropic_hardening=0.01, f_u=2.6, plateau=2.0, endurance=90),
-    Layered([(-1.0, SteelSpring(3.0, 2.0, 0.1)), (1.0, Elastic(2.0))]),
-]
-
-
-def kind(spring: rbsdem.springs.Spring) -> str:
-    return type(spring).__name__
-
-
-def test_every_rule_is_among_the_springs_here():
-    assert {spring.rule for spring in SPRINGS} == set(rbsdem.springs.SPRINGS)
-
-
-@pytest.mark.parametrize("spring", SPRINGS, ids=kind)
-def test_two_half_springs_in_series_are_the_spring(spring):
-    path = np.random.default_rng(1).uniform(-4.0, 4.0, 300)
-    half = spring.split(2)
-    np.testing.assert_allclose(half.response(path / 2), spring.response(path), atol=1e-9)
-    assert spring.split(1) == spring
-    for n in (0, 1.5):
-        with pytest.raises(rbsdem.InputError, match="split: n"):
-            spring.split(n)
-
-
-# Springs of unit size, which no column of metres and newtons has.
-@pytest.mark.filterwarnings("ignore:column. flexure does not yield")
-@pytest.mark.parametrize("spring", SPRINGS, ids=kind)
-def test_every_rule_can_be_traded(spring):
-    place = "axial_spring" if spring.rule == "compression" else "flexure"
-    if spring.rule == "concrete":
-        # Concrete stands in axial springs and layers only.
-        spring, place = Layered([(-1.0, spring), (1.0, Elastic(2.0))]), "flexure"
-    springs = {"shear": Elastic(9.0), "flexure": Elastic(9.0), place: spring}
-    column = rbsdem.Column(1.0, 1.0, **springs, axial_load=0.1, kinematics="pdelta")
-    path = 0.5 * rbsdem.protocol([1.0, 2.0], cycles=1)
-    found = compare_methods(column, displacement=path, repeats=1, budget=20.0)
-    effect = next(effect for effect in found.physics.effects if effect.part == "2 bodies")
-    assert effect.status == "completed", effect.reason
-    assert math.isfinite(effect.largest)
 
 
 # ---- faults --------------------------------------------------------------------------------------
@@ -662,15 +580,6 @@ def test_command_writes_its_files(tmp_path):
     assert float(rows[0]["dt_s"]) == 0.0025
 
 
-def test_command_is_quiet(tmp_path):
-    case = tmp_path / "case.nml"
-    column = CASE.split("&loading", maxsplit=1)[0]
-    case.write_text(column + "&loading drive = 'displacement', amplitudes = 0.01 /\n", "utf-8")
-    done = command(case, "--quiet", "--output", tmp_path / "out")
-    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
-    assert {"trade.csv", "physics.csv"} <= {path.name for path in (tmp_path / "out").iterdir()}
-
-
 @pytest.mark.parametrize(
     ("arguments", "words", "code"),
     [
@@ -696,10 +605,3 @@ def test_command_faults(arguments, words, code, tmp_path, capsys, monkeypatch):
         assert words in printed.err
     else:
         assert "--tolerance X" in printed.out
-
-
-def test_a_setting_in_words():
-    assert str(Setting("rk4", "small", dt=1e-4, events="located")) == (
-        "rk4, located, dt = 0.0001 s, small"
-    )
-    assert str(Setting("rk45", "finite", tolerance=1e-6)) == "rk45, tolerance = 1e-06, finite"
