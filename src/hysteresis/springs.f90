@@ -2,7 +2,7 @@
 !> mark to return to.
 module rbs_hysteresis_springs
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-   use rbs_base_constants, only: unbounded
+   use rbs_base_constants, only: unbounded, out_of_bounds
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_hysteresis_journal, only: journal_type
@@ -467,7 +467,7 @@ contains
                        self%first, self%last)
    end subroutine move_all
 
-   !> Whether all springs can go to new deformations on their present lines.
+   !> Whether all springs can go to new deformations on their present lines, within the bounds of all meaning.
    pure logical function stay_on_lines(self, d)
       class(spring_array), intent(in) :: self
       !> New deformations (count) [m or rad]
@@ -499,7 +499,8 @@ contains
 
       outside = 0
       do i = 1, n
-         outside = outside + merge(1, 0, d(i) > last(i) .or. d(i) < first(i))
+         outside = outside + merge(1, 0, d(i) > last(i) .or. d(i) < first(i) .or. &
+                                   .not. abs(d(i)) < out_of_bounds)
       end do
       are_within = outside == 0
    end function are_within

@@ -36,9 +36,9 @@ module rbs_structure_structure
    end type load_pattern
 
    !> Unknowns of one kind and the springs whose forces are of that kind: forces, moments, vertical forces.
-   !> Both are slices of their arrays.
+   !> Both are slices of their arrays; that of the unknowns is told by first, count and step.
    type :: unknown_group
-      integer :: first = 1, last = 0, step = 1
+      integer :: first = 1, count = 0, step = 1
       integer :: first_spring = 1, last_spring = 0
       !> Largest force of the group per lateral force
       real(wp) :: lateral_arm = 0.0_wp
@@ -119,7 +119,7 @@ module rbs_structure_structure
       procedure(fill_values), deferred :: fill_row
       ! What follows from these where rotations are small
       procedure :: accelerations => accelerate_unknowns
-      procedure :: speeds
+      procedure :: speed
       procedure :: power_of_loads
       procedure :: kinetic_energy
       procedure :: largest_turn
@@ -145,7 +145,7 @@ module rbs_structure_structure
    type :: motion_result
       !> Accelerations of the springs (springs) [m/s2, rad/s2]
       real(wp), allocatable :: a(:)
-      !> Rates of the `speeds` of a structure, mass damping left out; where rotations are small
+      !> Rates of the `speed` of both signals, mass damping left out; where rotations are small
       real(wp) :: of_speeds(2) = 0.0_wp
       !> Power of the loads [W], where it is found on the way
       real(wp) :: power = 0.0_wp
@@ -318,18 +318,19 @@ contains
       if (self%mass_damping > 0.0_wp) result%a = result%a - self%mass_damping*v
    end subroutine accelerate_unknowns
 
-   !> What the lateral force and the acceleration of the ground do work on, per unit of time: velocity of the
+   !> What the lateral force or the acceleration of the ground does work on, per unit of time: velocity of the
    !> top along x [m/s], momentum along x relative to the ground with its sign turned [kg m/s].
-   pure subroutine speeds(self, d, v, speed)
+   pure real(wp) function speed(self, signal, d, v)
       class(structure_type), intent(in) :: self
+      !> `lateral` or `horizontal`
+      integer, intent(in) :: signal
       !> Deformations of the springs and their velocities (springs)
       real(wp), intent(in), contiguous :: d(:), v(:)
-      real(wp), intent(out) :: speed(2)
       real(wp) :: x(self%unknowns)
 
       call self%unknown_rates(v(:size(d)), x)
-      speed = [self%work_of(lateral, x), self%work_of(horizontal, x)]
-   end subroutine speeds
+      speed = self%work_of(signal, x)
+   end function speed
 
    !> Power of the loads, constant ones left out [W].
    pure real(wp) function power_of_loads(self, d, v, load) result(watt)

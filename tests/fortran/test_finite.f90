@@ -7,7 +7,7 @@ module test_finite
    use rbs_structure_column_column, only: column_type
    use rbs_structure_column_finite, only: finite_chain_type
    use rbs_structure_column_column_record, only: column_record
-   use rbs_structure_structure, only: motion_result
+   use rbs_structure_structure, only: motion_result, lateral
    use exact, only: point, variant, state, sample, variant_of, random_state, place, dense_mass, &
                     dense_acceleration
    use samples, only: elastic, made, random_type
@@ -180,7 +180,7 @@ contains
       type(column_record) :: spec
       class(column_type), allocatable :: column
       type(state) :: now
-      real(wp) :: x(-1:1), speed(2)
+      real(wp) :: x(-1:1)
       integer :: i, k
 
       do i = 1, 2
@@ -206,8 +206,8 @@ contains
          do k = -1, 1
             x(k) = column%top_displacement(now%q + k*h*now%v + 0.5_wp*(k*h)**2*now%f)
          end do
-         call column%speeds(now%q, now%v, speed)
-         call check_close(error, speed(1), (x(1) - x(-1))/(2.0_wp*h), 1.0e-6_wp, 1.0e-6_wp, 'velocity')
+         call check_close(error, column%speed(lateral, now%q, now%v), (x(1) - x(-1))/(2.0_wp*h), 1.0e-6_wp, &
+                          1.0e-6_wp, 'velocity')
          call check_close(error, column%top_acceleration(now%q, now%v, now%f), &
                           (x(1) - 2.0_wp*x(0) + x(-1))/h**2, 1.0e-5_wp, 1.0e-6_wp, 'acceleration')
       end do

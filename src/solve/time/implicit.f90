@@ -5,6 +5,7 @@
 !> method goes back and forth between two branches, the solution goes from end to end instead. A step that
 !> does not converge is taken back to the stored state and cut in two.
 module rbs_solve_time_implicit
+   use rbs_base_arrays, only: swap
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
@@ -369,8 +370,8 @@ contains
          end if
       end associate
       call state%springs%carry_to(self%step%q1)
-      state%q(:) = self%step%q1
-      state%v(:) = self%step%w1
+      call swap(state%q, self%step%q1)
+      call swap(state%v, self%step%w1)
       state%time = state%time + h
       state%load = load
       call self%step%go_on()

@@ -6,6 +6,7 @@
 !>
 !> with G the forces on the unknowns (J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993)).
 module rbs_solve_time_implicit_balance
+   use rbs_base_arrays, only: swap
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_solve_time_state, only: state_type
@@ -51,6 +52,7 @@ contains
    subroutine start(self, state)
       class(step_balance), intent(inout) :: self
       type(state_type), intent(in) :: state
+      real(wp) :: relative
       integer :: m, springs, unstable
 
       associate (structure => state%motion%structure)
@@ -67,7 +69,7 @@ contains
          call find_forces(state, state%q, state%v, self%v0, state%load, self%now, self%g0)
          self%a0 = 0.0_wp
          where (structure%inertias > 0.0_wp) self%a0 = self%g0/structure%inertias
-         call find_scale(structure, self%a0, self%now%f, state%load, self%largest)
+         call measure(structure, self%a0, self%now%f, self%r, state%load, self%scale, self%largest, relative)
       end associate
    end subroutine start
 
@@ -76,9 +78,9 @@ contains
       class(step_balance), intent(inout) :: self
 
       self%largest(:) = max(self%largest, self%scale)
-      self%v0(:) = self%v1
-      self%a0(:) = self%a1
-      self%g0(:) = self%g1
+      call swap(self%v0, self%v1)
+      call swap(self%a0, self%a1)
+      call swap(self%g0, self%g1)
    end subroutine go_on
 
    !> Save or restore what the bodies do at the start of a step.
@@ -108,8 +110,7 @@ contains
          call find_forces(state, self%q1, self%w1, self%v1, load, self%now, self%g1)
          call balance(m, self%alpha_m, self%alpha_f, structure%inertias, self%a0, self%a1, self%g0, self%g1, &
                       self%r)
-         call find_scale(structure, self%a1, self%now%f, load, self%scale)
-         relative = size_of(structure, m, self%r, self%scale, self%largest)
+         call measure(structure, self%a1, self%now%f, self%r, load, self%largest, self%scale, relative)
          if (size(self%now%correction) > 0) then
             relative = max(relative, maxval(abs(structure%initial_stiffness*self%now%correction)) &
                            /max(maxval(self%scale), maxval(self%largest), tiny(1.0_wp)))
@@ -127,8 +128,7 @@ contains
       real(wp), intent(out), contiguous :: g(:)
 
       associate (motion => state%motion, structure => state%motion%structure)
-         call motion%forces_on_bodies(state%springs, q, w, load, now)
-         g = now%force
+         call motion%forces_on_bodies(state%springs, q, w, load, now, g)
          call structure%add_ground(load, g)
          if (structure%stiffness_damping > 0.0_wp) call structure%damp(v, now%tangent, g)
          if (structure%mass_damping > 0.0_wp) g = g - structure%mass_damping*structure%inertias*v
@@ -154,63 +154,50 @@ contains
       r = (1.0_wp - alpha_f)*g1 + alpha_f*g0 - mass*((1.0_wp - alpha_m)*a1 + alpha_m*a0)
    end subroutine balance
 
-   !> Largest force of each group at a state: of springs, of inertia and of the loads.
-   pure subroutine find_scale(structure, a, f, load, scale)
+   !> Largest force of each group at a state: of springs, of inertia and of the loads; and the largest residual
+   !> over the largest force of its group, at the most 1.
+   pure subroutine measure(structure, a, f, r, load, largest, scale, relative)
       class(structure_type), intent(in) :: structure
-      !> Accelerations (unknowns), forces of springs (springs), loads
-      real(wp), intent(in), contiguous :: a(:), f(:)
+      !> Accelerations (unknowns), forces of springs (springs), residual (unknowns), loads
+      real(wp), intent(in), contiguous :: a(:), f(:), r(:)
       real(wp), intent(in) :: load(signals)
+      !> Largest forces so far, and at this state (groups)
+      real(wp), intent(in), contiguous :: largest(:)
       real(wp), intent(out), contiguous :: scale(:)
-      integer :: j
-
-      do j = 1, size(scale)
-         associate (group => structure%group(j))
-            scale(j) = abs(load(lateral))*group%lateral_arm
-            call find_largest_force(group, size(a), size(f), structure%inertias, a, f, scale(j))
-         end associate
-      end do
-   end subroutine find_scale
-
-   pure subroutine find_largest_force(group, unknowns, springs, inertias, a, f, largest)
-      type(unknown_group), intent(in) :: group
-      integer, intent(in) :: unknowns, springs
-      real(wp), intent(in) :: inertias(unknowns), a(unknowns), f(springs)
-      real(wp), intent(inout) :: largest
-      real(wp) :: most, one
-      integer :: i
-
-      most = largest
-      do i = group%first_spring, group%last_spring
-         one = abs(f(i))
-         if (one > most) most = one
-      end do
-      do i = group%first, group%last, group%step
-         one = abs(inertias(i)*a(i))
-         if (one > most) most = one
-      end do
-      largest = most
-   end subroutine find_largest_force
-
-   !> Largest residual over the largest force of its group, at the most 1.
-   pure real(wp) function size_of(structure, m, r, scale, largest) result(relative)
-      class(structure_type), intent(in) :: structure
-      integer, intent(in) :: m
-      real(wp), intent(in) :: r(m)
-      real(wp), intent(in), contiguous :: scale(:), largest(:)
+      real(wp), intent(out) :: relative
       real(wp) :: rest
-      integer :: i, j
+      integer :: j
 
       relative = 0.0_wp
       do j = 1, size(scale)
-         rest = 0.0_wp
-         associate (group => structure%group(j))
-            do i = group%first, group%last, group%step
-               if (abs(r(i)) > rest) rest = abs(r(i))
-            end do
-         end associate
+         call measure_group(structure%group(j), size(a), size(f), structure%inertias, a, f, r, &
+                            abs(load(lateral)), scale(j), rest)
          relative = max(relative, rest/max(scale(j), largest(j), rest, tiny(1.0_wp)))
       end do
-   end function size_of
+   end subroutine measure
+
+   pure subroutine measure_group(group, unknowns, springs, inertias, a, f, r, load, scale, rest)
+      type(unknown_group), intent(in) :: group
+      integer, intent(in) :: unknowns, springs
+      real(wp), intent(in) :: inertias(unknowns), a(unknowns), f(springs), r(unknowns), load
+      real(wp), intent(out) :: scale, rest
+      real(wp) :: most, left
+      integer :: i, k
+
+      most = load*group%lateral_arm
+      left = 0.0_wp
+      do i = group%first_spring, group%last_spring
+         most = max(most, abs(f(i)))
+      end do
+      i = group%first
+      do k = 1, group%count
+         most = max(most, abs(inertias(i)*a(i)))
+         left = max(left, abs(r(i)))
+         i = i + group%step
+      end do
+      scale = most
+      rest = left
+   end subroutine measure_group
 
    !> Whether the residual is what round-off leaves of the terms of the step. Modes that the step does not
    !> resolve have accelerations far beyond what comes of them: after a shock h^2 a0 is many turns.
@@ -221,17 +208,19 @@ contains
       !> Diagonal of the tangent (unknowns)
       real(wp), intent(in), contiguous :: stiffness(:)
       real(wp) :: reach(maxval(structure%part)), way
-      integer :: i, j
+      integer :: i, j, k
 
       ! An unknown is coupled with the others of its part: |k_ij| is at most the root of k_ii k_jj.
       reach = 0.0_wp
       do j = 1, size(structure%group)
          associate (group => structure%group(j))
             way = 0.0_wp
-            do i = group%first, group%last, group%step
+            do k = 0, group%count - 1
+               i = group%first + k*group%step
                way = max(way, abs(self%moved(i)) + h*abs(self%v0(i)) + h**2*abs(self%a0(i)))
             end do
-            do i = group%first, group%last, group%step
+            do k = 0, group%count - 1
+               i = group%first + k*group%step
                associate (at => reach(structure%part(i)))
                   at = at + sqrt(max(stiffness(i), 0.0_wp))*way
                end associate

@@ -274,12 +274,12 @@ contains
       real(wp), intent(out) :: relative
 
       if (self%average) then
-         self%v1 = (2.0_wp/h)*self%moved - self%v0
-         self%a1 = (2.0_wp/h**2)*(self%moved - h*self%v0)
+         call end_of_step(size(self%moved), h, self%moved, self%v0, self%v1, self%a1)
          self%seen = self%turned
          call find_mean_forces(self, state, h, there)
          call find_balance(self, 0.5_wp*(state%load + load), self%g1)
-         self%r = self%g1(:, 1:) - self%mass*(self%a1(:, 1:) + (self%column%mass_damping/h)*self%moved(:, 1:))
+         call balance(size(self%r), self%column%mass_damping/h, self%mass, self%moved(:, 1:), self%a1(:, 1:), &
+                      self%g1(:, 1:), self%r)
       else
          self%a1 = (self%moved - h*self%v0 - (h**2*(0.5_wp - self%beta))*self%a0)/(self%beta*h**2)
          self%v1 = self%v0 + h*((1.0_wp - self%gamma)*self%a0 + self%gamma*self%a1)
@@ -294,6 +294,23 @@ contains
                      maxval(abs(self%r(3, :)))/max(self%scale(2), self%largest(2), tiny(1.0_wp)))
       if (.not. self%column%opens) relative = max(relative, maxval(abs(self%gap))/maxval(self%column%length))
    end subroutine find_residual
+
+   pure subroutine end_of_step(m, h, moved, v0, v1, a1)
+      integer, intent(in) :: m
+      real(wp), intent(in) :: h, moved(m), v0(m)
+      real(wp), intent(out) :: v1(m), a1(m)
+
+      v1 = (2.0_wp/h)*moved - v0
+      a1 = (2.0_wp/h**2)*(moved - h*v0)
+   end subroutine end_of_step
+
+   pure subroutine balance(m, damping, mass, moved, a1, g1, r)
+      integer, intent(in) :: m
+      real(wp), intent(in) :: damping, mass(m), moved(m), a1(m), g1(m)
+      real(wp), intent(out) :: r(m)
+
+      r = g1 - mass*(a1 + damping*moved)
+   end subroutine balance
 
    !> Bodies and joints at the end of the step, and the velocities of the joints.
    subroutine see_end(self)

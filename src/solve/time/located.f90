@@ -33,10 +33,8 @@ module rbs_solve_time_located
       real(wp), private :: largest = 0.0_wp
       !> The equation of motion where springs stand still, and where one turns back
       type(motion_result), private :: now
-      !> Slopes of the loads in the present part of a step; deformations and velocities at its start
-      !> (unknowns)
+      !> Slopes of the loads in the present part of a step
       real(wp), private :: slope(4) = 0.0_wp
-      real(wp), allocatable, private :: q_start(:), v_start(:)
       !> Deformations that are zero (springs)
       real(wp), allocatable, private :: at_rest(:)
    contains
@@ -59,7 +57,6 @@ contains
       if (allocated(error)) return
       if (.not. allocated(self%now%a)) then
          call self%now%create(state%motion%structure)
-         allocate (self%q_start(size(state%q)), self%v_start(size(state%v)))
          allocate (self%at_rest(size(state%q)), source=0.0_wp)
       end if
       finish = state%time + h
@@ -178,8 +175,6 @@ contains
       real(wp), intent(in) :: h, wrong
       integer :: i
 
-      self%q_start(:) = state%q
-      self%v_start(:) = state%v
       call self%scheme%accept(state, h)
       state%lost = .not. in_bounds(size(state%q), state%q)
       if (state%lost) return
@@ -194,7 +189,7 @@ contains
             state%q(i) = state%springs%end_toward(i, event%way)
          end if
       end if
-      call state%sight%see_within(state%motion, state%springs, self%q_start, self%v_start, state%q, &
+      call state%sight%see_within(state%motion, state%springs, self%scheme%q, self%scheme%v, state%q, &
                                   state%v, h, state%begin + state%time)
       if (state%springs%pressed) call carry_planes(self, state, event, h)
       associate (springs => state%springs)
@@ -234,7 +229,7 @@ contains
             centre = springs%centre(i)
             call put_on_plane(springs, i, state%q(i), springs%press_to(i), state%v(i), press, layer)
             springs%work(i) = springs%work(i) + 0.5_wp*(before + springs%force(i))*turned &
-                              + centre*press*h**2/12.0_wp*(self%v_start(i) - state%v(i))
+                              + centre*press*h**2/12.0_wp*(self%scheme%v(i) - state%v(i))
          end do
          if (event%layer > 0 .and. event%turns) call turn_layer(springs, event%spring, event%layer, event%way)
       end associate

@@ -86,25 +86,35 @@ contains
 
       call on_lines(springs%count, springs%d0, springs%f0, springs%k, q, result%f)
       m = 0
-      if (.not. self%plain .or. self%second_order) call find_others(self, springs, v, load, result, m)
+      if (self%damped .or. self%second_order .or. springs%pressed) then
+         call find_others(self, springs, v, load, result, m)
+      end if
       call self%structure%accelerations(q, v, load, m, result)
    end subroutine acceleration
 
-   !> Forces of the springs and on the unknowns with small rotations: all of the result but the accelerations.
-   subroutine forces_on_bodies(self, springs, q, v, load, result)
+   !> Forces on the unknowns with small rotations; all of the result but the accelerations.
+   subroutine forces_on_bodies(self, springs, q, v, load, result, g)
       class(motion_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in) :: q(springs%count), v(springs%count)
       !> Loads at the time
       real(wp), intent(in) :: load(signals)
       type(motion_result), intent(inout) :: result
+      !> Without the inertia of the moving ground and without mass damping (unknowns)
+      real(wp), intent(out), contiguous :: g(:)
       integer :: m
 
       call on_lines(springs%count, springs%d0, springs%f0, springs%k, q, result%f)
       m = 0
-      if (.not. self%plain .or. self%second_order) call find_others(self, springs, v, load, result, m)
-      call self%structure%forces_on_lines(q, load, result%axial(:m), result%tangent, result%f, result%force, &
-                                          result%correction)
+      if (self%damped .or. self%second_order .or. springs%pressed) then
+         call find_others(self, springs, v, load, result, m)
+      end if
+      if (self%structure%tangent_numbers == 0) then
+         call self%structure%forces(q, load, result%axial(:m), result%f, g)
+      else
+         call self%structure%forces_on_lines(q, load, result%axial(:m), result%tangent, result%f, g, &
+                                             result%correction)
+      end if
    end subroutine forces_on_bodies
 
    !> What else acts besides the forces of the springs on their lines.
@@ -238,7 +248,7 @@ contains
       class(motion_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in) :: q(springs%count), v(springs%count)
-      real(wp) :: speed(2), of_spring
+      real(wp) :: of_spring
       integer :: i, j
 
       force = 0.0_wp
@@ -261,8 +271,7 @@ contains
             force = structure%base_force(q, springs%f0 + springs%k*(q - springs%d0))
          end if
          if (structure%mass_damping > 0.0_wp) then
-            call structure%speeds(q, v, speed)
-            force = force - structure%mass_damping*speed(horizontal)
+            force = force - structure%mass_damping*structure%speed(horizontal, q, v)
          end if
       end associate
    end function base_shear

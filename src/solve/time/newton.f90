@@ -165,12 +165,15 @@ contains
       !> Whether the deformations are within bounds
       logical, intent(out) :: inside
 
+      inside = .true.
+      if (.not. marked) then
+         if (state%springs%stay_on_lines(q)) return
+      end if
       inside = in_bounds(size(q), q)
       if (.not. inside) return
       if (marked) then
          call state%springs%restore()
       else
-         if (state%springs%stay_on_lines(q)) return
          call state%springs%mark()
          marked = .true.
       end if

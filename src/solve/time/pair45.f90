@@ -93,17 +93,29 @@ contains
       type(state_type), intent(inout) :: state
       integer, intent(in) :: stage
       real(wp), intent(in) :: h, load(4)
-      integer :: i
 
-      self%q = state%q
-      self%v = state%v
-      do i = 1, stage - 1
-         self%q = self%q + (h*row(i, stage))*self%rate_q(:, i)
-         self%v = self%v + (h*row(i, stage))*self%rate_v(:, i)
-      end do
+      call add_rates(size(self%q), stage - 1, h*row(:, stage), state%q, self%rate_q, self%q)
+      call add_rates(size(self%v), stage - 1, h*row(:, stage), state%v, self%rate_v, self%v)
       self%rate_q(:, stage) = self%v
       call state%motion%acceleration(state%springs, self%q, self%v, load, self%now)
       self%rate_v(:, stage) = self%now%a
    end subroutine reach_stage
+
+   !> Go from x0 at the rates of some stages.
+   pure subroutine add_rates(m, n, share, x0, rate, x)
+      integer, intent(in) :: m, n
+      real(wp), intent(in) :: share(stages - 1), x0(m), rate(m, stages)
+      real(wp), intent(out) :: x(m)
+      real(wp) :: sum
+      integer :: i, j
+
+      do i = 1, m
+         sum = x0(i)
+         do j = 1, n
+            sum = sum + share(j)*rate(i, j)
+         end do
+         x(i) = sum
+      end do
+   end subroutine add_rates
 
 end module rbs_solve_time_pair45

@@ -86,14 +86,16 @@ contains
       !> Loads at start, middle and end
       real(wp), intent(in) :: load(4, 3)
       real(wp) :: start(2), speed(2)
-      integer :: stage, m
+      integer :: stage, i, m
 
       m = size(state%q)
       self%of_loads = 0.0_wp
       self%of_damping = 0.0_wp
       associate (motion => state%motion, result => self%now)
          start = 0.0_wp
-         if (motion%plain) call motion%structure%speeds(state%q, state%v, start)
+         do i = lateral, horizontal
+            if (motion%plain .and. motion%acts(i)) start(i) = motion%structure%speed(i, state%q, state%v)
+         end do
          speed = start
          call begin_step(m, state%q, state%v, self%stage_q, self%stage_v, self%q, self%v)
          do stage = 1, 4
@@ -202,8 +204,12 @@ contains
       end if
       call self%scheme%attempt(state, h)
       call self%scheme%accept(state, h)
-      state%lost = .not. in_bounds(size(state%q), state%q)
-      if (.not. state%lost) call state%springs%move_all(state%q)
+      if (state%springs%stay_on_lines(state%q)) then
+         call state%springs%carry_to(state%q)
+      else
+         state%lost = .not. in_bounds(size(state%q), state%q)
+         if (.not. state%lost) call state%springs%move_all(state%q)
+      end if
    end subroutine advance
 
 end module rbs_solve_time_rk4

@@ -1,5 +1,6 @@
 !> What an explicit scheme is: one step from a state, tried without moving it.
 module rbs_solve_time_scheme
+   use rbs_base_arrays, only: swap
    use rbs_base_kinds, only: wp
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_state, only: state_type
@@ -52,14 +53,15 @@ module rbs_solve_time_scheme
 
 contains
 
-   !> Take the last attempt, of length h, as the state; its springs do not follow yet.
+   !> Take the last attempt, of length h, as the state; its springs do not follow yet. The state before takes
+   !> its place.
    subroutine accept(self, state, h)
       class(scheme_type), intent(inout) :: self
       type(state_type), intent(inout) :: state
       real(wp), intent(in) :: h
 
-      state%q(:) = self%q
-      state%v(:) = self%v
+      call swap(state%q, self%q)
+      call swap(state%v, self%v)
       state%time = state%time + h
       state%load = self%load
       call state%motion%press(state%springs, self%load)

@@ -258,16 +258,14 @@ contains
       real(wp), intent(in), contiguous :: q0(:), v0(:), q1(:), v1(:)
       !> How far a cubic goes beyond its ends, for the sum of both velocities there [s]
       real(wp), intent(in) :: reach
-      real(wp) :: speed(2), at_end(2), shear(2), more
+      real(wp) :: shear(2), more
       integer :: i, j
 
       grow = .true.
       associate (structure => motion%structure)
          if (structure%kinematics == finite .or. motion%damped) return
-         call structure%speeds(q0, v0, speed)
-         call structure%speeds(q1, v1, at_end)
-         if (goes_beyond(displacement(1), displacement(2), reach*(abs(speed(1)) + abs(at_end(1))), &
-                         self%peak_displacement)) return
+         more = reach*(abs(structure%speed(lateral, q0, v0)) + abs(structure%speed(lateral, q1, v1)))
+         if (goes_beyond(displacement(1), displacement(2), more, self%peak_displacement)) return
          shear = 0.0_wp
          more = 0.0_wp
          do j = 1, size(structure%base_spring)

@@ -95,7 +95,7 @@ module rbs_structure_column_column
       procedure :: add_stiffness
       procedure :: add_geometric
       procedure :: accelerations
-      procedure :: speeds
+      procedure :: speed
       procedure :: power_of_loads
       procedure :: kinetic_energy
       procedure :: potential_energy
@@ -296,24 +296,29 @@ contains
       end do
    end subroutine chain_accelerations
 
-   pure subroutine speeds(self, d, v, speed)
+   pure real(wp) function speed(self, signal, d, v)
       class(column_type), intent(in) :: self
+      integer, intent(in) :: signal
       real(wp), intent(in), contiguous :: d(:), v(:)
-      real(wp), intent(out) :: speed(2)
 
-      speed(lateral) = inner_product(size(d), self%arm, v)
-      speed(horizontal) = -inner_product(size(d), self%ground_arm, v)
-   end subroutine speeds
+      if (signal == lateral) then
+         speed = inner_product(size(d), self%arm, v)
+      else
+         speed = -inner_product(size(d), self%ground_arm, v)
+      end if
+   end function speed
 
    !> Power of lateral force and moving ground, and of what is added to the axial load [W].
    pure real(wp) function power_of_loads(self, d, v, load) result(watt)
       class(column_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:), v(:), load(:)
-      real(wp) :: rotation, turning, rising, body, joint, lifts, speed(2)
+      real(wp) :: rotation, turning, rising, body, joint, lifts
       integer :: i, n
 
-      call self%speeds(d, v, speed)
-      watt = speed(lateral)*load(lateral) + speed(horizontal)*load(horizontal)
+      watt = 0.0_wp
+      do i = lateral, horizontal
+         if (abs(load(i)) > 0.0_wp) watt = watt + self%speed(i, d, v)*load(i)
+      end do
       if (.not. (abs(load(vertical)) > 0.0_wp .or. abs(load(top_axial)) > 0.0_wp)) return
       lifts = 0.0_wp
       n = self%n
@@ -541,7 +546,6 @@ contains
       type(spring_array), intent(in) :: springs
       real(wp), intent(in), contiguous :: d(:)
       real(wp), intent(out), contiguous :: row(:)
-      real(wp) :: speed(2)
       integer :: at, i, m, n
 
       m = size(d)
@@ -551,7 +555,6 @@ contains
       row(m + 2:2*m + 1) = springs%f0 + springs%k*(d - springs%d0)
       at = 2*m + 1
       if (contents%in_time) then
-         call self%speeds(d, response%v, speed)
          if (self%damped) then
             row(at + 1) = response%base_shear
             row(at + 2) = response%f(n + 1)
@@ -561,8 +564,8 @@ contains
             at = at + 2
          end if
          if (contents%motion) then
-            row(at + 1:at + 3) = [speed(lateral), self%top_acceleration(d, response%v, response%a), &
-                                  response%ground]
+            row(at + 1:at + 3) = [self%speed(lateral, d, response%v), &
+                                  self%top_acceleration(d, response%v, response%a), response%ground]
             at = at + 3
          end if
       end if

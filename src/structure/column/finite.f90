@@ -39,7 +39,7 @@ module rbs_structure_column_finite
       procedure :: accelerate
       procedure :: find_top_force
       procedure :: body_velocities
-      procedure :: speeds
+      procedure :: speed
       procedure :: power_of_loads
       procedure :: kinetic_energy
       procedure :: potential_energy
@@ -375,18 +375,24 @@ contains
       real(wp), intent(in) :: q(column%n, column%kinds)
       integer, intent(in) :: i
       type(moving_body), intent(inout) :: body
+      real(wp) :: rotation, s, c
 
       if (column%held .and. i == column%n) then
          body%s = 0.0_wp
          body%c = 1.0_wp
-      else
-         body%rotation = body%rotation + q(i, flexure)
+         body%s_below = 0.0_wp
+         body%c_below = 1.0_wp
+         return
       end if
       body%s_below = body%s
       body%c_below = body%c
-      if (column%held .and. i == column%n) return
-      body%s = sin(body%rotation)
-      body%c = cos(body%rotation)
+      rotation = body%rotation + q(i, flexure)
+      ! Side by side, so that they are found together.
+      s = sin(rotation)
+      c = cos(rotation)
+      body%rotation = rotation
+      body%s = s
+      body%c = c
    end subroutine turn
 
    !> Place of body i, whose rotation is known, from that of body i - 1: its bottom, and its top.
@@ -472,26 +478,27 @@ contains
       end do
    end subroutine body_velocities
 
-   pure subroutine speeds(self, d, v, speed)
+   pure real(wp) function speed(self, signal, d, v)
       class(finite_chain_type), intent(in) :: self
+      integer, intent(in) :: signal
       real(wp), intent(in), contiguous :: d(:), v(:)
-      real(wp), intent(out) :: speed(2)
       type(moving_body) :: body
       integer :: i
 
       if (size(d) == 2) then
          associate (turning => cos(d(2))*v(2))
-            speed = [v(1) + self%length(1)*turning, -(self%mass(1)*v(1) + self%moment_above(1)*turning)]
+            speed = v(1) + self%length(1)*turning
+            if (signal == horizontal) speed = -(self%mass(1)*v(1) + self%moment_above(1)*turning)
          end associate
          return
       end if
-      speed(horizontal) = 0.0_wp
+      speed = 0.0_wp
       do i = 1, self%n
          call climb(self, d, v, i, body)
-         speed(horizontal) = speed(horizontal) - self%mass(i)*body%centroid(1)
+         speed = speed - self%mass(i)*body%centroid(1)
       end do
-      speed(lateral) = body%top(1)
-   end subroutine speeds
+      if (signal == lateral) speed = body%top(1)
+   end function speed
 
    !> Power of the loads that are in no potential: lateral force, ground, additional axial load, and the
    !> column's axial load if it follows the top [W].

@@ -226,9 +226,9 @@ contains
       column%base_spring = [column%at(shear, 1)]
       column%base_factor = [1.0_wp]
       allocate (column%group(merge(3, 2, column%opens)))
-      column%group(1) = unknown_group(1, 2*n, 2, 1, n, 1.0_wp)
-      column%group(2) = unknown_group(2, 2*n, 2, n + 1, 2*n, column%upper(n))
-      if (column%opens) column%group(3) = unknown_group(2*n + 1, 3*n, 1, 2*n + 1, 3*n)
+      column%group(1) = unknown_group(1, n, 2, 1, n, 1.0_wp)
+      column%group(2) = unknown_group(2, n, 2, n + 1, 2*n, column%upper(n))
+      if (column%opens) column%group(3) = unknown_group(2*n + 1, n, 1, 2*n + 1, 3*n)
       do i = 1, size(column%pattern)
          allocate (column%pattern(i)%force(m), source=0.0_wp)
       end do
