@@ -278,8 +278,8 @@ contains
          self%seen = self%turned
          call find_mean_forces(self, state, h, there)
          call find_balance(self, 0.5_wp*(state%load + load), self%g1)
-         call balance(size(self%r), self%column%mass_damping/h, self%mass, self%moved(:, 1:), self%a1(:, 1:), &
-                      self%g1(:, 1:), self%r)
+         call balance(size(self%r), self%column%mass_damping/h, self%mass, self%moved(:, 1:), &
+                      self%a1(:, 1:), self%g1(:, 1:), self%r)
       else
          self%a1 = (self%moved - h*self%v0 - (h**2*(0.5_wp - self%beta))*self%a0)/(self%beta*h**2)
          self%v1 = self%v0 + h*((1.0_wp - self%gamma)*self%a0 + self%gamma*self%a1)
