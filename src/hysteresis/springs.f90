@@ -581,9 +581,9 @@ contains
       !> Deformations of the first springs, rates of these and more; in units of the rates
       real(wp), intent(in), contiguous :: q(:), rate(:)
       real(wp), intent(in) :: way
-      !> Springs that come closer than this to an end of their line, in shares of the end, are near it
+      !> Springs that come closer than this to the end of their line, in shares of the end, are near it
       real(wp), intent(in) :: slack
-      !> Whether any is near an end, or would unload on a reversal
+      !> Whether any is near the end that it goes to
       logical, intent(out) :: near
 
       call advance_along(size(q), q, rate, way, slack, self%d0, self%f0, self%k, self%unload_on_reversal, &
@@ -607,7 +607,8 @@ contains
          d(i) = to
          if (unload_on_reversal(i) > 0) first(i) = to
          if (unload_on_reversal(i) < 0) last(i) = to
-         near = near .or. last(i) - ahead <= slack*abs(last(i)) .or. ahead - first(i) <= slack*abs(first(i))
+         near = near .or. (rate(i) > 0.0_wp .and. last(i) - ahead <= slack*abs(last(i))) .or. &
+                (rate(i) < 0.0_wp .and. ahead - first(i) <= slack*abs(first(i)))
       end do
    end subroutine advance_along
 

@@ -145,7 +145,9 @@ contains
       integer :: i
 
       associate (n => self%n, m => self%moving)
-         self%f = springs%f0(:m) + springs%k(:m)*(springs%d(:m) - springs%d0(:m))
+         do i = 1, m
+            self%f(i) = springs%f0(i) + springs%k(i)*(springs%d(i) - springs%d0(i))
+         end do
          call find_residual(self, springs%d(:m), self%f, force, self%residual)
          shear = 0.0_wp
          moment = 0.0_wp

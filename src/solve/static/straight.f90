@@ -150,8 +150,6 @@ contains
          call springs%go_along(self%q, self%rate, abs(change), nearly, near)
          do i = 1, merge(self%moving, 0, near)
             d = self%q(i) + self%rate(i)*abs(change)
-            if (springs%last(i) - d > nearly*abs(springs%last(i)) .and. &
-                d - springs%first(i) > nearly*abs(springs%first(i))) cycle
             if (is_on_end(springs, i, d, self%rate(i))) then
                call springs%arrive(i, merge(1, -1, self%rate(i) > 0.0_wp))
                self%direction = 0

@@ -154,8 +154,8 @@ contains
       r = (1.0_wp - alpha_f)*g1 + alpha_f*g0 - mass*((1.0_wp - alpha_m)*a1 + alpha_m*a0)
    end subroutine balance
 
-   !> Largest force of each group at a state: of springs, of inertia and of the loads; and the largest residual
-   !> over the largest force of its group, at the most 1.
+   !> Largest force of each group at a state: of springs, of inertia and of the loads; and the largest
+   !> residual over the largest force of its group, at the most 1.
    pure subroutine measure(structure, a, f, r, load, largest, scale, relative)
       class(structure_type), intent(in) :: structure
       !> Accelerations (unknowns), forces of springs (springs), residual (unknowns), loads
