@@ -28,6 +28,7 @@ build_with_checks() {
 say "linters"
 ruff check .
 ruff format --check -q .
+mypy >build/types.log || { cat build/types.log; exit 1; }
 lint-imports >build/imports.log || { cat build/imports.log; exit 1; }
 fortitude check -q
 check-jsonschema -q --builtin-schema vendor.github-workflows .github/workflows/*.yml

@@ -26,7 +26,7 @@ import numpy as np
 import rbsdem
 from rbsdem.methods.scene import Setting as Way
 from rbsdem.methods.scene import make_scene
-from rbsdem.results.accuracy import Answer, errors_of
+from rbsdem.results.accuracy import Answer, answer_of, errors_of
 from rbsdem.springs import Elastic, PeakOriented, Pinching
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -88,7 +88,7 @@ def answer(scene, keywords) -> tuple[Answer, rbsdem.Result, float]:
     begin = clock.perf_counter()
     run = rbsdem.time_history(scene.column, scene.time, **scene.loads, **keywords)
     seconds = clock.perf_counter() - begin
-    return scene._answer(run), run, seconds
+    return answer_of(run, scene.time), run, seconds
 
 
 def errors(kinematics: str) -> None:

@@ -20,8 +20,7 @@ import numpy as np
 
 import rbsdem
 from rbsdem import plot
-from rbsdem.methods.measure import compare_methods
-from rbsdem.methods.rows import MethodStudy, Row, seconds_text
+from rbsdem.methods.study import MethodStudy, Row, compare_methods, seconds_text
 from rbsdem.peer import shipped_reversals
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rbsdem.many.ensemble import ensemble as ensemble
     from rbsdem.many.ida import ida as ida
     from rbsdem.measured.laboratory import read_test as read_test
-    from rbsdem.methods.measure import compare_methods as compare_methods
+    from rbsdem.methods.study import compare_methods as compare_methods
     from rbsdem.model.column import Column as Column
     from rbsdem.model.damping import Damping as Damping
     from rbsdem.model.footing import Footing as Footing
@@ -59,7 +59,7 @@ _HOMES = {
     "many.ensemble": ("ensemble",),
     "many.ida": ("ida",),
     "measured.laboratory": ("read_test",),
-    "methods.measure": ("compare_methods",),
+    "methods.study": ("compare_methods",),
     "model.column": ("Column",),
     "model.damping": ("Damping",),
     "model.footing": ("Footing",),

@@ -21,8 +21,8 @@ from rbsdem import compare_methods
 from rbsdem.cli import main
 from rbsdem.methods import scene
 from rbsdem.methods.physics import split_bodies
-from rbsdem.methods.rows import MethodStudy
 from rbsdem.methods.scene import make_scene
+from rbsdem.methods.study import MethodStudy
 from rbsdem.output.methods import report
 from rbsdem.output.tables import write_csv
 from rbsdem.results.accuracy import Answer, at_times, common_interval, errors_of

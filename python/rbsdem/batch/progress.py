@@ -9,11 +9,12 @@ from contextlib import contextmanager
 
 @contextmanager
 def progress_bar(
-    wanted: bool, total: int, unit: str = "runs"
+    wanted: bool, total: int, unit: str = "runs", between: bool = False
 ) -> Iterator[Callable[[int, str], None]]:
     """Show on stderr how much is done, how much a second, the time left, and a text.
 
-    Where stderr is a pipe or a file, nothing is shown.
+    Where stderr is a pipe or a file, nothing is shown. With `between` no thread draws between two
+    calls; seconds have no rate.
 
     Yields
     ------
@@ -32,6 +33,7 @@ def progress_bar(
         progress.TextColumn("{task.description}", markup=False),
         progress.TimeRemainingColumn(),
         console=Console(stderr=True),
+        auto_refresh=not between,
         transient=True,
     )
     with bar:
@@ -39,8 +41,8 @@ def progress_bar(
 
         def show(done: int, text: str) -> None:
             speed = bar.tasks[task].speed
-            rate = "" if speed is None else f"{speed:.3g} {unit}/s"
+            rate = "" if speed is None or unit == "s" else f"{speed:.3g} {unit}/s"
             parts = [part for part in (rate, text) if part]
-            bar.update(task, completed=done, description=", ".join(parts))
+            bar.update(task, completed=done, description=", ".join(parts), refresh=between)
 
         yield show

@@ -25,8 +25,8 @@ from rbsdem.many.ida import IDA
 from rbsdem.many.ida import ida as run_ida
 from rbsdem.many.runs import NAMES
 from rbsdem.methods.ladder import OF_SETTING
-from rbsdem.methods.measure import compare_methods
 from rbsdem.methods.physics import Physics
+from rbsdem.methods.study import compare_methods
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.read import read_motion, read_motions
 from rbsdem.motions.shaping import synthetic

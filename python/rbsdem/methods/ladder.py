@@ -6,23 +6,23 @@ import dataclasses
 import math
 import time as clock
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from itertools import islice
 from typing import Any
 
 import numpy as np
 
 from rbsdem import _arguments
 from rbsdem.errors import InputError, RbsdemError
-from rbsdem.methods.answer import Run, Setting
-from rbsdem.methods.scene import Scene
-from rbsdem.model.column import Column
+from rbsdem.methods.scene import Attempt, Run, Scene, Setting
+from rbsdem.model.column import Column, Kinematics
 from rbsdem.results.accuracy import common_interval
 from rbsdem.solve.analysis import METHODS, no_watch, time_history
 from rbsdem.solve.solver import IMPLICIT, Solver
 from rbsdem.solve.solver import METHODS as FACTS
 
 #: Levels of kinematics, each with more physics than the one before.
-LEVELS = ("small", "pdelta", "finite")
+LEVELS: tuple[Kinematics, ...] = ("small", "pdelta", "finite")
 
 #: Rungs of a ladder: steps are halved, tolerances divided by ten.
 RK4_RUNGS, IMPLICIT_RUNGS, TOLERANCES = 7, 8, range(4, 11)
@@ -82,7 +82,7 @@ class Probe:
         rows = self.duration / self.interval
         if setting.method in ("auto", "rk45"):
             tolerance = setting.tolerance or 1e-6
-            shortest = PAIR_SHARE * self.limit * min((tolerance / PAIR_TOLERANCE) ** 0.2, 1.0)
+            shortest = PAIR_SHARE * self.limit * min(math.pow(tolerance / PAIR_TOLERANCE, 0.2), 1.0)
             pair = PAIR_COST * self.explicit * max(self.duration / shortest, rows)
             if setting.method == "rk45":
                 return pair
@@ -93,19 +93,22 @@ class Probe:
 
 
 def probe(scene: Scene) -> Probe:
-    """Return limit of stability and cost of a step, from short runs.
+    """Return limit of stability and cost of a step, from short runs; of a static path nothing.
 
     Raises
     ------
     InputError
         If the scene cannot be solved, as with an axial load above the critical one.
     """
+    if scene.static:
+        return Probe(0.0, 1.0, True, math.inf, 0.0, 0.0)
     time = scene.time
     interval, regular = common_interval(time)
     level = scene.column.kinematics
     first = _beginning(scene, min(1e-6 * interval, time[1] - time[0]))
     keywords = first.keywords(Setting("rk4", level), scene.column)
-    limit = _stable_step(first, keywords)
+    result = time_history(no_watch, first.column, first.time, **keywords)
+    limit = float(result.summary["stable_step"])
     steps = min(300.0, (time[-1] - time[0]) / (0.5 * limit))
     short = _beginning(scene, 0.5 * limit * max(steps, 1.0))
     explicit = _seconds(short, Setting("rk4", level, dt=0.5 * limit)) / max(steps, 1.0)
@@ -117,12 +120,6 @@ def probe(scene: Scene) -> Probe:
         implicit = math.inf
     duration = float(time[-1] - time[0])
     return Probe(duration, interval, regular, limit, explicit, implicit)
-
-
-def _stable_step(scene: Scene, keywords: dict[str, Any]) -> float:
-    return float(
-        time_history(no_watch, scene.column, scene.time, **keywords).summary["stable_step"]
-    )
 
 
 def _beginning(scene: Scene, duration: float) -> Scene:
@@ -155,50 +152,46 @@ def dividing_steps(look: Probe, longest: float) -> Iterator[float]:
         step /= 2
 
 
-def ladders(scene: Scene, look: Probe | None, methods: Sequence[str]) -> list[list[Setting]]:
+def ladders(scene: Scene, look: Probe, methods: Sequence[str]) -> list[list[Setting]]:
     """Return the settings to try, a list for each family from coarse to fine.
 
     Levels of kinematics below that of the column have a few settings each.
     """
     level = scene.column.kinematics
-    found = []
+    lower = LEVELS[: LEVELS.index(level)]
     if scene.static:
         parts = (0, 1, 2, 4, 8) if level == "finite" else (0, 1, 4)
-        found.append([Setting("static", level, parts=p) for p in parts])
-        lower = LEVELS[: LEVELS.index(level)]
-        return found + [[Setting("static", lower_level, parts=1)] for lower_level in lower]
+        own = [Setting("static", level, parts=p) for p in parts]
+        return [own, *([Setting("static", lower_level, parts=1)] for lower_level in lower)]
     found = _families(look, methods, level)
-    for lower_level in LEVELS[: LEVELS.index(level)]:
+    for lower_level in lower:
         for family in _families(look, methods, lower_level):
             if family[0].events == "located" or family[0].method in ("hht", "generalised_alpha"):
                 continue
             # Every second of the coarse rungs: the error is soon that of the kinematics.
-            stable = [s for s in family if s.method != "rk4" or s.dt <= look.limit]
+            stable = [s for s in family if s.method != "rk4" or (s.dt or 0.0) <= look.limit]
             found.append(stable[1:6:2] if family[0].tolerance else stable[:5:2])
     return found
 
 
-def _families(look: Probe, methods: Sequence[str], level: str) -> list[list[Setting]]:
+def _families(look: Probe, methods: Sequence[str], level: Kinematics) -> list[list[Setting]]:
     found = []
     if "rk4" in methods:
         for events in ("step", "located"):
-            steps = dividing_steps(look, look.limit)
-            family = [
-                Setting("rk4", level, dt=next(steps), events=events) for _ in range(RK4_RUNGS)
-            ]
-            if events == "step" and look.regular and look.interval > family[0].dt:
+            steps = list(islice(dividing_steps(look, look.limit), RK4_RUNGS))
+            if events == "step" and look.regular and look.interval > steps[0]:
                 # A step beyond the limit, to show what happens.
-                parts = int(0.8 * round(look.interval / family[0].dt))
-                family.insert(0, dataclasses.replace(family[0], dt=look.interval / max(parts, 1)))
-            found.append(family)
+                parts = int(0.8 * round(look.interval / steps[0]))
+                steps.insert(0, look.interval / max(parts, 1))
+            found.append([Setting("rk4", level, dt=step, events=events) for step in steps])
     if "rk45" in methods:
         found.append([Setting("rk45", level, tolerance=10.0**-e) for e in TOLERANCES])
     if "auto" in methods:
         found.append([Setting("auto", level)])
     for method in IMPLICIT:
         if method in methods:
-            steps = dividing_steps(look, look.interval)
-            found.append([Setting(method, level, dt=next(steps)) for _ in range(IMPLICIT_RUNGS)])
+            halved = islice(dividing_steps(look, look.interval), IMPLICIT_RUNGS)
+            found.append([Setting(method, level, dt=step) for step in halved])
     return found
 
 
@@ -221,7 +214,7 @@ def own_setting(column: Column, given: Solver) -> Setting:
             raise InputError(
                 f"compare_methods: setting: {name!r} is not known; it is one of {known}"
             )
-    fields = {"method": "rk4", **given}
+    fields: dict[str, Any] = {"method": "rk4", **given}
     if fields["method"] == "rk4":
         fields.setdefault("events", "step")
     return Setting(kinematics=column.kinematics, own=True, **fields)
@@ -246,61 +239,80 @@ def checked_methods(methods: Sequence[str] | None) -> tuple[str, ...]:
     return wanted
 
 
-def predicted(last: Run | None, setting: Setting, look: Probe | None) -> float:
-    """Return an estimate of the wall time of a setting [s], if possible from a coarser run."""
-    if last is None or not last.seconds > 0:
-        return 0.0 if look is None else look.seconds(setting)
-    if setting.dt and last.setting.dt:
-        return last.seconds * last.setting.dt / setting.dt
-    if setting.tolerance and last.setting.tolerance:
-        return last.seconds * (last.setting.tolerance / setting.tolerance) ** 0.2
-    if setting.parts and last.setting.parts:
-        return last.seconds * setting.parts / last.setting.parts
-    return last.seconds
+@dataclass
+class Trials:
+    """Settings that are tried on a scene, within a budget.
+
+    Attributes
+    ----------
+    scene : Scene
+        The case.
+    look : Probe
+        Its costs and limits.
+    budget : Budget
+        The wall time allowed.
+    told : callable
+        Told in words what is being done.
+    runs : list of Attempt
+        What was tried, families together, coarse settings first.
+    """
+
+    scene: Scene
+    look: Probe
+    budget: Budget
+    told: Callable[[str], None]
+    runs: list[Attempt] = field(default_factory=list)
+
+    @property
+    def solved(self) -> list[Run]:
+        """The runs that have an answer."""
+        return [run for run in self.runs if isinstance(run, Run)]
+
+    def predicted(self, last: Attempt | None, setting: Setting) -> float:
+        """Return an estimate of the wall time of a setting [s], if possible from a coarser run."""
+        if last is None or not last.seconds > 0:
+            return self.look.seconds(setting)
+        coarse = last.setting
+        if setting.dt and coarse.dt:
+            return last.seconds * coarse.dt / setting.dt
+        if setting.tolerance and coarse.tolerance:
+            return last.seconds * math.pow(coarse.tolerance / setting.tolerance, 0.2)
+        if setting.parts and coarse.parts:
+            return last.seconds * setting.parts / coarse.parts
+        return last.seconds
+
+    def climb(self, families: list[list[Setting]], share: float, repeats: int) -> None:
+        """Run all families rung by rung, coarse settings first, as far as the budget allows.
+
+        The first setting of a family that is too expensive stands in the list with its reason; the
+        finer ones do not.
+        """
+        runs: dict[Setting, Attempt] = {}
+        last: dict[int, Attempt] = {}
+        ended: set[int] = set()
+        patience = share * self.budget.seconds / 40
+        for rung in range(max(map(len, families))):
+            for place, family in enumerate(families):
+                if rung >= len(family) or place in ended:
+                    continue
+                setting = family[rung]
+                self.told(str(setting))
+                cost, left = self.predicted(last.get(place), setting), self.budget.left(share)
+                if cost > left:
+                    reason = too_expensive(cost, left)
+                    runs[setting] = Attempt(setting, status="skipped", reason=reason)
+                    ended.add(place)
+                    continue
+                run = runs[setting] = self.scene.run(setting, repeats, seconds=patience)
+                if run.status != "refused":
+                    last[place] = run
+                elif setting.method != "rk4" or rung > 0:
+                    # The first step of rk4 may be beyond the limit. Any other reason holds for
+                    # finer steps too.
+                    ended.add(place)
+        self.runs = [runs[setting] for family in families for setting in family if setting in runs]
 
 
 def too_expensive(cost: float, left: float) -> str:
     """Return the reason for not running a setting."""
     return f"would take about {cost:.2g} s; {max(left, 0):.2g} s of the budget are left for it"
-
-
-def climb(
-    scene: Scene,
-    families: list[list[Setting]],
-    look: Probe | None,
-    budget: Budget,
-    share: float,
-    repeats: int,
-    told: Callable[[str], None],
-) -> list[Run]:
-    """Run all families rung by rung, coarse settings first, as far as the budget allows.
-
-    The first setting of a family that is too expensive stands in the list with its reason; the
-    finer ones do not.
-    """
-    runs: dict[Setting, Run] = {}
-    last: dict[int, Run | None] = dict.fromkeys(range(len(families)))
-    ended: set[int] = set()
-    patience = share * budget.seconds / 40
-    for rung in range(max(map(len, families))):
-        for place, family in enumerate(families):
-            if rung >= len(family) or place in ended:
-                continue
-            setting = family[rung]
-            told(str(setting))
-            cost = predicted(last[place], setting, look)
-            if cost > budget.left(share):
-                reason = too_expensive(cost, budget.left(share))
-                runs[setting] = Run(setting, None, status="skipped", reason=reason)
-                ended.add(place)
-                continue
-            run = scene.run(setting, repeats, seconds=patience)
-            runs[setting] = run
-            if run.status == "refused":
-                # The first step of rk4 may be beyond the limit. Any other reason holds for finer
-                # steps too.
-                if setting.method != "rk4" or rung > 0:
-                    ended.add(place)
-            else:
-                last[place] = run
-    return [runs[setting] for family in families for setting in family if setting in runs]

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from rbsdem.errors import InputError
-from rbsdem.methods.answer import Run, Setting
-from rbsdem.methods.ladder import LEVELS, Budget, Probe, predicted, too_expensive
+from rbsdem.methods.ladder import LEVELS, Trials, too_expensive
 from rbsdem.methods.reference import Reference
-from rbsdem.methods.scene import VERTICAL, Scene
+from rbsdem.methods.scene import VERTICAL, Run, Scene, Setting
 from rbsdem.model.column import PLACES, Column, bodies, without_notes
 from rbsdem.model.damping import Damping
 from rbsdem.model.springs import Spring
@@ -212,89 +211,75 @@ def _replacing(column: Column, fields: dict[str, Any]) -> Callable[[], Column]:
 
 
 def find_physics(
-    scene: Scene,
-    look: Probe | None,
-    reference: Reference | None,
-    runs: list[Run],
-    budget: Budget,
-    tolerance: float | None,
-    axial: Spring | None,
-    told: Callable[[str], None],
+    trials: Trials, reference: Reference | None, tolerance: float | None, axial: Spring | None
 ) -> Physics | str:
     """Return the effect of each part of the model, or the reason why it is not known."""
-    several = list(variants(scene, axial))
+    several = list(variants(trials.scene, axial))
     weight = len(several) + TWICE_THE_BODIES + 1
-    base = _base(scene, look, reference, runs, budget.left() / weight)
+    base = _base(trials, reference, trials.budget.left() / weight)
     if isinstance(base, str):
         return base
     resolution = math.nan
-    if reference is not None and base.answer is not None:
+    if reference is not None:
         resolution = max(errors_of(base.answer, reference.answer).largest, reference.resolution)
     limit = USUAL_TOLERANCE if tolerance is None else tolerance
     effects = []
     for variant in several:
-        told(f"physics: {variant.name}")
-        effects.append(_effect(scene, variant, base, look, budget, limit))
+        trials.told(f"physics: {variant.name}")
+        effects.append(_effect(trials, variant, base, limit))
     return Physics(tuple(effects), str(base.setting), resolution, limit)
 
 
-def _base(
-    scene: Scene, look: Probe | None, reference: Reference | None, runs: list[Run], seconds: float
-) -> Run | str:
+def _base(trials: Trials, reference: Reference | None, seconds: float) -> Run | str:
     """Return the run of the model as given, with which the others are compared.
 
     A fine run if the budget allows it, else the most accurate one that it allows. A method that
     chooses its step is preferred: a fixed step may be too long for a variant.
     """
+    scene = trials.scene
     level = scene.column.kinematics
     if scene.static:
         fine = Setting("static", level, parts=4 if level == "finite" else 1)
     else:
         fine = Setting("rk45", level, tolerance=FINE)
-    if predicted(None, fine, look) < seconds:
+    if trials.predicted(None, fine) < seconds:
         run = scene.run(fine, REPEATS, seconds=seconds / REPEATS)
-        if run.answer is not None:
+        if isinstance(run, Run):
             return run
-    done = [run for run in runs if run.answer is not None and run.setting.kinematics == level]
-    done = [run for run in done if run.seconds < seconds]
+    done = [r for r in trials.solved if r.setting.kinematics == level and r.seconds < seconds]
     # An implicit step suits any variant; a fixed explicit step may be beyond the limit.
     for methods in (("rk45",), IMPLICIT, ("rk4", "static", "auto")):
         able = [run for run in done if run.setting.method in methods]
         if able and reference is not None:
-            return min(able, key=lambda run: errors_of(run.answer, reference.answer).largest)
+            exact = reference.answer
+            return min(able, key=lambda run: errors_of(run.answer, exact).largest)
         if able:
             return able[-1]
     return "the budget allows no setting for the comparisons; give more of it"
 
 
-def _effect(
-    scene: Scene,
-    variant: Variant,
-    base: Run,
-    look: Probe | None,
-    budget: Budget,
-    tolerance: float,
-) -> Effect:
+def _effect(trials: Trials, variant: Variant, base: Run, tolerance: float) -> Effect:
     """Return the effect of one change of the model."""
     try:
         with without_notes():
             column = variant.make()
     except InputError as error:
         return Effect(variant.name, status="refused", reason=str(error))
+    scene, left = trials.scene, trials.budget.left()
     loads = {load: values for load, values in scene.loads.items() if load != variant.without}
     other = dataclasses.replace(scene, loads=loads)
     setting = dataclasses.replace(base.setting, kinematics=column.kinematics)
-    cost = base.seconds if setting.method == base.setting.method else look.seconds(setting)
-    if column.n > scene.column.n:
-        cost *= TWICE_THE_BODIES
-    if cost > budget.left():
-        return Effect(variant.name, status="skipped", reason=too_expensive(cost, budget.left()))
+    cost = base.seconds * (TWICE_THE_BODIES if column.n > scene.column.n else 1)
+    if cost > left:
+        return Effect(variant.name, status="skipped", reason=too_expensive(cost, left))
     run = other.run(setting, REPEATS, column, base.seconds)
-    while run.status == "refused" and setting.method == "rk4" and setting.dt > base.setting.dt / 64:
+    for _ in range(6):
+        if run.status != "refused" or setting.method != "rk4" or setting.dt is None:
+            break
         # The step is beyond the stability limit of this model.
         setting = dataclasses.replace(setting, dt=setting.dt / 2)
         run = other.run(setting, REPEATS, column, base.seconds)
-    if run.answer is None:
+    if not isinstance(run, Run):
         return Effect(variant.name, status=run.status, reason=run.reason)
     return _compare(variant.name, run, base, tolerance)
 

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from rbsdem.errors import RbsdemError
-from rbsdem.methods.answer import Run, Setting
-from rbsdem.methods.ladder import Budget, Probe, predicted
-from rbsdem.methods.scene import Scene
+from rbsdem.methods.ladder import Budget, Trials
+from rbsdem.methods.scene import Run, Scene, Setting
 from rbsdem.results.accuracy import Answer, errors_of
 from rbsdem.solve.solver import IMPLICIT
 
@@ -69,47 +67,53 @@ class Reference:
     def resolution(self) -> float:
         """Difference of the two methods: smaller errors cannot be measured."""
         worst = min(self.digits, self.moment_digits, self.energy_digits, self.peak_digits)
-        return 10.0**-worst
+        return math.pow(10.0, -worst)
 
 
 class _Ladder:
     """One method of the reference, refined step by step from the runs so far."""
 
-    def __init__(self, first: Setting, done: list[Run], look: Probe) -> None:
-        self.look = look
-        done = [run for run in done if run.setting.family == first.family and run.answer]
+    def __init__(self, first: Setting, trials: Trials) -> None:
+        self._trials = trials
+        done = [run for run in trials.solved if run.setting.family == first.family]
         #: The finest run so far, and how far the answer moved with the last refinement.
         self.run = done[-1] if done else None
         self.moved = math.inf
         if len(done) > 1:
             self.moved = errors_of(done[-1].answer, done[-2].answer).response_max
-        self.next: Setting | None = finer(done[-1].setting) if done else first
+        self.next = finer(done[-1].setting) if done else first
         self.trouble = ""
 
     def cost(self) -> float:
         """Return the estimated wall time of the next refinement [s]; infinite if there is none."""
         if self.next is None or self.trouble:
             return math.inf
-        return predicted(self.run, self.next, self.look)
+        return self._trials.predicted(self.run, self.next)
 
-    def refine(self, scene: Scene, told: Callable[[str], None]) -> None:
+    def refine(self) -> None:
         """Run the next finer setting."""
-        told(f"reference: {self.next}")
-        run = scene.run(self.next)
-        if run.answer is None:
+        if self.next is None:
+            return
+        self._trials.told(f"reference: {self.next}")
+        run = self._trials.scene.run(self.next)
+        if not isinstance(run, Run):
             self.trouble = run.reason
             return
-        if self.run is not None:
-            self.moved = errors_of(run.answer, self.run.answer).response_max
-        self.run = run
-        self.next = finer(self.next)
+        self.moved = self.apart(run)
+        self.run, self.next = run, finer(self.next)
+
+    def apart(self, other: Run | None) -> float:
+        """Return how far the answer of another run is from the finest one; infinite without it."""
+        if self.run is None or other is None:
+            return math.inf
+        return errors_of(other.answer, self.run.answer).response_max
 
 
 def finer(setting: Setting) -> Setting | None:
     """Return the next finer setting; None beyond the precision of the arithmetic."""
-    if setting.tolerance is None:
+    if setting.dt is not None:
         return replace(setting, dt=setting.dt / 2)
-    if setting.tolerance <= LEAST_TOLERANCE:
+    if setting.tolerance is None or setting.tolerance <= LEAST_TOLERANCE:
         return None
     return replace(setting, tolerance=max(setting.tolerance / 100, LEAST_TOLERANCE))
 
@@ -119,40 +123,33 @@ def digits(difference: float) -> float:
     return -math.log10(max(difference, 1e-16)) if math.isfinite(difference) else 0.0
 
 
-def find_reference(
-    scene: Scene,
-    look: Probe | None,
-    runs: list[Run],
-    budget: Budget,
-    share: float,
-    wanted: float,
-    told: Callable[[str], None],
-) -> Reference | str:
+def find_reference(trials: Trials, share: float, wanted: float) -> Reference | str:
     """Return the reference, or why there is none."""
-    if scene.static:
-        return _static_reference(scene, wanted, told)
-    candidates = _candidates(scene, look, runs)
+    if trials.scene.static:
+        return _static_reference(trials, wanted)
+    candidates = _candidates(trials)
     refined = 0
     for ladder in candidates:
         # Finer than all settings; a method that was not run before needs two runs.
         for _ in range(1 if math.isfinite(ladder.moved) else 2):
-            if refined < 2 and ladder.cost() < 0.25 * budget.left(share):
-                ladder.refine(scene, told)
+            if refined < 2 and ladder.cost() < 0.25 * trials.budget.left(share):
+                ladder.refine()
         refined += math.isfinite(ladder.moved) and not ladder.trouble
     # The two that their last refinement moved least.
     pair = sorted((one for one in candidates if one.run is not None), key=lambda one: one.moved)[:2]
     if len(pair) < 2:
         reasons = [ladder.trouble for ladder in candidates if ladder.trouble]
         return reasons[0] if reasons else "the budget does not allow two methods; give more of it"
-    _bring_together(scene, pair, budget, share, wanted, told)
+    _bring_together(pair, trials.budget, share, wanted)
     # The reference is the one that its last refinement moved less.
-    first, second = sorted(pair, key=lambda ladder: ladder.moved)
-    return compare(first.run, second.run, wanted, "")
+    pair.sort(key=lambda ladder: ladder.moved)
+    first, second = (ladder.run for ladder in pair if ladder.run is not None)
+    return compare(first, second, wanted, "")
 
 
-def _candidates(scene: Scene, look: Probe, runs: list[Run]) -> list[_Ladder]:
+def _candidates(trials: Trials) -> list[_Ladder]:
     """Return the methods that may make a reference, the most accurate first."""
-    level = scene.column.kinematics
+    level, look = trials.scene.column.kinematics, trials.look
     parts = max(math.ceil(look.interval / look.limit), 1) * FIRST_SHARE
     first = [
         Setting("rk45", level, tolerance=FIRST_TOLERANCE),
@@ -162,28 +159,21 @@ def _candidates(scene: Scene, look: Probe, runs: list[Run]) -> list[_Ladder]:
         parts = max(math.ceil(look.interval / (look.duration / 4000)), 1)
         methods = ("generalised_alpha", "newmark")
         first += [Setting(method, level, dt=look.interval / parts) for method in methods]
-    return [_Ladder(setting, runs, look) for setting in first]
+    return [_Ladder(setting, trials) for setting in first]
 
 
-def _bring_together(
-    scene: Scene,
-    pair: list[_Ladder],
-    budget: Budget,
-    share: float,
-    wanted: float,
-    told: Callable[[str], None],
-) -> None:
+def _bring_together(pair: list[_Ladder], budget: Budget, share: float, wanted: float) -> None:
     """Refine both methods in turn until they agree or make no progress."""
-    apart = errors_of(pair[0].run.answer, pair[1].run.answer).response_max
+    one, other = pair
+    apart = other.apart(one.run)
     idle = 0
     while digits(apart) < wanted and idle < 4:
         # The one that its last refinement moved more; of equals the cheaper one.
         ready = [ladder for ladder in pair if ladder.cost() < budget.left(share)]
         if not ready:
             return
-        ladder = max(ready, key=lambda one: (one.moved, -one.cost()))
-        ladder.refine(scene, told)
-        now = errors_of(pair[0].run.answer, pair[1].run.answer).response_max
+        max(ready, key=lambda ladder: (ladder.moved, -ladder.cost())).refine()
+        now = other.apart(one.run)
         idle = idle + 1 if now > PROGRESS * apart else 0
         apart = min(apart, now)
 
@@ -220,19 +210,21 @@ def compare(first: Run, second: Run, wanted: float, note: str) -> Reference:
     )
 
 
-def _static_reference(scene: Scene, wanted: float, told: Callable[[str], None]) -> Reference | str:
+def _static_reference(trials: Trials, wanted: float) -> Reference | str:
     """Return the path by small increments, checked by driving it the other way round.
 
     The response is driven in turn: forces that driven displacements give are driven as forces, or
     the reverse. This solves the same equations in another way and must give back what was driven
     first. A force that falls cannot be driven; the path is then compared with longer increments.
     """
+    scene = trials.scene
     level = scene.column.kinematics
-    told("reference: static")
-    runs = []
+    trials.told("reference: static")
+    runs: list[Run] = []
+    trouble = ""
     for parts in (16, 4, 1) if level == "finite" else (1, 4):
         run = scene.run(Setting("static", level, parts=parts))
-        if run.answer is None:
+        if not isinstance(run, Run):
             trouble = run.reason
             continue
         back = _inverse(scene, run.answer, parts)
@@ -241,7 +233,8 @@ def _static_reference(scene: Scene, wanted: float, told: Callable[[str], None]) 
         runs.append(run)
     if len(runs) < 2:
         return trouble
-    return compare(*runs[:2], wanted, "the response cannot be driven back; increments are compared")
+    note = "the response cannot be driven back; increments are compared"
+    return compare(runs[0], runs[1], wanted, note)
 
 
 def _inverse(scene: Scene, answer: Answer, parts: int) -> Run | None:
@@ -252,20 +245,15 @@ def _inverse(scene: Scene, answer: Answer, parts: int) -> Run | None:
     if np.any(np.diff(answer.response) * np.diff(path[:rows]) < 0):
         # The force falls, or the displacement goes back: driven, it would lead elsewhere.
         return None
-    inverse = Scene(scene.column, None, {other: answer.response})
+    inverse = replace(scene, time=scene.time[:rows], loads={other: answer.response})
     try:
         back = inverse.run(Setting("static", scene.column.kinematics, parts=parts))
     except RbsdemError:
         return None
-    if back.answer is None or back.answer.response.size != rows:
+    if not isinstance(back, Run) or back.answer.response.size != rows:
         return None
     # The difference from what was driven, on the scale of the response.
     lost = (back.answer.response - path[:rows]) / max(np.abs(path).max(), 1e-300)
-    response = answer.response + lost * answer.peak
-    setting = Setting(f"static driven by {other}", scene.column.kinematics, parts=parts)
-    return Run(
-        setting,
-        replace(back.answer, response=response),
-        back.seconds,
-        1,
-    )
+    setting = replace(back.setting, method=f"static driven by {other}")
+    answer = replace(back.answer, response=answer.response + lost * answer.peak)
+    return replace(back, setting=setting, repeats=1, reason="", answer=answer)

@@ -1,14 +1,15 @@
-"""The case of a study of methods: one column under one loading, solved by many settings."""
+"""The case of a study of methods: one column under one loading, and settings to solve it by."""
 
 from __future__ import annotations
 
 import dataclasses
+import math
 import time as clock
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,11 +17,10 @@ from numpy.typing import ArrayLike, NDArray
 from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError
-from rbsdem.methods.answer import Run, Setting
-from rbsdem.model.column import Column, checked_column, without_notes
-from rbsdem.model.response import Response
-from rbsdem.results.accuracy import Answer, at_times
+from rbsdem.model.column import Column, Kinematics, checked_column, without_notes
+from rbsdem.results.accuracy import Answer, answer_of
 from rbsdem.solve.analysis import cyclic, no_watch, time_history
+from rbsdem.solve.solver import Solver
 
 #: Least number of times at which histories are compared; a loading with fewer is interpolated.
 LEAST_ROWS = 200
@@ -33,6 +33,108 @@ VERTICAL = ("vertical_acceleration", "axial_load")
 
 
 @dataclass(frozen=True)
+class Setting:
+    """How a case is solved.
+
+    Attributes
+    ----------
+    method : str
+        A method of `rbsdem.time_history`, or "static".
+    kinematics : str
+        Level of kinematics.
+    dt, tolerance : float or None
+        Step [s] or tolerance, whichever the method has.
+    events : str or None
+        Where "rk4" changes lines: "step" or "located".
+    parts : int or None
+        Static: equal parts of each increment of the path; 0 where only its reversals are driven.
+    rho_infinity : float or None
+        Spectral radius of "hht" and "generalised_alpha"; None for the default.
+    own : bool
+        Whether the user gave this setting.
+    """
+
+    method: str
+    kinematics: Kinematics
+    dt: float | None = None
+    tolerance: float | None = None
+    events: str | None = None
+    parts: int | None = None
+    rho_infinity: float | None = None
+    own: bool = False
+
+    @property
+    def solver(self) -> Solver:
+        """The settings of the method."""
+        names = [name for name in Solver.__annotations__ if getattr(self, name, None) is not None]
+        return cast(Solver, {name: getattr(self, name) for name in names})
+
+    @property
+    def family(self) -> tuple[str, str | None, Kinematics, float | None, bool]:
+        """What settings have in common that differ only in step, tolerance or parts."""
+        return self.method, self.events, self.kinematics, self.rho_infinity, self.own
+
+    @property
+    def name(self) -> str:
+        """The method and where it changes lines."""
+        return f"{self.method}, located" if self.events == "located" else self.method
+
+    @property
+    def value(self) -> str:
+        """The step, tolerance or division of the path, in words."""
+        if self.dt is not None:
+            return f"dt = {self.dt:.4g} s"
+        if self.tolerance is not None:
+            return f"tolerance = {self.tolerance:.0e}"
+        if self.parts is None:
+            return "step chosen"
+        if self.parts == 0:
+            return "reversals only"
+        return "points as given" if self.parts == 1 else f"increments in {self.parts}"
+
+    def __str__(self) -> str:
+        return ", ".join(filter(None, (self.name, self.value, self.kinematics)))
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """A setting that was tried, or the reason why it was not.
+
+    Attributes
+    ----------
+    setting : Setting
+        The setting.
+    seconds : float
+        Median wall time of `repeats` runs [s]; nan if there is no answer.
+    repeats : int
+        Number of runs.
+    status : str
+        "completed", "collapsed", "failed" (`SolveError`), "refused" (`InputError`) or "skipped".
+    reason : str
+        Why there is no answer; the choice of method "auto" if there is one.
+    """
+
+    setting: Setting
+    seconds: float = math.nan
+    repeats: int = 0
+    status: str = "completed"
+    reason: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Run(Attempt):
+    """A setting that has an answer.
+
+    Attributes
+    ----------
+    answer : Answer
+        Its answer.
+    """
+
+    answer: Answer = field(kw_only=True)
+
+
+@dataclass(frozen=True)
 class Scene:
     """One column under one loading.
 
@@ -40,26 +142,24 @@ class Scene:
     ----------
     column : Column
         The column.
-    time : ndarray, shape (m,), or None
-        Times of the loading [s]; None for a static path.
+    time : ndarray, shape (m,)
+        Times of the loading [s]; for a static path the numbers of its points.
     loads : dict of ndarray, shape (m,)
         The loads by name. A static path has one of them, "force" or "displacement".
     initial : mapping or None
         State at the start, as for `time_history`.
     collapse_drift : float or None
         As for `time_history`.
+    static : bool
+        Whether the path is static.
     """
 
     column: Column
-    time: Array | None
+    time: Array
     loads: dict[str, Array]
     initial: Mapping[str, ArrayLike] | None = None
     collapse_drift: float | None = None
-
-    @property
-    def static(self) -> bool:
-        """Whether the path is static."""
-        return self.time is None
+    static: bool = False
 
     @property
     def response_name(self) -> str:
@@ -78,7 +178,7 @@ class Scene:
             if self.static:
                 return self._solve_static(setting, column)
             result = time_history(no_watch, column, self.time, **self.keywords(setting, column))
-        return self._answer(result)
+        return answer_of(result, self.time)
 
     def keywords(self, setting: Setting, column: Column) -> dict[str, Any]:
         """Return the arguments of `time_history` for a setting."""
@@ -103,51 +203,35 @@ class Scene:
             for name, values in self.initial.items()
         }
 
-    def _answer(self, result: Response) -> Answer:
-        """Return the answer at the times of the loading."""
-        taken = result.energy["spring"] + result.energy["damping"]
-        moment = result.moment[:, 0]
-        response = result.displacement
-        time = np.array(result.time)
-        summary = result.summary
-        status = summary.get("status", "completed")
-        chosen = f"{summary['method']}: {summary['reason']}" if summary.get("reason") else ""
-        histories = [np.array(values) for values in (response, moment, taken)]
-        wanted = self.time[self.time <= time[-1]]
-        if time.size != wanted.size or time[-1] != wanted[-1]:
-            # Rows were kept after each step because the step divides no interval, or the last row
-            # is that of a collapse between two times.
-            histories = [at_times(wanted, time, values) for values in histories]
-        return Answer(wanted, *histories, status, chosen)
-
     def _solve_static(self, setting: Setting, column: Column) -> Answer:
         """Return the answer at the points of the path, however it is divided."""
         (name, path), parts = next(iter(self.loads.items())), setting.parts
-        place = np.arange(path.size, dtype=np.float64)
+        kept = reversals(path)
         if parts == 0:
-            kept = reversals(path)
-            result = cyclic(column, **{name: path[kept]}, collapse_drift=self.collapse_drift)
-            # A point in between lies on the straight line of its leg, at its driven value.
-            place = along(path, kept)
-        elif parts and parts > 1:
-            fine = np.interp(np.arange(parts * (path.size - 1) + 1) / parts, place, path)
-            # The points that were given, to the last digit.
-            fine[::parts] = path
-            result = cyclic(column, **{name: fine}, every=parts, collapse_drift=self.collapse_drift)
+            driven = path[kept]
         else:
-            result = cyclic(column, **{name: path}, collapse_drift=self.collapse_drift)
+            parts = parts or 1
+            fine = np.arange(parts * (path.size - 1) + 1) / parts
+            driven = np.interp(fine, self.time, path)
+            # The points that were given, to the last digit.
+            driven[::parts] = path
+        every = parts if parts and parts > 1 else None
+        load: dict[str, Any] = {name: driven}
+        result = cyclic(column, **load, every=every, collapse_drift=self.collapse_drift)
         response = result.force if name == "displacement" else result.displacement
         histories = [response, result.moment[:, 0], result.energy["spring"]]
         if parts == 0:
-            kept_at = np.arange(response.size)
-            histories = [np.interp(place, kept_at, values) for values in histories]
+            # A point in between lies on the straight line of its leg, at its driven value.
+            place, rows = along(path, kept), np.arange(response.size)
+            histories = [np.interp(place, rows, values) for values in histories]
         points = np.arange(histories[0].size, dtype=np.float64)
         status = result.summary.get("status", "completed")
-        return Answer(points, *map(np.array, histories), status)
+        response, moment, taken = map(np.array, histories)
+        return Answer(points, response, moment, taken, status)
 
     def run(
         self, setting: Setting, repeats: int = 1, column: Column | None = None, seconds: float = 1e9
-    ) -> Run:
+    ) -> Attempt:
         """Return the answer of a setting and the median of its wall times, or why it has no answer.
 
         Parameters
@@ -173,16 +257,12 @@ class Scene:
                 if enough or end - begin > seconds:
                     break
         except InputError as error:
-            return Run(setting, None, status="refused", reason=str(error))
+            return Attempt(setting, status="refused", reason=str(error))
         except SolveError as error:
-            return Run(setting, None, times_or(times, begin), 1, "failed", str(error))
-        seconds = float(np.median(times))
-        return Run(setting, answer, seconds, len(times), answer.status, answer.reason)
-
-
-def times_or(times: list[float], start: float) -> float:
-    """Return the median of the times; without any, the time since the start."""
-    return float(np.median(times)) if times else clock.perf_counter() - start
+            taken = float(np.median(times or [clock.perf_counter() - begin]))
+            return Attempt(setting, taken, 1, "failed", str(error))
+        median, reason = float(np.median(times)), answer.reason
+        return Run(setting, median, len(times), answer.status, reason, answer=answer)
 
 
 def make_scene(
@@ -214,7 +294,8 @@ def make_scene(
             )
         if next(iter(given.values())).size < 2:
             raise InputError("compare_methods: the path has fewer than 2 points")
-        return Scene(column, None, given, None, collapse_drift)
+        points = np.arange(next(iter(given.values())).size, dtype=np.float64)
+        return Scene(column, points, given, None, collapse_drift, static=True)
     if "displacement" in given:
         raise InputError(
             "compare_methods: displacement drives a static path only; remove it, or time"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rbsdem._files import write_figure
 from rbsdem.errors import InputError
 from rbsdem.methods.ladder import LEVELS
-from rbsdem.methods.rows import MethodStudy
+from rbsdem.methods.study import MethodStudy
 from rbsdem.output.style import axes_or_new, line_of, style
 from rbsdem.output.tables import console, plain, table
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-    from rbsdem.methods.rows import Row
+    from rbsdem.methods.study import Row
 
 #: Marker, filling and gray of each method; located events are filled.
 MARKS: dict[tuple[str, str | None], dict[str, Any]] = {

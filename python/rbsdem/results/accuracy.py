@@ -166,7 +166,7 @@ def refined_error(result: Response) -> Errors:
         else:
             finer = cyclic(result.column, **_divided(result))
     driven = "displacement" in result.call
-    one, other = (_answer(run, result.time, driven) for run in (result, finer))
+    one, other = (answer_of(run, result.time, driven) for run in (result, finer))
     found = asdict(errors_of(one, other))
     # Two runs with the same digits say no more than that the error is within their last ones.
     least = math.sqrt(one.time.size) * sys.float_info.epsilon
@@ -211,8 +211,8 @@ def _divided(result: Response) -> dict[str, Any]:
     return call | {name: fine, "every": None}
 
 
-def _answer(run: Response, times: np.ndarray, driven: bool) -> Answer:
-    """Return what is compared, at the rows of the first result."""
+def answer_of(run: Response, times: Array, driven: bool = False) -> Answer:
+    """Return what is compared, at some times; `driven`: the displacement is, not the force."""
     time = run.time
     response = run.force if driven else run.displacement
     taken = run.energy["spring"] + run.energy["damping"]
@@ -227,4 +227,6 @@ def _answer(run: Response, times: np.ndarray, driven: bool) -> Answer:
         histories = [at_times(wanted, time, values) for values in histories]
         time = wanted
     response, moment, taken = histories
-    return Answer(time, response, moment, taken, run.summary["status"])
+    about = run.summary
+    reason = f"{about['method']}: {about['reason']}" if about.get("reason") else ""
+    return Answer(time, response, moment, taken, about.get("status", "completed"), reason)

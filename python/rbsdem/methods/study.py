@@ -1,0 +1,423 @@
+"""A study of methods: settings, reference and physics of one case, within a budget."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING
+
+from numpy.typing import ArrayLike
+
+from rbsdem import _arguments
+from rbsdem.batch.progress import progress_bar
+from rbsdem.errors import InputError, SolveError
+from rbsdem.methods.ladder import Budget, Trials, checked_methods, ladders, own_setting, probe
+from rbsdem.methods.physics import Physics, find_physics
+from rbsdem.methods.reference import Reference, find_reference
+from rbsdem.methods.scene import Attempt, Run, Scene, make_scene
+from rbsdem.model.column import Column
+from rbsdem.model.springs import Spring
+from rbsdem.motions.acting import acting
+from rbsdem.motions.motion import GroundMotion
+from rbsdem.results.accuracy import Errors, errors_of
+from rbsdem.solve.solver import IMPLICIT, Solver
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["Choice", "MethodStudy", "Row", "compare_methods", "seconds_text"]
+
+#: Shares of the budget at which the settings, and then the reference, have to be done.
+SETTINGS_SHARE, REFERENCE_SHARE = 0.4, 0.75
+
+
+@dataclass(frozen=True)
+class Row(Attempt):
+    """A setting with its cost and its errors.
+
+    Attributes
+    ----------
+    response_rms, response_max : float
+        Root mean square and largest difference of the top displacement (lateral force, if the
+        displacement is driven) from the reference over its peak, at the times of the loading.
+    moment : float
+        Root mean square difference of the base moment over its peak.
+    energy : float
+        Difference of the energy that springs and damping have taken by the end, over its largest
+        value.
+    peak : float
+        Relative difference of the peak response.
+    error : float
+        The largest of response_rms, moment, energy and peak.
+    move : float
+        `error` of this setting against the next finer one of its family, which a user without a
+        reference would see; nan if there is no finer one.
+    pareto : bool
+        Whether no other setting is both faster and more accurate.
+    """
+
+    response_rms: float = math.nan
+    response_max: float = math.nan
+    moment: float = math.nan
+    energy: float = math.nan
+    peak: float = math.nan
+    error: float = math.nan
+    move: float = math.nan
+    pareto: bool = False
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The cheapest setting for a tolerance.
+
+    Attributes
+    ----------
+    tolerance : float
+        The error allowed.
+    row : Row or None
+        The cheapest setting within it, all finer ones of its family within it too; None if there
+        is no such setting.
+    finer : Row or None
+        The next finer setting of its family.
+    move : Errors or None
+        The difference of the answers of the two.
+    """
+
+    tolerance: float
+    row: Row | None
+    finer: Row | None = None
+    move: Errors | None = None
+
+    def __str__(self) -> str:
+        wanted = f"tolerance {self.tolerance:g}"
+        if self.row is None:
+            return f"{wanted}: no setting meets it"
+        text = (
+            f"{wanted}: {self.row.setting} costs {seconds_text(self.row.seconds)} and errs by "
+            f"{self.row.error:.1e}"
+        )
+        if self.finer is None or self.move is None:
+            return f"{text}; no finer one was run"
+        return (
+            f"{text}; the next finer one ({self.finer.setting.value}, "
+            f"{seconds_text(self.finer.seconds)}) moves the answer by {self.move.largest:.1e}"
+        )
+
+
+def seconds_text(seconds: float) -> str:
+    """Return a time with its unit, two digits."""
+    if not math.isfinite(seconds):
+        return "-"
+    scale, unit = next(
+        ((scale, unit) for scale, unit in ((1.0, "s"), (1e-3, "ms")) if seconds >= scale),
+        (1e-6, "us"),
+    )
+    value = seconds / scale
+    return f"{value:.0f} {unit}" if value >= 10 else f"{value:.1f} {unit}"
+
+
+def make_rows(runs: Sequence[Attempt], reference: Reference | None) -> tuple[Row, ...]:
+    """Return the table, with errors and front."""
+    rows = []
+    for run in runs:
+        row = Row(run.setting, run.seconds, run.repeats, run.status, run.reason)
+        if isinstance(run, Run):
+            finer = _finer(runs, run)
+            if finer is not None:
+                row = replace(row, move=errors_of(run.answer, finer.answer).largest)
+            if reference is not None:
+                errors = errors_of(run.answer, reference.answer)
+                # A run that ends at another time has another answer.
+                apart = abs(run.answer.response.size - reference.answer.response.size)
+                error = math.inf if apart > 1 else errors.largest
+                row = replace(row, **asdict(errors), error=error)
+        rows.append(row)
+    if reference is None:
+        return tuple(rows)
+    best = math.inf
+    front = set()
+    measured = [row for row in rows if math.isfinite(row.error)]
+    for row in sorted(measured, key=lambda row: (row.seconds, row.error)):
+        # Errors below the agreement of the reference cannot be told apart.
+        error = max(row.error, reference.resolution)
+        if error < best:
+            best = error
+            front.add(row.setting)
+    return tuple(replace(row, pareto=row.setting in front) for row in rows)
+
+
+def _finer(runs: Sequence[Attempt], run: Run) -> Run | None:
+    """Return the next finer run of a family that has an answer."""
+    for other in runs[runs.index(run) + 1 :]:
+        if other.setting.family != run.setting.family:
+            return None
+        if isinstance(other, Run):
+            return other
+    return None
+
+
+def cheapest(rows: Sequence[Row], tolerance: float) -> Row | None:
+    """Return the cheapest row within a tolerance whose finer rows are within it too, or None."""
+    able = []
+    for place, row in enumerate(rows):
+        finer = [r for r in rows[place + 1 :] if r.setting.family == row.setting.family]
+        if row.error <= tolerance and not any(r.error > tolerance for r in finer):
+            able.append(row)
+    return min(able, key=lambda row: row.seconds, default=None)
+
+
+def choose(rows: Sequence[Row], runs: Sequence[Attempt], tolerance: float) -> Choice:
+    """Return the cheapest row within a tolerance, and what the next finer one changes."""
+    row = cheapest(rows, tolerance)
+    run = None if row is None else runs[rows.index(row)]
+    finer = _finer(runs, run) if isinstance(run, Run) else None
+    if finer is None or not isinstance(run, Run):
+        return Choice(tolerance, row)
+    return Choice(tolerance, row, rows[runs.index(finer)], errors_of(run.answer, finer.answer))
+
+
+@dataclass(frozen=True)
+class MethodStudy:
+    """Wall time against accuracy in one case.
+
+    Attributes
+    ----------
+    rows : tuple of Row
+        All settings, families together, coarse ones first.
+    reference : Reference or None
+        The solution that errors are measured against; None if there is none, as `notes` says.
+    choice : Choice or None
+        The cheapest setting that meets the user's tolerance, if one was given.
+    physics : Physics or None
+        The change of the answer by each part of the model.
+    response : str
+        Kind of response: "displacement" or "force".
+    seconds, budget : float
+        Wall time used and wall time allowed [s].
+    notes : tuple of str
+        Further remarks.
+    """
+
+    rows: tuple[Row, ...]
+    reference: Reference | None
+    choice: Choice | None
+    physics: Physics | None
+    response: str
+    seconds: float
+    budget: float
+    notes: tuple[str, ...] = ()
+
+    def cheapest(self, tolerance: float) -> Row | None:
+        """Return the cheapest setting whose error is within a tolerance, or None.
+
+        All finer settings of its family must be within it too, so that a setting which is accurate
+        by chance is not taken.
+        """
+        return cheapest(self.rows, tolerance)
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return a DataFrame with a row for each setting: its cost, its errors, the front."""
+        import pandas  # noqa: PLC0415
+
+        rows = [
+            {
+                "method": row.setting.method,
+                "events": row.setting.events or "",
+                "kinematics": row.setting.kinematics,
+                "dt_s": row.setting.dt,
+                "tolerance": row.setting.tolerance,
+                "parts": row.setting.parts,
+                "wall_time_s": row.seconds,
+                "repeats": row.repeats,
+                "response_rms": row.response_rms,
+                "response_max": row.response_max,
+                "base_moment_rms": row.moment,
+                "energy": row.energy,
+                "peak": row.peak,
+                "error": row.error,
+                "move_to_finer": row.move,
+                "pareto": int(row.pareto),
+                "status": row.status,
+                "reason": row.reason,
+            }
+            for row in self.rows
+        ]
+        return pandas.DataFrame(rows).astype({"parts": "Int64"})
+
+
+def compare_methods(
+    column: Column,
+    time: ArrayLike | None = None,
+    *,
+    force: ArrayLike | None = None,
+    ground_acceleration: ArrayLike | GroundMotion | None = None,
+    displacement: ArrayLike | None = None,
+    vertical_acceleration: ArrayLike | GroundMotion | None = None,
+    axial_load: ArrayLike | None = None,
+    initial: Mapping[str, ArrayLike] | None = None,
+    methods: Sequence[str] | None = None,
+    setting: Solver | None = None,
+    tolerance: float | None = None,
+    budget: float = 60.0,
+    digits: float = 8.0,
+    axial_spring: Spring | None = None,
+    collapse_drift: float | None = None,
+    repeats: int = 3,
+    progress: bool = False,
+) -> MethodStudy:
+    """Measure what accuracy costs in a case, and which physics it needs.
+
+    The case is run over methods, steps or tolerances, ways of locating events and the levels of
+    kinematics up to that of the column. Each answer is compared with a reference on which two
+    methods agree. Then single parts of the model are switched off, or on. All runs are made in this
+    process, one after the other.
+
+    Parameters
+    ----------
+    column : Column
+        The column. Its kinematics are those of the reference.
+    time : array_like, shape (m,), optional
+        Times of the loading [s]. Without it and without a `GroundMotion` the path is static.
+    force : array_like, shape (m,), optional
+        Lateral force at the top [N]; without time it drives the static path.
+    ground_acceleration, vertical_acceleration : array_like or GroundMotion, optional
+        Accelerations of the ground [m/s2], shape (m,).
+    axial_load : array_like, shape (m,), optional
+        Axial load, in addition to that of the column [N].
+    initial : mapping, optional
+        State at the start, as for `rbsdem.time_history`.
+    displacement : array_like, shape (m,), optional
+        Displacement of the top that drives a static path [m]; the response is then the force.
+    methods : sequence of str, optional
+        The methods in time to try; by default all of them.
+    setting : Solver, optional
+        A further setting to measure: method, dt, tolerance, events, rho_infinity.
+    tolerance : float, optional
+        Relative error allowed. The cheapest setting within it is named, and a part of the model
+        matters if it changes the answer by more.
+    budget : float, optional
+        Wall time [s]. A run that would not fit is left out, and the table says so; a run that has
+        begun is finished.
+    digits : float, optional
+        Digits to which the two methods of the reference should agree.
+    axial_spring : Spring, optional
+        Axial spring of the joints. If the joints of the column do not open, it shows whether
+        their opening matters.
+    collapse_drift : float, optional
+        As for `rbsdem.time_history`.
+    repeats : int, optional
+        Runs of each setting; the median of their wall times counts. Very short runs are repeated
+        more often, long ones less.
+    progress : bool, optional
+        Show on stderr what is being done and how much of the budget is used.
+
+    Returns
+    -------
+    MethodStudy
+        Tables, figure and choice.
+
+    Raises
+    ------
+    InputError
+        For bad input, also where no setting can solve the case.
+    SolveError
+        If every setting fails.
+    """
+    _check(tolerance, budget, digits, repeats)
+    tried = checked_methods(methods)
+    if axial_spring is not None and not isinstance(axial_spring, Spring):
+        raise InputError(f"compare_methods: axial_spring = {axial_spring!r} must be a spring")
+    loads = {
+        "displacement": displacement,
+        "force": force,
+        "ground_acceleration": ground_acceleration,
+        "vertical_acceleration": vertical_acceleration,
+        "axial_load": axial_load,
+    }
+    time, arrays = acting(time, loads, "compare_methods")
+    scene = make_scene(column, time, arrays, initial, collapse_drift)
+    clock = Budget(float(budget))
+    wanted = _arguments.switch(progress, "compare_methods: progress")
+    # Drawn between runs only, so that no thread disturbs what is timed.
+    with progress_bar(wanted, round(clock.seconds), "s", between=True) as show:
+
+        def told(text: str) -> None:
+            show(int(clock.used()), text)
+
+        told("first look")
+        trials = Trials(scene, probe(scene), clock, told)
+        families = ladders(scene, trials.look, tried)
+        if setting is not None and not scene.static:
+            families.insert(0, [own_setting(column, setting)])
+        trials.climb(families, SETTINGS_SHARE, repeats)
+        _need_one(trials.runs)
+        reference = find_reference(trials, REFERENCE_SHARE, digits)
+        known = reference if isinstance(reference, Reference) else None
+        physics = find_physics(trials, known, tolerance, axial_spring)
+    notes = [f"reference: {reference}"] if known is None else []
+    if isinstance(physics, str):
+        notes.append(f"physics: {physics}")
+    rows = make_rows(trials.runs, known)
+    return MethodStudy(
+        rows,
+        known,
+        None if tolerance is None else choose(rows, trials.runs, tolerance),
+        physics if isinstance(physics, Physics) else None,
+        scene.response_name,
+        clock.used(),
+        budget,
+        tuple(notes + _notes(scene, rows, known)),
+    )
+
+
+def _check(tolerance: float | None, budget: float, digits: float, repeats: int) -> None:
+    who = "compare_methods: "
+    if tolerance is not None and not 0 < _arguments.number(tolerance, f"{who}tolerance") < 1:
+        raise InputError(f"{who}tolerance = {tolerance!r} must be above 0 and below 1")
+    if not 0 < _arguments.number(budget, f"{who}budget") < math.inf:
+        raise InputError(f"{who}budget = {budget!r} must be a positive number of seconds")
+    if not 0 < _arguments.number(digits, f"{who}digits") <= 15:
+        raise InputError(f"{who}digits = {digits!r} must be above 0 and at most 15")
+    if _arguments.whole(repeats, f"{who}repeats") < 1:
+        raise InputError(f"{who}repeats = {repeats!r} must be a whole number, 1 or more")
+
+
+def _need_one(runs: Sequence[Attempt]) -> None:
+    """Raise the error of the last run if no setting has an answer."""
+    if any(isinstance(run, Run) for run in runs):
+        return
+    for status, error in (("failed", SolveError), ("refused", InputError)):
+        for run in reversed(runs):
+            if run.status == status:
+                raise error(
+                    f"compare_methods: no setting solves the case; {run.setting}: {run.reason}"
+                )
+    raise InputError(f"compare_methods: the budget is too small for any setting; {runs[0].reason}")
+
+
+def _notes(scene: Scene, rows: Sequence[Row], reference: Reference | None) -> list[str]:
+    """Return remarks that the table does not show."""
+    notes = []
+    if reference is not None and reference.explicit is not None:
+        # The most accurate implicit setting if the reference is explicit, and vice versa.
+        others = [
+            row
+            for row in rows
+            if (row.setting.method in IMPLICIT) == reference.explicit
+            and row.setting.method != "auto"
+            and math.isfinite(row.error)
+        ]
+        third = min(others, key=lambda row: row.error, default=None)
+    else:
+        third = None
+    if third is not None:
+        notes.append(
+            f"a method of another kind, {third.setting}, comes to within {third.error:.1e} of the "
+            "reference"
+        )
+    if any(row.status == "skipped" for row in rows):
+        notes.append("some settings did not fit into the budget; a larger one tries them")
+    if scene.static and scene.column.kinematics != "finite":
+        notes.append("the static path is exact; errors come from the points that are left out")
+    return notes
