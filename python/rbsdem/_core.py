@@ -167,7 +167,7 @@ def _ask(
     return Answer(raw[:length].decode("utf-8", "replace"), values, rows, status)
 
 
-def _evaluate(what: str, statement: Statement | str = "", **given: Any) -> Answer:
+def evaluate(what: str, statement: Statement | str = "", **given: Any) -> Answer:
     """Return an answer; raise the exception that its status stands for."""
     answer = _ask(what, statement, **given)
     if answer.status:
@@ -178,12 +178,12 @@ def _evaluate(what: str, statement: Statement | str = "", **given: Any) -> Answe
 
 def version() -> str:
     """Return the version of the compiled part."""
-    return _evaluate("version").text
+    return evaluate("version").text
 
 
 def methods() -> list[dict[str, str]]:
     """Return the facts of the methods of analysis, a mapping from names to texts for each."""
-    names, *rows = (line.split() for line in _evaluate("methods").text.splitlines())
+    names, *rows = (line.split() for line in evaluate("methods").text.splitlines())
     return [dict(zip(names, row, strict=True)) for row in rows]
 
 
@@ -239,14 +239,14 @@ def keys() -> dict[str, Any]:
     "meaning" and, where they apply, "unit", "least", "least_open", "most", "most_open", "choices",
     "default", "optional" and "values" (how many there may be at most).
     """
-    found: dict[str, Any] = json.loads(_evaluate("keys").text)
+    found: dict[str, Any] = json.loads(evaluate("keys").text)
     return found
 
 
 @cache
 def _names() -> list[str]:
     """Return the names of what comes back, a text for each kind of it."""
-    return _evaluate("quantities").text.splitlines()
+    return evaluate("quantities").text.splitlines()
 
 
 @cache
@@ -256,43 +256,9 @@ def units() -> dict[str, str]:
     return {name: unit for name, _, unit in found}
 
 
-def check_spring(statement: Statement, axial_load: float) -> None:
-    """Raise `InputError` for parameters that the rule does not allow."""
-    _evaluate("check_spring", statement, axial_load=axial_load)
-
-
-def spring_response(statement: Statement, axial_load: float, deformation: Array) -> Array:
-    """Return the forces of a virgin spring along a path."""
-    answer = _evaluate("spring_response", statement, axial_load=axial_load, deformation=deformation)
-    return answer.values
-
-
 #: Arrays by name in the order of the channels, the state at the end (None after a failure), summary
 #: values, the error that ended a run early, and a note on its accuracy.
 Run = tuple[dict[str, Array], Array | None, dict[str, Any], SolveError | None, str]
-
-
-def check_column(column: Statement) -> list[str]:
-    """Raise `InputError` for everything wrong with a column; return notes on what is allowed."""
-    return _evaluate("check_structure", column).text.splitlines()
-
-
-def to_namelist(statement: Statement) -> str:
-    """Return the text of a case file."""
-    return _evaluate("to_namelist", statement).text
-
-
-def modes(column: Statement, count: int | None) -> tuple[Array, Array, float, str]:
-    """Return circular frequencies, shapes (one in each column), the stable step of RK4, a note."""
-    note, values, shapes, _ = _evaluate("modes", column, count=count)
-    return values[1:], shapes.T, float(values[0]), note
-
-
-def matrices(column: Statement, paper: bool) -> tuple[tuple[str, ...], Array]:
-    """Return the unknowns; mass, stiffness, geometric stiffness and damping one after another."""
-    names, _, rows, _ = _evaluate("matrices", column, paper=paper)
-    unknowns = tuple(names.split())
-    return unknowns, rows.reshape(4, len(unknowns), len(unknowns))
 
 
 def cyclic(
@@ -472,60 +438,9 @@ def _numbered(text: str) -> Iterator[tuple[int, str]]:
 def read_case(path: str | os.PathLike[str]) -> tuple[Statement, Array, Array, NDArray[np.int32]]:
     """Return a case file as statement, times, values of the five drives, and which of them act."""
     path = _arguments.file(path)
-    text, numbers, rows, _ = _evaluate("read_case", os.fsdecode(path))
+    text, numbers, rows, _ = evaluate("read_case", os.fsdecode(path))
     acting = rows[1:, 0].astype(np.int32)
     return Statement(text, numbers.tolist()), rows[0, 1:].copy(), rows[1:, 1:].T, acting
-
-
-def named_protocol(
-    name: str, reference: float | None, largest: float | None
-) -> tuple[Array, NDArray[np.int32]]:
-    """Return amplitudes and cycles of a protocol of the literature."""
-    limits = [UNSET if value is None else value for value in (reference, largest)]
-    found = _evaluate("named_protocol", name, reference_and_largest=limits).values
-    amplitudes, cycles = np.split(found, 2)
-    return amplitudes, cycles.astype(np.int32)
-
-
-def protocol(
-    amplitudes: Array, negative: Array, cycles: NDArray[np.int32], repeats: int, points: int
-) -> Array:
-    """Return the points of a cyclic protocol; `negative` may be empty."""
-    steps = int(cycles.sum()) if cycles.size > 1 else int(cycles[0]) * amplitudes.size
-    size = max(4 * points * steps * repeats + 1, 1)
-    if size > np.iinfo(np.int32).max:
-        raise InputError(f"protocol: {size} points are too many; reduce cycles, repeats or points")
-    loading = {
-        "drive": "force",
-        "source": "protocol",
-        "amplitudes": amplitudes,
-        "negative_amplitudes": negative if negative.size else None,
-        "cycles": cycles,
-        "repeats": repeats,
-        "points": points,
-    }
-    answer = _evaluate("protocol", group("loading", loading))
-    return answer.values
-
-
-def spectrum(acceleration: Array, dt: float, period: Array, damping: float) -> Array:
-    """Return peaks of relative displacement, relative velocity, absolute acceleration, a row each.
-
-    Values that are not finite must not come here.
-    """
-    answer = _evaluate("spectrum", acceleration=acceleration, dt=dt, period=period, damping=damping)
-    return np.ascontiguousarray(answer.rows.T)
-
-
-def read_history(path: str | os.PathLike[str], length: str, force: str) -> tuple[str, Array, Array]:
-    """Return name, displacements [m] and forces [N] of a history file.
-
-    `length` and `force` are the units of the file; empty strings mean those given in the file.
-    """
-    text = f"{word(length)}\n{word(force)}\n{_arguments.file(path)}"
-    name, _, rows, _ = _evaluate("read_history", text)
-    displacement, force_values = rows.copy()
-    return name, displacement, force_values
 
 
 @cache
@@ -539,17 +454,9 @@ def section_quantities() -> dict[str, tuple[str, ...]]:
     return {kind: tuple(text.split(", ")) for kind, text in zip(kinds, _names()[2:], strict=True)}
 
 
-def _named(kind: str, values: Array) -> dict[str, float]:
+def named(kind: str, values: Array) -> dict[str, float]:
+    """Return values of a section by their names in `section_quantities`."""
     return dict(zip(section_quantities()[kind], values.tolist(), strict=True))
-
-
-def _named_rows(kind: str, rows: Array) -> dict[str, Array]:
-    return {name: row.copy() for name, row in zip(section_quantities()[kind], rows, strict=True)}
-
-
-def check_section(section: Statement) -> dict[str, float]:
-    """Return figures of a section, or raise `InputError` for everything wrong with it."""
-    return _named("section", _evaluate("check_section", section).values)
 
 
 def axial_capacity(
@@ -557,79 +464,8 @@ def axial_capacity(
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return least (tension) and largest axial load without curvature, and their moments."""
     statement = section + group("diagram", {"tension": tension, "confined": confined})
-    least, most, at_least, at_most = _evaluate("axial_capacity", statement).values.tolist()
+    least, most, at_least, at_most = evaluate("axial_capacity", statement).values.tolist()
     return (least, most), (at_least, at_most)
-
-
-def concrete_response(concrete: Statement, tension: str, strain: Array) -> Array:
-    """Return the stresses of unconfined concrete, compression positive."""
-    statement = concrete + group("diagram", {"tension": tension})
-    return _evaluate("concrete_response", statement, strain=strain).values
-
-
-def steel_response(steel: Statement, strain: Array) -> Array:
-    """Return the stresses of steel."""
-    return _evaluate("steel_response", steel, strain=strain).values
-
-
-def moment_curvature(
-    section: Statement, settings: Mapping[str, Any], curvature: Array
-) -> tuple[Array, Array]:
-    """Return moments and strains for curvatures of one sign and increasing magnitude."""
-    statement = section + group("diagram", settings)
-    moment, strain = _evaluate("moment_curvature", statement, curvature=curvature).rows
-    return moment, strain
-
-
-def section_events(
-    section: Statement, settings: Mapping[str, Any]
-) -> tuple[list[dict[str, float]], bool]:
-    """Return cracking, yield, peak, ultimate and the end, and whether the axial load was lost."""
-    statement = section + group("diagram", settings)
-    _, (lost,), points, _ = _evaluate("section_events", statement)
-    return [_named("point", point) for point in points], bool(lost)
-
-
-def section_flexure(
-    section: Statement, settings: Mapping[str, Any]
-) -> tuple[list[dict[str, float]], dict[str, float]]:
-    """Return cracking, yield, peak and ultimate, and the figures of the flexural spring."""
-    statement = section + group("springs", settings)
-    _, figures, points, _ = _evaluate("section_flexure", statement)
-    return [_named("point", point) for point in points], _named("spring", figures)
-
-
-class ShearRun(NamedTuple):
-    """A shear diagram: its points, the layers at the last one, the knee if it is found, the end."""
-
-    points: dict[str, Array]
-    profile: dict[str, Array]
-    knee: dict[str, float] | None
-    end: dict[str, float]
-    sheared: bool
-    lost: bool
-
-
-def section_shear(section: Statement, settings: Mapping[str, Any], curvature: Array) -> ShearRun:
-    """Follow a shear diagram; `settings` has the number of layers."""
-    statement = section + group("shear", settings)
-    _, values, points, _ = _evaluate("section_shear", statement, curvature=curvature)
-    found, sheared, lost = (bool(event) for event in values[:3])
-    names = section_quantities()["profile"]
-    return ShearRun(
-        _named_rows("shear", points[:-2].T),
-        dict(zip(names, values[3:].reshape(len(names), -1), strict=True)),
-        _named("shear", points[-2]) if found else None,
-        _named("shear", points[-1]),
-        sheared,
-        lost,
-    )
-
-
-def section_strips(section: Statement, round_core: bool, number: int) -> tuple[Array, Array]:
-    """Return centroids and areas of core and of cover in strips, a strip a column."""
-    rows = _evaluate("section_strips", section, round_core=round_core, number=number).rows.T
-    return rows[:2], rows[2:]
 
 
 def _finish(answer: Answer, values: Array) -> Run:

@@ -180,8 +180,12 @@ def crossing(repeats: int) -> list[Row]:
     predicted = rbsdem.section.column(paper.section, paper.length, axial_load=paper.axial_load)
     text = predicted.to_namelist() + "&loading drive = 'displacement', values = 0.001 /\n"
     calls: list[tuple[str, float, Callable[[], Any]]] = [
-        ("one body, crossing", 0.05, lambda: _core.check_column(one._statement)),
-        ("predicted column, crossing", 0.3, lambda: _core.check_column(predicted._statement)),
+        ("one body, crossing", 0.05, lambda: _core.evaluate("check_structure", one._statement)),
+        (
+            "predicted column, crossing",
+            0.3,
+            lambda: _core.evaluate("check_structure", predicted._statement),
+        ),
         ("static, N = 1, 2 points", 0.11, lambda: rbsdem.cyclic(one, displacement=[0.001, 0.002])),
     ]
     with tempfile.TemporaryDirectory() as folder:

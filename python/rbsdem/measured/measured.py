@@ -230,5 +230,8 @@ def read_peer(path: str | os.PathLike[str], *, units: tuple[str, str] | None = N
             f'units = {_arguments.shown(units)} must be those of displacement and force, as ("mm", '
             '"kN")'
         )
-    lengths, forces = (_arguments.text(unit, "units") for unit in pair)
-    return PeerTest(*_core.read_history(path, lengths, forces))
+    words = [_core.word(_arguments.text(unit, "units")) for unit in pair]
+    name, _, (displacement, force), _ = _core.evaluate(
+        "read_history", "\n".join([*words, _arguments.file(path)])
+    )
+    return PeerTest(name, displacement.copy(), force.copy())

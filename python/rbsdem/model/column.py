@@ -177,7 +177,7 @@ class Column:
             put("damping", Damping(modal=_arguments.number(self.damping, "column: damping")))
         # Once for all analyses, as a frozen column does not change.
         put("_statement", self._state())
-        notes = _core.check_column(self._statement)
+        notes = _core.evaluate("check_structure", self._statement).text.splitlines()
         for note in notes if _TELLING.get() else ():
             warnings.warn(note, AccuracyWarning, stacklevel=4)
 
@@ -338,7 +338,7 @@ class Column:
 
     def to_namelist(self) -> str:
         """Return the column as groups of a case file, from which the same column comes back."""
-        return _core.to_namelist(self._groups())
+        return _core.evaluate("to_namelist", self._groups()).text
 
     def _groups(self) -> _core.Statement:
         """Return all that a case file has of the column."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Literal
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
@@ -50,7 +49,7 @@ class Concrete:
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "concrete")
-        _core.concrete_response(self.statement(), "ts", np.zeros(1))
+        self.stress(0.0)
 
     def statement(self) -> _core.Statement:
         """Return the keys of the concrete with their values."""
@@ -77,7 +76,8 @@ class Concrete:
             If a strain is not a finite number.
         """
         strains = _arguments.finite_vector(strain, "strain", shape="any")
-        stress = _core.concrete_response(self.statement(), tension, strains.ravel())
+        law = self.statement() + _core.group("diagram", {"tension": tension})
+        stress = _core.evaluate("concrete_response", law, strain=strains).values
         return stress.reshape(strains.shape)[()]
 
 
@@ -116,7 +116,7 @@ class Steel:
         _arguments.convert(self, "steel")
         if given(self.fu) is None:
             object.__setattr__(self, "fu", Derived(1.5 * self.fy))
-        _core.steel_response(self.statement(), np.zeros(1))
+        self.stress(0.0)
 
     def statement(self, number: int | None = None) -> _core.Statement:
         """Return the keys of the steel with their values; `number` is what bars refer to."""
@@ -142,4 +142,5 @@ class Steel:
             If a strain is not a finite number.
         """
         strains = _arguments.finite_vector(strain, "strain", shape="any")
-        return _core.steel_response(self.statement(), strains.ravel()).reshape(strains.shape)[()]
+        stress = _core.evaluate("steel_response", self.statement(), strain=strains).values
+        return stress.reshape(strains.shape)[()]

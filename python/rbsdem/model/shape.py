@@ -213,7 +213,8 @@ class Section(_Parts, ABC):
         if ties is not None:
             statement += ties.statement(numbers[ties.steel])
         self._put("_statement", statement)
-        self._put("_figures", _core.check_section(statement))
+        answer = _core.evaluate("check_section", statement)
+        self._put("_figures", _core.named("section", answer.values))
 
     def _take_bars(self, cover: float, transverse: Ties | Spiral | None) -> None:
         """Set the bars, from list or layout, and their diameter."""

@@ -78,7 +78,7 @@ class Spring:
 
     def _check(self) -> None:
         """Raise `InputError` if the rule does not allow the parameters."""
-        _core.check_spring(self.statement("flexure"), 0.0)
+        _core.evaluate("check_spring", self.statement("flexure"), axial_load=0.0)
 
     def landmarks(self) -> list[Landmark]:
         """Return where the virgin spring cracks, yields and caps, by the table of its rule."""
@@ -184,13 +184,10 @@ class Spring:
         InputError
             If the array does not have one dimension, or contains a value that is not finite.
         """
-        return self._response(deformation, 0.0)
-
-    def _response(self, deformation: ArrayLike, axial_load: float) -> Array:
         path = _arguments.finite_vector(deformation, "deformation")
         if path.size == 0:
             return np.empty(0)
-        return _core.spring_response(self.statement("flexure"), axial_load, path)
+        return _response(self.statement("flexure"), path, 0.0)
 
 
 def for_whole_column(spring: AnySpring, place: str) -> AnySpring:
@@ -661,7 +658,7 @@ class Layered(Spring):
 
     def _check(self) -> None:
         # The column checks whether the layers can carry its axial load.
-        _core.check_spring(self._alone(), 0.0)
+        _core.evaluate("check_spring", self._alone(), axial_load=0.0)
 
     def _alone(self) -> _core.Statement:
         """Return the spring with its layers, as a case of one joint."""
@@ -717,11 +714,13 @@ class Layered(Spring):
         InputError
             If the layers cannot carry the axial load, or a rotation is not finite.
         """
-        return self._response(deformation, _arguments.number(axial_load, "axial_load"))
-
-    def _response(self, deformation: ArrayLike, axial_load: float) -> Array:
         path = _arguments.finite_vector(deformation, "deformation")
-        return _core.spring_response(self._alone(), axial_load, path)
+        return _response(self._alone(), path, _arguments.number(axial_load, "axial_load"))
+
+
+def _response(spring: _core.Statement, path: Array, axial_load: float) -> Array:
+    given = {"axial_load": axial_load, "deformation": path}
+    return _core.evaluate("spring_response", spring, **given).values
 
 
 def layer_springs(ids: dict[Spring, int]) -> _core.Statement:

@@ -80,7 +80,10 @@ def response_spectrum(
             f"damping = {ratio:g} must be from 0 to {_MOST_DAMPING:g}; it is a ratio, not a "
             "percentage"
         )
-    return Spectrum(period, ratio, *_core.spectrum(acceleration, dt, period, ratio))
+    peaks = _core.evaluate(
+        "spectrum", acceleration=acceleration, dt=dt, period=period, damping=ratio
+    ).rows
+    return Spectrum(period, ratio, *np.ascontiguousarray(peaks.T))
 
 
 #: Standard acceleration of gravity [m/s2].

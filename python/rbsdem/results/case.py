@@ -122,7 +122,8 @@ class Case:
         parts.append(_core.group("analysis", {"method": self.method} | settings))
         parts.append(_core.group("output", output))
         numbers = [float(number) for part in parts for number in part.numbers]
-        return _core.to_namelist(_core.Statement("\n".join(part.text for part in parts), numbers))
+        statement = _core.Statement("\n".join(part.text for part in parts), numbers)
+        return _core.evaluate("to_namelist", statement).text
 
     def __eq__(self, other: object) -> bool:
         """Return whether another case has the same column, histories and settings, bit for bit."""

@@ -98,8 +98,9 @@ class Diagram:
     lost: bool
 
 
-def make_point(values: dict[str, float]) -> Point | None:
-    """Return a point, or None if it was not found."""
+def make_point(row: Array) -> Point | None:
+    """Return the point of a row of the Fortran part, or None if it was not found."""
+    values = _core.named("point", row)
     if not values["found"]:
         return None
     return Point(**{field.name: values[field.name] for field in fields(Point)})
@@ -187,20 +188,16 @@ def _moments(
             f"curvature: {flat[over[0]]} 1/m makes strains of {flat[over[0]] * section.depth:.3g} "
             f"over the depth; curvatures are in 1/m: 10 mrad/m is 0.01"
         )
-    settings = {
-        "axial_load": axial_load,
-        "tension": tension,
-        "confined": confined,
-    }
+    settings = {"axial_load": axial_load, "tension": tension, "confined": confined}
+    asked = section._statement + _core.group("diagram", settings)
     moment = np.empty_like(flat)
     strain = np.empty_like(flat)
     for side in (flat >= 0.0, flat < 0.0):
         places = np.flatnonzero(side)
         if places.size:
             places = places[np.argsort(np.abs(flat[places]), kind="stable")]
-            moment[places], strain[places] = _core.moment_curvature(
-                section._statement, settings, flat[places]
-            )
+            rows = _core.evaluate("moment_curvature", asked, curvature=flat[places]).rows
+            moment[places], strain[places] = rows
     return moment.reshape(shape)[()], strain.reshape(shape)[()]
 
 
@@ -299,11 +296,11 @@ def largest_moment(section: Section, axial_load: float, confined: bool) -> float
 
 def _find(section: Section, settings: dict[str, Any]) -> tuple[Events, Point, bool]:
     """Return the named points, the end, and whether the axial load is lost there."""
-    points, lost = _core.section_events(section._statement, settings)
-    *named, end = (make_point(point) for point in points)
+    answer = _core.evaluate("section_events", section._statement + _core.group("diagram", settings))
+    *named, end = map(make_point, answer.rows)
     if end is None:
         raise AssertionError("every diagram ends")
-    return Events(*named), end, lost
+    return Events(*named), end, bool(answer.values[0])
 
 
 def _points(events: Events) -> list[Point]:

@@ -115,7 +115,8 @@ def cut(
     # By how much the core, between the centre lines of the hoops, is smaller than the outline.
     less = [2 * float(section.side_cover or 0.0) + tie, 2 * section.cover + tie]
     round_core = round_core or (section.ties is not None and section.ties.is_round)
-    core, cover = _core.section_strips(section._statement, round_core, number)
+    given = {"round_core": round_core, "number": number}
+    strips = _core.evaluate("section_strips", section._statement, **given).rows
     if round_core:
         confinement = _spiral(section, section.depth - less[1])
     else:
@@ -126,8 +127,8 @@ def cut(
     # Slivers along the rim of the core are round-off.
     least = 1e-9 * section.gross_area
     return Strips(
-        core=tuple(Strip(y, part) for y, part in core.T.tolist() if part > least),
-        cover=tuple(Strip(y, part) for y, part in cover.T.tolist() if part > least),
+        core=tuple(Strip(y, part) for y, part in strips[:, :2].tolist() if part > least),
+        cover=tuple(Strip(y, part) for y, part in strips[:, 2:].tolist() if part > least),
         area=section.gross_area,
         inertia=section.inertia,
         shear_area=section.shear_area,

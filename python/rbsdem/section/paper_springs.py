@@ -165,9 +165,9 @@ def springs(
         for name, value in numbers.items()
     }
     words = {"yield_rule": yield_rule, "ultimate": ultimate}
-    points, found = _core.section_flexure(
-        section._statement, settings | words | {"confined": confined}
-    )
+    given = _core.group("springs", settings | words | {"confined": confined})
+    answer = _core.evaluate("section_flexure", section._statement + given)
+    found = _core.named("spring", answer.values)
     notes = []
     note = axial_load_note(axial_load, section)
     if note:
@@ -192,7 +192,7 @@ def springs(
         b1=found["b1"] if b1 is None else b1,
     )
     for_whole_column(flexure, "flexure")
-    events = Events(*(make_point(point) for point in points))
+    events = Events(*map(make_point, answer.rows))
     cracking, last = events.cracking, events.ultimate
     spring, shear_fit = None, None
     if shear == "mcft":

@@ -219,17 +219,22 @@ def shear_diagram(
         "layers": _arguments.whole(layers, "layers"),
         "knee": _arguments.number(knee, "knee"),
     }
-    run = _core.section_shear(section._statement, settings, path)
+    asked = section._statement + _core.group("shear", settings)
+    answer = _core.evaluate("section_shear", asked, curvature=path)
+    *rows, at_knee, at_end = (_core.named("shear", row) for row in answer.rows)
+    knee, sheared, lost = (bool(event) for event in answer.values[:3])
+    names = _core.section_quantities()["profile"]
+    profile = answer.values[3:].reshape(len(names), -1)
     return ShearDiagram(
         section=section,
         length=span,
         axial_load=load,
-        **run.points,
-        knee=ShearPoint(**run.knee) if run.knee else None,
-        end=ShearPoint(**run.end),
-        sheared=run.sheared,
-        lost=run.lost,
-        layers=ShearLayers(**run.profile),
+        **{name: np.array([row[name] for row in rows]) for name in at_end},
+        knee=ShearPoint(**at_knee) if knee else None,
+        end=ShearPoint(**at_end),
+        sheared=sheared,
+        lost=lost,
+        layers=ShearLayers(**dict(zip(names, profile, strict=True))),
     )
 
 

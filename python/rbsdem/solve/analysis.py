@@ -116,10 +116,11 @@ def modes(column: Column, count: int | None = None) -> Modes:
     """
     if count is not None:
         count = _arguments.whole(count, "count")
-    omega, shapes, stable_step, note = _core.modes(_checked(column)._statement, count)
-    if note:
-        warnings.warn(note, AccuracyWarning, stacklevel=2)
-    return Modes(omega, omega / (2 * np.pi), shapes, stable_step)
+    answer = _core.evaluate("modes", _checked(column)._statement, count=count)
+    if answer.text:
+        warnings.warn(answer.text, AccuracyWarning, stacklevel=2)
+    stable_step, omega = float(answer.values[0]), answer.values[1:]
+    return Modes(omega, omega / (2 * np.pi), answer.rows.T, stable_step)
 
 
 def matrices(column: Column, form: Literal["symmetric", "paper"] = "symmetric") -> Matrices:
@@ -135,8 +136,9 @@ def matrices(column: Column, form: Literal["symmetric", "paper"] = "symmetric") 
         M_symmetric = M_paper T with theta = cumulative sum of phi, and so for the others.
     """
     _arguments.choice(form, "form", ("symmetric", "paper"))
-    unknowns, found = _core.matrices(_checked(column)._statement, form == "paper")
-    return Matrices(unknowns, *(matrix.copy() for matrix in found))
+    answer = _core.evaluate("matrices", _checked(column)._statement, paper=form == "paper")
+    unknowns = tuple(answer.text.split())
+    return Matrices(unknowns, *(matrix.copy() for matrix in np.split(answer.rows, 4)))
 
 
 def cyclic(

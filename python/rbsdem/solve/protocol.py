@@ -73,8 +73,9 @@ def protocol(
                 f"protocol: {amplitudes!r} has its own cycles and amplitudes; leave out cycles and "
                 "negative_amplitudes"
             )
-        steps, counts = _core.named_protocol(
-            amplitudes, _positive(reference, "reference"), _positive(largest, "largest")
+        limits = [_positive(reference, "reference"), _positive(largest, "largest")]
+        steps, counts = np.split(
+            _core.evaluate("named_protocol", amplitudes, reference_and_largest=limits).values, 2
         )
     else:
         if reference is not None or largest is not None:
@@ -96,19 +97,27 @@ def protocol(
     if counts.size == 0 or steps.size == 0:
         empty = "amplitudes" if steps.size == 0 else "cycles"
         raise InputError("protocol: amplitudes and cycles must not be empty", f"protocol.{empty}")
-    return _core.protocol(
-        steps,
-        one_side,
-        counts,
-        _arguments.whole(repeats, "repeats"),
-        _arguments.whole(points, "points"),
-    )
+    repeats, points = _arguments.whole(repeats, "repeats"), _arguments.whole(points, "points")
+    number = int(counts.sum()) if counts.size > 1 else int(counts[0]) * steps.size
+    size = 4 * points * number * repeats + 1
+    if size > np.iinfo(np.int32).max:
+        raise InputError(f"protocol: {size} points are too many; reduce cycles, repeats or points")
+    loading = {
+        "drive": "force",
+        "source": "protocol",
+        "amplitudes": steps,
+        "negative_amplitudes": one_side,
+        "cycles": counts,
+        "repeats": repeats,
+        "points": points,
+    }
+    return _core.evaluate("protocol", _core.group("loading", loading)).values
 
 
-def _positive(value: float | None, name: str) -> float | None:
-    """Return a number above zero, or None."""
+def _positive(value: float | None, name: str) -> float:
+    """Return a number above zero, `UNSET` if there is none."""
     if value is None:
-        return None
+        return _core.UNSET
     number = _arguments.number(value, f"protocol: {name}")
     if not 0 < number < np.inf:
         raise InputError(f"protocol: {name} = {number:g} must be above 0")
