@@ -149,7 +149,7 @@ def difference(name: str, one: np.ndarray, other: np.ndarray) -> str:
 
 @relation(600, judged=0.9)
 def test_springs_alone(rng: Rng) -> None:
-    """Waiting, a path cut short, other units, the other side: bits. More points, halves in series: round-off.
+    """Waiting, a path cut short, other units, the other side: bits. More points, halves: round-off.
 
     The sum of layers from the other side is one in another order.
     """
