@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from samples import SPECIMEN, read_rows, write_history
 
 import rbsdem
 from rbsdem import peer
 from rbsdem.cli import main
 
 LENGTH, LOAD, BOTTOM = 1.6, 1.2e6, 0.3
+DRAWN = {
+    "longitudinal_number": 12, "cover": 0.03, "corner_diameter": 0.016, "shear_legs": 4.0,
+    "intermediate_diameter": 0.016, "intermediate_perpendicular": 2, "intermediate_parallel": 2,
+    "bottom_length": BOTTOM, "author": "Maker", "year": "2000", "failure_mode": "Flexure",
+}  # fmt: skip
 
 
 def made(
@@ -33,36 +38,14 @@ def made(
     The moment strength is that of the section times `strength`; on the negative side times
     `weak_side` too. The first stiffness is that of the gross column times `stiffness`.
     """
-    given = {
-        "section": "rectangular",
-        "length": LENGTH,
-        "width": 0.4,
-        "depth": 0.4,
-        "concrete_strength": 40e6,
-        "longitudinal_number": 12,
-        "cover": 0.03,
-        "corner_diameter": 0.016,
-        "intermediate_diameter": 0.016,
-        "intermediate_perpendicular": 2,
-        "intermediate_parallel": 2,
-        "corner_yield_stress": 450e6,
-        "longitudinal_ultimate_stress": 650e6,
-        "transverse_yield_stress": 400e6,
-        "transverse_diameter": 0.01,
-        "transverse_spacing": 0.08,
-        "shear_legs": 4.0,
-        "author": "Maker",
-        "year": "2000",
-        "failure_mode": "Flexure",
-        "bottom_length": BOTTOM,
-    }
-    specimen = peer.Specimen(
+    specimen = replace(
+        SPECIMEN,
         name=name,
         file=f"{name}.csv",
         folder=folder,
         axial_load=load,
         pdelta_code=label,
-        **(given | changes),  # type: ignore[arg-type]
+        **DRAWN | changes,
     )
     section = peer.draw(specimen).section
     peak = rbsdem.section.diagram(section, load).events.peak
@@ -82,9 +65,7 @@ def made(
         net += load * d / LENGTH
     elif force_is == 3:
         net += load * np.sin(np.arctan(d / (LENGTH + BOTTOM)))
-    rows = np.column_stack((1e3 * d, 1e-3 * net))
-    header = "displacement_mm,force_kN"
-    np.savetxt(folder / f"{name}.csv", rows, "%.6f", ",", header=header, comments="")
+    write_history(folder / f"{name}.csv", d, net)
     return specimen
 
 
@@ -154,9 +135,6 @@ def test_a_repeated_history_is_set_aside(tmp_path: Path) -> None:
     tests = [made(tmp_path, "a"), replace(made(tmp_path, "b"), duplicate_of=1)]
     assert doubts(tests) == {("b", "history", True, None)}
     assert [row.name for row in peer.check(tests).mended()] == ["a"]
-
-
-def test_tests_without_history_are_left_out(tmp_path: Path) -> None:
     checked = peer.check([replace(made(tmp_path, "a"), file=None)])
     assert (checked.indicators, checked.doubts, len(checked.mended())) == ((), (), 0)
 
@@ -166,8 +144,7 @@ def test_the_shared_tests(
 ) -> None:
     assert main(["peer", str(peer_folder), "--check", "--out", str(tmp_path)]) == 0
     assert "surely doubtful" in capsys.readouterr().out
-    with (tmp_path / "check.csv").open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+    rows = read_rows(tmp_path / "check.csv")
     # The force of this series is net, whatever its label: the loop itself says so.
     bayrak = [row for row in rows if row["series"] == "Bayrak 1996"]
     assert [row["code_instead"] for row in bayrak] == 8 * ["2"]
