@@ -10,32 +10,20 @@ import inspect
 import sys
 from collections.abc import Callable
 from fractions import Fraction
-from pathlib import Path
+from operator import attrgetter
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from samples import SECTION, STEEL
+from strategies import GOOD
 
 import rbsdem
-from rbsdem import _arguments, fragility, motions, peer
-from rbsdem import curves as comparison
-from rbsdem.calibration import free_names, undetermined
+from rbsdem import _arguments, calibration, curves, fragility, motions, peer
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.many.runs import RunOptions
-from rbsdem.section.parameters import parameters
-from rbsdem.springs import (
-    Bilinear,
-    Compression,
-    ConcreteSpring,
-    Elastic,
-    Gauge,
-    Layered,
-    PeakOriented,
-    Pinching,
-    SteelSpring,
-    Takeda,
-)
+from rbsdem.springs import SPRINGS, Bilinear, Elastic, Gauge
 
 pytestmark = pytest.mark.filterwarnings("ignore")
 
@@ -98,251 +86,111 @@ HOSTILE: dict[str, Any] = {
 }
 
 SPRING = Elastic(1e8)
-BILINEAR = Bilinear(1e8, 1e-3, 1e6)
-COLUMN = rbsdem.Column(1.6, 614.4, SPRING, BILINEAR)
-STEEL = rbsdem.Steel(400e6, 600e6)
-CONCRETE = rbsdem.Concrete(35e6)
-TIES = rbsdem.Ties(0.01, 0.08, STEEL)
-LAYOUT = rbsdem.Layout(8, 0.02, STEEL)
-SECTION = rbsdem.RectangularSection(0.4, 0.4, CONCRETE, layout=LAYOUT, ties=TIES, cover=0.03)
+COLUMN = rbsdem.Column(1.6, 614.4, SPRING, Bilinear(1e8, 1e-3, 1e6))
 PATH = np.array([0.0, 0.002, -0.002, 0.004])
 RESULT = rbsdem.cyclic(COLUMN, displacement=PATH)
-TIME = 0.02 * np.arange(50)
-SHAKEN = np.sin(9 * TIME)
-MOTION = rbsdem.GroundMotion(SHAKEN, 0.02, name="m")
-TEST = SimpleNamespace(displacement=RESULT.displacement, force=RESULT.force)
-ENSEMBLE = rbsdem.ensemble(COLUMN, MOTION, method="newmark")
-LAYERED = rbsdem.cyclic(
-    rbsdem.section.column(SECTION, 1.6, axial_load=5e5), displacement=[0.0, 0.01], openings=True
-)
+MOTION = rbsdem.GroundMotion(np.sin(0.18 * np.arange(50)), 0.02, name="m")
+MANY = {"method": "newmark", "dt": 0.02, "jobs": 1}
 COUNTS = fragility.Counts(
     np.array([1.0, 2.0, 3.0]), np.array([[0, 0, 1, 0], [0, 1, 1, 0], [1, 0, 1, 1]]), True
 )
-FRAGILITY = fragility.fit_fragility("a", COUNTS)
-HAZARD = fragility.Hazard([1.0, 2.0], [0.1, 0.01])
-UNCERTAIN = fragility.Uncertain(lambda k: COLUMN, {"k": fragility.lognormal(1.0, 0.2)})
 
-CAPPED = {"d_y": 1e-3, "f_y": 1e5, "d_cap": 1e-2, "f_cap": 1.2e5, "d_pc": 0.1}
-HISTORY = {"time": TIME, "ground_acceleration": SHAKEN, "dt": 0.02, "method": "newmark"}
-MANY = {"method": "newmark", "dt": 0.02, "jobs": 1}
-
-#: Public calls with arguments that are taken, and others that they have.
+#: What arguments of these names take.
+USUAL: dict[str, Any] = {
+    "acceleration": MOTION.acceleration, "amplitudes": [0.01, 0.02], "area": 1e-4,
+    "axial_load": 5e5, "beta": 0.2, "capacity": np.ones((2, 3)), "code": 1, "column": COLUMN,
+    "columns": COLUMN, "concrete": SECTION.concrete, "curvature": [0.001], "curve": RESULT,
+    "data": COUNTS, "deformation": PATH, "depth": 0.4, "diameter": 0.01, "displacement": PATH,
+    "driver": PATH, "dt": 0.01, "factor": 2.0, "fc": 35e6, "flexure": SPRING, "folder": "x",
+    "force": PATH, "free": ["flexure.k"], "frequency": [0.1, 0.01], "frequency_1": 1.0,
+    "frequency_2": 5.0, "fy": 400e6, "hazard": fragility.Hazard([1.0, 2.0], [0.1, 0.01]),
+    "height": 1.6, "intensity": [1.0, 2.0], "joint": 1, "layers": [(-0.1, SPRING), (0.1, SPRING)],
+    "length": 1.6, "levels": [0.1, 0.2], "make": lambda k: COLUMN, "mass": 614.4, "median": 1.0,
+    "model_displacement": PATH, "motion": MOTION, "motions": MOTION, "mu": 0.0, "n": 2, "name": "a",
+    "number": 8, "path": "/nowhere/x", "period": 0.5, "periods": [0.5, 1.0], "ratio": 0.02,
+    "result": RESULT, "run": 0, "section": SECTION, "shear": SPRING, "spacing": 0.08,
+    "steel": STEEL, "strain": PATH, "test": SimpleNamespace(displacement=PATH, force=RESULT.force),
+    "test_displacement": PATH, "time": 1.0,
+    "variables": {"k": fragility.lognormal(1.0, 0.2)}, "width": 0.4,
+}  # fmt: skip
+#: Objects whose methods are called.
+OBJECTS = {
+    "bilinear": COLUMN.flexure, "case": COLUMN, "damping": rbsdem.Damping, "result": RESULT,
+    "concrete": SECTION.concrete, "steel": STEEL, "motion": MOTION, "hazard": USUAL["hazard"],
+    "curve": RESULT.envelope(), "fragility": fragility.fit_fragility("a", COUNTS),
+    "uncertain": fragility.Uncertain(USUAL["make"], USUAL["variables"]),
+    "ensemble": rbsdem.ensemble(COLUMN, MOTION, method="newmark"),
+    "layered": rbsdem.cyclic(
+        rbsdem.section.column(SECTION, 1.6, axial_load=5e5), displacement=[0.0, 0.01],
+        openings=True,
+    ),
+}  # fmt: skip
+ROUND = {"diameter": 0.4, "layout": rbsdem.Layout(8, 0.02, STEEL), "cover": 0.03}
+#: Arguments of calls beside those that they must have, or in their place.
+OWN: dict[str, dict[str, Any]] = {
+    "rbsdem.CircularSection": ROUND,
+    "rbsdem.RectangularSection": {"layout": SECTION.layout, "ties": SECTION.ties, "cover": 0.03},
+    "rbsdem.compare_methods": {"displacement": PATH, "budget": 0.01},
+    "rbsdem.cyclic": {"displacement": PATH},
+    "rbsdem.ensemble": MANY,
+    "rbsdem.ida": {"levels": [0.1, 0.2]} | MANY,
+    "rbsdem.calibrate": {"evaluations": 3},
+    "rbsdem.section.interaction": {"points": 5},
+    "rbsdem.time_history": {"ground_acceleration": MOTION, "dt": 0.02, "method": "newmark"},
+    "fragility.stripes": {"levels": [0.1, 0.2]} | MANY,
+    "fragility.cloud": {"motions": dict.fromkeys("abc", MOTION), "scales": [0.1, 0.2, 0.3]} | MANY,
+    "motions.sequence": {"motions": [MOTION, MOTION]},
+    "objects.fragility.probability": {"intensity": 1.5},
+    "objects.case.joints": {"name": "shear"},
+    "objects.hazard.exceeded": {"intensity": 1.5},
+    "objects.motion.scaled": {"factor": 2.0},
+}
+CALLS = """
+rbsdem.CircularSection rbsdem.Column rbsdem.Concrete rbsdem.Damping rbsdem.Footing
+rbsdem.GroundMotion rbsdem.Layout rbsdem.RectangularSection rbsdem.Spiral rbsdem.Steel rbsdem.Ties
+rbsdem.calibrate rbsdem.compare rbsdem.compare_methods rbsdem.cyclic rbsdem.ensemble rbsdem.ida
+rbsdem.matrices rbsdem.modes rbsdem.protocol rbsdem.read_case rbsdem.read_result rbsdem.read_test
+rbsdem.time_history rbsdem.codes.code_values rbsdem.plot.history rbsdem.section.column
+rbsdem.section.diagram rbsdem.section.interaction rbsdem.section.parameters
+rbsdem.section.moment_curvature rbsdem.section.shear_diagram rbsdem.section.shear_strength
+rbsdem.section.springs rbsdem.section.strains calibration.free_names calibration.undetermined
+curves.displacement_metrics curves.energy curves.envelope curves.half_cycles curves.resample
+curves.secant_stiffness curves.strength_loss curves.summarise curves.turning_points
+fragility.Hazard fragility.Hunt fragility.Uncertain fragility.cloud fragility.fit_fragility
+fragility.lognormal fragility.stripes fragility.variance_split motions.corrected
+motions.read_motion motions.read_motions motions.resampled motions.sequence motions.synthetic
+peer.net_force peer.paper_columns peer.read_peer peer.read_specimens objects.bilinear.response
+objects.bilinear.split objects.case.joints objects.case.place_of objects.case.double_curvature
+objects.concrete.stress objects.curve.idealise objects.damping.rayleigh objects.ensemble.history
+objects.fragility.band objects.fragility.mean_annual_frequency objects.fragility.probability
+objects.fragility.samples objects.hazard.exceeded objects.hazard.frequency_of
+objects.layered.layer_deformation objects.layered.strains objects.motion.duration objects.motion.sa
+objects.motion.sa_avg objects.motion.scaled objects.motion.spectrum objects.motion.to_csv
+objects.result.at objects.result.envelope objects.result.hinge objects.result.idealise
+objects.result.save objects.result.save_state objects.result.strength_loss objects.result.to_csv
+objects.steel.stress objects.uncertain.sample objects.uncertain.values
+"""
+ROOMS = SimpleNamespace(
+    rbsdem=rbsdem, calibration=calibration, curves=curves, fragility=fragility, motions=motions,
+    peer=peer, objects=SimpleNamespace(**OBJECTS),
+)  # fmt: skip
 #: The keywords that a call takes together.
 OPTIONS = {f"Unpack[{kind.__name__}]": kind.__annotations__ for kind in (rbsdem.Solver, RunOptions)}
 
-CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
-    "Elastic": (Elastic, {"k": 1e8}),
-    "Bilinear": (Bilinear, {"k": 1e8, "d_y": 1e-3, "k_post": 1e6}),
-    "Takeda": (
-        Takeda,
-        {"k_c": 2e8, "d_c": 3e-4, "k_y": 6e7, "d_y": 3e-3, "k_u": 7e6},
-    ),
-    "PeakOriented": (PeakOriented, CAPPED),
-    "Pinching": (Pinching, CAPPED | {"kappa_f": 0.5, "kappa_d": 0.5}),
-    "Compression": (Compression, {"k": 1e8}),
-    "ConcreteSpring": (
-        ConcreteSpring,
-        {"k": 1e8, "f_peak": 1e6, "d_peak": 0.02, "k_soft": 1e6},
-    ),
-    "SteelSpring": (SteelSpring, {"k": 1e8, "f_y": 1e5, "k_post": 1e6}),
-    "Layered": (Layered, {"layers": [(-0.1, SPRING), (0.1, SPRING)]}),
-    "Spring.response": (BILINEAR.response, {"deformation": PATH}),
-    "Spring.split": (BILINEAR.split, {"n": 2}),
-    "Damping": (rbsdem.Damping, {"mass": 0.1}),
-    "Damping.rayleigh": (
-        rbsdem.Damping.rayleigh,
-        {"ratio": 0.02, "frequency_1": 1.0, "frequency_2": 5.0},
-    ),
-    "Footing": (rbsdem.Footing, {"shear": SPRING, "flexure": SPRING}),
-    "Column": (rbsdem.Column, {"height": 1.6, "mass": 614.4, "shear": SPRING, "flexure": SPRING}),
-    "Column.joints": (COLUMN.joints, {"name": "shear"}),
-    "Column.place_of": (COLUMN.place_of, {"joint": 1}),
-    "double_curvature": (COLUMN.double_curvature, {}),
-    "cyclic": (rbsdem.cyclic, {"column": COLUMN, "displacement": PATH}),
-    "cyclic by force": (rbsdem.cyclic, {"column": COLUMN, "force": PATH}),
-    "time_history": (rbsdem.time_history, {"column": COLUMN} | HISTORY),
-    "modes": (rbsdem.modes, {"column": COLUMN}),
-    "matrices": (rbsdem.matrices, {"column": COLUMN}),
-    "protocol": (rbsdem.protocol, {"amplitudes": [0.01, 0.02], "cycles": 2}),
-    "read_case": (rbsdem.read_case, {"path": "x"}),
-    "read_peer": (rbsdem.peer.read_peer, {"path": "x"}),
-    "read_test": (rbsdem.read_test, {"path": "x"}),
-    "read_result": (rbsdem.read_result, {"path": "x"}),
-    "paper_columns": (rbsdem.peer.paper_columns, {}),
-    "Result.at": (RESULT.at, {"time": 1}),
-    "Result.idealise": (RESULT.idealise, {}),
-    "Result.strength_loss": (RESULT.strength_loss, {}),
-    "Result.hinge": (RESULT.hinge, {}),
-    "Result.envelope": (RESULT.envelope, {}),
-    "Result.to_csv": (RESULT.to_csv, {"path": "/nowhere/x.csv"}),
-    "Result.save": (RESULT.save, {"path": "/nowhere/x"}),
-    "Result.save_state": (RESULT.save_state, {"path": "/nowhere/x"}),
-    "compare": (rbsdem.compare, {"result": RESULT, "test": TEST}),
-    "envelope": (rbsdem.curves.envelope, {"curve": RESULT}),
-    "comparison.energy": (comparison.energy, {"displacement": PATH, "force": PATH}),
-    "half_cycles": (comparison.half_cycles, {"displacement": PATH, "force": PATH}),
-    "strength_loss": (comparison.strength_loss, {"displacement": PATH, "force": PATH}),
-    "secant_stiffness": (comparison.secant_stiffness, {"displacement": PATH, "force": PATH}),
-    "turning_points": (comparison.turning_points, {"displacement": PATH}),
-    "summarise": (comparison.summarise, {"displacement": PATH, "force": PATH}),
-    "resample": (comparison.resample, {"driver": PATH}),
-    "displacement_metrics": (
-        comparison.displacement_metrics,
-        {"force": PATH, "test_displacement": PATH, "model_displacement": PATH},
-    ),
-    "Concrete": (rbsdem.Concrete, {"fc": 35e6}),
-    "Concrete.stress": (CONCRETE.stress, {"strain": PATH}),
-    "Steel": (rbsdem.Steel, {"fy": 400e6}),
-    "Steel.stress": (STEEL.stress, {"strain": PATH}),
-    "Ties": (rbsdem.Ties, {"diameter": 0.01, "spacing": 0.1, "steel": STEEL}),
-    "Spiral": (rbsdem.Spiral, {"diameter": 0.01, "spacing": 0.1, "steel": STEEL}),
-    "Layout": (rbsdem.Layout, {"number": 8, "diameter": 0.02, "steel": STEEL}),
-    "RectangularSection": (
-        rbsdem.RectangularSection,
-        {
-            "width": 0.4,
-            "depth": 0.4,
-            "concrete": CONCRETE,
-            "layout": LAYOUT,
-            "ties": TIES,
-            "cover": 0.03,
-        },
-    ),
-    "CircularSection": (
-        rbsdem.CircularSection,
-        {"diameter": 0.4, "concrete": CONCRETE, "layout": LAYOUT, "cover": 0.03},
-    ),
-    "HollowRectangularSection": (
-        rbsdem.RectangularSection,
-        {
-            "width": 1.0,
-            "depth": 1.0,
-            "concrete": CONCRETE,
-            "layout": LAYOUT,
-            "ties": TIES,
-            "cover": 0.03,
-            "wall": 0.2,
-        },
-    ),
-    "HollowCircularSection": (
-        rbsdem.CircularSection,
-        {"diameter": 1.0, "concrete": CONCRETE, "layout": LAYOUT, "cover": 0.03, "wall": 0.2},
-    ),
-    "section.diagram": (rbsdem.section.diagram, {"section": SECTION, "axial_load": 5e5}),
-    "section.moment_curvature": (
-        rbsdem.section.moment_curvature,
-        {"section": SECTION, "curvature": [0.001], "axial_load": 5e5},
-    ),
-    "section.strains": (
-        rbsdem.section.strains,
-        {"section": SECTION, "curvature": [0.001], "axial_load": 5e5},
-    ),
-    "section.interaction": (rbsdem.section.interaction, {"section": SECTION, "points": 5}),
-    "codes.code_values": (
-        rbsdem.codes.code_values,
-        {"section": SECTION, "height": 1.6, "axial_load": 5e5},
-    ),
-    "section.springs": (
-        rbsdem.section.springs,
-        {"section": SECTION, "length": 1.6, "axial_load": 5e5},
-    ),
-    "section.column": (
-        rbsdem.section.column,
-        {"section": SECTION, "height": 1.6, "axial_load": 5e5},
-    ),
-    "section.shear_diagram": (
-        rbsdem.section.shear_diagram,
-        {"section": SECTION, "length": 1.6, "axial_load": 5e5},
-    ),
-    "section.shear_strength": (
-        rbsdem.section.shear_strength,
-        {"section": SECTION, "length": 1.6, "axial_load": 5e5},
-    ),
-    "GroundMotion": (rbsdem.GroundMotion, {"acceleration": SHAKEN, "dt": 0.02}),
-    "GroundMotion.scaled": (MOTION.scaled, {"factor": 2.0}),
-    "GroundMotion.spectrum": (MOTION.spectrum, {}),
-    "GroundMotion.sa": (MOTION.sa, {"period": 0.5}),
-    "read_motion": (motions.read_motion, {"path": "x"}),
-    "read_motions": (motions.read_motions, {"folder": "x"}),
-    "resampled": (motions.resampled, {"motion": MOTION, "dt": 0.01}),
-    "corrected": (motions.corrected, {"motion": MOTION}),
-    "sequence": (motions.sequence, {"motions": [MOTION, MOTION]}),
-    "synthetic": (motions.synthetic, {"n": 1}),
-    "ensemble": (rbsdem.ensemble, {"columns": COLUMN, "motions": MOTION} | MANY),
-    "ida": (
-        rbsdem.ida,
-        {"column": COLUMN, "motions": MOTION, "levels": [0.1, 0.2]} | MANY,
-    ),
-    "stripes": (
-        rbsdem.fragility.stripes,
-        {"column": COLUMN, "motions": MOTION, "levels": [0.1, 0.2]} | MANY,
-    ),
-    "cloud": (
-        rbsdem.fragility.cloud,
-        {"column": COLUMN, "motions": [MOTION] * 1, "scales": [0.1, 0.2, 0.3]} | MANY,
-    ),
-    "Hunt": (fragility.Hunt, {}),
-    "Hazard": (fragility.Hazard, {"intensity": [1.0, 2.0], "frequency": [0.1, 0.01]}),
-    "Hazard.frequency_of": (
-        HAZARD.frequency_of,
-        {"mu": 0.0, "beta": 0.4},
-    ),
-    "Hazard.exceeded": (HAZARD.exceeded, {"intensity": 1.5}),
-    "Fragility.probability": (FRAGILITY.probability, {"intensity": 1.5}),
-    "Fragility.samples": (FRAGILITY.samples, {"n": 10}),
-    "Fragility.band": (FRAGILITY.band, {"intensity": 1.5, "n": 10}),
-    "Fragility.mean_annual_frequency": (FRAGILITY.mean_annual_frequency, {"hazard": HAZARD}),
-    "Uncertain.sample": (UNCERTAIN.sample, {"n": 2}),
-    "Uncertain.values": (UNCERTAIN.values, {"n": 2}),
-    "Ensemble.history": (ENSEMBLE.history, {"run": 0}),
-    "GroundMotion.duration": (MOTION.duration, {}),
-    "GroundMotion.sa_avg": (MOTION.sa_avg, {"periods": [0.5, 1.0]}),
-    "GroundMotion.to_csv": (MOTION.to_csv, {"path": "/nowhere/x"}),
-    "Envelope.idealise": (RESULT.envelope().idealise, {}),
-    "Result.strains": (LAYERED.strains, {}),
-    "Result.layer_deformation": (LAYERED.layer_deformation, {}),
-    "net_force": (
-        peer.net_force,
-        {"displacement": PATH, "force": PATH, "code": 1, "axial_load": 1e5, "length": 1.6},
-    ),
-    "read_specimens": (peer.read_specimens, {"path": "x"}),
-    "section.parameters": (parameters, {}),
-    "plot.history": (rbsdem.plot.history, {"result": RESULT}),
-    "Uncertain": (
-        fragility.Uncertain,
-        {"make": lambda k: COLUMN, "variables": {"k": fragility.lognormal(1.0, 0.2)}},
-    ),
-    "lognormal": (fragility.lognormal, {"median": 1.0, "beta": 0.2}),
-    "variance_split": (fragility.variance_split, {"capacity": np.ones((2, 3))}),
-    "fit_fragility": (fragility.fit_fragility, {"name": "a", "data": COUNTS}),
-    "calibrate": (
-        rbsdem.calibrate,
-        {"column": COLUMN, "test": TEST, "free": ["flexure.k"], "evaluations": 3},
-    ),
-    "undetermined": (undetermined, {"column": COLUMN, "test": TEST, "free": ["flexure.k"]}),
-    "free_names": (free_names, {"column": COLUMN}),
-    "trade": (
-        rbsdem.compare_methods,
-        {"column": COLUMN, "displacement": PATH, "budget": 0.01},
-    ),
-    "Gauge": (Gauge, {"part": ("cover",), "length": (0.1,)}),
-}
 
-
-@pytest.mark.parametrize("call", CALLS)
-def test_hostile_values_are_refused_or_taken(
-    call: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Some are the name of a file that is written."""
-    monkeypatch.chdir(tmp_path)
-    function, given = CALLS[call]
-    names: list[str] = []
+def refused_otherwise(function: Callable[..., Any], own: dict[str, Any]) -> dict[Any, str]:
+    """Return the arguments and values that end in another exception than they should."""
+    names, given = [], dict(own)
     for name, parameter in inspect.signature(function).parameters.items():
         if parameter.kind == parameter.VAR_KEYWORD:
-            names += OPTIONS.get(parameter.annotation, {})
+            names += OPTIONS.get(str(parameter.annotation), {})
         elif parameter.kind != parameter.VAR_POSITIONAL:
             names.append(name)
+            if parameter.default is parameter.empty and name not in given:
+                given[name] = USUAL[name]
     wrong = {}
+    if not {"path", "folder"} & set(given):
+        function(**given)
     for argument in dict.fromkeys([*names, *given]):
         for name, value in HOSTILE.items():
             try:
@@ -351,9 +199,37 @@ def test_hostile_values_are_refused_or_taken(
                 pass
             except Exception as error:
                 wrong[argument, name] = f"{type(error).__name__}: {error}"[:100]
+    return wrong
+
+
+@pytest.mark.parametrize("call", CALLS.split())
+def test_hostile_values_are_refused_or_taken(call, tmp_path, monkeypatch):
+    """Some are the name of a file that is written."""
+    monkeypatch.chdir(tmp_path)
+    assert refused_otherwise(attrgetter(call)(ROOMS), OWN.get(call, {})) == {}
     if "matplotlib.pyplot" in sys.modules:
         sys.modules["matplotlib.pyplot"].close("all")
-    assert wrong == {}
+
+
+@pytest.mark.parametrize("rule", SPRINGS)
+def test_hostile_parameters_of_springs(rule):
+    assert refused_otherwise(SPRINGS[rule], GOOD.get(rule, {})) == {}
+
+
+@pytest.mark.parametrize(
+    ("kind", "own"),
+    [
+        (Gauge, {"part": ("cover",), "length": (0.1,)}),
+        (rbsdem.RectangularSection, {
+            "width": 1.0, "depth": 1.0, "layout": SECTION.layout, "cover": 0.03, "wall": 0.2,
+        }),
+        (rbsdem.CircularSection, ROUND | {"diameter": 1.0, "wall": 0.2}),
+        (rbsdem.cyclic, {"force": PATH}),
+    ],
+    ids=["gauge", "hollow rectangle", "hollow circle", "path of forces"],
+)  # fmt: skip
+def test_hostile_values_of_other_forms(kind, own):
+    assert refused_otherwise(kind, own) == {}
 
 
 @pytest.mark.parametrize("name", ["masked", "datetimes", "timedeltas", "bytes", "list of words"])
