@@ -1,10 +1,10 @@
-"""Columns, cases and results as values: short repr, equality, pickle and copy."""
+"""Columns, cases, results and errors as values: repr, equality, pickle, copy, immutability."""
 
 from __future__ import annotations
 
 import copy
 import pickle
-from dataclasses import fields, replace
+from dataclasses import FrozenInstanceError, fields, replace
 
 import numpy as np
 import pytest
@@ -142,10 +142,11 @@ def test_result_knows_its_column_and_its_case():
     assert other.case is CASE
 
 
-def test_columns_are_keys_of_dictionaries():
-    same = replace(COLUMN)
-    assert same == COLUMN
-    assert len({COLUMN: 1, same: 2, OPEN: 3}) == 2
+def test_equal_records_have_one_hash():
+    assert hash(Elastic(1000000)) == hash(Elastic(1e6))
+    assert Elastic(2e6) != Elastic(1e6)
+    assert replace(COLUMN) == COLUMN
+    assert len({COLUMN: 1, replace(COLUMN): 2, OPEN: 3}) == 2
 
 
 def test_equal_springs_of_all_joints_are_one():
@@ -167,3 +168,75 @@ def test_a_changed_copy_is_checked_anew():
             flexure=Layered([(y, Compression(1e8)) for y in (-0.1, 0.1)]),
             axial_load=-1e3,
         )
+
+
+def test_records_cannot_be_changed():
+    records = [SHEAR, FLEXURE, *RECORDS.values(), rbsdem.modes(OPEN), rbsdem.Damping()]
+    for record in records:
+        for field in fields(record):
+            with pytest.raises(FrozenInstanceError):
+                setattr(record, field.name, 1.0)
+        with pytest.raises((FrozenInstanceError, AttributeError, TypeError)):
+            record.another = 1.0
+
+
+def test_column_does_not_change_with_the_lists_it_was_made_of():
+    lengths, masses = np.array([0.5, 0.5]), [100.0, 200.0]
+    springs = [SHEAR, Elastic(2e6)]
+    column = rbsdem.Column(1.0, None, springs, springs, n=2, lengths=lengths, masses=masses)
+    before = rbsdem.modes(column).omega.copy()
+    lengths[:] = [0.1, 0.9]
+    masses[0] = 1.0
+    springs[0] = Elastic(1.0)
+    assert column.lengths == (0.5, 0.5)
+    assert column.masses == (100.0, 200.0)
+    assert column.shear == (SHEAR, Elastic(2e6))
+    assert np.array_equal(rbsdem.modes(column).omega, before)
+
+
+def test_analyses_leave_their_arrays_alone():
+    time, force = TIME.copy(), 500 * MOTION
+    rbsdem.time_history(OPEN, time, force=force, ground_acceleration=force, method="newmark")
+    rbsdem.cyclic(COLUMN, displacement=force * 1e-6)
+    rbsdem.cyclic(COLUMN, force=force)
+    FLEXURE.response(force)
+    assert np.array_equal(time, TIME)
+    assert np.array_equal(force, 500 * MOTION)
+
+
+def test_arrays_of_any_layout_and_kind_are_taken():
+    path = np.array([0.0, 0.004, -0.004, 0.002])
+    expected = rbsdem.cyclic(COLUMN, displacement=path).force
+    spread = np.zeros((4, 3))
+    spread[:, 1] = path
+    kinds = [
+        path.tolist(),
+        tuple(path),
+        spread[:, 1],
+        path[::-1].copy()[::-1],
+        path.astype(">f8"),
+        path.astype(object).astype(float),
+    ]
+    path.flags.writeable = False
+    for kind in [*kinds, path]:
+        assert np.array_equal(rbsdem.cyclic(COLUMN, displacement=kind).force, expected)
+    whole = Elastic(2).response(np.array([1, -2, 3], dtype=np.int16))
+    assert np.array_equal(whole, [2.0, -4.0, 6.0])
+    assert FLEXURE.response([]).shape == (0,)
+
+
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_errors_are_of_builtin_kinds_and_survive_pickling(protocol):
+    plastic = Bilinear(1e6, 1e-3, 0.0)
+    with pytest.raises(rbsdem.SolveError, match="beyond the capacity") as caught:
+        rbsdem.cyclic(rbsdem.Column(1.6, 1.0, plastic, Elastic(1e6)), force=[0.0, 500.0, 2000.0])
+    error = caught.value
+    assert error.result.summary["status"] == "failed"
+    np.testing.assert_allclose(error.result.force, [0.0, 500.0, 1000.0], rtol=1e-12)
+    bare, wrong = rbsdem.SolveError("text"), rbsdem.InputError("text")
+    for one, kind in ((error, RuntimeError), (bare, RuntimeError), (wrong, ValueError)):
+        back = pickle.loads(pickle.dumps(one, protocol))
+        assert (type(back), str(back)) == (type(one), str(one))
+        assert isinstance(back, rbsdem.errors.RbsdemError)
+        assert isinstance(back, kind)
+        assert getattr(back, "result", None) == getattr(one, "result", None)
