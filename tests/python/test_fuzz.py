@@ -349,29 +349,6 @@ def test_mutants_are_many_kinds():
     assert sum(text.count(b"/") >= 4 for text in texts) > 0.6 * COUNT
 
 
-def test_mutated_namelists(executable, folder):
-    def check(i: int, base: str, text: bytes) -> list[tuple[str, str]]:
-        case = folder / f"{i:04d}-{base}.nml"
-        case.write_bytes(text)
-        output = case.with_suffix(".csv")
-        found = []
-        for command in (
-            ["check", case.name],
-            ["modes", case.name],
-            ["run", case.name, "--output", output.name],
-        ):
-            rows = output if command[0] == "run" else None
-            if fault := fault_of([executable, *command], folder, rows):
-                found.append((f"{base}, {command[0]}: {fault}", case.as_posix()))
-        for path in folder.glob(f"{output.name}*"):
-            path.unlink()
-        if not found:
-            case.unlink()
-        return found
-
-    judge(mutants(NAMELISTS, SEED), check)
-
-
 def driven(name: str) -> str:
     """A case that a history of any kind drives; one without names gives its column."""
     keys = ", column = '2'" if name.endswith("plain.csv") else ""
@@ -380,50 +357,46 @@ def driven(name: str) -> str:
 """
 
 
-def test_mutated_histories(executable, folder):
-    def check(i: int, base: str, text: bytes) -> list[tuple[str, str]]:
-        history = folder / f"{i:04d}-{base}"
-        history.write_bytes(text)
-        case = folder / f"{i:04d}.nml"
-        case.write_text(driven(history.name))
-        output = case.with_suffix(".csv")
-        command = [executable, "run", case.name, "--output", output.name]
-        fault = fault_of(command, folder, output)
-        for path in folder.glob(f"{output.name}*"):
-            path.unlink()
-        if fault:
-            return [(f"{base}: {fault}", case.as_posix())]
-        history.unlink()
-        case.unlink()
-        return []
-
-    judge(mutants(HISTORIES, SEED), check)
-
-
-def test_mutated_ground_motions(executable, folder):
-    """Times, too: reversed, far apart, without a header. A slow column, so that far is not long."""
-
-    def check(i: int, base: str, text: bytes) -> list[tuple[str, str]]:
-        history = folder / f"{i:04d}-{base}"
-        history.write_bytes(text)
-        case = folder / f"{i:04d}.nml"
-        case.write_text(f"""&column height = 10.0, mass = 1.0e9 /
-{SPRINGS}&loading drive = 'ground_acceleration', file = '{history.name}', scale = 1.0e-3 /
+def shaken(name: str) -> str:
+    """A slow column under a ground motion: times that are far apart are not long for it."""
+    return f"""&column height = 10.0, mass = 1.0e9 /
+{SPRINGS}&loading drive = 'ground_acceleration', file = '{name}', scale = 1.0e-3 /
 &analysis method = 'rk4' /
-""")
+"""
+
+
+@pytest.mark.parametrize(
+    ("bases", "case_of", "share"),
+    [(NAMELISTS, None, 1), (HISTORIES, driven, 1), ({"motion.csv": GROUND}, shaken, 4)],
+    ids=["namelists", "histories", "ground motions"],
+)
+def test_mutants_end_with_rows_or_a_message(executable, folder, bases, case_of, share):
+    """Times of motions, too: reversed, far apart, without a header."""
+
+    def check(i: int, base: str, text: bytes) -> list[tuple[str, str]]:
+        mutant = folder / (f"{i:04d}-{base}" if case_of else f"{i:04d}-{base}.nml")
+        mutant.write_bytes(text)
+        case = mutant
+        if case_of:
+            case = folder / f"{i:04d}.nml"
+            case.write_text(case_of(mutant.name))
         output = case.with_suffix(".csv")
-        command = [executable, "run", case.name, "--output", output.name]
-        fault = fault_of(command, folder, output)
+        commands = [["run", case.name, "--output", output.name]]
+        if not case_of:
+            commands += [["check", case.name], ["modes", case.name]]
+        found = []
+        for command in commands:
+            rows = output if command[0] == "run" else None
+            if fault := fault_of([executable, *command], folder, rows):
+                found.append((f"{base}, {command[0]}: {fault}", case.as_posix()))
         for path in folder.glob(f"{output.name}*"):
             path.unlink()
-        if fault:
-            return [(f"{base}: {fault}", case.as_posix())]
-        history.unlink()
-        case.unlink()
-        return []
+        if not found:
+            mutant.unlink()
+            case.unlink(missing_ok=True)
+        return found
 
-    jobs = (job for job in mutants({"motion.csv": GROUND}, SEED) if job[0] % 4 == 0)
-    judge(jobs, check)
+    judge((job for job in mutants(bases, SEED) if job[0] % share == 0), check)
 
 
 READER = """
