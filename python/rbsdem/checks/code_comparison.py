@@ -26,8 +26,6 @@ from rbsdem.section.layered import LayeredColumn
 if TYPE_CHECKING:
     import pandas as pd
 
-    pass
-
 
 # ---- drifts and backbones of a cantilever that follow from code values ---------------------------
 
@@ -299,11 +297,11 @@ def _rows(found: CodeComparison) -> list[Quantity]:
     """Return all quantities, those of the codes where they cover the column."""
     measured = _measured(found)
     rows = []
-    for name, (meaning, unit, codes) in _QUANTITIES.items():
+    for name, (meaning, unit, how, codes) in _QUANTITIES.items():
         values = dict(measured.get(name, {}))
-        for source, value in codes.items():
+        for source, key in codes.items():
             try:
-                values[source] = value(found)
+                values[source] = how(found, key)
             except ValueError:  # This source does not cover the column.
                 continue
         known = {s: values[s] for s in SOURCES if math.isfinite(values.get(s, math.nan))}
@@ -342,89 +340,60 @@ def _idealised(d: Array, f: Array) -> float:
     return math.nan
 
 
-def _at_yield(found: CodeComparison, drift: float) -> float:
+def _value(found: CodeComparison, name: str) -> float:
+    return found.values[name]
+
+
+def _at_yield(found: CodeComparison, name: str) -> float:
+    """Return the drift at yield, by a value or by a share of the gross stiffness."""
+    return yield_drift(found.values, name) if "stiffness" in name else found.values[name]
+
+
+def _secant(found: CodeComparison, name: str) -> float:
     """Return the secant stiffness to yield [N/m]."""
+    drift = _at_yield(found, name)
     force = found.values["yield.shear"] - found.leaning * drift
     return force / (drift * found.result.column.height)
 
 
-def _value(name: str) -> Callable[[CodeComparison], float]:
-    return lambda found: found.values[name]
+def _largest(found: CodeComparison, name: str) -> float:
+    line = next((each for each in found.backbones if each.name == name), None)
+    return math.nan if line is None else float(line.force(found.span, found.leaning).max())
 
 
-def _yield(name: str) -> Callable[[CodeComparison], float]:
-    return lambda found: yield_drift(found.values, name)
+def _loss(found: CodeComparison, name: str) -> float:
+    return drift_at_loss(found.values, name)
 
 
-def _secant(drift: Callable[[CodeComparison], float]) -> Callable[[CodeComparison], float]:
-    return lambda found: _at_yield(found, drift(found))
-
-
-def _largest(name: str) -> Callable[[CodeComparison], float]:
-    def value(found: CodeComparison) -> float:
-        line = next((each for each in found.backbones if each.name == name), None)
-        return math.nan if line is None else float(line.force(found.span, found.leaning).max())
-
-    return value
-
-
-def _loss(name: str) -> Callable[[CodeComparison], float]:
-    return lambda found: drift_at_loss(found.values, name)
+def _axial_failure(found: CodeComparison, name: str) -> float:
+    turned = yield_drift(found.values, "asce_41.stiffness") if name == "asce_41.b" else 0.0
+    return turned + found.values[name]
 
 
 _YIELD = {
-    "ASCE 41": _yield("asce_41.stiffness"),
-    "EC 8-3": _value("ec_8.yield"),
-    "Elwood": _yield("elwood.stiffness"),
-    "Haselton": _yield("haselton.stiffness"),
+    "ASCE 41": "asce_41.stiffness",
+    "EC 8-3": "ec_8.yield",
+    "Elwood": "elwood.stiffness",
+    "Haselton": "haselton.stiffness",
 }
+_SHEAR = {"ASCE 41": "asce_41.shear", "EC 8-3": "ec_8.shear", "Elwood": "sezen.shear"}
+_BUCKLING = {"Berry": "berry.buckling", "Goodnight": "goodnight.drift"}
+_LOSS = {
+    "ASCE 41": "ASCE 41-17, yield + a",
+    "EC 8-3": "EN 1998-3, theta_um (A.1)",
+    "Elwood": "Elwood, Moehle 2005, shear",
+    "Haselton": "Haselton, one push: cap + 0.2 post-cap",
+}
+_AXIAL = {"ASCE 41": "asce_41.b", "Elwood": "elwood.axial_drift"}
 
-#: Meaning, unit, and the values of codes by source.
-_QUANTITIES: dict[str, tuple[str, str, dict[str, Callable[[CodeComparison], float]]]] = {
-    "stiffness": (
-        "secant stiffness (codes: to yield)",
-        "N/m",
-        {source: _secant(drift) for source, drift in _YIELD.items()},
-    ),
-    "yield_drift": ("drift at yield, idealised", "drift", _YIELD),
-    "largest_force": (
-        "largest lateral force",
-        "N",
-        {name: _largest(name) for name in ("ASCE 41", "EC 8-3", "Elwood", "Haselton")},
-    ),
-    "shear_strength": (
-        "shear strength",
-        "N",
-        {
-            "ASCE 41": _value("asce_41.shear"),
-            "EC 8-3": _value("ec_8.shear"),
-            "Elwood": _value("sezen.shear"),
-        },
-    ),
-    "spalling": ("drift at spalling", "drift", {"Berry": _value("berry.spalling")}),
-    "bar_buckling": (
-        "drift at bar buckling",
-        "drift",
-        {"Berry": _value("berry.buckling"), "Goodnight": _value("goodnight.drift")},
-    ),
-    "strength_loss": (
-        "drift at a loss of 20 %",
-        "drift",
-        {
-            "ASCE 41": _loss("ASCE 41-17, yield + a"),
-            "EC 8-3": _loss("EN 1998-3, theta_um (A.1)"),
-            "Elwood": _loss("Elwood, Moehle 2005, shear"),
-            "Haselton": _loss("Haselton, one push: cap + 0.2 post-cap"),
-        },
-    ),
-    "axial_failure": (
-        "drift at axial failure",
-        "drift",
-        {
-            "ASCE 41": lambda found: (
-                yield_drift(found.values, "asce_41.stiffness") + found.values["asce_41.b"]
-            ),
-            "Elwood": _value("elwood.axial_drift"),
-        },
-    ),
+#: Meaning, unit, how the values of codes are found, and from what, by source.
+_QUANTITIES: dict[str, tuple[str, str, Callable[[CodeComparison, str], float], dict[str, str]]] = {
+    "stiffness": ("secant stiffness (codes: to yield)", "N/m", _secant, _YIELD),
+    "yield_drift": ("drift at yield, idealised", "drift", _at_yield, _YIELD),
+    "largest_force": ("largest lateral force", "N", _largest, {name: name for name in _YIELD}),
+    "shear_strength": ("shear strength", "N", _value, _SHEAR),
+    "spalling": ("drift at spalling", "drift", _value, {"Berry": "berry.spalling"}),
+    "bar_buckling": ("drift at bar buckling", "drift", _value, _BUCKLING),
+    "strength_loss": ("drift at a loss of 20 %", "drift", _loss, _LOSS),
+    "axial_failure": ("drift at axial failure", "drift", _axial_failure, _AXIAL),
 }

@@ -53,19 +53,28 @@ class _Ratios:
     model: Loop
 
     @property
+    def _enough(self) -> bool:
+        """Whether so much of the path was reached that ratios of the whole have a meaning."""
+        return True
+
+    @property
     def peak_ratio(self) -> float:
-        """Largest absolute force, model over test."""
-        return ratio(self.model.peak_force, self.test.peak_force)
+        """Largest absolute force, model over test.
+
+        NaN, as the next two, if less than half of the path was reached.
+        """
+        return ratio(self.model.peak_force, self.test.peak_force) if self._enough else math.nan
 
     @property
     def energy_ratio(self) -> float:
         """Work along the path, model over test; NaN unless the test dissipates."""
-        return ratio(self.model.energy, self.test.energy) if self.test.energy > 0 else math.nan
+        known = self._enough and self.test.energy > 0
+        return ratio(self.model.energy, self.test.energy) if known else math.nan
 
     @property
     def stiffness_ratio(self) -> float:
         """Secant stiffness at 70 % of the curve's own peak force, model over test."""
-        return ratio(self.model.stiffness, self.test.stiffness)
+        return ratio(self.model.stiffness, self.test.stiffness) if self._enough else math.nan
 
     @property
     def displacement_at_peak_ratio(self) -> float:
@@ -125,28 +134,8 @@ class Comparison(_Ratios):
     rms_best: float
 
     @property
-    def peak_ratio(self) -> float:
-        """Largest absolute force, model over test.
-
-        NaN if less than half of the path was reached.
-        """
-        return super().peak_ratio if self.path_fraction >= _ENOUGH else math.nan
-
-    @property
-    def energy_ratio(self) -> float:
-        """Work along the path, model over test.
-
-        NaN unless the test dissipates, and if less than half of the path was reached.
-        """
-        return super().energy_ratio if self.path_fraction >= _ENOUGH else math.nan
-
-    @property
-    def stiffness_ratio(self) -> float:
-        """Secant stiffness at 70 % of the curve's own peak force, model over test.
-
-        NaN if less than half of the path was reached.
-        """
-        return super().stiffness_ratio if self.path_fraction >= _ENOUGH else math.nan
+    def _enough(self) -> bool:
+        return self.path_fraction >= _ENOUGH
 
     @property
     def scores(self) -> dict[str, float]:

@@ -190,22 +190,9 @@ def shear_strength_mcft(
 def _crossing(falling: Callable[[float], float], most: float) -> float:
     """Return where a falling function equals its argument, from 0 to `most`, to the last digit."""
     low, high = 0.0, most
-    # Secants come near in a few steps; then only the last digits are halved.
-    before, at_before, v = 0.0, most, 0.5 * most
-    for _ in range(12):
-        at = falling(v) - v
-        if abs(v - before) <= 1e-9 * v or at == at_before:
-            break
-        before, at_before, v = v, at, v - at * (v - before) / (at - at_before)
-    for end in (v - 8e-15 * abs(v), v + 8e-15 * abs(v)):
-        if low < end < high:
-            low, high = (end, high) if falling(end) > end else (low, end)
     while low < (v := 0.5 * (low + high)) < high:
-        if falling(v) > v:
-            low = v
-        else:
-            high = v
-    return 0.5 * (low + high)
+        low, high = (v, high) if falling(v) > v else (low, v)
+    return v
 
 
 def shear_strength_sezen(
