@@ -1,4 +1,4 @@
-"""What is installed: the files of the folder `data`, and a digest of the code."""
+"""What is installed: the files of the package, its code, and the packages of the extras."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ import csv
 import hashlib
 import importlib.util
 from functools import cache
-from importlib import resources
+from importlib import import_module, resources
 from pathlib import Path
+from typing import Any
 
 from rbsdem.errors import InputError
 
@@ -56,3 +57,18 @@ def code_digest() -> bytes:
     for file in files:
         digest.update(hashlib.sha256(file.read_bytes()).digest())
     return digest.digest()
+
+
+#: Extra of each package.
+_EXTRAS = {"pyarrow": "ensembles", "xarray": "netcdf", "distributed": "cluster"}
+
+
+def extra(module: str) -> Any:
+    """Return a module of an extra, or raise `ImportError` with the installation command."""
+    package = module.partition(".")[0]
+    try:
+        return import_module(module)
+    except ImportError as error:
+        raise ImportError(
+            f'{package} is not installed: pip install "rbsdem[{_EXTRAS[package]}]"'
+        ) from error

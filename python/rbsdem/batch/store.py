@@ -19,8 +19,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rbsdem._extras import extra
 from rbsdem._files import whole_file
+from rbsdem._package import extra
 from rbsdem.errors import InputError
 
 try:

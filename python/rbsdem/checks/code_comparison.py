@@ -14,10 +14,8 @@ from rbsdem._arguments import Array
 from rbsdem.checks.code_values import CodeValues
 from rbsdem.checks.formulas import Quantities, quantities
 from rbsdem.checks.limit_states import limit_states
-from rbsdem.curves.curve import Curve, loop_pair
-from rbsdem.curves.envelope import envelope
-from rbsdem.curves.metrics import summarise
-from rbsdem.curves.strength import strength_loss
+from rbsdem.curves.envelope import envelope, strength_loss
+from rbsdem.curves.metrics import Curve, loop_pair, summarise
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
 from rbsdem.model.response import Response

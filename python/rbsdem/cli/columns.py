@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any, cast
 import click
 import numpy as np
 
-from rbsdem._extras import extra
 from rbsdem._files import write_figure
+from rbsdem._package import extra
 from rbsdem._tables import read_table
 from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
 from rbsdem.errors import InputError, RepairWarning

@@ -20,8 +20,7 @@ from rbsdem.measured.doubts import Checked
 from rbsdem.measured.doubts import check as check_tests
 from rbsdem.measured.predict import PredictionOptions
 from rbsdem.measured.predict import predict as run_predictions
-from rbsdem.measured.prediction_store import PredictionStore
-from rbsdem.measured.predictions import Predictions, loop_names
+from rbsdem.measured.predictions import Predictions, PredictionStore, loop_names
 from rbsdem.measured.specimens import Specimen, Specimens, read_specimens
 from rbsdem.output import reports, tables
 from rbsdem.output.measured import band_sheet, contact_sheet

@@ -52,6 +52,8 @@ from rbsdem.curves.cycles import turning_points as turning_points
 from rbsdem.curves.envelope import Envelope as Envelope
 from rbsdem.curves.envelope import Idealisation as Idealisation
 from rbsdem.curves.envelope import envelope as envelope
+from rbsdem.curves.envelope import envelope_points as envelope_points
+from rbsdem.curves.envelope import strength_loss as strength_loss
 from rbsdem.curves.metrics import N_POINTS as N_POINTS
 from rbsdem.curves.metrics import STIFFNESS_LEVEL as STIFFNESS_LEVEL
 from rbsdem.curves.metrics import Loop as Loop
@@ -64,5 +66,3 @@ from rbsdem.curves.scores import Comparison as Comparison
 from rbsdem.curves.scores import DisplacementMetrics as DisplacementMetrics
 from rbsdem.curves.scores import compare as compare
 from rbsdem.curves.scores import displacement_metrics as displacement_metrics
-from rbsdem.curves.strength import envelope_points as envelope_points
-from rbsdem.curves.strength import strength_loss as strength_loss

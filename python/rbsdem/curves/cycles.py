@@ -16,8 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
-from rbsdem.curves.curve import columns
-from rbsdem.curves.metrics import work
+from rbsdem.curves.metrics import columns, work
 from rbsdem.errors import InputError
 
 TURN = 0.02

@@ -12,10 +12,9 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
-from rbsdem.curves.curve import Curve, columns, pair
 from rbsdem.curves.cycles import HalfCycles, half_cycles, tip_rows
-from rbsdem.curves.metrics import Loop, PathPoints, loop_of, ratio, rms
-from rbsdem.curves.strength import strength_loss
+from rbsdem.curves.envelope import strength_loss
+from rbsdem.curves.metrics import Curve, Loop, PathPoints, columns, loop_of, pair, ratio, rms
 from rbsdem.errors import InputError
 
 if TYPE_CHECKING:

@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rbsdem import _core
-from rbsdem._extras import extra
-from rbsdem._package import code_digest
+from rbsdem._package import code_digest, extra
 from rbsdem.batch.store import PARQUET, Store, digest
 from rbsdem.errors import InputError
 from rbsdem.many.measures import STATUSES, Measure

@@ -18,8 +18,7 @@ from rbsdem.methods.reference import Reference, find_reference
 from rbsdem.methods.scene import Attempt, Run, Scene, make_scene
 from rbsdem.model.column import Column
 from rbsdem.model.springs import Spring
-from rbsdem.motions.acting import acting
-from rbsdem.motions.motion import GroundMotion
+from rbsdem.motions.motion import GroundMotion, acting
 from rbsdem.results.accuracy import Errors, errors_of
 from rbsdem.solve.solver import IMPLICIT, Solver
 

@@ -14,8 +14,8 @@ from rbsdem._arguments import Array
 from rbsdem.calibration.outcome import Calibration
 from rbsdem.checks.code_comparison import CodeComparison
 from rbsdem.checks.limit_states import LimitStates
-from rbsdem.curves.curve import Curve, loop_pair
 from rbsdem.curves.envelope import Envelope, Method
+from rbsdem.curves.metrics import Curve, loop_pair
 from rbsdem.curves.scores import Comparison
 from rbsdem.errors import InputError
 from rbsdem.model.response import Response

@@ -12,8 +12,8 @@ import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
-from rbsdem._extras import extra
 from rbsdem._files import whole_file
+from rbsdem._package import extra
 from rbsdem.errors import InputError
 from rbsdem.model.response import STATE_HEAD, Response, last_state
 

@@ -12,15 +12,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Concatenate, Literal, ParamSpec
 
 from rbsdem.checks.criteria import all_watches
-from rbsdem.checks.hinge import Hinge
-from rbsdem.checks.hinge import hinge as hinge_of
-from rbsdem.checks.limit_states import LimitStates
+from rbsdem.checks.limit_states import Hinge, LimitStates
+from rbsdem.checks.limit_states import hinge as hinge_of
 from rbsdem.checks.limit_states import limit_states as find_limit_states
-from rbsdem.curves.curve import loop_pair
 from rbsdem.curves.cycles import HalfCycles, half_cycles
-from rbsdem.curves.envelope import Envelope, Idealisation, Method
+from rbsdem.curves.envelope import Envelope, Idealisation, Method, strength_loss
 from rbsdem.curves.envelope import envelope as curve_envelope
-from rbsdem.curves.strength import strength_loss
+from rbsdem.curves.metrics import loop_pair
 from rbsdem.errors import SolveError
 from rbsdem.model.response import Response
 from rbsdem.results import files

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from rbsdem import _core
-from rbsdem._extras import extra
 from rbsdem._files import whole_file
+from rbsdem._package import extra
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column, without_notes
 from rbsdem.results.case import Case, read_case

@@ -26,8 +26,8 @@ from numpy.typing import ArrayLike
 from rbsdem import _arguments, _package
 from rbsdem._arguments import Array
 from rbsdem._files import write_csv
+from rbsdem.curves.envelope import strength_loss
 from rbsdem.curves.metrics import PathPoints, work
-from rbsdem.curves.strength import strength_loss
 from rbsdem.errors import AccuracyWarning, InputError, SolveError
 from rbsdem.model.column import Column
 from rbsdem.model.shape import Section

@@ -18,8 +18,7 @@ from rbsdem._arguments import Array
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning
 from rbsdem.model.column import Column, checked_column
 from rbsdem.model.response import Response, response_of, settings_of, state_of
-from rbsdem.motions.acting import acting
-from rbsdem.motions.motion import GroundMotion
+from rbsdem.motions.motion import GroundMotion, acting
 from rbsdem.solve.solver import IN_TIME, MethodName, Solver, checked_solver
 
 if TYPE_CHECKING:

@@ -24,8 +24,7 @@ from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.checks.code_values import code_values
 from rbsdem.errors import InputError, RbsdemError, SolveError
-from rbsdem.measured.nearest import nearest
-from rbsdem.measured.predict import predict_one
+from rbsdem.measured.predict import nearest, predict_one
 from rbsdem.measured.predictions import Prediction, picture
 from rbsdem.measured.specimens import Specimen, read_specimens
 from rbsdem.model.shape import Section
