@@ -23,7 +23,7 @@ from rbsdem import peer
 from rbsdem.cli import main
 from rbsdem.errors import InputError
 from rbsdem.measured import predict, predictions
-from rbsdem.measured.prediction_store import PredictionStore
+from rbsdem.measured.predictions import PredictionStore
 from rbsdem.output import reports
 from rbsdem.output.tables import write_csv
 from rbsdem.springs import Bilinear, Takeda
