@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -327,22 +326,6 @@ def test_paths_reach_layers():
         quiet(column, (D, F), ["flexure.layer[2].k"])
 
 
-def test_bounds_end_where_the_keys_do():
-    """The keys of the rules say where: of a share of 0.6, five times is beyond 1."""
-    capped = Pinching(
-        d_y=2e-3, f_y=2e5, d_cap=0.02, f_cap=2.2e5, d_pc=0.1, kappa_f=0.6, kappa_d=0.9
-    )
-    column = replace(joints(0.002), flexure=capped)
-    known = free_names(column)
-    assert (known["flexure.kappa_f"].low, known["flexure.kappa_f"].high) == (0.02, 1.0)
-    assert (known["flexure.c"].low, known["flexure.c"].high) == (1.0, 2.0)
-    assert known["flexure.d_cap"].unit == "rad"
-    steel = SteelSpring(k=2e8, f_y=5e5, k_post=1e6, cr1=0.9)
-    assert free_names(replace(column, flexure=steel))["flexure.cr1"].high == 1.0
-    with pytest.raises(InputError, match=r"bounds of flexure.c: 0.5 to 2 go below 1, which the"):
-        quiet(column, (D, F), ["flexure.c"], bounds={"flexure.c": (0.5, 2.0)})
-
-
 def test_common_factor_comes_back():
     start, truth = joints(0.002, 0.003), joints(0.003, 0.0045)
     fit = quiet(start, response(truth, path(start)), ["flexure[*].d_y"])
@@ -350,25 +333,31 @@ def test_common_factor_comes_back():
     assert fit.parameters[0].unit == ""
 
 
-def test_units_and_default_bounds():
-    known = free_names(COLUMNS["zahn_7"])
-    flexure = COLUMNS["zahn_7"].flexure
+def test_bounds_and_units():
+    """By default a fifth and five times; they end where the keys do, or where the rule does."""
+    start = COLUMNS["zahn_7"]
+    known, flexure = free_names(start), start.flexure
     assert known["flexure.k_c"] == Parameter(
         flexure.k_c, flexure.k_c / 5, flexure.k_c * 5, "N m/rad", "flexure.k_c"
     )
     assert (known["flexure.d_y"].unit, known["shear.d_y"].unit) == ("rad", "m")
-    assert (known["flexure.b0"].low, known["flexure.b0"].high, known["flexure.b0"].unit) == (
-        0,
-        1,
-        "",
-    )
-    assert (known["flexure.k_u"].low, known["flexure.k_u"].logarithmic) == (0.0, False)
+    b0, k_u = known["flexure.b0"], known["flexure.k_u"]
+    assert (b0.low, b0.high, b0.unit) == (0, 1, "")
+    assert (k_u.low, k_u.logarithmic) == (0.0, False)
     assert known["height"].high == pytest.approx(1.2 * 1.6)
     assert "mass" not in known
-
-
-def test_bounds_end_where_the_rule_does():
-    start = COLUMNS["zahn_7"]
+    # Of a share of 0.6, five times is beyond 1.
+    capped = Pinching(
+        d_y=2e-3, f_y=2e5, d_cap=0.02, f_cap=2.2e5, d_pc=0.1, kappa_f=0.6, kappa_d=0.9
+    )
+    column = replace(joints(0.002), flexure=capped)
+    known = free_names(column)
+    assert (known["flexure.kappa_f"].low, known["flexure.kappa_f"].high) == (0.02, 1.0)
+    assert (known["flexure.c"].low, known["flexure.c"].high) == (1.0, 2.0)
+    steel = SteelSpring(k=2e8, f_y=5e5, k_post=1e6, cr1=0.9)
+    assert free_names(replace(column, flexure=steel))["flexure.cr1"].high == 1.0
+    with pytest.raises(InputError, match=r"bounds of flexure.c: 0.5 to 2 go below 1, which the"):
+        quiet(column, (D, F), ["flexure.c"], bounds={"flexure.c": (0.5, 2.0)})
     test = response(start, path(start))
     alone = quiet(start, test, ["flexure.k_c"], evaluations=40).parameters[0]
     assert alone.low == pytest.approx(start.flexure.k_y, rel=1e-3)
@@ -391,82 +380,20 @@ def test_parameter_places():
         assert (number.at(-0.1), number.at(1.1)) == (number.low, number.high)
 
 
-# ---- columns from a recipe -----------------------------------------------------------------------
+def test_interrupt_keeps_the_best(monkeypatch):
+    start = COLUMNS["zahn_7"]
+    flexure = replace(start.flexure, k_y=4e7, d_y=4e-3)
+    test = response(replace(start, flexure=flexure), path(start))
+    calls, whole = [], misfit.cyclic
 
-
-class Made(Column):
-    """A column of two numbers: strength, and length of the hinge."""
-
-    calls = 0
-    stop_at = None
-
-    @classmethod
-    def of(cls, strength: float = 4e8, hinge: float = 0.3) -> Made:
-        cls.calls += 1
-        if cls.stop_at and cls.calls > cls.stop_at:
+    def interrupted(column, displacement):
+        calls.append(column)
+        if len(calls) == 60:
             raise KeyboardInterrupt
-        if hinge > 0.9:
-            raise InputError("hinge longer than the column")
-        made = cls(
-            height=1.6,
-            mass=600.0,
-            shear=Elastic(k=1e9),
-            flexure=Bilinear(k=2e7 / hinge, d_y=strength * 1e-11 * hinge / 0.3, k_post=1e6),
-        )
-        object.__setattr__(made, "numbers", {"strength": strength, "hinge": hinge})
-        return made
+        return whole(column, displacement=displacement)
 
-    @property
-    def parameters(self) -> Mapping[str, Parameter]:
-        return {
-            "strength": Parameter(self.numbers["strength"], 2e8, 8e8, "Pa", "yield stress"),
-            "hinge": Parameter(self.numbers["hinge"], 0.05, 2.0, "m", "length of the hinge"),
-        }
-
-    def with_parameters(self, **values: float) -> Made:
-        return Made.of(**(self.numbers | values))
-
-
-@pytest.fixture
-def made(monkeypatch):
-    monkeypatch.setattr(Made, "calls", 0)
-    return Made
-
-
-def test_recipe(made):
-    truth = made.of(5e8, 0.45)
-    fit = quiet(made.of(), response(truth, path(truth)), ["strength", "hinge"])
-    assert fit.nrmse < 1e-4
-    assert fit.values == pytest.approx({"strength": 5e8, "hinge": 0.45}, rel=1e-3)
-    assert isinstance(fit.column, Made)
-    assert fit.column.numbers == fit.values
-    assert fit.refused > 0
-    assert [number.what for number in fit.parameters] == ["yield stress", "length of the hinge"]
-    one = quiet(made.of(), response(truth, path(truth)), ["hinge"])
-    assert one.column.numbers["strength"] == 4e8
-
-
-def test_recipe_has_its_own_names_only(made):
-    with pytest.raises(
-        InputError, match=r"'hing' is not a parameter .* did you mean 'hinge'\? It has str"
-    ):
-        quiet(made.of(), response(made.of(), path(made.of())), ["hing"])
-
-
-def test_interrupt_keeps_the_best(made, monkeypatch):
-    truth = made.of(5e8, 0.45)
-    test = response(truth, path(truth))
-    start = made.of()
-
-    def interrupted(places, *rest):
-        monkeypatch.setattr(Made, "stop_at", None)
-        return found(places, *rest)
-
-    found = rbsdem.calibration.fit.determine
-    monkeypatch.setattr(rbsdem.calibration.fit, "determine", interrupted)
-    monkeypatch.setattr(Made, "calls", 0)
-    monkeypatch.setattr(Made, "stop_at", 60)
-    fit = quiet(start, test, ["strength", "hinge"])
+    monkeypatch.setattr(misfit, "cyclic", interrupted)
+    fit = quiet(start, test, ["flexure.k_y", "flexure.d_y"])
     assert fit.status == "interrupted"
     assert fit.nrmse < fit.before.nrmse
 
@@ -537,12 +464,12 @@ def test_warnings_of_columns_on_the_way_are_not_shown(recwarn):
 # ---- wrong input ---------------------------------------------------------------------------------
 
 D, F = response(COLUMNS["zahn_7"], path(COLUMNS["zahn_7"]))
-ZERO = replace(COLUMNS["zahn_7"], flexure=replace(COLUMNS["zahn_7"].flexure, k_u=0.0))
 
 
 def test_zero_start_with_bounds():
     test = response(COLUMNS["zahn_7"], D)
-    fit = quiet(ZERO, test, ["flexure.k_u"], {"flexure.k_u": (0, 5e7)})
+    zero = replace(COLUMNS["zahn_7"], flexure=replace(COLUMNS["zahn_7"].flexure, k_u=0.0))
+    fit = quiet(zero, test, ["flexure.k_u"], {"flexure.k_u": (0, 5e7)})
     assert fit.values["flexure.k_u"] == pytest.approx(COLUMNS["zahn_7"].flexure.k_u, rel=1e-3)
     assert fit.parameters[0].unit == "N m/rad"
 

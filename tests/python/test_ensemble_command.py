@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import csv
 import os
 import signal
-import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+from samples import read_rows
 from test_ensembles import column, motion
 
 import rbsdem
 from rbsdem.__main__ import main
+from rbsdem.many import ensemble
 
 pytest.importorskip("pyarrow", reason="the extra 'ensembles' brings pyarrow")
 
@@ -53,8 +52,7 @@ def test_records_and_scales(
     told = capsys.readouterr()
     assert told.out.startswith("6 runs: ")
     assert told.err == ""
-    with (out / "runs.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = read_rows(out / "runs.csv")
     assert [row["motion"] for row in rows] == ["one"] * 3 + ["two"] * 3
     assert [row["scale"] for row in rows] == ["0.5", "1", "8"] * 2
     expected = rbsdem.ensemble(
@@ -66,11 +64,6 @@ def test_records_and_scales(
     assert float(rows[4]["peak_drift"]) == pytest.approx(expected.measures["peak_drift"][0], 1e-5)
     assert command(monkeypatch, *given) == 0
     assert "6 runs, 6 of them from the store" in capsys.readouterr().out
-
-
-def test_the_motion_of_the_case(case: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert command(monkeypatch, case, "--out", case.parent / "out", "--quiet") == 0
-    assert len((case.parent / "out" / "runs.csv").read_text().splitlines()) == 2
 
 
 def test_the_state_of_the_case(
@@ -86,8 +79,7 @@ def test_the_state_of_the_case(
     record = rbsdem.motions.read_motion(case.with_name("one.csv"))
     given = {"method": "newmark", "collapse_drift": 0.05, "initial": state}
     expected = rbsdem.time_history(column(), ground_acceleration=record, **given)
-    with (out / "runs.csv").open(newline="") as file:
-        row = next(csv.DictReader(file))
+    row = read_rows(out / "runs.csv")[0]
     assert float(row["residual_displacement"]) == pytest.approx(expected.displacement[-1], 1e-5)
     case.write_text(text + "&loading drive = 'force', values = 0, 1e3, time = 0, 1 /\n")
     assert command(monkeypatch, case, "--out", out) == 2
@@ -97,7 +89,7 @@ def test_the_state_of_the_case(
 def test_parts(
     case: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(rbsdem.many.ensemble, "_LONGEST", 1e-4)
+    monkeypatch.setattr(ensemble, "_LONGEST", 1e-4)
     out = case.parent / "out"
     scales = ",".join(map(str, range(1, 30)))
     for part in ("2/2", "1/2"):
@@ -110,9 +102,13 @@ def test_parts(
 def test_cases_without_motion(
     case: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    """The motion is that of the case, unless it has none."""
+    out = case.parent / "out"
+    assert command(monkeypatch, case, "--out", out, "--quiet") == 0
+    assert len(read_rows(out / "runs.csv")) == 1
     loading = "&loading drive = 'displacement', values = 0.001 /\n&analysis method = 'static' /\n"
     case.write_text(column().to_namelist() + loading)
-    assert command(monkeypatch, case, "--out", case.parent / "out") == 2
+    assert command(monkeypatch, case, "--out", out) == 2
     assert "takes no records" in capsys.readouterr().err
 
 
@@ -135,23 +131,24 @@ def test_a_case_without_loading(
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
-def test_ctrl_c_keeps_what_is_done(case: Path) -> None:
-    """Whole shards are kept, the exit code tells, and a second start goes on."""
-    text = case.read_text().replace("'newmark'", "'rk4', dt = 1e-5")
-    case.write_text(text)
+def test_ctrl_c_keeps_what_is_done(
+    case: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """At the second task: the exit code tells, and a second start goes on."""
+    tasks, real = [], ensemble.compute
+
+    def break_off(task: object, control: object) -> object:
+        tasks.append(task)
+        if len(tasks) == 2:
+            os.kill(os.getpid(), signal.SIGINT)
+        return real(task, control)
+
+    monkeypatch.setattr(ensemble, "_LONGEST", 1e-6)
+    monkeypatch.setattr(ensemble, "compute", break_off)
     out = case.parent / "out"
-    scales = ",".join(f"{0.1 + 0.001 * k:.4g}" for k in range(1500))
-    code = "from rbsdem.batch import store\nfrom rbsdem.many import ensemble\n"
-    code += "ensemble._LONGEST = store._BEAT = 0.05\n"
-    code += "import sys; from rbsdem.__main__ import main; sys.exit(main())"
-    words = ["ensemble", case, "--scales", scales, "--out", out, "--jobs", "1"]
-    with subprocess.Popen([sys.executable, "-c", code, *words], stdout=subprocess.PIPE) as process:
-        shards = out / "store" / "shards"
-        while process.poll() is None and len(list(shards.glob("*.parquet"))) < 2:
-            time.sleep(0.01)
-        process.send_signal(signal.SIGINT)
-        told, _ = process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert b"not started" in told
+    words = (case, "--scales", ",".join(map(str, range(1, 40))), "--out", out, "--jobs", "1")
+    assert command(monkeypatch, *words) == 130
+    assert "not started" in capsys.readouterr().out
     assert not (out / "runs.csv").exists()
-    assert all(path.suffix == ".parquet" for path in shards.iterdir())
+    assert command(monkeypatch, *words) == 0
+    assert "of them from the store" in capsys.readouterr().out

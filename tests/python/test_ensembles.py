@@ -19,8 +19,6 @@ from rbsdem.many.measures import LIMIT_STATES, MEASURES, STATUSES, core_measures
 from rbsdem.many.plan import Plan, compute
 from rbsdem.springs import Bilinear, ConcreteSpring, Elastic, Layered, PeakOriented, Takeda
 
-TIME = 0.01 * np.arange(400)
-
 
 def motion(seed: int, points: int = 400, dt: float = 0.01) -> tuple[np.ndarray, np.ndarray]:
     """Return a motion of some sines [s, m/s2], 3 m/s2 at its largest."""
@@ -119,15 +117,6 @@ def test_names_of_motions() -> None:
     found = rbsdem.ensemble(column(), given, method="newmark")
     assert list(found.motions) == ["kobe", 1]
     assert found.measures["peak_drift"][0] == pytest.approx(found.measures["peak_drift"][1])
-
-
-def test_first_yield_is_that_of_the_history() -> None:
-    found = rbsdem.ensemble(column(), motion(1), scales=[0.05, 10.0], method="newmark")
-    rotation = np.abs(found.history(1).rotation[:, 0])
-    row = np.argmax(rotation >= 2.7e-3)
-    assert math.isnan(found.measures["first_yield"][0])
-    assert TIME[row - 1] < found.measures["first_yield"][1] <= TIME[row]
-    same_as_alone(found)
 
 
 def test_limit_states_are_those_of_the_history() -> None:
