@@ -11,11 +11,11 @@ from rbsdem.many.fragility import Hazard as Hazard
 from rbsdem.many.fragility import fit_fragility as fit_fragility
 from rbsdem.many.ida import IDA as IDA
 from rbsdem.many.ida import Hunt as Hunt
-from rbsdem.many.measures import LIMIT_STATES as LIMIT_STATES
-from rbsdem.many.measures import MEASURES as MEASURES
-from rbsdem.many.measures import STATUSES as STATUSES
-from rbsdem.many.stripes import Stripes as Stripes
-from rbsdem.many.stripes import stripes as stripes
+from rbsdem.many.ida import Stripes as Stripes
+from rbsdem.many.ida import stripes as stripes
+from rbsdem.many.inputs import LIMIT_STATES as LIMIT_STATES
+from rbsdem.many.inputs import MEASURES as MEASURES
+from rbsdem.many.inputs import STATUSES as STATUSES
 from rbsdem.many.uncertain import Sample as Sample
 from rbsdem.many.uncertain import Uncertain as Uncertain
 from rbsdem.many.uncertain import VarianceSplit as VarianceSplit

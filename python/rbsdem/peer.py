@@ -38,4 +38,4 @@ from rbsdem.measured.specimens import read_specimens as read_specimens
 from rbsdem.section.paper import paper_columns as paper_columns
 from rbsdem.section.paper import paper_sections as paper_sections
 from rbsdem.section.spread import likeness as likeness
-from rbsdem.web.gallery import gallery as gallery
+from rbsdem.web.pages import gallery as gallery

@@ -24,8 +24,7 @@ from benchmark import record_20_s
 from rows import Row, newest, show
 
 import rbsdem
-from rbsdem.many.inputs import Motion
-from rbsdem.many.measures import core_measures
+from rbsdem.many.inputs import Motion, core_measures
 from rbsdem.many.plan import Plan, compute
 
 #: Runs of the largest ensemble.

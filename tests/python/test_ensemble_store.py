@@ -19,7 +19,7 @@ import rbsdem
 from rbsdem import InputError
 from rbsdem.batch import store
 from rbsdem.many import ensemble
-from rbsdem.many.measures import MEASURES
+from rbsdem.many.inputs import MEASURES
 from rbsdem.many.plan import Plan
 from rbsdem.springs import Elastic
 

@@ -14,8 +14,7 @@ import pytest
 
 import rbsdem
 from rbsdem import InputError, SolveError
-from rbsdem.many.inputs import Motion
-from rbsdem.many.measures import LIMIT_STATES, MEASURES, STATUSES, core_measures
+from rbsdem.many.inputs import LIMIT_STATES, MEASURES, STATUSES, Motion, core_measures
 from rbsdem.many.plan import Plan, compute
 from rbsdem.springs import Bilinear, ConcreteSpring, Elastic, Layered, PeakOriented, Takeda
 

@@ -22,7 +22,7 @@ from rbsdem.cli.columns import start_of
 from rbsdem.codes import code_values
 from rbsdem.web import exports
 from rbsdem.web.answers import NearestTests, shown_rows
-from rbsdem.web.parts import GALLERY, MODULES, parts
+from rbsdem.web.pages import GALLERY, MODULES, parts
 from rbsdem.web.report import report_data, write_report
 from rbsdem.web.server import MOST_STATE, ExploreServer
 from rbsdem.web.state import DEFAULT

@@ -14,7 +14,7 @@ import rbsdem
 from rbsdem import peer, plot
 from rbsdem.cli import main
 from rbsdem.errors import AccuracyWarning
-from rbsdem.output import reports
+from rbsdem.output import measured
 from rbsdem.output.tables import write_csv
 
 DRIFTS = (0.005, 0.015)
@@ -55,7 +55,7 @@ def test_one_test(table: peer.Specimens) -> None:
     # 5 % are within the band of nominally equal specimens.
     assert row.points_within == 1.0
     assert len(plot.prediction(row).axes) == 2
-    assert reports.numbers_table(row).row_count >= 8
+    assert measured.numbers_table(row).row_count >= 8
 
 
 def test_a_column_that_nobody_tested(table: peer.Specimens, folder: Path) -> None:
@@ -82,7 +82,7 @@ def test_what_cannot_be_read_or_drawn_is_no_neighbour(folder: Path, tmp_path: Pa
     assert [one.specimen.name for one in row.nearest] == ["T3", "T4"]
     found = peer.predict(tmp_path, bands=True, samples=8)
     assert [one.status for one in found] == ["completed", "no history", *2 * ["completed"]]
-    assert reports.bands_table(found).row_count == 3
+    assert measured.bands_table(found).row_count == 3
     tests = [replace(table["T2"], longitudinal_number=0), table["T3"], table["T6"]]
     twice = replace(table["T4"], duplicate_of=3)
     first = table["T1"]

@@ -24,7 +24,7 @@ from rbsdem.cli import main
 from rbsdem.errors import InputError
 from rbsdem.measured import predict, predictions
 from rbsdem.measured.predictions import PredictionStore
-from rbsdem.output import reports
+from rbsdem.output import measured
 from rbsdem.output.tables import write_csv
 from rbsdem.springs import Bilinear, Takeda
 
@@ -125,10 +125,10 @@ def test_what_goes_wrong_is_a_row(table):
     assert not found.all_completed
     both = found.summary().loc["all"]
     assert (both["tests"], both["failed"], both["stopped"]) == (4, 2, 0)
-    text = printed(reports.tests_table(found))
+    text = printed(measured.tests_table(found))
     assert "failed: section: no" in text
     assert "Me 1991 No. 1" in text
-    assert "Flexure" in printed(reports.summary_table(found, "failure_mode"))
+    assert "Flexure" in printed(measured.summary_table(found, "failure_mode"))
     # A process that dies is one too; its neighbours go on.
     found = peer.predict(table, deadly, jobs=2)
     assert [row.status for row in found] == ["failed", *4 * ["completed"], "no history"]

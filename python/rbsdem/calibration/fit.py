@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 import time
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, nullcontext
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
+from rbsdem.batch.work import progress_bar
 from rbsdem.calibration.determined import (
     Determined,
     determine,
@@ -127,7 +127,7 @@ def calibrate(
     seed : int, optional
         Seed of the random points.
     progress : bool, optional
-        Show the progress of the fit on stderr; needs rich.
+        Show on stderr the number of finished analyses and the best error so far.
     jobs : int, optional
         Analyses at a time, in threads. The fit does not depend on it.
     evaluations : int, optional
@@ -157,12 +157,12 @@ def calibrate(
     target = Target(test)
     parameters = Parameters(column)
     chosen = free_parameters(parameters, free, bounds)
-    progress = _arguments.switch(progress, "calibrate: progress")
-    showing = telling(evaluations) if progress else nullcontext(lambda done, best: None)
+    wanted = _arguments.switch(progress, "calibrate: progress")
+    showing = progress_bar(wanted, evaluations, "analyses")
     # Warnings about the many columns of the search do not help the user.
-    with warnings.catch_warnings(), showing as told:
+    with warnings.catch_warnings(), showing as show:
         warnings.simplefilter("ignore", AccuracyWarning)
-        with Misfit(parameters.build, chosen, target, loss, jobs, told) as misfit:
+        with Misfit(parameters.build, chosen, target, loss, jobs, show) as misfit:
             start = misfit.start_places()
             misfit.column(start)
             refuse(misfit, without_effect(misfit, _looks(start, seed)))
@@ -234,25 +234,3 @@ def _compared(column: Column, target: Target, start: Column) -> Comparison:
     force[: reached.size] = reached
     loop = target.displacement, force
     return compare(loop, target, height=getattr(start, "height", None))
-
-
-@contextmanager
-def telling(evaluations: int) -> Iterator[Callable[[int, float], None]]:
-    """Show on stderr the number of finished analyses and the best error so far."""
-    import rich.progress  # noqa: PLC0415
-    from rich.console import Console  # noqa: PLC0415
-
-    bar = rich.progress.Progress(
-        rich.progress.BarColumn(bar_width=20),
-        rich.progress.TextColumn("{task.completed:.0f} of at most {task.total:.0f} analyses"),
-        rich.progress.TextColumn("{task.description}"),
-        console=Console(stderr=True),
-        transient=True,
-    )
-    with bar:
-        task = bar.add_task("", total=evaluations)
-
-        def told(done: int, best: float) -> None:
-            bar.update(task, completed=min(done, evaluations), description=f"nrmse {best:.4f}")
-
-        yield told

@@ -110,8 +110,8 @@ class Misfit:
         One of `LOSSES`.
     jobs : int
         Number of analyses at the same time, in threads.
-    told : callable
-        Called with the number of analyses and the best loss so far after each analysis.
+    show : callable
+        Called with the number of analyses and the best loss so far, in words, after each.
     """
 
     def __init__(
@@ -121,10 +121,10 @@ class Misfit:
         target: Target,
         loss: str,
         jobs: int,
-        told: Callable[[int, float], None],
+        show: Callable[[int, str], None],
     ) -> None:
         self._build, self.free, self.target, self.loss = build, dict(free), target, loss
-        self._jobs, self._told = jobs, told
+        self._jobs, self._show = jobs, show
         self.evaluations = self.refused = self.failed = 0
         self.best, self.best_places = np.inf, self.start_places()
         self._pool: ThreadPoolExecutor | None = None
@@ -177,7 +177,7 @@ class Misfit:
             size = rms(vector)
             if size < self.best:
                 self.best, self.best_places = size, np.array(places, dtype=float)
-            self._told(self.evaluations, self.best)
+            self._show(self.evaluations, f"nrmse {self.best:.4f}")
         return found
 
     def _one(self, places: Array) -> tuple[Array, str]:

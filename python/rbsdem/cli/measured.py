@@ -22,13 +22,13 @@ from rbsdem.measured.predict import PredictionOptions
 from rbsdem.measured.predict import predict as run_predictions
 from rbsdem.measured.predictions import Predictions, PredictionStore, loop_names
 from rbsdem.measured.specimens import Specimen, Specimens, read_specimens
-from rbsdem.output import reports, tables
+from rbsdem.output import measured, tables
 from rbsdem.output.measured import band_sheet, contact_sheet
 from rbsdem.output.measured import prediction as draw_prediction
 from rbsdem.output.tables import console
 from rbsdem.section.columns import DEFAULT, MODELS, model_name
 from rbsdem.solve.protocol import protocol
-from rbsdem.web.gallery import gallery
+from rbsdem.web.pages import gallery
 
 #: Name of the store in the folder of `--out`, as long as the batch is not finished.
 UNFINISHED = "unfinished"
@@ -189,13 +189,13 @@ def _is_meant(row: Specimen, name: str) -> bool:
 def _report(found: Predictions, by: str, quiet: bool) -> None:
     out = console(168)
     if not quiet:
-        out.print(reports.tests_table(found))
+        out.print(measured.tests_table(found))
         out.print()
         if any(row.band is not None for row in found):
-            out.print(reports.bands_table(found))
+            out.print(measured.bands_table(found))
             out.print("* outside its interval", style="dim")
             out.print()
-    out.print(reports.summary_table(found, by))
+    out.print(measured.summary_table(found, by))
     print(f"\nModel {found.model}: {len(found)} tests in {found.seconds:.1f} s")
     if found.resumed:
         print(f"{found.resumed} of them are from an earlier run that was interrupted")
@@ -282,7 +282,7 @@ def predict(
     lines = [] if out is None else _write_columns(Predictions(rows), out)
     terminal = console(120)
     for row in rows:
-        terminal.print(reports.numbers_table(row))
+        terminal.print(measured.numbers_table(row))
         terminal.print()
     for line in lines:
         print(line)

@@ -14,7 +14,7 @@ from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 from rbsdem.many.fragility import Fragile, Fragility, Hazard
-from rbsdem.many.measures import is_switch
+from rbsdem.many.inputs import is_switch
 from rbsdem.many.runs import RunOptions, Runs, make_collector, motions_by_name
 from rbsdem.model.column import Column
 from rbsdem.motions.motion import GroundMotion

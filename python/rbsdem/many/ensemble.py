@@ -17,26 +17,31 @@ from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
-from rbsdem.batch.executors import (
+from rbsdem.batch.work import (
     Cluster,
+    EndRequest,
     available_processors,
     check_client,
     check_jobs,
+    progress_bar,
+    work_through,
 )
-from rbsdem.batch.progress import progress_bar
-from rbsdem.batch.work import EndRequest, work_through
 from rbsdem.errors import InputError, Interrupted
 from rbsdem.many.inputs import (
     AT_REST,
+    COUNTS,
+    STATUSES,
+    Measure,
     Motion,
+    checked_measures,
     collected,
+    limit_states_among,
     named_columns,
     named_motions,
     raise_faults,
     scale_array,
     states_of_columns,
 )
-from rbsdem.many.measures import COUNTS, STATUSES, Measure, checked_measures, limit_states_among
 from rbsdem.many.plan import Outcome, Piece, Plan, compute, cut, expected, one_run
 from rbsdem.many.run_store import RunStore
 from rbsdem.model.column import Column
@@ -199,7 +204,7 @@ def ensemble(
         Factors of the accelerations: shape (k,) for all, (motions, k) or (columns, motions, k).
         NaN stands for no run.
     measures : sequence of str and callable, optional
-        What is kept of each run: names of `rbsdem.many.measures.MEASURES` (by default all), limit
+        What is kept of each run: names of `rbsdem.many.inputs.MEASURES` (by default all), limit
         states (`LIMIT_STATES`: the time at which each is first reached, NaN if it
         is not), and functions of a `Result` that return a number. A function makes the run's
         history once more, which takes as long as `time_history`; a limit state does not.

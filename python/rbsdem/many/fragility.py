@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.many.inputs import limit_states
 from rbsdem.many.lognormal import Bounds, bounds_of_counts, fit_bounds, fit_points
-from rbsdem.many.measures import limit_states
 from rbsdem.many.runs import Runs
 
 if TYPE_CHECKING:

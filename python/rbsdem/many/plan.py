@@ -14,8 +14,7 @@ from rbsdem import _core
 from rbsdem._arguments import Array
 from rbsdem.checks.criteria import criteria, watches
 from rbsdem.errors import RbsdemError
-from rbsdem.many.inputs import AT_REST, Motion
-from rbsdem.many.measures import STATUSES, Measure, core_measures
+from rbsdem.many.inputs import AT_REST, STATUSES, Measure, Motion, core_measures
 from rbsdem.model.column import Column
 from rbsdem.model.springs import Layered
 from rbsdem.results.result import time_history

@@ -18,7 +18,7 @@ from rbsdem import _core
 from rbsdem._package import code_digest, extra
 from rbsdem.batch.store import PARQUET, Store, digest
 from rbsdem.errors import InputError
-from rbsdem.many.measures import STATUSES, Measure
+from rbsdem.many.inputs import STATUSES, Measure
 from rbsdem.many.plan import Outcome, Plan, watched
 
 

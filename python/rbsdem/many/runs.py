@@ -16,8 +16,7 @@ from rbsdem._arguments import Array
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.many.ensemble import ensemble
-from rbsdem.many.inputs import collected, named_columns, raise_faults
-from rbsdem.many.measures import Measure, measures_in_a_list
+from rbsdem.many.inputs import Measure, collected, measures_in_a_list, named_columns, raise_faults
 from rbsdem.many.plan import FAULT_OF_MEASURE
 from rbsdem.model.column import Column
 from rbsdem.motions.motion import GroundMotion, checked_motion

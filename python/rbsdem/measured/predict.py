@@ -19,9 +19,15 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
-from rbsdem.batch.executors import Processes, Serial, check_jobs, check_sent
-from rbsdem.batch.progress import progress_bar
-from rbsdem.batch.work import EndRequest, work_through
+from rbsdem.batch.work import (
+    EndRequest,
+    Processes,
+    Serial,
+    check_jobs,
+    check_sent,
+    progress_bar,
+    work_through,
+)
 from rbsdem.curves.scores import compare
 from rbsdem.errors import AccuracyWarning, InputError, RbsdemError, SolveError
 from rbsdem.measured.drawing import check_options, checked_specimen, draw

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
-from rbsdem.batch.progress import progress_bar
+from rbsdem.batch.work import progress_bar
 from rbsdem.errors import InputError, SolveError
 from rbsdem.methods.ladder import Budget, Trials, checked_methods, ladders, own_setting, probe
 from rbsdem.methods.physics import Physics, find_physics

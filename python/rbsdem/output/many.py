@@ -11,9 +11,8 @@ import numpy as np
 from rbsdem.errors import InputError
 from rbsdem.many.cloud import Cloud
 from rbsdem.many.fragility import Capacities, Counts, Fragility
-from rbsdem.many.ida import IDA
+from rbsdem.many.ida import IDA, Stripes
 from rbsdem.many.runs import Runs
-from rbsdem.many.stripes import Stripes
 from rbsdem.motions.motion import GroundMotion, Spectrum
 from rbsdem.output.style import MODEL_LINE, axes_or_new, line_of
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from dataclasses import dataclass, fields, replace
+from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
@@ -196,6 +198,17 @@ def read_case(path: str | os.PathLike[str]) -> Case:
         **loads,
         settings=settings,
     )
+
+
+def case_of_text(text: str) -> Case:
+    """Return the case of a text, which its reader takes from a file; see `read_case`."""
+    with tempfile.TemporaryDirectory(prefix="rbsdem-") as folder:
+        path = Path(folder) / "case.nml"
+        path.write_bytes(text.encode())
+        try:
+            return read_case(path)
+        except InputError as error:
+            raise InputError(str(error).replace(str(path), "case")) from None
 
 
 class _Springs:

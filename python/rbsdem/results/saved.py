@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 import zipfile
 from dataclasses import fields
 from pathlib import Path
@@ -13,11 +12,10 @@ from typing import Any
 import numpy as np
 
 from rbsdem import _core
-from rbsdem._files import whole_file
 from rbsdem._package import extra
 from rbsdem.errors import InputError
-from rbsdem.model.column import Column, without_notes
-from rbsdem.results.case import Case, read_case
+from rbsdem.model.column import without_notes
+from rbsdem.results.case import case_of_text
 from rbsdem.results.files import FORMAT, FORMAT_VERSION, ending_of
 from rbsdem.results.result import Result
 
@@ -101,17 +99,11 @@ def _result(about: dict[str, Any], arrays: dict[str, Any]) -> Result:
     }
     own = {field.name: arrays[field.name] for field in fields(Result) if field.name in arrays}
     with without_notes():
-        column: Column = _case(about["column"] + _LOADING).column
-        case = None if about["case"] is None else _case(about["case"])
+        column = case_of_text(about["column"] + _LOADING).column
+        case = None if about["case"] is None else case_of_text(about["case"])
+    absent = dict.fromkeys(("axial_force", "rest", "state", "motion", "reached"))
     return Result(
-        **{
-            "axial_force": None,
-            "rest": None,
-            "state": None,
-            "motion": None,
-            "reached": None,
-            **own,
-        },
+        **{**absent, **own},
         energy=energy,
         summary=about["summary"],
         column=column,
@@ -119,12 +111,3 @@ def _result(about: dict[str, Any], arrays: dict[str, Any]) -> Result:
         channels=tuple(about["channels"]),
         case=case,
     )
-
-
-def _case(text: str) -> Case:
-    """Return the case of a text; the reader of the program reads files."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "case.nml"
-        with whole_file(path) as file:
-            file.write(text.encode())
-        return read_case(path)

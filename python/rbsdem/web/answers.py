@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import re
 import time
 import traceback
 import warnings
@@ -37,7 +38,7 @@ from rbsdem.section.curvature import diagram as diagram_of
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.spread import spread as spread_of
 from rbsdem.web import exports
-from rbsdem.web.gallery import card
+from rbsdem.web.pages import card
 from rbsdem.web.state import (
     MOST_VALUES,
     Drawn,
@@ -139,7 +140,7 @@ class Answers:
             with warnings.catch_warnings(record=True) as told:
                 warnings.simplefilter("always")
                 try:
-                    case = exports.case_of_text(given["case"])
+                    case = exports.own_case(given["case"])
                 except RbsdemError as error:
                     faults.add("case", str(error))
             notes = [str(one.message) for one in told]
@@ -291,18 +292,17 @@ class Answers:
         if not isinstance(text, str) or not isinstance(name, str):
             raise RefusedError(400, "name and text must be texts")
         shown = name[:80]
-        # Only the ending of the name is used, for the format.
-        file = "record.at2" if name.lower().endswith(".at2") else "record.csv"
         try:
-            with exports.text_file(text, file, shown) as path:
-                motion = read_motion(path, asked.get("units"), asked.get("dt"))
+            # A text of more than one line is no path.
+            motion = read_motion(f"{text}\n\n", asked.get("units"), asked.get("dt"))
             if motion.acceleration.size > MOST_VALUES:
                 raise InputError(
                     f"{shown}: {motion.acceleration.size} values are too many here; at most "
                     f"{MOST_VALUES}: cut the record or take larger steps"
                 )
         except RbsdemError as error:
-            return {"faults": [{"field": "loading.record", "text": str(error)}]}
+            told = re.sub(r"^text\b", lambda _: shown, str(error))
+            return {"faults": [{"field": "loading.record", "text": told}]}
         digest = hashlib.sha256(motion.acceleration.tobytes() + repr(motion.dt).encode())
         key = digest.hexdigest()[:16]
         self.records[key] = motion

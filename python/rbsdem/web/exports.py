@@ -11,16 +11,15 @@ import json
 import re
 import tempfile
 import warnings
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from rbsdem._arguments import Derived
-from rbsdem._files import whole_file
 from rbsdem.errors import InputError
 from rbsdem.model.shape import Section
-from rbsdem.results.case import Case, read_case
+from rbsdem.results.case import Case, case_of_text
 from rbsdem.results.result import Result
 from rbsdem.web.state import ENDS, Drawn, Faults, RefusedError, drawn_case, state_of
 
@@ -60,20 +59,7 @@ def drawing_in(text: str) -> dict[str, Any] | None:
     return found if isinstance(found, dict) else None
 
 
-@contextmanager
-def text_file(text: str, name: str, shown: str) -> Iterator[Path]:
-    """Put a text into a file for a reader; errors have another name for it."""
-    with tempfile.TemporaryDirectory(prefix="rbsdem-") as folder:
-        path = Path(folder) / name
-        with whole_file(path) as file:
-            file.write(text.encode("utf-8"))
-        try:
-            yield path
-        except InputError as error:
-            raise InputError(str(error).replace(str(path), shown)) from None
-
-
-def case_of_text(text: object) -> Case:
+def own_case(text: object) -> Case:
     """Read the text of a case file that names no other file.
 
     Raises
@@ -84,8 +70,7 @@ def case_of_text(text: object) -> Case:
     if not isinstance(text, str):
         raise InputError("case: give the text of a case file")
     _refuse_files(text)
-    with text_file(text, "case.nml", "case") as path:
-        return read_case(path)
+    return case_of_text(text)
 
 
 def opened(text: object) -> dict[str, Any]:
@@ -94,7 +79,7 @@ def opened(text: object) -> dict[str, Any]:
         with warnings.catch_warnings():
             # What there is to say of it stands beside its loop.
             warnings.simplefilter("ignore")
-            case = case_of_text(text)
+            case = own_case(text)
     except InputError as error:
         return {"faults": [{"field": "case", "text": str(error)}]}
     drawing, note = drawing_in(str(text)), ""

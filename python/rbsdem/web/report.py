@@ -11,7 +11,7 @@ from rbsdem import _core
 from rbsdem._files import whole_file
 from rbsdem.errors import InputError
 from rbsdem.web.answers import Answers, NearestTests
-from rbsdem.web.parts import one_file
+from rbsdem.web.pages import one_file
 
 #: Letters of a text that a report takes with it.
 _MOST_TEXT = 400_000

@@ -21,7 +21,7 @@ from urllib.parse import urlsplit
 
 from rbsdem.errors import InputError
 from rbsdem.web.answers import LANES, ONCE, Answers, NearestTests, defect
-from rbsdem.web.parts import TYPES, parts
+from rbsdem.web.pages import TYPES, parts
 from rbsdem.web.state import RefusedError
 
 #: Largest request [bytes]: a state, and the text of a file.
