@@ -572,9 +572,9 @@ def attempts(tree: Tree, likely: list[str], compiled: bool) -> Iterator[tuple[st
 
 def is_there(found: dict[str, str]) -> bool:
     """Return whether the test that noticed a mutant still stands in the tree."""
-    name = found["test"].partition("[")[0].replace("'", "''")
-    files = (ROOT / "tests").rglob("test_*")
-    return not name or any(name in path.read_text("utf-8") for path in files)
+    suite, name = found["suite"], found["test"].partition("[")[0].replace("'", "''")
+    files = (ROOT / "tests").rglob(suite if suite.endswith(".py") else f"test_{suite}.f90")
+    return not suite or any(name in path.read_text("utf-8") for path in files)
 
 
 def check_unchanged(tree: Tree, results: dict[str, dict[str, str]]) -> None:
@@ -582,12 +582,11 @@ def check_unchanged(tree: Tree, results: dict[str, dict[str, str]]) -> None:
     name, test = tree.fails_suite()
     if name:
         raise MutantError(f"without a mutant {name}: {test} fails already")
-    found = results.values()
-    tests = {
-        ("" if "/" in x["suite"] else "tests/python/") + f"{x['suite']}::{x['test']}"
-        for x in found
-        if x["suite"].endswith(".py")
-    }
+    tests = set()
+    for found in results.values():
+        file, test = found["suite"], found["test"].partition("[")[0]
+        if file.endswith(".py"):
+            tests.add(("" if "/" in file else "tests/python/") + f"{file}::{test}")
     file, test = tree.fails_python(*sorted(tests)) if tests else ("", "")
     if file:
         raise MutantError(f"without a mutant {file}: {test} fails already")
