@@ -23,34 +23,17 @@ import tempfile
 import time
 import warnings
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import numpy as np
-from compare import against_rows, take_turns, yardstick_rows
+from compare import against_rows, yardstick_rows
 from rows import ROOT, Row, newest, show
 
 import rbsdem
 from rbsdem import _core, peer
-from rbsdem.__main__ import executable as installed_executable
 from rbsdem.springs import Takeda
-
-try:
-    import resource
-except ImportError:  # Windows
-    resource = None  # type: ignore[assignment]
-CASE = """\
-&column height = 1.6, mass = 614.4, kinematics = '{kinematics}' /
-&shear rule = 'bilinear', k = 7.0387e8, d_y = 1.296e-4, k_post = 8.3185e6 /
-&flexure rule = 'takeda', k_c = 2.5428e8, d_c = 3.1891e-4, k_y = 6.2937e7,
-         d_y = 2.7183e-3, k_u = 7.5772e6, b0 = 0.4, b1 = 0.22 /
-&loading drive = 'force', unit = 'kN', amplitudes = 150, cycles = {cycles}, period = 1.0 /
-&analysis method = 'rk4', dt = 2e-4 /
-&output every = 1000 /
-"""
-STEPS_PER_CYCLE = 5000
 
 
 def seconds(action: Callable[[], Any], repeats: int) -> list[float]:
@@ -62,32 +45,6 @@ def seconds(action: Callable[[], Any], repeats: int) -> list[float]:
         action()
         times.append(time.perf_counter() - start)
     return times
-
-
-def processor_time(command: list[Any]) -> float:
-    """Return the processor time of a process; its wall time where that is not known (Windows)."""
-    start = time.perf_counter()
-    used = children()
-    subprocess.run(command, check=True)
-    return children() - used or time.perf_counter() - start
-
-
-def children() -> float:
-    """Return the processor time of all ended child processes; 0 where it is not known."""
-    if resource is None:
-        return 0.0
-    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return usage.ru_utime + usage.ru_stime
-
-
-def find_executable(build: Path | None) -> Path | None:
-    """Return the executable of a build folder, or the installed one."""
-    if build:
-        return newest("rbsdem", build)
-    try:
-        return Path(installed_executable())
-    except FileNotFoundError:
-        return newest("rbsdem", None)
 
 
 def growing_cycles(points: int) -> np.ndarray:
@@ -301,56 +258,6 @@ def inside_fortran(driver: Path | None, repeats: int, divisor: int) -> list[Row]
     return rows
 
 
-def through_executable(executable: Path | None, repeats: int, cycles: int) -> list[Row]:
-    """Time the whole process on a long case, every 1000th step written."""
-    rows = []
-    for kinematics in ("small", "finite"):
-        row = Row(f"RK4, N = 1, {kinematics}", "ns/step", 250)
-        rows.append(row)
-        if executable is None:
-            row.note = "the executable is not built"
-            continue
-        steps = cycles * STEPS_PER_CYCLE
-        with tempfile.TemporaryDirectory() as folder:
-            case = write_case(Path(folder), kinematics, cycles)
-            times = [run_case(executable, case) for _ in range(repeats + 1)][1:]
-        row.values = [1e9 * t / steps for t in times]
-        row.note = f"{steps:,} steps".replace(",", " ")
-    return rows
-
-
-def executable_against(
-    executable: Path | None, other: Path, repeats: int, cycles: int
-) -> list[Row]:
-    """Time the executable on that case in turns with the one of another build."""
-    rows = []
-    before = newest("rbsdem", other)
-    for kinematics in ("small", "finite"):
-        row = Row(f"RK4, N = 1, {kinematics}, executable", "x before", 1.05)
-        rows.append(row)
-        if executable is None or before is None:
-            row.note = f"no executable in {'this build' if before else other}"
-            continue
-        with tempfile.TemporaryDirectory() as folder:
-            case = write_case(Path(folder), kinematics, cycles)
-            row.values = take_turns(
-                partial(run_case, executable, case), partial(run_case, before, case), repeats
-            )
-    return rows
-
-
-def write_case(folder: Path, kinematics: str, cycles: int) -> Path:
-    """Write the long case."""
-    case = folder / "case.nml"
-    case.write_text(CASE.format(kinematics=kinematics, cycles=cycles), encoding="utf-8")
-    return case
-
-
-def run_case(executable: Path, case: Path) -> float:
-    """Return the processor time of a run."""
-    return processor_time([executable, "run", case, "--quiet"])
-
-
 def main_job() -> ModuleType:
     """Return the example that runs the four columns, as a module."""
     path = ROOT / "examples" / "01-paper-columns" / "run.py"
@@ -386,7 +293,7 @@ def four_columns(repeats: int) -> list[Row]:
     return [row]
 
 
-PARTS = ("python", "fortran", "yardstick", "executable")
+PARTS = ("python", "fortran", "yardstick")
 
 
 def arguments() -> argparse.Namespace:
@@ -398,7 +305,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--only", choices=PARTS, help="one part of the table")
     parser.add_argument("--repeats", type=int, metavar="N", help="default 9, with --quick 3")
     parser.add_argument(
-        "--build", type=Path, metavar="DIR", help="build folder of time_solver and rbsdem"
+        "--build", type=Path, metavar="DIR", help="build folder of time_solver"
     )
     parser.add_argument(
         "--against", type=Path, metavar="DIR", help="build folder of another version"
@@ -414,9 +321,8 @@ def arguments() -> argparse.Namespace:
 def main() -> None:
     """Measure and print."""
     given = arguments()
-    repeats, divisor, cycles = given.repeats, 10 if given.quick else 1, 100 if given.quick else 200
+    repeats, divisor = given.repeats, 10 if given.quick else 1
     parts = [given.only] if given.only else PARTS
-    executable = find_executable(given.build)
     rows = {}
     if "python" in parts:
         rows["Through Python"] = [
@@ -432,13 +338,8 @@ def main() -> None:
         rows["Inside Fortran"] = inside_fortran(driver, repeats, divisor)
     if "yardstick" in parts:
         rows["By the yardstick"] = yardstick_rows(given.build, repeats, divisor)
-    if "executable" in parts:
-        rows["Through the executable"] = through_executable(executable, repeats, cycles)
     if given.against:
-        rows["Now against before"] = [
-            *executable_against(executable, given.against, repeats, cycles),
-            *against_rows(given.build, given.against, repeats, divisor),
-        ]
+        rows["Now against before"] = against_rows(given.build, given.against, repeats, divisor)
     show(rows)
 
 

@@ -10,7 +10,6 @@ import math
 import statistics
 import subprocess
 from collections import defaultdict
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -166,12 +165,6 @@ def memory(cases: dict[int, Case]) -> Row:
         f"N = {most} holds {held[most] / 1024:.1f} MB in all"
     )
     return row
-
-
-def take_turns(now: Callable[[], float], before: Callable[[], float], repeats: int) -> list[float]:
-    """Return the ratios of two times, measured in turns after a pair that does not count."""
-    ratios = [now() / before() for _ in range(repeats + 1)]
-    return ratios[1:]
 
 
 # Names that `time_solver` has told since the first version, with the goal for the ratio.
