@@ -304,9 +304,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--quick", action="store_true", help="fewer repeats, shorter runs")
     parser.add_argument("--only", choices=PARTS, help="one part of the table")
     parser.add_argument("--repeats", type=int, metavar="N", help="default 9, with --quick 3")
-    parser.add_argument(
-        "--build", type=Path, metavar="DIR", help="build folder of time_solver"
-    )
+    parser.add_argument("--build", type=Path, metavar="DIR", help="build folder of time_solver")
     parser.add_argument(
         "--against", type=Path, metavar="DIR", help="build folder of another version"
     )
