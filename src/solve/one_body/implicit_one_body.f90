@@ -101,46 +101,22 @@ contains
       !> Lateral force [N] and acceleration of the ground [m/s2] at the end
       real(wp), intent(in) :: push, ground
       logical, intent(out) :: taken
-      real(wp) :: h, alpha_m, alpha_f, beta, gamma, per_h, mass_1, mass_2, lower, upper, softening
-      real(wp) :: d0_1, f0_1, k_1, d0_2, f0_2, k_2, inverse_11, inverse_12, inverse_21, inverse_22
-      real(wp) :: q_1, q_2, v0_1, v0_2, a0_1, a0_2, g0_1, g0_2, largest_1, largest_2
       real(wp) :: before_1, before_2, shear, moment, moved_1, moved_2, to_1, to_2
       real(wp) :: v1_1, v1_2, a1_1, a1_2, g1_1, g1_2, start_1, start_2, rest_1, rest_2, scale_1, scale_2
 
       taken = .false.
       call self%fit_to(springs)
-      h = self%h
-      alpha_m = self%alpha_m
-      alpha_f = self%alpha_f
-      beta = self%beta
-      gamma = self%gamma
-      per_h = self%per_h
-      mass_1 = self%mass(1)
-      mass_2 = self%mass(2)
-      lower = self%lower
-      upper = self%upper
-      softening = self%softening
-      inverse_11 = self%inverse(1)
-      inverse_12 = self%inverse(2)
-      inverse_21 = self%inverse(3)
-      inverse_22 = self%inverse(4)
-      d0_1 = springs%d0(1)
-      f0_1 = springs%f0(1)
-      k_1 = springs%k(1)
-      d0_2 = springs%d0(2)
-      f0_2 = springs%f0(2)
-      k_2 = springs%k(2)
-      q_1 = q(1)
-      q_2 = q(2)
-      v0_1 = v0(1)
-      v0_2 = v0(2)
-      a0_1 = a0(1)
-      a0_2 = a0(2)
-      g0_1 = g0(1)
-      g0_2 = g0(2)
-      largest_1 = largest(1)
-      largest_2 = largest(2)
-      include 'implicit_step.inc'
+      associate (h => self%h, per_h => self%per_h, alpha_m => self%alpha_m, alpha_f => self%alpha_f, &
+                 beta => self%beta, gamma => self%gamma, mass_1 => self%mass(1), mass_2 => self%mass(2), &
+                 lower => self%lower, upper => self%upper, softening => self%softening, &
+                 inverse_11 => self%inverse(1), inverse_12 => self%inverse(2), &
+                 inverse_21 => self%inverse(3), inverse_22 => self%inverse(4), &
+                 d0_1 => springs%d0(1), f0_1 => springs%f0(1), k_1 => springs%k(1), &
+                 d0_2 => springs%d0(2), f0_2 => springs%f0(2), k_2 => springs%k(2), &
+                 q_1 => q(1), q_2 => q(2), v0_1 => v0(1), v0_2 => v0(2), a0_1 => a0(1), a0_2 => a0(2), &
+                 g0_1 => g0(1), g0_2 => g0(2), largest_1 => largest(1), largest_2 => largest(2))
+         include 'implicit_step.inc'
+      end associate
       ! Written so that a number that is not one leaves too.
       if (.not. (abs(to_1) < out_of_bounds .and. abs(to_2) < out_of_bounds)) return
       taken = to_1 <= springs%last(1) .and. to_1 >= springs%first(1) .and. &

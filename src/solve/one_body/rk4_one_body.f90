@@ -65,48 +65,35 @@ contains
       !> Deformations and velocities
       real(wp), intent(inout) :: q(2), v(2)
       real(wp), intent(out) :: of_loads
-      real(wp) :: half, sixth, flexible, coupling, turning, softening, lower
-      real(wp) :: d0_1, f0_1, k_1, d0_2, f0_2, k_2, q_1, q_2, v_1, v_2, ground_1, ground_2, ground_3
-      real(wp) :: along_1, along_2, along_3, about_1, about_2, about_3, shear, flexure, back_1, back_2
-      real(wp) :: g11, g12, g21, g22, mid_1, mid_2, of_ground, of_force
+      real(wp) :: half, sixth, q_1, q_2, v_1, v_2, shear, flexure, back_1, back_2, mid_1, mid_2, of_ground
+      real(wp) :: along_1, along_2, along_3, about_1, about_2, about_3, of_force
       real(wp) :: u1, u2, u3, u4, r1, r2, r3, r4, a1, a2, a3, a4, b1, b2, b3, b4
 
       half = 0.5_wp*h
       sixth = h*(1.0_wp/6.0_wp)
-      flexible = self%flexible
-      coupling = self%coupling
-      turning = self%turning
-      softening = self%softening
-      lower = self%lower
-      d0_1 = springs%d0(1)
-      f0_1 = springs%f0(1)
-      k_1 = springs%k(1)
-      d0_2 = springs%d0(2)
-      f0_2 = springs%f0(2)
-      k_2 = springs%k(2)
-      if (self%version /= springs%version .or. abs(h - self%h) > 0.0_wp) then
-         self%g = resistance_per_velocity(flexible, coupling, turning, softening, k_1, k_2, half)
-         self%version = springs%version
-         self%h = h
-      end if
-      g11 = self%g(1)
-      g12 = self%g(2)
-      g21 = self%g(3)
-      g22 = self%g(4)
-      q_1 = q(1)
-      q_2 = q(2)
-      v_1 = v(1)
-      v_2 = v(2)
-      ground_1 = load_ground(1)
-      ground_2 = load_ground(2)
-      ground_3 = load_ground(3)
-      along_1 = self%push(1)*load_force(1) - ground_1
-      along_2 = self%push(1)*load_force(2) - ground_2
-      along_3 = self%push(1)*load_force(3) - ground_3
-      about_1 = self%push(2)*load_force(1)
-      about_2 = self%push(2)*load_force(2)
-      about_3 = self%push(2)*load_force(3)
-      include 'rk4_step.inc'
+      associate (flexible => self%flexible, coupling => self%coupling, turning => self%turning, &
+                 softening => self%softening, lower => self%lower, &
+                 d0_1 => springs%d0(1), f0_1 => springs%f0(1), k_1 => springs%k(1), &
+                 d0_2 => springs%d0(2), f0_2 => springs%f0(2), k_2 => springs%k(2), &
+                 g11 => self%g(1), g12 => self%g(2), g21 => self%g(3), g22 => self%g(4), &
+                 ground_1 => load_ground(1), ground_2 => load_ground(2), ground_3 => load_ground(3))
+         if (self%version /= springs%version .or. abs(h - self%h) > 0.0_wp) then
+            self%g = resistance_per_velocity(flexible, coupling, turning, softening, k_1, k_2, half)
+            self%version = springs%version
+            self%h = h
+         end if
+         q_1 = q(1)
+         q_2 = q(2)
+         v_1 = v(1)
+         v_2 = v(2)
+         along_1 = self%push(1)*load_force(1) - ground_1
+         along_2 = self%push(1)*load_force(2) - ground_2
+         along_3 = self%push(1)*load_force(3) - ground_3
+         about_1 = self%push(2)*load_force(1)
+         about_2 = self%push(2)*load_force(2)
+         about_3 = self%push(2)*load_force(3)
+         include 'rk4_step.inc'
+      end associate
       q(1) = q_1
       q(2) = q_2
       v(1) = v_1
