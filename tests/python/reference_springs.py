@@ -67,22 +67,6 @@ class InnerPeak:
     left: Branch
 
 
-class Elastic:
-    """F = k D."""
-
-    def __init__(self, k: float) -> None:
-        self.k = float(k)
-
-    def response(self, deformations: Iterable[float]) -> list[float]:
-        """Forces along a path that starts at zero."""
-        return [self.k * float(d) for d in deformations]
-
-    @staticmethod
-    def vertices(deformations: Iterable[float]) -> list[float]:
-        """The path itself: there are no events."""
-        return [float(d) for d in deformations]
-
-
 class Bilinear:
     """Kinematic hardening, as an elastic spring beside an elastic-plastic one.
 
@@ -98,7 +82,6 @@ class Bilinear:
     def start(self) -> None:
         """Go back to the virgin state."""
         self.d = self.f = self.slip = 0.0
-        self.events: list[float] = []
 
     @property
     def tangent(self) -> float:
@@ -112,10 +95,6 @@ class Bilinear:
 
     def move(self, d: float) -> float:
         """Move to ``d`` and return the force there."""
-        way = 1 if d > self.d else -1
-        corner = self.slip + way * self.d_y
-        inside = way * (corner - self.d) > 0 and way * (d - corner) > 0
-        self.events = [corner] if inside else []
         self.slip = min(max(self.slip, d - self.d_y), d + self.d_y)
         self.d = d
         self.f = self.k_post * d + (self.k - self.k_post) * (d - self.slip)
@@ -125,10 +104,6 @@ class Bilinear:
         """Forces along a path that starts at zero in the virgin state."""
         self.start()
         return [self.move(float(d)) for d in deformations]
-
-    def vertices(self, deformations: Iterable[float]) -> list[float]:
-        """Deformations of the path with every change of line put in between."""
-        return _vertices(self, deformations)
 
 
 class Takeda:
@@ -160,7 +135,6 @@ class Takeda:
         self.um: dict[int, Point] = {}  # no entry: that side is uncracked
         self.k_r: dict[int, float] = {}  # no entry: never unloaded from that backbone
         self.stack: list[InnerPeak] = []
-        self.events: list[float] = []
 
     # ---- what a test may ask ------------------------------------------------------------------
 
@@ -179,22 +153,16 @@ class Takeda:
         self.start()
         return [self.move(float(d)) for d in deformations]
 
-    def vertices(self, deformations: Iterable[float]) -> list[float]:
-        """Deformations of the path with every change of branch put in between."""
-        return _vertices(self, deformations)
-
     # ---- a move: turn if needed, then from end to end ------------------------------------------
 
     def move(self, d: float) -> float:
         """Move to ``d`` and return the force there."""
-        self.events = []
         if d == self.d:
             return self.f
         way = 1 if d > self.d else -1
         self._turn(way)
         while self._reaches(d, way):
             self._pass_end(way)
-            self.events.append(self.d)
         self.d, self.f = d, self.branch.line.force(d)
         return self.f
 
@@ -371,14 +339,3 @@ class Takeda:
         wished = {"kc": self.b1 * self.k_c, "kr": self.b1 * k_r, "one": k_r}[self.inner]
         secant = peak.f / (peak.d - peak.left.z)
         return max(min(wished, k_r), secant)
-
-
-def _vertices(spring: Bilinear | Takeda, deformations: Iterable[float]) -> list[float]:
-    """Put every change of line of ``spring`` into the path."""
-    spring.start()
-    path: list[float] = []
-    for d in deformations:
-        spring.move(float(d))
-        path += [event for event in spring.events if event != d]
-        path.append(float(d))
-    return path

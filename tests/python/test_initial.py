@@ -60,19 +60,6 @@ def test_steps_that_do_not_follow_the_times_go_on_from_their_origin():
     assert_goes_on(rest, whole, 12, state=False)
 
 
-def test_a_record_with_decimal_times_goes_on_up_to_round_off():
-    t = np.arange(120) * 0.01
-    ground = random_walk(7, t.size, 1.0)
-    for made in (column(), column(LAYERED, damping=rbsdem.Damping(mass=0.5))):
-        whole = rbsdem.time_history(made, t, ground_acceleration=ground, method="newmark")
-        first = rbsdem.time_history(made, t[:61], ground_acceleration=ground[:61], method="newmark")
-        rest = rbsdem.time_history(
-            made, t[60:], ground_acceleration=ground[60:], method="newmark", initial=first
-        )
-        scale = np.abs(whole.displacement).max()
-        assert np.abs(rest.displacement - whole.displacement[60:]).max() <= 1e-9 * scale
-
-
 def test_a_path_after_a_motion_begins_in_equilibrium_at_the_displacement_of_the_top():
     k, k_r, height = 1e7, 1e8, 1.6
     made = rbsdem.Column(height, 6144.0, Elastic(k=k), Elastic(k=k_r), axial_load=0.0)
@@ -118,25 +105,6 @@ def test_a_column_that_was_pulled_and_let_go_keeps_its_energy():
         made, [0, 1], force=[pulled.force[-1]] * 2, method="rk4", initial=pulled
     )
     assert np.abs(held.displacement - 0.01).max() <= 1e-12
-
-
-def test_the_main_shock_is_in_the_aftershock_and_in_the_pushover():
-    made = column()
-    t = np.arange(200) * 0.01
-    shock = rbsdem.time_history(made, t, ground_acceleration=30 * np.sin(12 * t), method="rk4")
-    again = rbsdem.time_history(
-        made, t, ground_acceleration=30 * np.sin(12 * t), method="rk4", initial=shock
-    )
-    virgin = rbsdem.time_history(made, t, ground_acceleration=30 * np.sin(12 * t), method="rk4")
-    assert np.array_equal(virgin.displacement, shock.displacement)
-    assert not np.array_equal(again.displacement, shock.displacement)
-    assert again.energy["spring"][0] == shock.energy["spring"][-1]
-    # A column that has cracked and yielded is softer than a virgin one.
-    little = 1e-4
-    released = rbsdem.cyclic(made, force=[0.0], initial=shock)
-    there = released.displacement[-1] + little
-    pushed = rbsdem.cyclic(made, displacement=[there], initial=released)
-    assert 0 < pushed.force[0] < 0.8 * rbsdem.cyclic(made, displacement=[little]).force[0]
 
 
 def test_the_axial_load_may_be_another():

@@ -149,9 +149,9 @@ def difference(name: str, one: np.ndarray, other: np.ndarray) -> str:
 
 @relation(600, judged=0.9)
 def test_springs_alone(rng: Rng) -> None:
-    """Waiting, a path cut short, other units, the other side: bits. More points, halves: round-off.
+    """Waiting, a path cut short, other units, the other side: bits.
 
-    The sum of layers from the other side is one in another order.
+    Round-off: more points, halves in series, and layers from the other side, which are a sum.
     """
     rule = str(rng.choice([name for name in SPRINGS if name]))
     sizes = 1e5, between(rng, 1e-4, 1e-2)
@@ -564,6 +564,7 @@ def few_rows(whole: rbsdem.Result, kept: rbsdem.Result, every: int) -> None:
         b = kept.summary[name]
         same = np.array_equal(a, b, equal_nan=isinstance(a, float))
         assert name in BY_ROW or same, f"{name}: {a} {b}"
+    assert whole.reached is None or np.array_equal(whole.reached, kept.reached, equal_nan=True)
 
 
 @relation(200, judged=0.8)

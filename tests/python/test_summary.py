@@ -27,7 +27,6 @@ ANALYSES = {
     "newmark": {"method": "newmark", "dt": 1e-3},
     "hht": {"method": "hht", "dt": 1e-3},
 }
-KINEMATICS = ("small", "pdelta", "finite")
 
 
 def column(n: int = 2, **more) -> rbsdem.Column:
@@ -40,53 +39,6 @@ def solve(analysis: str, subject: rbsdem.Column, sign: float = 1.0, **more) -> r
     return rbsdem.time_history(
         subject, TIME, ground_acceleration=sign * MOTION, **ANALYSES[analysis], **more
     )
-
-
-@pytest.mark.parametrize("kinematics", KINEMATICS)
-@pytest.mark.parametrize("analysis", ANALYSES)
-def test_axial_springs_that_stay_still_change_nothing(analysis, kinematics):
-    """Without axial load they feel nothing with small rotations; else they open by F theta/k.
-
-    That is 1e5 N times 0.02 over 1e10 N/m, 1e-7 m of slips of 1e-2 m.
-    """
-    subject = {"kinematics": kinematics}
-    plain = solve(analysis, column(**subject))
-    inert = solve(analysis, column(axial_spring=Elastic(1e10), **subject))
-    exact = kinematics != "finite" and analysis != "rk45"
-    close = {"rel": 1e-12 if exact else 1e-3}
-    for name in ("peak_displacement", "peak_base_shear", "peak_rotation", "spring_energy"):
-        assert inert.summary[name] == pytest.approx(plain.summary[name], **close), name
-    assert inert.summary["spring_energy"] > 1e3
-    if exact:
-        assert inert.summary["events"] == plain.summary["events"]
-
-
-def figures(result: rbsdem.Result) -> dict:
-    return {name: value for name, value in result.summary.items() if name != "rows"}
-
-
-@pytest.mark.parametrize("damping", [None, 0.03], ids=["undamped", "damped"])
-@pytest.mark.parametrize("kinematics", KINEMATICS)
-@pytest.mark.parametrize("analysis", ANALYSES)
-def test_figures_and_limit_states_do_not_depend_on_the_rows(analysis, kinematics, damping):
-    """Of one body and of two; all figures but the number of rows, to the last bit."""
-    motion = {} if analysis == "static" else {"motion": True}
-    for n in (1, 2):
-        subject = column(n, kinematics=kinematics, damping=damping)
-        usual = solve(analysis, subject, **motion)
-        for every in (1, 7, 100_000):
-            other = solve(analysis, subject, every=every, **motion)
-            assert figures(other) == figures(usual)
-            if analysis != "static":
-                np.testing.assert_array_equal(other.reached, usual.reached)
-        rows = solve(analysis, subject, every=1, **motion)
-        assert abs(usual.summary["peak_displacement"]) >= np.abs(rows.displacement).max()
-        # Of a static path the force itself, which the lowest spring has up to round-off.
-        assert abs(usual.summary["peak_base_shear"]) >= (1 - 1e-12) * np.abs(rows.base_shear).max()
-        # A static path is looked at where its lines end, between the rows too.
-        round_off = 1e-14 * usual.summary["input_energy"] * (analysis == "static")
-        largest = np.abs(rows.energy["residual"]).max() + round_off
-        assert usual.summary["energy_residual"] <= largest
 
 
 @pytest.mark.parametrize("settings", [{"method": "rk45"}, {"method": "rk4", "events": "located"}])
