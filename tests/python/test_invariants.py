@@ -578,6 +578,68 @@ def test_few_rows(rng: Rng) -> None:
     few_rows(whole, kept, every)
 
 
+def figures(result: rbsdem.Result) -> dict[str, float]:
+    """Return every number that a result tells of its loop."""
+    cycles = result.half_cycles()
+    told = {
+        f"{name} {i}": value
+        for name in ("displacement", "force", "peak_force", "energy", "stiffness", "damping")
+        for i, value in enumerate(getattr(cycles, name))
+    }
+    for side in (1, -1):
+        curve = result.envelope(side)
+        told |= {
+            f"peak {side}": curve.peak_force,
+            f"lost at {side}": curve.displacement_at(0.8, falling=True),
+            f"0.7 at {side}": curve.displacement_at(0.7),
+            f"0.3 at {side}": curve.displacement_at(0.3),
+        }
+    told |= {state.name: state.displacement for state in result.limit_states()}
+    hinge = result.hinge()
+    told |= {"ductility": hinge.ductility, "yields at": hinge.yield_rotation[0]}
+    told |= {"residual": result.residual_drift, "loss": result.strength_loss()}
+    names = ("peak_force", "peak_base_shear", "peak_rotation", "peak_displacement", "input_energy")
+    return told | {name: result.summary[name] for name in names}
+
+
+@relation(100, judged=0.3)
+def test_figures_do_not_depend_on_the_rows(rng: Rng) -> None:
+    """Points on the same lines, and rows that are not kept, change nothing that is measured.
+
+    Where a plateau ends, or which of two peaks is the larger, is a question of the last digits.
+    """
+    n = int(rng.integers(1, 4))
+    column, _ = static_case(
+        rng, varying=False, n=n, kinematics="small", footing=None, top="free", axial_spring=None
+    )
+    peaks = column.height * between(rng, 2e-3, 0.02) * np.cumsum(rng.uniform(0.2, 1.0, 5))
+    loading = {"displacement": np.outer(peaks, [1, -rng.uniform(0.5, 1.2)]).ravel()}
+    fine = {name: put_between(values, 4) for name, values in loading.items()}
+    runs = [follow(column, loading), follow(column, fine, every=int(rng.choice([1, 3, 100])))]
+    runs += [follow(column, changed(loading, share)) for share in (1e-10, -1e-10)]
+    size = np.abs(runs[0].force)
+    if not size.size or size[-2:].min() <= 1e-9 * size.max():
+        raise Discard  # all strength is lost: nothing springs back
+    try:
+        told, *others = [figures(run) for run in runs]
+    except rbsdem.InputError:
+        raise Discard from None
+
+    def apart(other: dict[str, float]) -> str:
+        if other.keys() != told.keys():
+            return f"{other.keys() ^ told.keys()}"
+        for name, value in told.items():
+            near = 1e-7 * abs(value) + (1e-9 if "energy" not in name else 1e-9 * most)
+            if not abs(other[name] - value) <= near and not np.isnan([other[name], value]).all():
+                return f"{name}: {value} {other[name]}"
+        return ""
+
+    most = abs(told["input_energy"])
+    if (found := apart(others[0])) and any(apart(other) for other in others[1:]):
+        raise Discard
+    assert not found, found
+
+
 def each_stated(column: rbsdem.Column) -> rbsdem.Column:
     """Return the column that states the spring of each joint, and of each layer, by itself."""
     other = replace(column)
