@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from reference_chain import Linear, chain
 
 import rbsdem
 from rbsdem import compare_methods
@@ -26,11 +27,7 @@ from rbsdem.methods.study import MethodStudy
 from rbsdem.output.methods import report
 from rbsdem.output.tables import write_csv
 from rbsdem.results.accuracy import Answer, at_times, common_interval, errors_of
-from rbsdem.springs import (
-    Bilinear,
-    Compression,
-    Elastic,
-)
+from rbsdem.springs import Bilinear, Compression, Elastic
 
 LENGTH, MASS = 1.6, 614.4
 SHEAR, BENDING = 7.0387e8, 2.5428e8
@@ -105,14 +102,6 @@ def test_a_loading_of_few_times_is_the_same_at_more_of_them():
 # ---- reference, errors, front, choice ------------------------------------------------------------
 
 
-def free_vibration(time: np.ndarray) -> np.ndarray:
-    """Top displacement of the elastic column that is let go from 1 mm slip, by its modes."""
-    modes = rbsdem.modes(ELASTIC)
-    amplitude = modes.shapes.T @ rbsdem.matrices(ELASTIC).mass @ [1e-3, 0.0]
-    q = modes.shapes @ (amplitude[:, None] * np.cos(np.outer(modes.omega, time)))
-    return q[0] + LENGTH * q[1]
-
-
 def test_reference_and_orders_of_free_vibration():
     """The reference against the modal solution; errors fall with the orders of the methods."""
     found = compare_methods(
@@ -126,7 +115,10 @@ def test_reference_and_orders_of_free_vibration():
     reference = found.reference
     assert reference.reached
     assert reference.digits >= 9
-    exact = free_vibration(reference.answer.time)
+    times = reference.answer.time
+    linear = Linear(ELASTIC)
+    rows = linear.solve(times, np.zeros((times.size, 2)), [1e-3, 0.0, 0.0, 0.0])
+    exact = rows[:, :2] @ linear.arm
     difference = np.abs(reference.answer.response - exact).max() / np.abs(exact).max()
     assert difference < 3 * 10**-reference.digits
     for method, events, order in (("rk4", "step", 4), ("newmark", None, 2)):
@@ -242,29 +234,6 @@ def test_a_setting_of_the_user_is_measured(shaken):
         compare_methods(PAPER, TIME, ground_acceleration=MOTION, setting={"step": 1.0})
 
 
-def test_implicit_methods_take_every_level():
-    column = dataclasses.replace(PAPER, kinematics="finite")
-    found = compare_methods(
-        column, TIME, ground_acceleration=MOTION, methods=["newmark", "rk4"], repeats=1, digits=6
-    )
-    for level in ("finite", "pdelta"):
-        rows = rows_of(found, "newmark", level)
-        assert rows
-        assert all(row.status == "completed" for row in rows)
-    assert rows_of(found, "newmark", "finite")[-1].error < 1e-3
-    assert rows_of(found, "rk4", "small", "step")[-1].error > 1e-3
-    assert found.reference.reached
-
-
-def test_irregular_times_are_compared_too():
-    time = np.sort(np.concatenate([TIME, np.sqrt(2) * TIME[1:100]]))
-    motion = np.interp(time, TIME, MOTION)
-    found = compare_methods(
-        PAPER, time, ground_acceleration=motion, methods=["rk4"], repeats=1, digits=6
-    )
-    assert rows_of(found, "rk4", "pdelta", "step")[-1].error < 1e-5
-
-
 def test_collapse_ends_the_comparison():
     found = compare_methods(
         PAPER,
@@ -283,22 +252,16 @@ def test_collapse_ends_the_comparison():
 # ---- budget --------------------------------------------------------------------------------------
 
 
-def chain(n: int) -> rbsdem.Column:
-    spring = Bilinear(2.0e8 * n, 2e-3 / n, 2.0e7 * n)
+def long_chain() -> rbsdem.Column:
+    spring = Bilinear(2.0e10, 2e-5, 2.0e9)
     return rbsdem.Column(
-        1.6,
-        614.4,
-        Elastic(7e8 * n),
-        spring,
-        n=n,
-        top_mass=75000.0,
-        gravity=0.0,
+        1.6, 614.4, Elastic(7e10), spring, n=100, top_mass=75000.0, gravity=0.0,
         damping=rbsdem.Damping(stiffness=1e-5),
-    )
+    )  # fmt: skip
 
 
 def test_what_does_not_fit_into_the_budget_is_left_out_and_told():
-    found = compare_methods(chain(100), TIME, ground_acceleration=MOTION, budget=1.5, digits=4)
+    found = compare_methods(long_chain(), TIME, ground_acceleration=MOTION, budget=1.5, digits=4)
     skipped = [row for row in found.rows if row.status == "skipped"]
     assert any(row.setting.method == "rk4" for row in skipped)
     assert all("would take about" in row.reason for row in skipped)
@@ -308,18 +271,9 @@ def test_what_does_not_fit_into_the_budget_is_left_out_and_told():
     assert found.reference.note.endswith("share the solver of the equations")
 
 
-def test_digits_that_are_not_reached_are_told():
-    found = compare_methods(
-        PAPER, TIME, ground_acceleration=MOTION, methods=["rk4"], digits=15, repeats=1, budget=10.0
-    )
-    assert not found.reference.reached
-    assert 6 < found.reference.digits < 15
-    assert "15 were wanted" in found.reference.note
-
-
 def test_no_time_at_all():
     with pytest.raises(rbsdem.InputError, match="budget is too small for any setting"):
-        compare_methods(chain(100), TIME, ground_acceleration=MOTION, budget=1e-6)
+        compare_methods(long_chain(), TIME, ground_acceleration=MOTION, budget=1e-6)
 
 
 # ---- static --------------------------------------------------------------------------------------
@@ -393,45 +347,21 @@ def test_effect_of_two_bodies_on_an_elastic_column():
 
 def test_effects_of_a_column_with_everything():
     column = rbsdem.Column(
-        1.6,
-        614.4,
-        Elastic(7e8),
-        PAPER.flexure,
-        kinematics="pdelta",
-        axial_load=744e3,
-        self_weight=True,
-        axial_spring=Compression(3e9),
-        top_mass=75000.0,
-        top_inertia=2000.0,
-        depth=0.4,
-        damping=rbsdem.Damping(mass=0.2, stiffness=1e-5),
-    )
+        1.6, 614.4, Elastic(7e8), PAPER.flexure, kinematics="pdelta", axial_load=744e3,
+        self_weight=True, axial_spring=Compression(3e9), top_mass=75000.0, top_inertia=2000.0,
+        depth=0.4, damping=rbsdem.Damping(mass=0.2, stiffness=1e-5),
+    )  # fmt: skip
     found = compare_methods(
-        column,
-        TIME,
-        ground_acceleration=MOTION,
-        vertical_acceleration=0.3 * MOTION,
-        methods=["rk45"],
-        repeats=1,
-        digits=5,
-        budget=30.0,
-    )
+        column, TIME, ground_acceleration=MOTION, vertical_acceleration=0.3 * MOTION,
+        methods=["rk45"], repeats=1, digits=5, budget=30.0,
+    )  # fmt: skip
     effects = {effect.part: effect for effect in found.physics.effects}
     assert set(effects) == {
-        "kinematics small",
-        "kinematics finite",
-        "no axial load",
-        "no self-weight",
-        "joints do not open",
-        "no top mass",
-        "no inertia of top",
-        "bodies without depth",
-        "no damping",
-        "no vertical_acceleration",
-        "rotary inertia x 0.01",
-        "damping of tangent stiffness",
-        "2 bodies",
-    }
+        "kinematics small", "kinematics finite", "no axial load", "no self-weight",
+        "joints do not open", "no top mass", "no inertia of top", "bodies without depth",
+        "no damping", "no vertical_acceleration", "rotary inertia x 0.01",
+        "damping of tangent stiffness", "2 bodies",
+    }  # fmt: skip
     assert effects["no top mass"].peak < -0.5
     assert effects["no top mass"].matters
     assert not effects["no self-weight"].matters
@@ -439,16 +369,8 @@ def test_effects_of_a_column_with_everything():
 
 
 def test_split_bodies_keeps_mass_height_and_inertia():
-    column = rbsdem.Column(
-        2.0,
-        None,
-        Elastic(1e8),
-        [Elastic(1e8), Elastic(2e8)],
-        n=2,
-        lengths=[0.8, 1.2],
-        masses=[100.0, 300.0],
-        rotary_inertia=[100 * 0.8**2 / 12, 300 * 1.2**2 / 12],
-    )
+    inertia = [100 * 0.8**2 / 12, 300 * 1.2**2 / 12]
+    column = chain([0.8, 1.2], [100.0, 300.0], [1e8, 1e8], [1e8, 2e8], rotary_inertia=inertia)
     halves = split_bodies(column)
     assert halves.lengths == (0.4, 0.4, 0.6, 0.6)
     assert halves.masses == (50.0, 50.0, 150.0, 150.0)
