@@ -403,17 +403,6 @@ def test_output_of_the_case_is_relative_to_the_case_and_the_option_to_the_shell(
     assert absolute.read_bytes() == (tmp_path / "other.csv").read_bytes()
 
 
-def test_output_that_cannot_be_written_touches_nothing(run_cli, folder):
-    (folder / "folder").mkdir()
-    (folder / "plain").write_text("untouched")
-    for output in ("folder", "folder/", "none/out.csv", "plain/out.csv", "x" * 300):
-        text = faults(run_cli(["run", "case.nml", "--output", output], folder))
-        assert "is a folder" in text or "--output" in text
-    assert sorted(os.listdir(folder)) == ["case.nml", "folder", "plain"]
-    assert os.listdir(folder / "folder") == []
-    assert (folder / "plain").read_text() == "untouched"
-
-
 @pytest.mark.parametrize("output", [None, "history.csv", "./history.csv", "HERE/history.csv"])
 def test_output_never_replaces_an_input(run_cli, case_text, tmp_path, output):
     """history.nml on history.csv: its default output would be the file that drives it."""
@@ -428,15 +417,6 @@ def test_output_never_replaces_an_input(run_cli, case_text, tmp_path, output):
         text = faults(run_cli(["run", *arguments], tmp_path))
         assert "is an input of the case and would be written over" in text
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
-
-
-def test_bad_input_leaves_old_output_and_no_partial(run_cli, case_text, tmp_path):
-    for groups in ({"column": "height = -1, mass = 1"}, {"loading": PROTOCOL + "1e308, scale = 9"}):
-        write(tmp_path, case_text(**groups))
-        (tmp_path / "case.csv").write_text("old")
-        faults(run_cli(["run", "case.nml"], tmp_path))
-        assert sorted(os.listdir(tmp_path)) == ["case.csv", "case.nml"]
-        assert (tmp_path / "case.csv").read_text() == "old"
 
 
 def test_force_beyond_the_capacity_keeps_the_path_and_the_old_output(
@@ -835,19 +815,6 @@ def test_progress_stays_away_in_a_pipe_with_quiet_and_in_short_runs(
     code, text, out = on_terminal(executable, ["run", "case.nml"], tmp_path)
     assert (code, text) == (0, "")
     assert "rows in" in out
-
-
-def test_output_is_whole_or_the_old_one_at_any_time(executable, long_run, tmp_path, read_csv):
-    (tmp_path / "case.csv").write_text("old")
-    process = subprocess.Popen([executable, "run", "case.nml", "-q"], cwd=tmp_path)
-    wait_for(unfinished(process, tmp_path), 5000)
-    process.send_signal(signal.SIGSTOP)
-    assert process.poll() is None, "the run was over before it could be watched"
-    assert (tmp_path / "case.csv").read_text() == "old"
-    process.send_signal(signal.SIGCONT)
-    assert process.wait(timeout=PATIENCE) == 0
-    assert read_csv(tmp_path / "case.csv")["time_s"].size == ROWS + 1
-    assert not list(tmp_path.glob("*.partial"))
 
 
 @pytest.mark.parametrize(

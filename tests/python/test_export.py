@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import pickle
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -87,22 +85,6 @@ def test_layers_and_a_case_come_back_too(tmp_path):
     run = rbsdem.read_case(case).run()
     run.save(tmp_path / "b.npz")
     assert rbsdem.read_result(tmp_path / "b.npz") == run
-
-
-def test_csv_is_that_of_the_executable(run_cli, tmp_path):
-    column = replace(rbsdem.peer.paper_columns()["zahn_7"], axial_load=0.0)
-    (tmp_path / "case.nml").write_text(
-        f"&case title = 'a pier' /\n{column.to_namelist()}\n"
-        "&loading drive = 'displacement', amplitudes = 0.01, points = 3 /\n"
-    )
-    assert run_cli(["run", "case.nml", "-q", "-o", "executable.csv"], tmp_path).returncode == 0
-    rbsdem.read_case(tmp_path / "case.nml").run().to_csv(tmp_path / "python.csv")
-    one, other = (
-        (tmp_path / f"{name}.csv").read_text().splitlines() for name in ("executable", "python")
-    )
-    assert one[:4] == other[:4]
-    for row, same in zip(csv.reader(one[4:]), csv.reader(other[4:]), strict=True):
-        assert [float(cell) for cell in row] == [float(cell) for cell in same]
 
 
 @pytest.mark.parametrize("name", RESULTS)

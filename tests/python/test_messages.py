@@ -82,6 +82,7 @@ ROUND = rbsdem.CircularSection(
     1.0, rbsdem.Concrete(30e6), layout=rbsdem.Layout(16, 0.016, STEEL), cover=0.03, wall=0.2,
     spiral=rbsdem.Spiral(0.01, 0.1, STEEL), inner_layout=rbsdem.Layout(16, 0.016, STEEL),
 )  # fmt: skip
+RECORD = motions.synthetic(1)[0]
 LOADING = "&loading drive = 'displacement', amplitudes = 0.001 /\n"
 DRAWN = rbsdem.section.column(SECTION, 1.6, axial_load=744e3).to_namelist() + LOADING
 

@@ -12,7 +12,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import rbsdem
-from rbsdem import GroundMotion, InputError, motions
+from rbsdem import GroundMotion, motions
 from rbsdem.springs import Elastic
 
 G = motions.STANDARD_GRAVITY
@@ -342,59 +342,3 @@ def test_figures_of_motion_and_spectrum():
     rbsdem.plot.spectrum(motion.scaled(2.0).spectrum(), ax=ax, color="red")
     assert ax.get_lines()[0].get_label() == "mine"
     assert ax.get_lines()[1].get_color() == "red"
-
-
-@pytest.mark.parametrize(
-    ("call", "words"),
-    [
-        (lambda m: GroundMotion([1.0, np.nan, 2.0], 0.01), "value 2 of 3 is nan"),
-        (lambda m: GroundMotion([1.0], 0.01), "1 values; give two or more"),
-        (lambda m: GroundMotion([1.0, 2.0], 0.0), "dt = 0 s must be above 0"),
-        (lambda m: GroundMotion([[1.0, 2.0]], 0.01), "must have one dimension"),
-        (lambda m: GroundMotion([1.0], -1.0), "two or more\nmotion: dt = -1"),
-        (lambda m: m.scaled(), "exactly one of factor, pga and sa"),
-        (lambda m: m.scaled(2.0, pga=1.0), "exactly one of factor, pga and sa"),
-        (lambda m: m.scaled(pga=-1.0), "pga = -1 m/s2 must be above 0"),
-        (lambda m: m.scaled(sa=3.0), "must be a period in s and an acceleration"),
-        (lambda m: GroundMotion([0.0, 0.0], 0.1).scaled(pga=1.0), "its pga is 0"),
-        (lambda m: GroundMotion([0.0, 0.0], 0.1).duration(), "has no duration"),
-        (lambda m: m.duration(95, 5), "must be percentages, start < end"),
-        (lambda m: m.spectrum([-1.0]), "value 1 of 1 is -1 s"),
-        (lambda m: m.spectrum([]), "periods is empty"),
-        (lambda m: m.spectrum([1.0], 50), "it is a ratio, not a percentage"),
-        (lambda m: m.spectrum([1.0], np.nan), "damping = nan"),
-        (lambda m: motions.resampled(m, 0.0), "dt = 0 s must be above 0"),
-        (lambda m: motions.corrected(m, 20), "degree = 20 must be from 0 to 8"),
-        (lambda m: motions.sequence([]), "there are no motions"),
-        (
-            lambda m: motions.sequence([m, motions.resampled(m, 0.02)]),
-            r"0\.01 s and synthetic_01 0\.02 s; bring them to one step with",
-        ),
-        (lambda m: motions.sequence([m, [1.0]]), "must be a GroundMotion"),
-        (lambda m: motions.synthetic(0), "n = 0 must be from 1"),
-        (lambda m: motions.synthetic(1, dt=1.0), "dt = 1 s must be from"),
-    ],
-)
-def test_bad_input_of_motions(call, words):
-    with pytest.raises(InputError, match=words):
-        call(motions.synthetic(1)[0])
-
-
-@pytest.mark.parametrize(
-    ("keywords", "words"),
-    [
-        ({"time": [0.0, 1.0], "ground_acceleration": 0}, "time is given, and ground_acc"),
-        ({"force": 0}, "force is a GroundMotion; give it as ground_acceleration"),
-        ({"ground_acceleration": 0, "vertical_acceleration": 1}, "steps differ"),
-        ({}, "nothing acts"),
-        ({"ground_acceleration": [1.0, 2.0]}, "time is missing"),
-    ],
-)
-def test_bad_motions_of_an_analysis(column, keywords, words):
-    motion = motions.synthetic(1)[0]
-    given = (motion, motions.resampled(motion, 0.02))
-    call = {
-        name: given[value] if isinstance(value, int) else value for name, value in keywords.items()
-    }
-    with pytest.raises(InputError, match=words):
-        rbsdem.time_history(column, **call)
