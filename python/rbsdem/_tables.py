@@ -143,7 +143,7 @@ def read_lines(source: str | os.PathLike[str]) -> tuple[str, list[str]]:
             raise InputError(f"{where}: is not a text file; save it as csv or text in UTF-8")
         text = raw.decode("utf-8-sig", "replace")
     if not text.strip():
-        raise InputError(f"{where}: is empty; get the file anew")
+        raise InputError(f"{where}: is empty; download or export it again")
     return where, text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 

@@ -1,7 +1,7 @@
 !> The command line: command, paths and options.
 module rbs_app_command_line
    use rbs_base_error, only: error_type, fatal_error, bad_input
-   use rbs_base_text, only: nearest_name
+   use rbs_base_text, only: suggestion
    implicit none
    private
 
@@ -102,8 +102,8 @@ contains
          end if
          return
       case default
-         call complain("the option '"//word(:mark - 1)//"' is not known; did you mean '"// &
-                       nearest_name(word(:mark - 1), options)//"'?", error)
+         call complain("the option '"//word(:mark - 1)//"' is not known"// &
+                       suggestion(word(:mark - 1), options), error)
          return
       end select
       if (mark <= len(word)) call complain("the option '"//word(:mark - 1)//"' takes no value", error)
@@ -116,8 +116,8 @@ contains
 
       if (.not. allocated(command%name) .or. help_for(command)) then
          if (all(commands /= word)) then
-            call complain("the command '"//word//"' is not known; did you mean '"// &
-                          nearest_name(word, commands)//"'?", error)
+            call complain("the command '"//word//"' is not known"// &
+                          suggestion(word, commands), error)
             return
          end if
          if (help_for(command)) then

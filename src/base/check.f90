@@ -6,7 +6,7 @@ module rbs_base_check
    use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unset, unset_integer, beyond_meaning
    use rbs_base_error, only: message_list
-   use rbs_base_text, only: to_text, nearest_name, list_of
+   use rbs_base_text, only: to_text, suggestion, list_of
    implicit none
    private
 
@@ -75,7 +75,7 @@ contains
          call messages%add(name//' is missing; it is one of '//list_of(valid))
       else
          call messages%add(name//" = '"//trim(word)//"' is not known; it is one of "// &
-                           list_of(valid)//" (did you mean '"//nearest_name(word, valid)//"'?)")
+                           list_of(valid)//suggestion(word, valid))
       end if
    end subroutine check_name
 

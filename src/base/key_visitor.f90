@@ -14,7 +14,7 @@ module rbs_base_key_visitor
                             choice_list, real_kind, integer_kind, logical_kind, word_kind, text_kind, &
                             key_length
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: to_text, nearest_name
+   use rbs_base_text, only: to_text, suggestion
    implicit none
    private
 
@@ -392,8 +392,8 @@ contains
       self%sound = .false.
       name = [(choice_name(key, i), i=1, size(name))]
       call self%messages%add(self%group//': '//trim(key%name)//" = '"//trim(word)// &
-                             "' is not known; it is one of "//trim(choice_list(key))//" (did you mean '"// &
-                             nearest_name(word, name(:count(name /= '')))//"'?)")
+                             "' is not known; it is one of "//trim(choice_list(key))// &
+                             suggestion(word, name(:count(name /= ''))))
    end subroutine check_word
 
    pure logical function is_true(choice)

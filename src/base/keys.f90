@@ -148,6 +148,8 @@ contains
           .not. (bound%least_open .or. bound%most_open)) then
          text = 'must be from '//to_text(bound%least)//' to '//to_text(bound%most)//' '//bound%reason
          return
+      else if (below .and. abs(bound%least) > 0.0_wp .and. bound%least_open) then
+         text = 'must be above '//to_text(bound%least)
       else if (below .and. abs(bound%least) > 0.0_wp) then
          text = 'must be '//to_text(bound%least)//' or more'
       else if (below .and. bound%least_open) then

@@ -8,7 +8,7 @@ module rbs_base_text
    implicit none
    private
 
-   public :: to_text, exact_text, integer_length, lower, nearest_name, list_of
+   public :: to_text, exact_text, integer_length, lower, suggestion, list_of
 
    !> Longest text of a number.
    integer, parameter :: longest = 32
@@ -184,29 +184,33 @@ contains
       list_length = sum(len_trim(names)) + 2*max(size(names) - 1, 0)
    end function list_length
 
-   !> The valid name that is nearest to a misspelt word by edit distance.
-   pure function nearest_name(word, names) result(name)
+   !> "; did you mean 'height'?" where a valid name is near to a word by edit distance, else nothing.
+   pure function suggestion(word, names) result(text)
       character(len=*), intent(in) :: word
       character(len=*), intent(in) :: names(:)
-      character(len=nearest_length(word, names)) :: name
+      character(len=suggestion_length(word, names)) :: text
 
-      name = names(nearest_place(word, names))
-   end function nearest_name
+      if (len(text) > 0) text = "; did you mean '"//trim(names(nearest_place(word, names)))//"'?"
+   end function suggestion
 
-   pure integer function nearest_length(word, names)
+   pure integer function suggestion_length(word, names) result(length)
       character(len=*), intent(in) :: word
       character(len=*), intent(in) :: names(:)
+      integer :: place
 
-      nearest_length = len_trim(names(nearest_place(word, names)))
-   end function nearest_length
+      place = nearest_place(word, names)
+      length = 0
+      if (place > 0) length = len_trim(names(place)) + len("; did you mean ''?")
+   end function suggestion_length
 
+   !> Place of the name that is nearest to a word; 0 if a third of the word or more is other.
    pure integer function nearest_place(word, names) result(place)
       character(len=*), intent(in) :: word
       character(len=*), intent(in) :: names(:)
       integer :: i, distance, least
 
-      place = 1
-      least = huge(1)
+      place = 0
+      least = (len_trim(word) + 1)/3 + 1
       do i = 1, size(names)
          distance = edit_distance(lower(trim(word)), lower(trim(names(i))))
          if (distance < least) then

@@ -6,7 +6,7 @@ module rbs_case_group_reader
    use rbs_base_keys, only: key_type, find_key, choice_list, choice_place, word_kind, force, deformation, &
                             stiffness
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: to_text, nearest_name, list_of
+   use rbs_base_text, only: to_text, suggestion, list_of
    use rbs_base_units, only: unit_system
    use rbs_case_case_record, only: case_record, most_loadings
    use rbs_case_drawing_record, only: drawing_groups
@@ -91,8 +91,8 @@ contains
          place = findloc(group_names == group, .true., dim=1)
       end if
       if (place == 0) then
-         call messages%add_at(where, 'the group &'//trim(group)//" is not known; did you mean '&"// &
-                              nearest_name(group, group_names)//"'? Groups are "//list_of(group_names))
+         call messages%add_at(where, 'the group &'//trim(group)//' is not known; it is one of '// &
+                              list_of(group_names)//suggestion(group, group_names))
       else if (group == 'loading' .and. self%case%loadings == most_loadings) then
          call messages%add_at(where, '&loading appears more than '//to_text(most_loadings)//' times')
       else if (self%seen(place) .and. all(repeated /= group)) then
@@ -176,8 +176,13 @@ contains
          end associate
       end do
       names = self%keys%name
-      call messages%add_at(where, '&'//trim(self%group)//" has no '"//trim(name)//"'; did you mean '"// &
-                           nearest_name(name, names)//"'?")
+      if (suggestion(name, names) /= '') then
+         call messages%add_at(where, '&'//trim(self%group)//" has no '"//trim(name)//"'"// &
+                              suggestion(name, names))
+      else
+         call messages%add_at(where, '&'//trim(self%group)//" has no '"//trim(name)//"'; rbsdem keys "// &
+                              trim(self%group)//' lists what it has')
+      end if
    end subroutine find
 
    !> Set the key at a place to numbers, whole numbers, or 0 and 1.

@@ -7,7 +7,7 @@ module rbs_case_key_list
    use rbs_base_keys, only: key_type, bound_text, choice_name, choice_length, real_kind, integer_kind, &
                             logical_kind, word_kind
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: exact_text, nearest_name, to_text
+   use rbs_base_text, only: exact_text, suggestion, to_text
    use rbs_case_group_reader, only: group_names, group_reader, section_groups
    use rbs_case_text_buffer, only: text_buffer
    use rbs_hysteresis_registry, only: rule_names, keys_of, places_of
@@ -172,8 +172,8 @@ contains
       integer :: i
 
       if (name /= '' .and. all(group_names /= name) .and. all(rule_names /= name)) then
-         call fatal_error(error, bad_input, "there is no group or rule '"//name//"'; did you mean '"// &
-                          nearest_name(name, [character(len=24) :: group_names, rule_names])//"'?")
+         call fatal_error(error, bad_input, "there is no group or rule '"//name//"'"// &
+                          suggestion(name, [character(len=24) :: group_names, rule_names]))
          return
       end if
       do i = 1, size(group_names)

@@ -176,7 +176,7 @@ contains
       history%rows = nint(numbers(1))
       if (rows /= history%rows) then
          call fatal_error(error, bad_input, path//': line 4 declares '//to_text(history%rows)// &
-                          ' values, but there are '//merge('more     ', 'only     ', rows > history%rows)// &
+                          ' values, but there are '//trim(merge('more ', 'fewer', rows > history%rows))// &
                           '; the file is cut or mixed up')
       end if
    end subroutine read_at2

@@ -2,7 +2,7 @@
 module rbs_io_loading_file
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: lower, list_of, nearest_name, to_text
+   use rbs_base_text, only: lower, list_of, suggestion, to_text
    use rbs_io_history, only: history_type, read_history
    use rbs_io_text_file, only: is_integer
    use rbs_base_check, only: is_given
@@ -144,8 +144,7 @@ contains
             if (lower(history%labels(column)) == lower(word)) return
          end do
          call fatal_error(error, bad_input, path//': '//key//" = '"//trim(word)//"' is not there ("// &
-                          there//"); did you mean '"// &
-                          nearest_name(word, history%labels)//"'?")
+                          there//')'//suggestion(word, history%labels))
       end if
    end subroutine find_column
 

@@ -177,7 +177,7 @@ contains
       character(len=*), intent(in) :: path
       type(error_type), allocatable, intent(inout) :: error
       character(len=256) :: message
-      integer :: unit, status
+      integer :: unit, status, reason
 
       message = 'it cannot be opened'
       if (path == '-') then
@@ -186,6 +186,8 @@ contains
          ! Opened once more, since Fortran gives the reason in words.
          open (newunit=unit, file=path, action='read', status='old', iostat=status, iomsg=message)
          if (status == 0) close (unit)
+         reason = index(message, "': ", back=.true.)  ! Behind the path
+         if (reason > 0) message = message(reason + 3:)
       end if
       call refuse(path, 'cannot be opened ('//trim(message)//'); check the path and the permissions', error)
    end subroutine report_open

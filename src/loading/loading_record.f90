@@ -196,7 +196,7 @@ contains
       units = units_of(self%drive)
       names = units%name
       if (self%drive == 'displacement' .and. self%source == 'protocol') names = ['drift   ', names]
-      call check_name(self%unit, names, "loading: unit of the drive '"//trim(self%drive)//"'", &
+      call check_name(self%unit, names, 'loading of '//trim(self%drive)//': unit', &
                       messages, place)
    end subroutine check_unit
 

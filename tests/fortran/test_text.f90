@@ -4,7 +4,7 @@ module test_text
    use check, only: unit_test, check_equal, check_failed, check_same, check_true
    use rbs_base_error, only: error_type, message_list, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: exact_text, to_text, lower, nearest_name, list_of
+   use rbs_base_text, only: exact_text, to_text, lower, suggestion, list_of
    use rbs_io_text_file, only: read_real, number_ok
    use samples, only: random_type
    implicit none
@@ -111,10 +111,11 @@ contains
    subroutine nearest(error)
       type(error_type), allocatable, intent(inout) :: error
 
-      call check_equal(error, nearest_name('takda', names), 'takeda', 'a letter left out')
-      call check_equal(error, nearest_name('Bi-Linear', names), 'bilinear', 'case and a hyphen')
-      call check_equal(error, nearest_name('elasticc  ', names), 'elastic', 'a letter too many')
-      call check_equal(error, nearest_name('', names), 'takeda', 'nothing typed: the shortest')
+      call check_equal(error, suggestion('takda', names), "; did you mean 'takeda'?", 'a letter left out')
+      call check_equal(error, suggestion('Bi-Linear', names), "; did you mean 'bilinear'?", 'a hyphen')
+      call check_equal(error, suggestion('elasticc  ', names), "; did you mean 'elastic'?", 'a letter more')
+      call check_equal(error, suggestion('concrete', names), '', 'another word')
+      call check_equal(error, suggestion('', names), '', 'nothing typed')
    end subroutine nearest
 
    subroutine one_error(error)

@@ -346,8 +346,9 @@ KEYWORDS: dict[str, Callable[..., object]] = {
 #: Keys of a file that are no keywords, or go by other words.
 IN_FILES = {"footing_mass", "footing_inertia", "footing_height", "duration", "period", "interval"}
 IN_FILES |= {"reference", "largest", "strips", "scale", "time", "values"}
+OF_FRAMES = {"frame", "floor", "member_kind", "column_of", "beam_of", "node", "member"}
 #: Keys whose refusals name what they refer to, and stand in `messages.txt`.
-REFERENCES = {"joint", "id", "spring", "steel", "between_steel", "y"}
+REFERENCES = {"joint", "id", "spring", "steel", "between_steel", "y", "place"}
 OF_OTHER_KINDS = {
     "real": ("'1.6'", "must be a number without quotes"),
     "integer": ("1.5", "must be a whole number"),
@@ -364,8 +365,10 @@ def faulty_numbers(key: dict[str, Any]) -> Iterator[tuple[float, str]]:
         sentence = re.escape(f"must be from {low:g} to {high:g}")
         yield from ((value, sentence) for value in (low // 2 if low else -1, 2 * high))
     elif low is not None:
-        sentence = f"must be {low:g} or more" if low else "must not be negative"
-        yield (low, "must be above zero") if key.get("least_open") else (low - 1, sentence)
+        if key.get("least_open"):
+            yield low, f"must be above {low:g}" if low else "must be above zero"
+        else:
+            yield low - 1, f"must be {low:g} or more" if low else "must not be negative"
         if key.get("most_open"):
             yield high, f"must be below {high:g}"
         elif high is not None:
@@ -395,6 +398,8 @@ def test_a_key_refuses_what_it_cannot_take(folder, case_text, group):
         text = case_text(**LAYERED, layer_spring=LAYER_SPRINGS)
     elif group in ("spiral", "inner_layout"):
         text = rbsdem.section.column(ROUND, 3.0, axial_load=1e6).to_namelist() + LOADING
+    elif group in OF_FRAMES:
+        text = "&frame storeys = 3.0, bays = 5.0 /\n" + LOADING
     elif f"&{group} " not in text and f"&{group} " in DRAWN:
         text = DRAWN
     for key in KEYS["groups"][group]:

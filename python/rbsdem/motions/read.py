@@ -149,7 +149,7 @@ def read_at2(lines: list[str], path: str, name: str, units: str | None) -> Groun
     missing = count - len(values)
     if missing > MOST_MISSING:
         raise InputError(
-            f"{path}: {len(values)} values, but NPTS = {count}; the file is not whole, get it anew"
+            f"{path}: {len(values)} values, but NPTS = {count}; the file is truncated; download it again"
         )
     if missing < 0:
         raise InputError(
@@ -225,7 +225,7 @@ def _values(lines: list[str], first: int, path: str) -> list[float]:
     if carried:
         raise InputError(
             f"{path} line {begun}: the file ends inside the number {carried.split()[-1]!r}; "
-            "get it anew"
+            "download it again"
         )
     return values
 
@@ -244,7 +244,7 @@ def _row(row: str, number: int, path: str) -> list[float]:
     if rest:
         raise InputError(
             f"{path} line {number}: {rest[0][:20]!r} in {row.strip()[:60]!r} is not a number; "
-            "get the file anew, or correct the line"
+            "download the file again, or correct the line"
         )
     return [_float(word) for word in _NUMBER.findall(row)]
 

@@ -4,7 +4,7 @@ module rbs_structure_frame_frame_parts
    use rbs_base_check, only: is_given
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: list_of, nearest_name, to_text
+   use rbs_base_text, only: list_of, suggestion, to_text
    use rbs_hysteresis_registry, only: rule_names, suits
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_structure_frame_frame_record, only: frame_record, frame_spring, kind_record, cell_record, &
@@ -190,8 +190,8 @@ contains
       else if (word == '') then
          call messages%add(owner//': '//key//' is missing; it is one of '//list_of(names))
       else
-         call messages%add(owner//': there is no '//key//" '"//trim(word)//"'; did you mean '"// &
-                           nearest_name(word, names)//"'?")
+         call messages%add(owner//': there is no '//key//" '"//trim(word)//"'; it is one of "// &
+                           list_of(names)//suggestion(word, names))
       end if
    end subroutine check_reference
 
