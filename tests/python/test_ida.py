@@ -10,7 +10,6 @@ from rbsdem import InputError, motions
 from rbsdem.many.fragility import Hazard
 from rbsdem.many.ida import Hunt
 from rbsdem.many.uncertain import variance_split
-from rbsdem.output.tables import write_csv, write_parquet
 from rbsdem.springs import Elastic, PeakOriented
 
 HEIGHT = 2.0
@@ -287,19 +286,3 @@ def test_cloud_counts_collapses(records):
 
 
 # ---- tables, files, figures ----------------------------------------------------------------------
-
-
-def test_tables_and_files(hunted, tmp_path):
-    pandas = pytest.importorskip("pandas")
-    pytest.importorskip("pyarrow")
-    table = hunted.to_frame()
-    assert list(table.columns[:5]) == ["column", "motion", "intensity", "scale", "status"]
-    assert len(table) == len(hunted.runs)
-    assert (table["intensity"].diff()[table["motion"].eq(table["motion"].shift())] >= 0).all()
-    write_csv(hunted.runs.to_frame(), tmp_path / "runs.csv")
-    write_parquet(hunted.runs.to_frame(), tmp_path / "runs.parquet")
-    again = pandas.read_parquet(tmp_path / "runs.parquet")
-    assert again["peak_drift"].to_numpy() == pytest.approx(
-        hunted.runs.measures["peak_drift"], nan_ok=True
-    )
-    assert len(pandas.read_csv(tmp_path / "runs.csv")) == len(table)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pandas
 import pytest
 from conftest import REPOSITORY
 from samples import read_rows
@@ -38,6 +39,8 @@ def test_files_and_report(folder, tmp_path, capsys):
     found = rbsdem.ida(
         rbsdem.read_case(CASE).column, motions.synthetic(4), method="newmark", levels=[2, 6, 30]
     )
+    kept = pandas.read_parquet(out / "ida.parquet")["peak_drift"].to_numpy()
+    assert sorted(kept) == sorted(found.runs.measures["peak_drift"])
     curves = {row["limit_state"]: row for row in read_rows(out / "fragility.csv")}
     repair = found.fragility("peak_drift", 0.01)
     assert float(curves["repair"]["theta_m/s2"]) == pytest.approx(repair.theta, rel=1e-5)

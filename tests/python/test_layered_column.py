@@ -75,21 +75,16 @@ def test_strength_of_the_hinge_is_that_of_the_section():
 
 
 def test_numbers_to_fit_stand_between_their_bounds_and_come_back():
-    column = peer.column(SPECIMEN, "layered")
+    column = peer.column(SPECIMEN)
+    before = column.recipe.parameters.values
     for name, number in column.parameters.items():
         assert number.low < number.value < number.high, name
-        other = column.with_parameters(**{name: math.sqrt(number.low * number.high)})
-        if name in FACTORS:
-            values, before = other.recipe.parameters.values, column.recipe.parameters.values
-            for one in FACTORS[name][0]:
-                factor = values[one] / before[one]
-                assert factor == pytest.approx(math.sqrt(number.low * number.high)), one
-            # The next factor is one on these.
-            assert other.parameters[name].value == 1.0
-        else:
-            assert other.parameters[name].value == pytest.approx(
-                math.sqrt(number.low * number.high)
-            )
+        middle = math.sqrt(number.low * number.high)
+        other = column.with_parameters(**{name: middle})
+        # A factor has become one on the values that it has changed.
+        assert other.parameters[name].value == pytest.approx(1.0 if name in FACTORS else middle)
+        for one in FACTORS[name][0] if name in FACTORS else ():
+            assert other.recipe.parameters.values[one] / before[one] == pytest.approx(middle), one
         assert other.n == column.n
 
 
@@ -157,25 +152,6 @@ def test_a_section_makes_the_column_of_the_specimen(model):
     assert force == pytest.approx(expected, rel=1e-9, abs=1e-9 * np.max(np.abs(expected)))
 
 
-def test_a_circular_section_makes_both_models():
-    steel = rbsdem.Steel(450e6, 650e6)
-    section = rbsdem.CircularSection(
-        0.5,
-        rbsdem.Concrete(35e6),
-        layout=rbsdem.model.reinforcement.Layout(12, 0.02, steel),
-        spiral=rbsdem.model.reinforcement.Spiral(0.01, 0.06, steel),
-        cover=0.025,
-    )
-    peaks = [
-        np.max(np.abs(rbsdem.cyclic(column, displacement=[0.0, 0.03, -0.03]).force))
-        for model in ("layered", "paper")
-        for column in [
-            rbsdem.section.column(section, 1.8, axial_load=900e3, model=model, mass=800.0)
-        ]
-    ]
-    assert peaks[0] == pytest.approx(peaks[1], rel=0.3)
-
-
 # ---- versions of the parameters ------------------------------------------------------------------
 
 
@@ -227,38 +203,8 @@ def test_directions_are_factors_to_exponents():
     for end in (1e-6, 1e6):
         far = column.with_parameters(**dict.fromkeys(directions(), end))
         assert all(math.isfinite(x) for x in far.recipe.parameters.values.values())
-    with pytest.raises(InputError, match="direction_1 = 0 is a factor; it must be above zero"):
-        column.with_parameters(direction_1=0.0)
     other = replace(column, shear=column.shear[1])
     assert "direction_1" not in other.parameters
-    with pytest.raises(InputError, match="direction_1 belongs to springs that were replaced"):
-        other.with_parameters(direction_1=1.1)
-
-
-@pytest.mark.parametrize(
-    ("values", "text"),
-    [
-        ({"steel_strenght": 1.0}, "did you mean 'steel_strength'"),
-        ({"wear": math.nan}, "parameters: wear = nan must be a finite number"),
-    ],
-)
-def test_values_that_parameters_refuse(values, text):
-    with pytest.raises(InputError, match=text):
-        parameters().with_values(**values)
-
-
-@pytest.mark.parametrize(
-    ("values", "text"),
-    [
-        ({"friction": 1.2}, "concrete spring: friction = 1.2 must be below 1"),
-        ({"cr1": 1.3}, "steel spring: cr1 = 1.3 must be below 1"),
-        ({"shear_b0": 2.0}, "pinching spring: b0 = 2 must be from 0 to 1"),
-    ],
-)
-def test_the_spring_that_refuses_a_parameter_says_so(values, text):
-    # The springs of a model are checked with their column, all at once.
-    with pytest.raises(InputError, match=text):
-        rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6).with_parameters(**values)
 
 
 # ---- what a change of parameters keeps -----------------------------------------------------------
@@ -290,26 +236,24 @@ KEPT = {
 OTHERS = {"height", "n", "recipe", "axial_spring", "top"}
 
 
-def test_every_field_of_a_column_is_tried():
-    """A new field of Column belongs into KEPT."""
-    assert {field.name for field in fields(LAYERED) if field.init} == set(KEPT) | OTHERS
-
-
-@pytest.mark.parametrize("name", KEPT)
-def test_other_parameters_keep_what_was_replaced(name):
+def test_other_parameters_keep_what_was_replaced():
     """Also springs and lengths that are not the model's any more; the others are made anew."""
-    column = replace(LAYERED, **KEPT[name])
-    assert column.with_parameters() == column
-    changed = column.with_parameters(
-        **{"steel_strength": 1.0} if name != "flexure" else {"shear_strength": 1.1}
-    )
-    for field in fields(column):
-        same = getattr(changed, field.name) == getattr(column, field.name)
-        made = field.name in ("shear", "flexure", "lengths", "model", "recipe")
-        assert same or made, field.name
-    if name in ("shear", "flexure", "lengths", "model"):
-        assert getattr(changed, name) == getattr(column, name)
-    assert changed != column
+    assert {field.name for field in fields(LAYERED) if field.init} == set(KEPT) | OTHERS
+    made = {"shear", "flexure", "lengths", "model", "recipe"}
+    for name, changes in KEPT.items():
+        column = replace(LAYERED, **changes)
+        assert column.with_parameters() == column
+        other = {"steel_strength": 1.0} if name != "flexure" else {"shear_strength": 1.1}
+        changed = column.with_parameters(**other)
+        for field in {field.name for field in fields(column)} - made | ({name} & made):
+            assert getattr(changed, field) == getattr(column, field), (name, field)
+        assert changed != column
+    for springs, name in (("shear", "shear_strength"), ("flexure", "wear")):
+        column = replace(LAYERED, **KEPT[springs])
+        assert name in LAYERED.parameters
+        assert name not in column.parameters
+        with pytest.raises(InputError, match=f"{name} belongs to springs that were replaced"):
+            column.with_parameters(**{name: 1.0})
 
 
 def test_a_calibrated_column_keeps_what_was_replaced():
@@ -321,15 +265,6 @@ def test_a_calibrated_column_keeps_what_was_replaced():
     assert fit.values["steel_strength"] == pytest.approx(1.0, rel=1e-3)
     assert (fit.column.top_mass, fit.column.damping) == (2e4, column.damping)
     assert fit.column.version == "2026.5 changed"
-
-
-@pytest.mark.parametrize(("springs", "name"), [("shear", "shear_strength"), ("flexure", "wear")])
-def test_parameters_of_springs_that_were_replaced_are_refused(springs, name):
-    column = replace(LAYERED, **KEPT[springs])
-    assert name in LAYERED.parameters
-    assert name not in column.parameters
-    with pytest.raises(InputError, match=f"{name} belongs to springs that were replaced"):
-        column.with_parameters(**{name: 1.0})
 
 
 def test_a_layered_column_comes_back_from_pickle_and_copy():
@@ -410,12 +345,9 @@ def test_another_axial_load_draws_the_springs_again():
         replace(column, axial_load=0.9 * section.concrete.fc * section.gross_area)
 
 
-def test_sizes_that_the_springs_are_made_for_are_not_changed_alone():
+def test_double_curvature_follows_the_axial_load():
     section = rbsdem.peer.paper_sections()["zahn_7"].section
     column = rbsdem.section.column(section, 1.6, axial_load=0.5e6)
-    for change in ({"height": 2.0}, {"n": 3}):
-        with pytest.raises(rbsdem.InputError, match="make the column anew"):
-            replace(column, **change)
     twice = column.double_curvature()
     other = replace(column, axial_load=1e6).double_curvature()
     assert replace(twice, axial_load=1e6) == other

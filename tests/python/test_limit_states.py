@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -210,19 +209,6 @@ def test_ends_of_a_path_are_states():
     lost = rbsdem.cyclic(heavy, displacement=np.linspace(0.0, 0.1, 200), openings=True)
     assert lost.summary["status"] == "axial_failure"
     assert lost.limit_states()["axial_failure"].row == lost.time.size - 1
-
-
-def test_in_time_the_base_shear_is_drawn():
-    time = np.arange(0.0, 1.0, 0.01)
-    column = replace(COLUMN, damping=0.02, top_mass=5e4)
-    shaken = rbsdem.time_history(
-        column, time, ground_acceleration=3.0 * np.sin(10 * time), openings=True
-    )
-    states = shaken.limit_states()
-    assert "cracking" in states
-    ax = rbsdem.plot.limit_states(states)
-    assert ax.get_ylabel() == "Base shear (kN)"
-    plt.close(ax.figure)
 
 
 def test_openings_are_asked_for():

@@ -285,6 +285,11 @@ def test_history_of_a_path_and_of_forces():
     ax = plot.history(shaken(), "base_shear")
     assert ax.get_ylabel() == "Base shear (kN)"
     assert ax.get_lines()[0].get_ydata() == pytest.approx(1e-3 * shaken().base_shear)
+    # Shaken at its foot a column has no force at the top.
+    moved = rbsdem.time_history(
+        shaken().column, 0.01 * np.arange(20), ground_acceleration=np.ones(20), method="rk4"
+    )
+    assert plot.loop(moved).get_ylabel() == "Base shear (kN)"
 
 
 def test_records_as_tables():

@@ -162,30 +162,3 @@ def test_displacement_measured_below_the_top(tmp_path, measured_mm):
     assert test.displacement == pytest.approx(top, rel=1e-12, abs=1e-15)
     assert peer.predict_one(specimen, "layered").nrmse < 1e-9
     assert test.base_moment == pytest.approx(net * 2.0 + 1.2e6 * 1.125 * top)
-
-
-# ---- the database, where it is at hand -----------------------------------------------------------
-
-
-@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
-def test_shear_failures_of_the_database(peer_folder):
-    """Rectangular: half as wrong again without the spring; flexural ones do not notice it."""
-    table = peer.read_specimens(peer_folder).where(section="rectangular").with_history()
-    rows = {"Flexure": [], "other": []}
-    for specimen in table:
-        test, column = specimen.test(), peer.column(specimen, "layered")
-        foot = column.joints("shear")[0]
-        rigid = replace(column, shear=[Elastic(foot.f_c / foot.d_c), *column.joints("shear")[1:]])
-        kind = "Flexure" if specimen.failure_mode == "Flexure" else "other"
-        if kind == "Flexure" and specimen.span_depth_ratio > 3:
-            continue
-        rows[kind].append(
-            [
-                rbsdem.compare(rbsdem.cyclic(one, displacement=test.displacement), test).nrmse
-                for one in (rigid, column)
-            ]
-        )
-    without, with_spring = np.mean(rows["other"], axis=0)
-    assert with_spring < 0.85 * without
-    without, with_spring = np.mean(rows["Flexure"], axis=0)
-    assert with_spring < 1.02 * without
