@@ -44,6 +44,11 @@ def shown(value: object) -> str:
     return f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
 
 
+def one_line(text: str) -> str:
+    """Return a text without the characters that separate keys and groups of a statement."""
+    return "".join(character if character.isprintable() else " " for character in text)
+
+
 def number(value: Any, name: str) -> float:
     """Return `value` as a float."""
     if type(value) is float:

@@ -74,7 +74,7 @@ def group(name: str, values: Mapping[str, Any]) -> Statement:
         elif value is None:
             continue
         elif isinstance(value, str):
-            text = _one_line(value) if isinstance(value, Text) else word(value)
+            text = _arguments.one_line(value) if isinstance(value, Text) else word(value)
             words.append(f"{key}={text}")
         elif isinstance(value, (tuple, list)) or (isinstance(value, np.ndarray) and value.ndim):
             plain = all(type(i) is float or (type(i) is int and abs(i) < _EXACT) for i in value)
@@ -97,11 +97,6 @@ def _number_or_switch(value: Any, name: str) -> float:
     except InputError:
         given = _arguments.shown(value)
         raise InputError(f"{name} = {given} is neither a number nor a word") from None
-
-
-def _one_line(text: str) -> str:
-    """Return a text without the characters that separate keys and groups of a statement."""
-    return "".join(character if character.isprintable() else " " for character in text)
 
 
 class Answer(NamedTuple):

@@ -425,17 +425,12 @@ def _tested(specimen: Specimen, ends: str, footing: object) -> bool:
 
 def checked_specimen(specimen: object) -> Specimen:
     """Return a specimen, or raise `InputError` for anything else."""
-    if isinstance(specimen, Specimen):
-        return specimen
-    given = repr(specimen)
-    if len(given) > 60:
-        given = f"a {type(specimen).__name__}"
     remedy = "rbsdem.peer.read_specimens reads them from a table"
     if isinstance(specimen, Section):
         remedy = (
             "of a section, rbsdem.section.column(section, height, axial_load=...) makes a column"
         )
-    raise InputError(f"specimen = {given} must be a Specimen; {remedy}")
+    return _arguments.instance(specimen, "specimen", Specimen, remedy)
 
 
 def check_options(options: Mapping[str, object]) -> None:

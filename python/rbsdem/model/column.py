@@ -16,7 +16,7 @@ from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.damping import Damping
 from rbsdem.model.footing import Footing
 from rbsdem.model.shape import Section
-from rbsdem.model.springs import Layered, Spring, classes_for, layer_springs, whole_column
+from rbsdem.model.springs import Layered, Spring, checked_spring, layer_springs, whole_column
 from rbsdem.model.strains import Gauge
 
 if TYPE_CHECKING:
@@ -451,12 +451,7 @@ def _springs(springs: Any, name: str, n: int) -> Spring | tuple[Spring, ...]:
     except Exception:  # Of any class of the caller.
         several = (springs,)
     for spring in several:
-        if not isinstance(spring, Spring):
-            names = ", ".join(classes_for("axial" if name == "axial_spring" else name))
-            raise InputError(
-                f"column: {name} = {_arguments.shown(spring)} must be a spring ({names}) or a "
-                "sequence of them"
-            )
+        checked_spring(spring, f"column: {name}", name, " or a sequence of them")
     if not several:
         raise InputError(f"column: {name} is empty; give one spring, or one for each joint")
     if len(several) != n and n > 0:
@@ -480,12 +475,9 @@ def checked_column(column: object, who: str = "") -> Column:
     who : str, optional
         What the message starts with.
     """
-    if isinstance(column, Column):
-        return column
-    given = _arguments.shown(column)
     remedy = ""
     if isinstance(column, Section):
-        remedy = "; rbsdem.section.column(section, height, axial_load=...) makes one"
+        remedy = "rbsdem.section.column(section, height, axial_load=...) makes one"
     elif hasattr(column, "flexure") and hasattr(column, "shear"):
-        remedy = "; Column(height, mass, springs.shear, springs.flexure) makes one of springs"
-    raise InputError(f"{who}column = {given} must be a Column{remedy}")
+        remedy = "Column(height, mass, springs.shear, springs.flexure) makes one of springs"
+    return _arguments.instance(column, f"{who}column", Column, remedy)

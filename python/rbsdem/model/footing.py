@@ -6,8 +6,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from rbsdem import _arguments
-from rbsdem.errors import InputError
-from rbsdem.model.springs import Spring, classes_for
+from rbsdem.model.springs import Spring, checked_spring
 
 
 @dataclass(frozen=True)
@@ -45,10 +44,8 @@ class Footing:
     def __post_init__(self) -> None:
         for name in ("shear", "flexure", "axial_spring"):
             spring = getattr(self, name)
-            if isinstance(spring, Spring) or (spring is None and name == "axial_spring"):
-                continue
-            names = ", ".join(classes_for("axial" if name == "axial_spring" else name))
-            raise InputError(f"footing: {name} = {spring!r} must be a spring ({names})")
+            if spring is not None or name != "axial_spring":
+                checked_spring(spring, f"footing: {name}", name)
         _arguments.convert(self, "footing")
 
     def __repr__(self) -> str:

@@ -91,6 +91,10 @@ class Layout:
         steels = {key: numbers[value] for key, value in own.items() if isinstance(value, Steel)}
         return _core.group(name, own | steels)
 
+    def bars(self, shape: str, depth: float, inset: float) -> list[Bar]:
+        """Return the bars in a "rectangle" or a "circle" of a depth; see the two functions."""
+        return (self.circular if shape == "circle" else self.rectangular)(depth, inset)
+
     def rectangular(self, depth: float, inset: float) -> list[Bar]:
         """Return the bars of a rectangle.
 

@@ -110,14 +110,22 @@ class Section(_Parts, ABC):
     #: Whether the width falls towards the extreme fibres.
     narrows: ClassVar[bool] = False
 
+    #: Name of the shape of a solid section.
+    solid: ClassVar[str]
+
     @property
-    @abstractmethod
     def shape(self) -> str:
         """Name of the shape."""
+        return f"hollow_{self.solid}" if self.hollow else self.solid
 
-    @abstractmethod
     def _lay_out(self, layout: Layout, inset: float) -> list[Bar]:
         """Return the bars of the layouts; `inset` is from the face to the edge of the bars [m]."""
+        bars, inner = layout.bars(self.solid, self.depth, inset), self.inner_layout
+        if inner is None:
+            return bars
+        # The bars around the void are those along the inside of a larger outline.
+        around = self.depth - 2.0 * self._wall + 4.0 * inset + 2.0 * inner.diameter
+        return bars + inner.bars(self.solid, around, inset)
 
     @abstractmethod
     def _sizes(self) -> dict[str, float]:
@@ -386,6 +394,7 @@ class RectangularSection(Section):
     """
 
     hoops: ClassVar[str] = "ties"
+    solid: ClassVar[str] = "rectangle"
 
     width: float
     depth: float
@@ -413,22 +422,9 @@ class RectangularSection(Section):
             raise InputError("section: side_wall goes with wall; give the walls at the faces, too")
         self._finish()
 
-    @property
-    def shape(self) -> str:
-        """Name of the shape."""
-        return "hollow_rectangle" if self.hollow else "rectangle"
-
     def _sizes(self) -> dict[str, float]:
         sizes = {"width": self.width, "depth": self.depth}
         return sizes | {"wall": self._wall, "side_wall": self._web} if self.hollow else sizes
-
-    def _lay_out(self, layout: Layout, inset: float) -> list[Bar]:
-        bars, inner = layout.rectangular(self.depth, inset), self.inner_layout
-        if inner is None:
-            return bars
-        # The bars around the void are those along the inside of a larger outline.
-        around = self.depth - 2.0 * self._wall + 4.0 * inset + 2.0 * inner.diameter
-        return bars + inner.rectangular(around, inset)
 
     @property
     def _web(self) -> float:
@@ -573,6 +569,7 @@ class CircularSection(Section):
     """
 
     hoops: ClassVar[str] = "a spiral"
+    solid: ClassVar[str] = "circle"
     narrows: ClassVar[bool] = True
 
     diameter: float
@@ -593,21 +590,9 @@ class CircularSection(Section):
             self._check_wall("wall", self.diameter, "diameter", self.cover)
         self._finish()
 
-    @property
-    def shape(self) -> str:
-        """Name of the shape."""
-        return "hollow_circle" if self.hollow else "circle"
-
     def _sizes(self) -> dict[str, float]:
         sizes = {"diameter": self.diameter}
         return sizes | {"wall": self._wall} if self.hollow else sizes
-
-    def _lay_out(self, layout: Layout, inset: float) -> list[Bar]:
-        bars, inner = layout.circular(self.diameter, inset), self.inner_layout
-        if inner is None:
-            return bars
-        around = self.diameter - 2.0 * self._wall + 4.0 * inset + 2.0 * inner.diameter
-        return bars + inner.circular(around, inset)
 
     @property
     def width(self) -> float:
@@ -706,12 +691,10 @@ def _bar(bar: Any, number: int) -> Bar:
         y, area, steel = bar
     except (TypeError, ValueError):
         raise InputError(f"section: bar {number} = {bar!r} must be (y, area, steel)") from None
-    if not isinstance(steel, Steel):
-        raise InputError(f"section: steel of bar {number} = {steel!r} must be a Steel")
     return (
         _arguments.number(y, f"section: y of bar {number}"),
         _arguments.number(area, f"section: area of bar {number}"),
-        steel,
+        _arguments.instance(steel, f"section: steel of bar {number}", Steel),
     )
 
 

@@ -230,6 +230,15 @@ def classes_for(place: str) -> list[str]:
     ]
 
 
+def checked_spring(spring: object, name: str, place: str, more: str = "") -> Spring:
+    """Return a spring, or raise `InputError` with those that may stand in a place."""
+    if isinstance(spring, Spring):
+        return spring
+    names = ", ".join(classes_for(place.removesuffix("_spring")))
+    given = _arguments.shown(spring)
+    raise InputError(f"{name} = {given} must be a spring ({names}){more}")
+
+
 @cache
 def _names(rule: str) -> tuple[str, ...]:
     """Return the names of the parameters of a rule, in the order of its class."""
@@ -635,20 +644,17 @@ class Layered(Spring):
 
     def __post_init__(self) -> None:
         try:
-            layers = tuple((y, spring) for y, spring in self.layers)
+            pairs = [(y, spring) for y, spring in self.layers]
         except (TypeError, ValueError):
             raise InputError(
                 "layered spring: layers must be a sequence of pairs of a distance [m] and a spring"
             ) from None
-        for number, (_, spring) in enumerate(layers, 1):
-            if not isinstance(spring, Spring):
-                raise InputError(
-                    f"layered spring: layer {number} has {spring!r}; it must be a spring "
-                    f"({', '.join(classes_for('layer'))})"
-                )
         layers = tuple(
-            (_arguments.number(y, f"layered spring: y of layer {number}"), spring)
-            for number, (y, spring) in enumerate(layers, 1)
+            (
+                _arguments.number(y, f"layered spring: y of layer {number}"),
+                checked_spring(spring, f"layered spring: layer {number}", "layer"),
+            )
+            for number, (y, spring) in enumerate(pairs, 1)
         )
         object.__setattr__(self, "layers", layers)
         super().__post_init__()

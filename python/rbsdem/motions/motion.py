@@ -282,7 +282,7 @@ class GroundMotion:
         path : path
             File to write; `read_motion` and the loading of a case read it.
         """
-        head = f"# {_one_line(self.description or self.name)}\ntime_s,acceleration_m/s2\n"
+        head = f"# {_arguments.one_line(self.description or self.name)}\ntime_s,acceleration_m/s2\n"
         rows = zip(self.time.tolist(), self.acceleration.tolist(), strict=True)
         with whole_file(path) as file:
             file.write((head + "".join(f"{t!r},{a!r}\n" for t, a in rows)).encode())
@@ -313,24 +313,13 @@ class GroundMotion:
 
 def checked_motion(motion: object, who: str = "") -> GroundMotion:
     """Return a motion, or raise `InputError` with what makes one."""
-    if isinstance(motion, GroundMotion):
-        return motion
-    given = repr(motion)
-    if len(given) > 60:
-        given = f"a {type(motion).__name__}"
-    raise InputError(
-        f"{who}motion = {given} must be a GroundMotion; motions.read_motion(path) or "
-        "motions.GroundMotion(acceleration, dt) makes one"
-    )
+    remedy = "motions.read_motion(path) or motions.GroundMotion(acceleration, dt) makes one"
+    return _arguments.instance(motion, f"{who}motion", GroundMotion, remedy)
 
 
 def _integral(values: Array, dt: float) -> Array:
     """Return the integral by the rule of trapezoids, zero at first."""
     return np.concatenate([[0.0], np.cumsum(0.5 * dt * (values[:-1] + values[1:]))])
-
-
-def _one_line(text: str) -> str:
-    return "".join(character if character.isprintable() else " " for character in text)
 
 
 _OF_THE_GROUND = ("ground_acceleration", "vertical_acceleration")
