@@ -39,6 +39,14 @@ if TYPE_CHECKING:
 FIGURE_SIZE = (6.9, 6.0)
 
 _MARKERS = "os^Dv<>phX*P8"
+_STATE: dict[str, Any] = {
+    "linestyle": "none",
+    "markersize": 5.0,
+    "markerfacecolor": "white",
+    "markeredgecolor": "black",
+    "markeredgewidth": 0.9,
+    "zorder": 5,
+}
 
 #: Lines of the backbones, told apart in print without colour.
 _BACKBONES: dict[str, dict[str, Any]] = {
@@ -278,8 +286,7 @@ def envelope(envelope: Envelope, *, method: Method | None = None, ax: Axes | Non
             drawn.legend(loc="lower right")
         drawn.set_xlim(left=0.0, auto=True)
         drawn.set_ylim(bottom=0.0, auto=True)
-        drawn.set_xlabel("Top displacement (mm)")
-        drawn.set_ylabel("Lateral force (kN)")
+        drawn.set(xlabel="Top displacement (mm)", ylabel="Lateral force (kN)")
     return drawn
 
 
@@ -302,18 +309,8 @@ def limit_states(states: LimitStates, *, ax: Axes | None = None) -> Axes:
     with axes_or_new(ax, (4.6, 3.4)) as drawn:
         loop(result, height=result.column.height, ax=drawn, color="0.55", linewidth=0.6)
         for state, marker in zip(states, _MARKERS, strict=False):
-            drawn.plot(
-                1e3 * state.displacement,
-                1e-3 * state.force,
-                linestyle="none",
-                marker=marker,
-                markersize=5.0,
-                markerfacecolor="white",
-                markeredgecolor="black",
-                markeredgewidth=0.9,
-                zorder=5,
-                label=state.name.replace("_", " "),
-            )
+            at, name = (1e3 * state.displacement, 1e-3 * state.force), state.name.replace("_", " ")
+            drawn.plot(*at, marker=marker, label=name, **_STATE)
         if len(states):
             drawn.legend(loc="upper left", fontsize=6.5, handletextpad=0.2, borderaxespad=0.3)
     return drawn
@@ -336,14 +333,14 @@ def comparison(comparison: Comparison, *, ax: Axes | None = None, **line: Any) -
     matplotlib.axes.Axes
         The axes.
     """
-    return loops_over_test(
-        comparison.model_curve,
-        (comparison.displacement, comparison.test_force),
-        title=f"{comparison.name}\nNRMSE {comparison.nrmse:.3f}",
-        height=comparison.height if comparison.height > 0 else None,
-        ax=ax,
-        **line,
-    )
+    title = f"{comparison.name}\nNRMSE {comparison.nrmse:.3f}"
+    return _over_test(comparison, title, ax, line)
+
+
+def _over_test(scores: Comparison, title: str, ax: Axes | None, line: dict[str, Any]) -> Axes:
+    test = scores.displacement, scores.test_force
+    height = scores.height if scores.height > 0 else None
+    return loops_over_test(scores.model_curve, test, title=title, height=height, ax=ax, **line)
 
 
 def calibration(
@@ -369,16 +366,9 @@ def calibration(
         axes = new_axes(1, 2, (6.9, 3.2))
     if len(axes) != 2:
         raise InputError(f"calibration: plot: {len(axes)} axes; give two, for before and after")
-    for ax, name, scores in zip(axes, "ab", (fit.before, fit.after), strict=True):
-        when = "before" if name == "a" else "after"
-        loops_over_test(
-            (scores.displacement, scores.model_force),
-            (scores.displacement, scores.test_force),
-            title=f"({name}) {when}: NRMSE {scores.nrmse:.3f}",
-            height=scores.height if scores.height > 0 else None,
-            ax=ax,
-            **line,
-        )
+    names = ("(a) before", "(b) after")
+    for ax, name, scores in zip(axes, names, (fit.before, fit.after), strict=True):
+        _over_test(scores, f"{name}: NRMSE {scores.nrmse:.3f}", ax, line)
     highest = max(ax.get_ylim()[1] for ax in axes)
     for ax in axes:
         ax.set_ylim(-highest, highest)
@@ -436,8 +426,10 @@ def code_comparison(found: CodeComparison, *, ax: Axes | None = None) -> Axes:
         drawn.axhline(0.0, **ZERO_LINE)
         drawn.axvline(0.0, **ZERO_LINE)
         drawn.margins(x=0.03, y=0.06)
-        drawn.set_xlabel("Drift ratio (%)")
-        drawn.set_ylabel("Base shear (kN)" if result.dynamic else "Lateral force (kN)")
+        drawn.set(
+            xlabel="Drift ratio (%)",
+            ylabel="Base shear (kN)" if result.dynamic else "Lateral force (kN)",
+        )
         drawn.tick_params(right=True, top=True)
         drawn.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=7.5, handlelength=3.0)
     return drawn
@@ -475,8 +467,7 @@ def _dress(ax: Axes, height: float | None) -> None:
     points = [np.asarray(line.get_xydata(), dtype=np.float64) for line in lines]
     reach = np.nanmax(np.abs(np.vstack(points)), axis=0)
     x, y = (1.08 * value if value > 0 else 1.0 for value in reach)
-    ax.set_xlim(-x, x)
-    ax.set_ylim(-y, y)
+    ax.set(xlim=(-x, x), ylim=(-y, y))
     if not any(line.get_gid() == "zero" for line in ax.get_lines()):
         ax.axhline(0.0, gid="zero", **ZERO_LINE)
         ax.axvline(0.0, gid="zero", **ZERO_LINE)
@@ -486,8 +477,7 @@ def _dress(ax: Axes, height: float | None) -> None:
     steps = [1, 2, 2.5, 5, 10]
     ax.xaxis.set_major_locator(MaxNLocator(nbins=7, symmetric=True, steps=steps))
     ax.yaxis.set_major_locator(MaxNLocator(nbins=9, symmetric=True, steps=steps))
-    ax.set_xlabel("Top displacement (mm)")
-    ax.set_ylabel("Lateral force (kN)")
+    ax.set(xlabel="Top displacement (mm)", ylabel="Lateral force (kN)")
     ax.tick_params(right=True, top=height is None)
     if height is not None:
         height = _arguments.number(height, "height")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -71,8 +73,7 @@ def spread(found: Spread, *, test: Any = None, ax: Axes | None = None, **line: A
         drawn.plot(path, found.median / 1e3, **_MEDIAN_LINE, label="Median of the samples")
         if measured is not None:
             drawn.plot(path, measured / 1e3, **{**TEST_LINE, "label": "Test"})
-        drawn.set_xlabel("Path of displacement (mm)")
-        drawn.set_ylabel("Force (kN)")
+        drawn.set(xlabel="Path of displacement (mm)", ylabel="Force (kN)")
         drawn.margins(x=0.01)
         # Above the axes: the band fills them.
         drawn.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
@@ -140,22 +141,13 @@ def band_sheet(predictions: Predictions, path: str | os.PathLike[str]) -> Path:
     Path
         The file.
     """
-    path = Path(path)
     from matplotlib.collections import LineCollection, PolyCollection  # noqa: PLC0415
-    from matplotlib.figure import Figure  # noqa: PLC0415
 
-    rows = [row for row in predictions if row.band is not None]
+    rows = [(row, row.band) for row in predictions if row.band is not None]
     columns = max(1, min(_BAND_COLUMNS, math.ceil(math.sqrt(0.5 * len(rows)))))
-    lines = max(1, math.ceil(len(rows) / columns))
-    with style():
-        figure = Figure(figsize=(_BAND_CELL[0] * columns, _BAND_CELL[1] * lines))
-        ax = figure.add_axes((0, 0, 1, 1))
-        ax.set(xlim=(0, columns), ylim=(-lines, 0))
-        ax.set_axis_off()
+    with _sheet(path, len(rows), columns, _BAND_CELL, dpi=160) as ax:
         bands, models, tests = [], [], []
-        for i, row in enumerate(rows):
-            found = row.band
-            assert found is not None
+        for i, (row, found) in enumerate(rows):
             measured = None if row.comparison is None else row.comparison.test_force
             curves = [found.lower, found.upper, found.force]
             curves += [] if measured is None else [measured]
@@ -175,9 +167,29 @@ def band_sheet(predictions: Predictions, path: str | os.PathLike[str]) -> Path:
         ax.add_collection(PolyCollection(bands, facecolors="0.86", edgecolors="none"))
         ax.add_collection(LineCollection(tests, colors="0.45", linewidths=0.4))
         ax.add_collection(LineCollection(models, colors="#c2410c", linewidths=0.4))
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_figure(figure, path, dpi=160)
-    return path
+    return Path(path)
+
+
+@contextmanager
+def _sheet(
+    path: str | os.PathLike[str],
+    cells: int,
+    columns: int,
+    cell: tuple[float, float],
+    **options: Any,
+) -> Iterator[Axes]:
+    """Yield axes with a unit square for each cell, row by row downwards; then write the picture."""
+    from matplotlib.figure import Figure  # noqa: PLC0415
+
+    lines = max(1, math.ceil(cells / columns))
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    with style():
+        figure = Figure(figsize=(cell[0] * columns, cell[1] * lines))
+        ax = figure.add_axes((0, 0, 1, 1))
+        ax.set(xlim=(0, columns), ylim=(-lines, 0))
+        ax.set_axis_off()
+        yield ax
+        write_figure(figure, path, **options)
 
 
 def contact_sheet(predictions: Predictions, path: str | os.PathLike[str]) -> Path:
@@ -197,23 +209,18 @@ def contact_sheet(predictions: Predictions, path: str | os.PathLike[str]) -> Pat
     Path
         The file.
     """
-    path = Path(path)
     from matplotlib.collections import LineCollection  # noqa: PLC0415
-    from matplotlib.figure import Figure  # noqa: PLC0415
 
+    path = Path(path)
     rows = [
         (row, drawn)
         for row, drawn in zip(predictions, predictions.pictures, strict=True)
         if drawn is not None
     ]
     columns = max(1, min(_COLUMNS, math.ceil(math.sqrt(1.5 * len(rows)))))
-    lines = max(1, math.ceil(len(rows) / columns))
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with style():
-        figure = Figure(figsize=(_CELL[0] * columns, _CELL[1] * lines))
-        ax = figure.add_axes((0, 0, 1, 1))
-        ax.set(xlim=(0, columns), ylim=(-lines, 0))
-        ax.set_axis_off()
+    # Of many thin lines a png hardly gets smaller by trying hard.
+    fast = {"pil_kwargs": {"compress_level": 3}} if path.suffix.lower() == ".png" else {}
+    with _sheet(path, len(rows), columns, _CELL, dpi=200, **fast) as ax:
         zeros, tests, models = [], [], []
         for i, (row, drawn) in enumerate(rows):
             x, y = i % columns + 0.5, -(i // columns) - 0.56
@@ -226,9 +233,6 @@ def contact_sheet(predictions: Predictions, path: str | os.PathLike[str]) -> Pat
         ax.add_collection(LineCollection(zeros, colors="0.8", linewidths=0.3))
         ax.add_collection(LineCollection(tests, colors="0.6", linewidths=0.5))
         ax.add_collection(LineCollection(models, colors="#c2410c", linewidths=0.4))
-        # Of many thin lines a png hardly gets smaller by trying hard.
-        fast = {"pil_kwargs": {"compress_level": 3}} if path.suffix.lower() == ".png" else {}
-        write_figure(figure, path, dpi=200, **fast)
     return path
 
 

@@ -112,10 +112,7 @@ def _points(rows: Sequence[Row], floor: float) -> tuple[list[float], list[float]
 
 
 def _dress(ax: Axes, study: MethodStudy, floor: float) -> None:
-    ax.set_xscale("log")
-    ax.set_yscale("log")
-    ax.set_xlabel("Wall time (s)")
-    ax.set_ylabel("Relative error")
+    ax.set(xscale="log", yscale="log", xlabel="Wall time (s)", ylabel="Relative error")
     low, high = ax.get_ylim()
     low, high = min(low, floor / 3), min(high, TOP)
     # Down to the axis, also where panels share it.

@@ -83,8 +83,7 @@ def history(
         if not any(each.get_gid() == "zero" for each in drawn.get_lines()):
             drawn.axhline(0.0, gid="zero", **ZERO_LINE)
         drawn.set_xlim(result.time[0], max(result.time[-1], result.time[0] + 1e-9))
-        drawn.set_xlabel("Time (s)" if result.dynamic else "Point of the path")
-        drawn.set_ylabel(label)
+        drawn.set(xlabel="Time (s)" if result.dynamic else "Point of the path", ylabel=label)
         drawn.tick_params(right=True, top=True)
     return drawn
 
@@ -111,8 +110,9 @@ def energy(result: Response, *, ax: Axes | None = None) -> Axes:
                 result.time, result.energy[name] * 1e-3, **line, lw=0.8, label=_ENERGY_LABELS[name]
             )
         drawn.set_xlim(result.time[0], max(result.time[-1], result.time[0] + 1e-9))
-        drawn.set_xlabel("Time (s)" if result.dynamic else "Point of the path")
-        drawn.set_ylabel("Energy (kJ)")
+        drawn.set(
+            xlabel="Time (s)" if result.dynamic else "Point of the path", ylabel="Energy (kJ)"
+        )
         drawn.tick_params(right=True, top=True)
         if names:
             drawn.legend(loc="best", handlelength=2.4)
@@ -172,8 +172,7 @@ def profile(
             axes[2].plot(np.append(state["moment"], 0.0) * 1e-3, joints, **line, lw=0.9)
         for ax, label in zip(axes, ("Drift (%)", "Shear (kN)", "Moment (kN m)"), strict=True):
             ax.axvline(0.0, **ZERO_LINE)
-            ax.set_ylim(0.0, height)
-            ax.set_xlabel(label)
+            ax.set(ylim=(0.0, height), xlabel=label)
             ax.tick_params(right=True, top=True)
         axes[0].set_ylabel("Height (m)")
         axes[0].legend(loc="best", handlelength=2.0)

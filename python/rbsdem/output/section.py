@@ -46,6 +46,15 @@ EVENT_MARKS: dict[str, dict[str, Any]] = {
 }
 """Markers of the events."""
 
+#: What all of them have.
+_MARK: dict[str, Any] = {
+    "linestyle": "none",
+    "color": "black",
+    "markersize": 4.5,
+    "markeredgewidth": 0.8,
+    "zorder": 5,
+}
+
 _OUTLINE: dict[str, Any] = {"facecolor": "0.93", "edgecolor": "black", "linewidth": 0.8}
 _TIE: dict[str, Any] = {"facecolor": "0.35", "linewidth": 0.0}
 _INSIDE: dict[str, Any] = {"facecolor": "0.93", "linewidth": 0.0}
@@ -103,24 +112,14 @@ def _draw_events(
     for name in names:
         point = getattr(events, name)
         if point is not None and point.curvature <= furthest:
-            ax.plot(
-                1e3 * point.curvature,
-                point.moment / 1e3,
-                linestyle="none",
-                color="black",
-                markersize=4.5,
-                markeredgewidth=0.8,
-                zorder=5,
-                label=name.capitalize(),
-                **EVENT_MARKS[name],
-            )
+            at = 1e3 * point.curvature, point.moment / 1e3
+            ax.plot(*at, label=name.capitalize(), **_MARK, **EVENT_MARKS[name])
 
 
 def _dress(ax: Axes) -> None:
     ax.set_xlim(left=0.0)
     ax.set_ylim(bottom=0.0)
-    ax.set_xlabel("Curvature (mrad/m)")
-    ax.set_ylabel("Moment (kN m)")
+    ax.set(xlabel="Curvature (mrad/m)", ylabel="Moment (kN m)")
     ax.tick_params(right=True, top=True)
     ax.legend(loc="lower right", handletextpad=0.3)
 
@@ -198,49 +197,38 @@ def section(section: Section, *, ax: Axes | None = None) -> Axes:
     with axes_or_new(ax, (2.6, 2.8)) as drawn:
         w, h = 1e3 * section.width, 1e3 * section.depth
         drawn.add_patch(Polygon(1e3 * section.outline(), **_OUTLINE))
-        if section.ties is not None:
-            _draw_ties(section, section.ties.diameter, drawn)
+        looks = ((_TIE, 2.0), (_INSIDE, 2.0), (_TIE, 2.2), (_INSIDE, 2.2))
+        for line, (look, order) in zip(hoop_lines(section), looks, strict=False):
+            drawn.add_patch(Polygon(1e3 * line, zorder=order, **look))
+        for leg in section.inner_legs():
+            drawn.add_patch(Polygon(1e3 * leg, zorder=2, **_TIE))
         if section.hollow:
-            _draw_void(section, drawn)
+            empty = {**_OUTLINE, "facecolor": "white"}
+            drawn.add_patch(Polygon(1e3 * section.void(), zorder=2.4, **empty))
         for x, y, diameter in section.place_bars(_single_bars(section)):
             drawn.add_patch(Circle((1e3 * x, -1e3 * y), 0.5e3 * diameter, zorder=3, **_BAR))
         reach_x, reach_y = 0.54 * w, 0.54 * h
-        drawn.set_xlim(-reach_x, reach_x)
-        drawn.set_ylim(-reach_y, reach_y)
+        drawn.set(xlim=(-reach_x, reach_x), ylim=(-reach_y, reach_y))
         drawn.set_aspect("equal")
         drawn.set_xticks([-0.5 * w, 0.0, 0.5 * w])
         drawn.set_yticks(
             [-0.5 * h, 0.0, 0.5 * h], [f"{0.5 * h:g}", "0", f"\N{MINUS SIGN}{0.5 * h:g}"]
         )
-        drawn.set_xlabel("Width (mm)")
-        drawn.set_ylabel("$y$ (mm), tension below")
+        drawn.set(xlabel="Width (mm)", ylabel="$y$ (mm), tension below")
         for spine in drawn.spines.values():
             spine.set_visible(False)
     return drawn
 
 
-def _draw_ties(section: Section, thickness: float, ax: Axes) -> None:
-    """Draw hoop and inner legs as bands of their true thickness [m]."""
-    from matplotlib.patches import Polygon  # noqa: PLC0415
-
-    bend = 0.5 * (section.bar_diameter or 0.0)
-    for inset, look in ((0.0, _TIE), (thickness, _INSIDE)):
-        line = section.hoop_line(inset, bend + thickness - inset)
-        ax.add_patch(Polygon(1e3 * line, zorder=2, **look))
-    for leg in section.inner_legs():
-        ax.add_patch(Polygon(1e3 * leg, zorder=2, **_TIE))
-
-
-def _draw_void(section: Section, ax: Axes) -> None:
-    """Draw the void with the hoop around it."""
-    from matplotlib.patches import Polygon  # noqa: PLC0415
-
-    if section.ties is not None:
-        for inset, look in ((section.ties.diameter, _TIE), (0.0, _INSIDE)):
-            around = section.void(section.cover + inset)
-            ax.add_patch(Polygon(1e3 * around, zorder=2.2, **look))
-    empty = {**_OUTLINE, "facecolor": "white"}
-    ax.add_patch(Polygon(1e3 * section.void(), zorder=2.4, **empty))
+def hoop_lines(section: Section) -> list[Array]:
+    """Return the outer and inner line of the hoop [m], and those of the hoop around a void."""
+    if section.ties is None:
+        return []
+    thickness, bend = section.ties.diameter, 0.5 * (section.bar_diameter or 0.0)
+    lines = [section.hoop_line(inset, bend + thickness - inset) for inset in (0.0, thickness)]
+    if section.hollow:
+        lines += [section.void(section.cover + inset) for inset in (thickness, 0.0)]
+    return lines
 
 
 def _single_bars(section: Section) -> list[tuple[float, float]]:
@@ -294,21 +282,11 @@ def shear_diagram(
         for name, label in (("yielding", "Knee"), ("ultimate", "End")):
             point = marks[name]
             if point is not None:
-                drawn.plot(
-                    1e3 * point.strain,
-                    point.force / 1e3,
-                    linestyle="none",
-                    color="black",
-                    markersize=4.5,
-                    markeredgewidth=0.8,
-                    zorder=5,
-                    label=label,
-                    **EVENT_MARKS[name],
-                )
+                at = 1e3 * point.strain, point.force / 1e3
+                drawn.plot(*at, label=label, **_MARK, **EVENT_MARKS[name])
         drawn.set_xlim(0.0, 1.08 * strain.max())
         drawn.set_ylim(bottom=0.0)
-        drawn.set_xlabel("Shear strain (mm/m)")
-        drawn.set_ylabel("Shear force (kN)")
+        drawn.set(xlabel="Shear strain (mm/m)", ylabel="Shear force (kN)")
         drawn.tick_params(right=True, top=True)
         drawn.legend(loc="lower right", handletextpad=0.5)
     return drawn
@@ -359,8 +337,7 @@ def interaction(
             drawn.plot(np.abs(marks[:, 1]) / 1e3, marks[:, 0] / 1e3, **TEST_POINTS, label="demand")
         drawn.axhline(0.0, **ZERO_LINE)
         drawn.set_xlim(left=0.0, auto=True)
-        drawn.set_xlabel("Moment (kN m)")
-        drawn.set_ylabel("Axial load (kN), compression positive")
+        drawn.set(xlabel="Moment (kN m)", ylabel="Axial load (kN), compression positive")
         drawn.tick_params(right=True, top=True)
         drawn.legend(loc="upper right", fontsize=7.5)
     return drawn
@@ -425,8 +402,7 @@ def section_state(
         )
         axes[1].axvline(0.0, **ZERO_LINE)
         axes[1].set_ylim(axes[0].get_ylim())
-        axes[1].set_xlabel("Strain (%), elongation positive")
-        axes[1].set_ylabel("$y$ (mm)")
+        axes[1].set(xlabel="Strain (%), elongation positive", ylabel="$y$ (mm)")
         axes[1].tick_params(right=True, top=True)
         drift = 100 * result.displacement[row] / column.height
         axes[0].set_title(f"drift {drift:.2f} %", fontsize=8)
@@ -456,15 +432,8 @@ def _draw_layers(
         if ys.size == 0:
             continue
         between = 0.5 * (ys[1:] + ys[:-1])
-        ends = (
-            (-half, half)
-            if part == "cover"
-            else (
-                -half + 1e3 * section.cover,
-                half - 1e3 * section.cover,
-            )
-        )
-        edges = np.concatenate(([ends[0]], between, [ends[1]]))
+        end = half if part == "cover" else half - 1e3 * section.cover
+        edges = np.concatenate(([-end], between, [end]))
         for low, high, strain in zip(edges[:-1], edges[1:], values[chosen], strict=True):
             state = _of_concrete(-strain, *marks[part])
             corners = [(-span / 2, low), (span / 2, low), (span / 2, high), (-span / 2, high)]
@@ -482,21 +451,11 @@ def _draw_layers(
         state = "elastic" if abs(strain) < yields else "yields"
         if strain > buckles:
             state = "beyond buckling strain"
-        ax.add_patch(
-            Circle(
-                (1e3 * x, 1e3 * y),
-                0.5e3 * diameter,
-                zorder=4,
-                ec="black",
-                lw=0.6,
-                **_BARS[state],
-            )
-        )
-    ax.set_xlim(-0.54 * wide, 0.54 * wide)
-    ax.set_ylim(-1.08 * half, 1.08 * half)
+        at, radius = (1e3 * x, 1e3 * y), 0.5e3 * diameter
+        ax.add_patch(Circle(at, radius, zorder=4, ec="black", lw=0.6, **_BARS[state]))
+    ax.set(xlim=(-0.54 * wide, 0.54 * wide), ylim=(-1.08 * half, 1.08 * half))
     ax.set_aspect("equal")
-    ax.set_xlabel("Width (mm)")
-    ax.set_ylabel("$y$ (mm)")
+    ax.set(xlabel="Width (mm)", ylabel="$y$ (mm)")
     ax.legend(
         handles=[Patch(ec="black", lw=0.5, label=name, **fill) for name, fill in _FIBRES.items()]
         + [

@@ -31,6 +31,7 @@ from rbsdem.measured.specimens import Specimen, read_specimens
 from rbsdem.model.shape import Section
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.read import read_motion
+from rbsdem.output.section import hoop_lines
 from rbsdem.results.case import Case
 from rbsdem.results.result import Result
 from rbsdem.section.axial_moment import InteractionDiagram, interaction
@@ -449,31 +450,14 @@ def _tried(make: Callable[..., Any], *given: Any) -> Any:
 
 def _figure(section: Section) -> dict[str, Any]:
     """Return the lines of a section as the program has them, y upward in tension."""
-    figure: dict[str, Any] = {
+    bars = [(y, 2.0 * math.sqrt(area / math.pi)) for y, area, _ in section.bars]
+    return {
         "outline": _points(section.outline()),
         "void": _points(section.void()),
-        "bars": [
-            [number(x), number(y), number(d)]
-            for x, y, d in section.place_bars(
-                [(y, 2.0 * math.sqrt(area / math.pi)) for y, area, _ in section.bars]
-            )
-        ],
-        "hoops": [],
-        "legs": [],
+        "bars": [numbers(np.array(bar)) for bar in section.place_bars(bars)],
+        "hoops": [_points(line) for line in hoop_lines(section)],
+        "legs": [_points(leg) for leg in section.inner_legs()],
     }
-    ties = section.ties
-    if ties is not None:
-        bend = 0.5 * float(section.bar_diameter or 0.0)
-        figure["hoops"] = [
-            _points(section.hoop_line(inset, bend + ties.diameter - inset))
-            for inset in (0.0, ties.diameter)
-        ]
-        if section.hollow:
-            figure["hoops"] += [
-                _points(section.void(section.cover + inset)) for inset in (ties.diameter, 0.0)
-            ]
-        figure["legs"] = [_points(leg) for leg in section.inner_legs()]
-    return figure
 
 
 def _curvature(section: Section, load: float, confined: bool) -> dict[str, Any]:
