@@ -246,8 +246,8 @@ contains
       call look_within(self, motion, h, clock)
    end subroutine see_within
 
-   !> Whether the largest responses may grow within a step: each is a cubic in time, as the deformations are,
-   !> but with finite rotations and damping, which are looked at in every step.
+   !> Whether the largest responses may grow within a step: each is a cubic in time, as the deformations are.
+   !> With damping it is not, and every step is looked at.
    logical function peaks_may_grow(self, motion, springs, displacement, q0, v0, q1, v1, reach) result(grow)
       type(sight_type), intent(inout) :: self
       type(motion_type), intent(in) :: motion
@@ -258,13 +258,26 @@ contains
       real(wp), intent(in), contiguous :: q0(:), v0(:), q1(:), v1(:)
       !> How far a cubic goes beyond its ends, for the sum of both velocities there [s]
       real(wp), intent(in) :: reach
-      real(wp) :: shear(2), more
+      real(wp) :: shear(2), more, longer
       integer :: i, j
 
       grow = .true.
+      if (motion%damped) return
       associate (structure => motion%structure)
-         if (structure%kinematics == finite .or. motion%damped) return
-         more = reach*(abs(structure%speed(lateral, q0, v0)) + abs(structure%speed(lateral, q1, v1)))
+         if (structure%kinematics == finite) then
+            ! The top turns about a joint on the arm of the straight structure, longer by all slips and openings;
+            ! twice that, as a cubic through values overshoots them.
+            longer = 0.0_wp
+            do i = 1, size(q0)
+               if (structure%place(i)%kind /= flexure) longer = longer + abs(q0(i)) + way_of(i)
+            end do
+            more = 0.0_wp
+            do i = 1, size(q0)
+               more = more + 2.0_wp*(max(abs(structure%arm(i)), 1.0_wp) + longer)*way_of(i)
+            end do
+         else
+            more = reach*(abs(structure%speed(lateral, q0, v0)) + abs(structure%speed(lateral, q1, v1)))
+         end if
          if (goes_beyond(displacement(1), displacement(2), more, self%peak_displacement)) return
          shear = 0.0_wp
          more = 0.0_wp
@@ -288,6 +301,16 @@ contains
          end do
       end associate
       grow = .false.
+
+   contains
+
+      !> How far a deformation may go from its values at the ends.
+      pure real(wp) function way_of(i)
+         integer, intent(in) :: i
+
+         way_of = abs(q1(i) - q0(i)) + reach*(abs(v0(i)) + abs(v1(i)))
+      end function way_of
+
    end function peaks_may_grow
 
    !> Whether a value between two others, or somewhat beyond them, may exceed a peak in size.
