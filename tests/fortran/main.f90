@@ -11,7 +11,6 @@ program unit_tests
    use test_frame, only: collect_frame
    use test_implicit, only: collect_implicit
    use test_implicit_finite, only: collect_implicit_finite
-   use test_structure, only: collect_structure
    use test_interaction, only: collect_interaction
    use test_layered, only: collect_layered
    use test_linalg, only: collect_linalg
@@ -50,7 +49,7 @@ program unit_tests
       procedure(collect_interface), pointer, nopass :: collect => null()
    end type suite_type
 
-   type(suite_type) :: suites(32)
+   type(suite_type) :: suites(31)
    character(len=80) :: wanted, pattern
    integer :: i, run, failed, found
 
@@ -76,8 +75,7 @@ program unit_tests
              suite_type('steppers', collect_steppers), &
              suite_type('shear', collect_shear), &
              suite_type('implicit', collect_implicit), &
-             suite_type('implicit_finite', collect_implicit_finite), &
-             suite_type('structure', collect_structure)]
+             suite_type('implicit_finite', collect_implicit_finite)]
 
    call get_command_argument(1, wanted)
    call get_command_argument(2, pattern)

@@ -19,7 +19,12 @@ module test_frame
    use rbs_loading_loads, only: loads_type
    use rbs_solve_time_implicit, only: implicit_stepper, new_newmark
    use rbs_solve_time_state, only: state_type
-   use runs, only: check_order, new_state, residual_of, signal_of
+   use rbs_case_analysis_record, only: analysis_record
+   use rbs_solve_time_march, only: initial_state
+   use rbs_solve_time_plan, only: time_plan
+   use rbs_solve_time_run_dynamic, only: plan_dynamic, run_dynamic
+   use row_places, only: row_displacement
+   use runs, only: check_order, new_state, residual_of, signal_of, times
    use samples, only: random_type
    implicit none
    private
@@ -28,6 +33,8 @@ module test_frame
 
    !> Stiffness, height and span of the portal, plastic moment.
    real(wp), parameter :: bending = 2.0e7_wp, along = 3.0e9_wp, h = 3.0_wp, l = 6.0_wp, plastic = 2.0e5_wp
+   !> Place of the base shear in a row.
+   integer, parameter :: row_base = 10
    !> A moment that is never reached.
    real(wp), parameter :: never = 1.0e30_wp
    !> Shares of the length in a rule of Gauss and Lobatto.
@@ -42,10 +49,11 @@ contains
                unit_test('fixed-end moments w l^2/12, springs or elastic', fixed_ends), &
                unit_test('an elastic portal sways by the stiffness method', elastic_portal), &
                unit_test('limit loads of a portal: the least of three mechanisms', limit_loads), &
-               unit_test('a path in 1, 7, 100 parts turns at the same points', parts), &
+               unit_test('a path in 1, 7, 100 parts, or cut, turns at the same points', parts), &
                unit_test('a column under dead load: energies balance, P-Delta by hand', loaded_column), &
                unit_test('a mass on an elastic column: the steps of the scalar theory', elastic_mass), &
-               unit_test('a portal that yields in time: order 2, energies balance', yielding_portal)]
+               unit_test('a portal that yields in time: order 2, energies balance', yielding_portal), &
+               unit_test('runs of a portal go on with the same bits, and end at collapse', runs_of_portal)]
    end subroutine collect_frame
 
    !> K d = p s, sum p d = q with LAPACK's independent order of things: here by Gauss-Jordan elimination.
@@ -198,7 +206,7 @@ contains
       !> Whether columns and beam do not get longer
       logical, intent(in) :: stiff
       real(wp), intent(in) :: target(:)
-      type(task_type), intent(out), target :: task
+      type(task_type), intent(inout), target :: task
       real(wp), allocatable, intent(out) :: rows(:, :)
       type(frame_type), target :: frame
       type(frame_equilibrium), target :: equilibrium
@@ -258,6 +266,7 @@ contains
 
       do i = 0, 6
          v = 0.5_wp*i
+         task = task_type()
          call push_portal(ended, v, plastic, .false., [0.02_wp, 0.05_wp, 0.1_wp, 0.5_wp], task, rows)
          if (allocated(ended)) deallocate (ended)
          least = min(4.0_wp*plastic/h, 6.0_wp*plastic/(h + v*l/2.0_wp))
@@ -269,7 +278,7 @@ contains
    subroutine parts(error)
       type(error_type), allocatable, intent(inout) :: error
       real(wp), parameter :: turn(4) = [0.03_wp, -0.05_wp, 0.08_wp, 0.0_wp]
-      type(task_type), target :: task
+      type(task_type), target :: task, cut
       real(wp), allocatable :: whole(:, :), rows(:, :), target(:)
       real(wp) :: before
       integer, parameter :: number(2) = [7, 100]
@@ -283,11 +292,20 @@ contains
             target = [target, [(before + (turn(i) - before)*j/number(k), j=1, number(k) - 1)], turn(i)]
             before = turn(i)
          end do
+         task = task_type()
          call push_portal(error, 0.7_wp, plastic, .false., target, task, rows)
          if (allocated(error)) return
          do i = 1, 4
             call check_same(error, rows(3, i*number(k)), whole(3, i), 'force at a turning point')
          end do
+      end do
+      cut%keeps_end = .true.
+      call push_portal(error, 0.7_wp, plastic, .false., turn(:2), cut, rows)
+      cut%before = cut%after
+      call push_portal(error, 0.7_wp, plastic, .false., turn(3:), cut, rows)
+      if (allocated(error)) return
+      do i = 3, 4
+         call check_same(error, rows(2:, i - 2), whole(2:, i), 'a path that goes on')
       end do
    end subroutine parts
 
@@ -363,18 +381,12 @@ contains
       call check_close(error, residual_of(state), 0.0_wp, 0.0_wp, 1.0e-9_wp*sum(state%springs%work), 'energy')
    end subroutine elastic_mass
 
-   subroutine yielding_portal(error)
-      type(error_type), allocatable, intent(inout) :: error
-      integer, parameter :: steps(4) = [400, 800, 1600, 25600]
-      real(wp), parameter :: finish = 1.0_wp
-      type(frame_type) :: frame
+   !> A damped portal with masses at its corners.
+   subroutine new_portal(frame)
+      type(frame_type), intent(out) :: frame
       type(frame_node) :: node(4)
       type(frame_member) :: member(3)
-      type(loads_type) :: loads
-      type(state_type) :: state
-      type(implicit_stepper) :: stepper
-      real(wp) :: top(4), residual(4), time(21)
-      integer :: i, j
+      integer :: i
 
       node(:2)%held(1) = .true.
       node(:2)%held(2) = .true.
@@ -394,6 +406,20 @@ contains
       frame%damped = .true.
       frame%stiffness_damping = 1.0e-3_wp
       frame%mass_damping = 0.2_wp
+   end subroutine new_portal
+
+   subroutine yielding_portal(error)
+      type(error_type), allocatable, intent(inout) :: error
+      integer, parameter :: steps(4) = [400, 800, 1600, 25600]
+      real(wp), parameter :: finish = 1.0_wp
+      type(frame_type) :: frame
+      type(loads_type) :: loads
+      type(state_type) :: state
+      type(implicit_stepper) :: stepper
+      real(wp) :: top(4), residual(4), time(21)
+      integer :: i, j
+
+      call new_portal(frame)
       time = [(finish*i/20, i=0, 20)]
       loads%ground = signal_of(time, 12.0_wp*sin(17.0_wp*time))
       do j = 1, 4
@@ -411,5 +437,58 @@ contains
       call check_order(error, abs(top(:3) - top(4)), 1.4_wp, 3.0_wp, 'displacement')
       call check_true(error, residual(4) < 1.0e-6_wp .and. residual(4) < 0.01_wp*residual(1), 'energy')
    end subroutine yielding_portal
+
+   !> The rows of every step; half of a motion and the rest from the state at its end; the end by collapse.
+   subroutine runs_of_portal(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(frame_type) :: frame
+      type(task_type) :: whole, first, second, falls
+      type(array_recorder) :: all_rows, half, rest
+      type(loads_type) :: loads
+      real(wp) :: time(101)
+
+      call new_portal(frame)
+      time = times(100, 0.01_wp)
+      loads%ground = signal_of(time, 12.0_wp*sin(17.0_wp*time))
+      call run(time, whole, all_rows)
+      first%keeps_end = .true.
+      call run(time(:51), first, half)
+      second%before = first%after
+      call run(time(51:), second, rest)
+      if (allocated(error)) return
+      call check_same(error, rest%rows(:, rest%count), all_rows%rows(:, all_rows%count), 'it goes on')
+      associate (rows => all_rows%rows(:, :all_rows%count))
+         call check_same(error, whole%summary%peak_base_shear, &
+                         rows(row_base, maxloc(abs(rows(row_base, :)), dim=1)), 'base shear')
+         falls%collapse_drift = 0.5_wp*maxval(abs(rows(row_displacement, :)))/h
+      end associate
+      call run(time, falls, half)
+      if (allocated(error)) return
+      call check_true(error, falls%summary%collapsed, 'collapse')
+      associate (drift => abs(half%rows(row_displacement, :half%count))/h)
+         call check_true(error, maxval(drift(:half%count - 1)) < falls%collapse_drift .and. &
+                         drift(half%count) >= falls%collapse_drift, 'at its drift')
+      end associate
+
+   contains
+
+      subroutine run(time, task, recorder)
+         real(wp), intent(in) :: time(:)
+         type(task_type), intent(inout) :: task
+         type(array_recorder), intent(out), target :: recorder
+         type(analysis_record) :: analysis
+         type(time_plan) :: plan
+
+         if (allocated(error)) return
+         analysis = analysis_record(method='newmark', dt=2.0e-3_wp)
+         call plan_dynamic(frame, analysis, time, loads, plan, error)
+         if (allocated(error)) return
+         recorder%channels = new_channels(frame, .true., .false., .false.)
+         task%recorder => recorder
+         task%every = 1
+         call run_dynamic(frame, analysis, plan, time, loads, initial_state(), task, error)
+      end subroutine run
+
+   end subroutine runs_of_portal
 
 end module test_frame

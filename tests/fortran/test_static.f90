@@ -1,24 +1,18 @@
-!> The static path, event to event: closed forms, bands against full matrices, and a structure that is no
-!> column. What a user sees of it is proved in tests/python/test_static.py and test_invariants.py.
+!> The static path, event to event: closed forms, and bands against full matrices. What a user sees of it is proved in tests/python/test_static.py and test_invariants.py.
 module test_static
    use dense, only: is_positive, solve_general
-   use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_same, check_true
+   use check, only: unit_test, check_close, check_failed, check_passed, check_true
    use rbs_base_error, only: error_type, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_structure_column_chain_matrices, only: geometric_stiffness
    use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_output_channels, only: new_channels
-   use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: summary_type
    use rbs_solve_static_chain_equilibrium, only: chain_equilibrium
-   use rbs_solve_static_straight, only: trace_straight
-   use rbs_solve_task, only: task_type
    use rbs_structure_column_column_record, only: column_record
    use runs, only: run_path
    use samples, only: bilinear, chain, column_1, elastic, made, random_type, k_c, d_y, k_u, s_k, s_d, height_1
-   use storeys, only: storeys_type, storeys_equilibrium, new_storeys, share
-   use row_places, only: row_displacement, row_force, row_axial, row_residual, row_joints, row_input, row_top
+   use row_places, only: row_displacement, row_force, row_axial, row_joints, row_top
    implicit none
    private
 
@@ -35,10 +29,7 @@ contains
                unit_test('rates that are updated are those that are solved for', updated_rates), &
                unit_test('a mechanism in a band', band_mechanism), &
                unit_test('height of the top, largest rotation', height_of_top), &
-               unit_test('a force that is that of yield but for its last digits', nearly_yield), &
-               unit_test('another structure: indeterminate, loaded elsewhere than driven', &
-                         other_structure), &
-               unit_test('another structure is cut and goes on with the same bits', cut_structure)]
+               unit_test('a force that is that of yield but for its last digits', nearly_yield)]
    end subroutine collect_static
 
    !> Below the critical load, and beyond it, where the column pushes against the support at its top.
@@ -267,86 +258,6 @@ contains
                        nearly*k_c*d_y*(height_1/k_c + 1.0_wp/(s_k*height_1)), 1.0e-12_wp, 0.0_wp, &
                        'displacement')
    end subroutine nearly_yield
-
-   !> Yielding springs of the two storeys and the brace of `storeys`.
-   subroutine trace_storeys(by_force, target, task, recorder, outcome)
-      logical, intent(in) :: by_force
-      real(wp), intent(in) :: target(:)
-      type(task_type), intent(inout) :: task
-      type(array_recorder), intent(out), target :: recorder
-      type(error_type), allocatable, intent(out) :: outcome
-      type(storeys_type) :: structure
-      type(storeys_equilibrium) :: equilibrium
-
-      call new_storeys(structure, [bilinear(4.0e6_wp, 0.010_wp, 4.0e5_wp), &
-                                   bilinear(2.0e6_wp, 0.008_wp, 1.0e5_wp), &
-                                   bilinear(1.0e6_wp, 0.030_wp, 5.0e4_wp)])
-      equilibrium%moving = 3
-      recorder%channels = new_channels(structure, .false., .false., .false.)
-      task%recorder => recorder
-      call trace_straight(structure, equilibrium, by_force, target, task, outcome)
-   end subroutine trace_storeys
-
-   !> Every row is in equilibrium on both floors, and the balance of energy holds with the work of the load on
-   !> the floors it acts on. Driven by its own forces it takes the same way.
-   subroutine other_structure(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(array_recorder) :: recorder, by_force
-      type(task_type) :: task
-      type(spring_array) :: springs
-      real(wp), parameter :: target(8) = [0.005_wp, 0.02_wp, 0.05_wp, 0.08_wp, -0.01_wp, -0.08_wp, 0.0_wp, &
-                                          0.09_wp]
-      real(wp) :: f(3)
-      integer :: i
-
-      call trace_storeys(.false., target, task, recorder, outcome)
-      call check_passed(error, outcome, 'path')
-      if (allocated(error)) return
-      call springs%create([bilinear(4.0e6_wp, 0.010_wp, 4.0e5_wp), bilinear(2.0e6_wp, 0.008_wp, 1.0e5_wp), &
-                           bilinear(1.0e6_wp, 0.030_wp, 5.0e4_wp)])
-      associate (rows => recorder%rows, first => size(recorder%rows, 1) - 2)
-         do i = 1, size(target)
-            ! Each deformation goes one way between these targets.
-            call springs%move_all(rows(first:, i))
-            f = [springs%force(1), springs%force(2), springs%force(3)]
-            call check_close(error, f(1) - f(2), share(1)*rows(row_force, i), 1.0e-12_wp, 1.0e-6_wp, &
-                             'lower floor')
-            call check_close(error, f(2) + f(3), share(2)*rows(row_force, i), 1.0e-12_wp, 1.0e-6_wp, &
-                             'upper floor')
-            call check_close(error, sum(rows(first:first + 1, i)), target(i), 1.0e-12_wp, 1.0e-15_wp, &
-                             'both storeys')
-         end do
-         call check_true(error, springs%events > 10, 'springs yield and unload')
-         call check_true(error, maxval(abs(rows(row_residual, :))) &
-                         < 1.0e-12_wp*rows(row_input, size(target)), 'balance of energy')
-         call check_equal(error, springs%events, task%summary%events, 'events')
-         call trace_storeys(.true., rows(row_force, :), task, by_force, outcome)
-         call check_passed(error, outcome, 'path by force')
-         if (allocated(error)) return
-         do i = 1, size(target)
-            call check_close(error, by_force%rows(:, i), rows(:, i), 1.0e-10_wp, 1.0e-9_wp, 'driven by force')
-         end do
-      end associate
-   end subroutine other_structure
-
-   subroutine cut_structure(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(array_recorder) :: whole, first, second
-      type(task_type) :: task, cut
-      real(wp), parameter :: target(5) = [0.05_wp, -0.03_wp, 0.02_wp, 0.04_wp, -0.08_wp]
-
-      call trace_storeys(.false., target, task, whole, outcome)
-      cut%keeps_end = .true.
-      call trace_storeys(.false., target(:3), cut, first, outcome)
-      cut%before = cut%after
-      call trace_storeys(.false., target(4:), cut, second, outcome)
-      call check_passed(error, outcome, 'second part')
-      if (allocated(error)) return
-      call check_same(error, second%rows(row_displacement:, 1), whole%rows(row_displacement:, 4), 'row 4')
-      call check_same(error, second%rows(row_displacement:, 2), whole%rows(row_displacement:, 5), 'row 5')
-   end subroutine cut_structure
 
    !> The shear spring of the base has no stiffness left: its row of K is zero, and K has no inverse.
    subroutine band_mechanism(error)
