@@ -1,4 +1,5 @@
-!> The static path, event to event: closed forms, and bands against full matrices. What a user sees of it is proved in tests/python/test_static.py and test_invariants.py.
+!> The static path, event to event: closed forms, and bands against full matrices. What a user sees of it is
+!> proved in tests/python/test_static.py and test_invariants.py.
 module test_static
    use dense, only: is_positive, solve_general
    use check, only: unit_test, check_close, check_failed, check_passed, check_true
