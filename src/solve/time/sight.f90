@@ -265,8 +265,8 @@ contains
       if (motion%damped) return
       associate (structure => motion%structure)
          if (structure%kinematics == finite) then
-            ! The top turns about a joint on the arm of the straight structure, longer by all slips and openings;
-            ! twice that, as a cubic through values overshoots them.
+            ! The top turns about a joint on the arm of the straight structure, longer by all slips and
+            ! openings; twice that, as a cubic through values overshoots them.
             longer = 0.0_wp
             do i = 1, size(q0)
                if (structure%place(i)%kind /= flexure) longer = longer + abs(q0(i)) + way_of(i)
