@@ -149,7 +149,8 @@ def read_at2(lines: list[str], path: str, name: str, units: str | None) -> Groun
     missing = count - len(values)
     if missing > MOST_MISSING:
         raise InputError(
-            f"{path}: {len(values)} values, but NPTS = {count}; the file is truncated; download it again"
+            f"{path}: {len(values)} values, but NPTS = {count}; the file is truncated, download it "
+            "again"
         )
     if missing < 0:
         raise InputError(
