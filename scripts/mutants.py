@@ -595,7 +595,8 @@ def check_unchanged(tree: Tree, results: dict[str, dict[str, str]]) -> None:
 def table(files: list[Path]) -> str:
     """Return results as a table in Markdown, a column for each file."""
     every = [json.loads(file.read_text("utf-8")) for file in files]
-    heads = "".join(f" noticed {file.stem} by |" for file in files)
+    names = [""] if len(files) == 1 else [f"{file.stem} " for file in files]
+    heads = "".join(f" noticed {name}by |" for name in names)
     lines = [f"| mutant | file | breaks |{heads}", "|---|---|---|" + "---|" * len(files)]
     for mutant in MUTANTS:
         cells = [f"`{mutant.name}`", f"`{mutant.file}`", mutant.breaks]
