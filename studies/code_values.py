@@ -18,7 +18,7 @@ import warnings
 import numpy as np
 
 from rbsdem import peer
-from rbsdem.checks.code_comparison import DRIFTS_AT_LOSS, drift_at_loss, yield_drift
+from rbsdem.checks.code_values import DRIFTS_AT_LOSS, drift_at_loss, yield_drift
 from rbsdem.codes import code_values
 
 CLASSES = ("Flexure", "Flexure-Shear", "Shear")

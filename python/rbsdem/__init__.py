@@ -28,13 +28,13 @@ if TYPE_CHECKING:
     from rbsdem.measured.laboratory import read_test as read_test
     from rbsdem.methods.study import compare_methods as compare_methods
     from rbsdem.model.column import Column as Column
+    from rbsdem.model.column import Footing as Footing
     from rbsdem.model.damping import Damping as Damping
-    from rbsdem.model.footing import Footing as Footing
     from rbsdem.model.materials import Concrete as Concrete
+    from rbsdem.model.materials import Layout as Layout
+    from rbsdem.model.materials import Spiral as Spiral
     from rbsdem.model.materials import Steel as Steel
-    from rbsdem.model.reinforcement import Layout as Layout
-    from rbsdem.model.reinforcement import Spiral as Spiral
-    from rbsdem.model.reinforcement import Ties as Ties
+    from rbsdem.model.materials import Ties as Ties
     from rbsdem.model.shape import CircularSection as CircularSection
     from rbsdem.model.shape import RectangularSection as RectangularSection
     from rbsdem.motions.motion import GroundMotion as GroundMotion
@@ -60,11 +60,9 @@ _HOMES = {
     "many.ida": ("ida",),
     "measured.laboratory": ("read_test",),
     "methods.study": ("compare_methods",),
-    "model.column": ("Column",),
+    "model.column": ("Column", "Footing"),
     "model.damping": ("Damping",),
-    "model.footing": ("Footing",),
-    "model.materials": ("Concrete", "Steel"),
-    "model.reinforcement": ("Layout", "Spiral", "Ties"),
+    "model.materials": ("Concrete", "Layout", "Spiral", "Steel", "Ties"),
     "model.shape": ("CircularSection", "RectangularSection"),
     "motions.motion": ("GroundMotion",),
     "motions.read": ("read_motions",),

@@ -15,7 +15,7 @@ import pytest
 
 import rbsdem
 from rbsdem.checks import formulas
-from rbsdem.checks.code_comparison import backbones, drift_at_loss, yield_drift
+from rbsdem.checks.code_values import backbones, drift_at_loss, yield_drift
 from rbsdem.codes import code_values, compare, quantities
 from rbsdem.section.axial_moment import nominal_moment
 from rbsdem.springs import Bilinear, Elastic

@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem.model.materials import Concrete, Steel
-from rbsdem.model.reinforcement import Layout, Spiral, Ties
+from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection
 from rbsdem.section import strength
 from rbsdem.section.shear import closed_form_shear, fit_shear_spring, shear_diagram

@@ -9,5 +9,5 @@ from rbsdem.calibration.fit import free_names as free_names
 from rbsdem.calibration.fit import undetermined as undetermined
 from rbsdem.calibration.outcome import Calibration as Calibration
 from rbsdem.calibration.outcome import Fitted as Fitted
-from rbsdem.model.parameter import Parameter as Parameter
-from rbsdem.model.parameter import Recipe as Recipe
+from rbsdem.model.column import Parameter as Parameter
+from rbsdem.model.column import Recipe as Recipe

@@ -27,8 +27,7 @@ from rbsdem.calibration.outcome import Calibration, Fitted
 from rbsdem.calibration.search import Search
 from rbsdem.curves.scores import Comparison, compare
 from rbsdem.errors import AccuracyWarning, InputError
-from rbsdem.model.column import Column
-from rbsdem.model.parameter import Parameter
+from rbsdem.model.column import Column, Parameter
 
 #: Number of random points, besides the start, at which the effect of a parameter is tried.
 _LOOKS = 3

@@ -14,8 +14,7 @@ from rbsdem._arguments import Array
 from rbsdem.curves.cycles import half_cycle_numbers
 from rbsdem.curves.metrics import N_POINTS, PathPoints, work
 from rbsdem.errors import InputError, SolveError
-from rbsdem.model.column import Column
-from rbsdem.model.parameter import Parameter
+from rbsdem.model.column import Column, Parameter
 from rbsdem.solve.analysis import cyclic
 
 #: Points along the path of displacement at which the error is taken, as in a comparison.

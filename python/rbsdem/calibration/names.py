@@ -10,8 +10,7 @@ from typing import Any
 from rbsdem import _arguments
 from rbsdem.calibration import paths
 from rbsdem.errors import InputError
-from rbsdem.model.column import Column, checked_column
-from rbsdem.model.parameter import Parameter, is_recipe
+from rbsdem.model.column import Column, Parameter, checked_column, is_recipe
 
 #: Largest number of names in a message.
 _MANY = 30

@@ -17,8 +17,7 @@ from typing import Any
 import numpy as np
 
 from rbsdem import _core
-from rbsdem.model.column import Column
-from rbsdem.model.parameter import Parameter
+from rbsdem.model.column import Column, Parameter
 from rbsdem.model.springs import Spring
 
 #: Parameters of springs are searched within this factor, unless their rule sets other bounds.

@@ -1,19 +1,28 @@
-"""All values of codes and regressions for one column."""
+"""All values of codes and regressions for one column, and a response beside them."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
-from rbsdem import _package
+import numpy as np
+
+from rbsdem import _arguments, _package
+from rbsdem._arguments import Array
 from rbsdem.checks import formulas
 from rbsdem.checks.formulas import Quantities, quantities
+from rbsdem.checks.limit_states import limit_states
+from rbsdem.curves.envelope import envelope, strength_loss
+from rbsdem.curves.metrics import Curve, loop_pair, summarise
 from rbsdem.errors import InputError
+from rbsdem.model.column import Column
+from rbsdem.model.response import Response
 from rbsdem.model.shape import Section
 from rbsdem.section.axial_moment import nominal_moment
+from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.strength import (
     axial_failure_drift,
     shear_failure_drift,
@@ -220,4 +229,376 @@ _FORMULAS: dict[str, Callable[[_Drawn], float]] = {
     "berry.rotation": lambda c: formulas.berry_buckling_rotation(c.q),
     "goodnight.strain": lambda c: formulas.goodnight_buckling_strain(c.q),
     "goodnight.drift": lambda c: formulas.goodnight_buckling_drift(c.q),
+}
+
+
+# ---- drifts and backbones of a cantilever that follow from code values ---------------------------
+
+
+def yield_drift(values: CodeValues, stiffness: str) -> float:
+    """Return the drift at yield of a cantilever with a share of its gross stiffness.
+
+    M_y L/(3 E I) with E = 4700 sqrt(f'c) and I of the gross section.
+
+    Parameters
+    ----------
+    values : CodeValues
+        The column.
+    stiffness : str
+        Name of the share, as "asce_41.stiffness".
+    """
+    q = values.quantities
+    inertia = math.pi * q.depth**4 / 64 if q.round else q.width * q.depth**3 / 12
+    modulus = 4700.0 * math.sqrt(q.fc)
+    return values["yield.moment"] * 1e3 * q.span / (3.0 * values[stiffness] * modulus * inertia)
+
+
+def _haselton(values: CodeValues, cap: float, post_cap: float) -> float:
+    """Return the drift at which a fifth of the strength is lost behind the cap."""
+    turned = cap * values["haselton.cap"] + 0.2 * post_cap * values["haselton.post_cap"]
+    return yield_drift(values, "haselton.stiffness") + turned
+
+
+#: Drift at a loss of 20 % of the strength by each source.
+DRIFTS_AT_LOSS: dict[str, Callable[[CodeValues], float]] = {
+    "ASCE 41-17, yield + a": lambda values: (
+        yield_drift(values, "asce_41.stiffness") + values["asce_41.a"]
+    ),
+    "EN 1998-3, theta_um (A.1)": lambda values: values["ec_8.ultimate"],
+    "EN 1998-3, theta_y + theta_um,pl (A.3)": lambda values: (
+        values["ec_8.yield"] + values["ec_8.plastic"]
+    ),
+    "Haselton, one push: cap + 0.2 post-cap": lambda values: _haselton(values, 1.0, 1.0),
+    # 2016, eqs 12 and 13
+    "Haselton, cyclic envelope": lambda values: _haselton(values, 0.7, 0.5),
+    "Elwood, Moehle 2005, shear": lambda values: values["elwood.shear_drift"],
+    # Drifts at bar buckling, which come later.
+    "Berry, Eberhard 2005, yield + buckling": lambda values: (
+        yield_drift(values, "elwood.stiffness") + values["berry.rotation"]
+    ),
+    "Berry, Eberhard 2003, buckling": lambda values: values["berry.buckling"],
+}
+
+
+def drift_at_loss(values: CodeValues, name: str) -> float:
+    """Return a drift of `DRIFTS_AT_LOSS`; NaN where the source does not cover the column."""
+    try:
+        return DRIFTS_AT_LOSS[name](values)
+    except ValueError:
+        return math.nan
+
+
+@dataclass(frozen=True, eq=False)
+class Backbone:
+    """A backbone of one source, from zero.
+
+    Attributes
+    ----------
+    name, source : str
+        Short name, and where it comes from.
+    drift, moment : ndarray, shape (k,)
+        Drift ratios, and moments at the foot [N m].
+    """
+
+    name: str
+    source: str
+    drift: Array
+    moment: Array
+
+    def force(self, span: float, axial_load: float) -> Array:
+        """Return the lateral force [N]: moment over span less the second-order force.
+
+        Parameters
+        ----------
+        span : float
+            From the foot to the lateral force [m].
+        axial_load : float
+            What leans with the column [N]; 0 without second-order effects.
+        """
+        return self.moment / span - axial_load * self.drift
+
+
+def backbones(values: CodeValues) -> list[Backbone]:
+    """Return the backbones of the sources that cover a column.
+
+    All yield at "yield.moment", as none of them is about strength. ASCE 41: flat over a, down to
+    c, which lasts to b. EN 1998-3: flat up to theta_um, where a fifth is lost. Elwood: flat up to
+    shear failure, then down to axial failure; left out where that comes first. Haselton: to the
+    cap, then down to zero, under one push.
+    """
+    names = set(values.names())
+    if "yield.moment" not in names:
+        return []
+    moment = values["yield.moment"]
+
+    def line(name: str, source: str, *points: tuple[float, float]) -> Backbone:
+        drift, share = np.array([(0.0, 0.0), *points]).T
+        return Backbone(name, source, drift, moment * share)
+
+    found = []
+    if "asce_41.a" in names:
+        at, c = yield_drift(values, "asce_41.stiffness"), values["asce_41.c"]
+        a, b = at + values["asce_41.a"], at + values["asce_41.b"]
+        points = [(at, 1.0), (a, 1.0), (a, c), (b, c), (b, 0.0)]
+        found.append(line("ASCE 41", "ASCE 41-17, chapter 10 (ACI 369.1)", *points))
+    if "ec_8.ultimate" in names:
+        at, end = values["ec_8.yield"], values["ec_8.ultimate"]
+        found.append(
+            line("EC 8-3", "EN 1998-3:2005, A.10b, A.1", (at, 1.0), (end, 1.0), (end, 0.8))
+        )
+    if "elwood.shear_drift" in names:
+        at = yield_drift(values, "elwood.stiffness")
+        shear, axial = values["elwood.shear_drift"], values["elwood.axial_drift"]
+        if at < shear < axial:
+            points = [(at, 1.0), (shear, 1.0), (axial, 0.0)]
+            source = "Elwood, Eberhard 2009; Elwood, Moehle 2005"
+            found.append(line("Elwood", source, *points))
+    if "haselton.cap" in names:
+        at = yield_drift(values, "haselton.stiffness")
+        cap, hard = at + values["haselton.cap"], values["haselton.hardening"]
+        end = cap + values["haselton.post_cap"]
+        source = "Haselton 2008, 2016, one push"
+        found.append(line("Haselton", source, (at, 1.0), (cap, hard), (end, 0.0)))
+    return found
+
+
+# ---- the comparison ------------------------------------------------------------------------------
+
+#: The columns of the table, in order.
+SOURCES = ("test", "model", "ASCE 41", "EC 8-3", "Elwood", "Haselton", "Berry", "Goodnight")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One quantity by all sources.
+
+    Attributes
+    ----------
+    name : str
+        "stiffness", "yield_drift", "largest_force", "shear_strength", "spalling", "bar_buckling",
+        "strength_loss" or "axial_failure".
+    meaning, unit : str
+        What it is, and its unit: "N/m", "N" or "drift".
+    values : dict of str to float
+        By the names of `SOURCES`; NaN or missing where a source says nothing.
+    """
+
+    name: str
+    meaning: str
+    unit: str
+    values: dict[str, float]
+
+
+class CodeComparison:
+    """A response, perhaps a test, and what codes and regressions say of the same column.
+
+    Parameters
+    ----------
+    values : CodeValues
+        Of the codes.
+    result : Result
+        The response.
+    test : Curve or None
+        A measured loop.
+    """
+
+    def __init__(self, values: CodeValues, result: Response, test: Curve | None) -> None:
+        self.values = values
+        self.result = result
+        self.test = None if test is None else _loop(test)
+        self.backbones: list[Backbone] = backbones(values)
+        self._rows = {row.name: row for row in _rows(self)}
+
+    @property
+    def span(self) -> float:
+        """Shear span of the codes [m]."""
+        return 1e-3 * self.values.quantities.span
+
+    @property
+    def leaning(self) -> float:
+        """Axial load that leans with the column [N]; 0 without second-order effects."""
+        return 0.0 if self.result.column.kinematics == "small" else self.values.quantities.load
+
+    def __getitem__(self, name: str) -> dict[str, float]:
+        """Return a quantity by source; `KeyError` if there is none of that name."""
+        return self._rows[name].values
+
+    def __iter__(self) -> Iterator[Quantity]:
+        return iter(self._rows.values())
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return a DataFrame in SI: a row a quantity, a column a source that says anything."""
+        import pandas  # noqa: PLC0415
+
+        rows = [{"quantity": row.name, "unit": row.unit} | row.values for row in self]
+        sources = [source for source in SOURCES if any(source in row.values for row in self)]
+        frame = pandas.DataFrame(rows, columns=["quantity", "unit", *sources])
+        return frame.set_index("quantity")
+
+    def __repr__(self) -> str:
+        return f"CodeComparison({', '.join(b.name for b in self.backbones)} beside {self.result})"
+
+
+def compare(values: CodeValues, result: Response, test: Curve | None = None) -> CodeComparison:
+    """Hold a response, and a test if there is one, against the values of codes.
+
+    Parameters
+    ----------
+    values : CodeValues
+        What `code_values` returns for the same column.
+    result : Result
+        Of the same column; with a fixed top its shear span is half of its height. In time that of a
+        layered hinge needs its openings (``openings=True``).
+    test : Result, PeerTest or pair of arrays, optional
+        The measured loop [m, N].
+
+    Returns
+    -------
+    CodeComparison
+        Stiffness, yield, strength and drifts by source.
+
+    Raises
+    ------
+    InputError
+        If the column has another span, axial load or section, the openings of a layered hinge were
+        not kept in time, or the test is no loop.
+    """
+    _arguments.instance(values, "compare: values", CodeValues)
+    _check_same(values.quantities, result.column)
+    return CodeComparison(values, result, test)
+
+
+def _check_same(q: Quantities, column: Column) -> None:
+    """Refuse a response of another column: span, axial load, and section where it is known."""
+    span = column.height / (2 if column.top == "fixed" else 1)
+    load = column.axial_load
+    if column.kinematics == "small" and load == 0:
+        load = q.load  # It does nothing there, and need not be stated.
+    found = replace(q, span=1e3 * span, load=load)
+    if isinstance(column, LayeredColumn) and column.recipe is not None:
+        found = quantities(column.recipe.section, span, load)
+    other = [
+        f"{name} = {theirs:g}, here {ours:g}"
+        for name, ours in vars(q).items()
+        if not (ours == (theirs := getattr(found, name)) or _near(ours, theirs))
+    ]
+    if other:
+        raise InputError(
+            "compare: the response is of another column (N, mm, MPa): "
+            f"{'; '.join(other)}; take code_values of its section, shear span and axial load"
+        )
+
+
+def _near(one: float, other: float) -> bool:
+    return math.isclose(one, other, rel_tol=1e-9) or (math.isnan(one) and math.isnan(other))
+
+
+def _loop(curve: Curve) -> tuple[Array, Array]:
+    d, f = loop_pair(curve, "the test")
+    return _arguments.finite_vector(d, "displacement"), _arguments.finite_vector(f, "force")
+
+
+def _rows(found: CodeComparison) -> list[Quantity]:
+    """Return all quantities, those of the codes where they cover the column."""
+    measured = _measured(found)
+    rows = []
+    for name, (meaning, unit, how, codes) in _QUANTITIES.items():
+        values = dict(measured.get(name, {}))
+        for source, key in codes.items():
+            try:
+                values[source] = how(found, key)
+            except ValueError:  # This source does not cover the column.
+                continue
+        known = {s: values[s] for s in SOURCES if math.isfinite(values.get(s, math.nan))}
+        rows.append(Quantity(name, meaning, unit, known))
+    return rows
+
+
+def _measured(found: CodeComparison) -> dict[str, dict[str, float]]:
+    """Return what the test and the model say, by quantity and source."""
+    result, height = found.result, found.result.column.height
+    loops = {"model": loop_pair(result, "the model")}
+    if found.test is not None:
+        loops["test"] = found.test
+    names = ("stiffness", "yield_drift", "largest_force", "strength_loss")
+    rows: dict[str, dict[str, float]] = {name: {} for name in names}
+    for source, (d, f) in loops.items():
+        loop = summarise(d, f)
+        rows["stiffness"][source] = loop.stiffness
+        rows["largest_force"][source] = loop.peak_force
+        rows["strength_loss"][source] = strength_loss(d, f) / height
+        rows["yield_drift"][source] = _idealised(d, f) / height
+    states = limit_states(result)
+    for name in ("spalling", "bar_buckling", "axial_failure"):
+        rows[name] = {"model": states.drift(name)}
+    return rows
+
+
+def _idealised(d: Array, f: Array) -> float:
+    """Return the displacement at yield of the side with the larger force, else the other [m]."""
+    sides: tuple[Literal[1, -1], ...] = (1, -1) if f[np.argmax(np.abs(f))] > 0 else (-1, 1)
+    for side in sides:
+        try:
+            return envelope((d, f), side).idealise("asce_41").yield_displacement
+        except InputError:  # The loop has no such envelope.
+            continue
+    return math.nan
+
+
+def _value(found: CodeComparison, name: str) -> float:
+    return found.values[name]
+
+
+def _at_yield(found: CodeComparison, name: str) -> float:
+    """Return the drift at yield, by a value or by a share of the gross stiffness."""
+    return yield_drift(found.values, name) if "stiffness" in name else found.values[name]
+
+
+def _secant(found: CodeComparison, name: str) -> float:
+    """Return the secant stiffness to yield [N/m]."""
+    drift = _at_yield(found, name)
+    force = found.values["yield.shear"] - found.leaning * drift
+    return force / (drift * found.result.column.height)
+
+
+def _largest(found: CodeComparison, name: str) -> float:
+    line = next((each for each in found.backbones if each.name == name), None)
+    return math.nan if line is None else float(line.force(found.span, found.leaning).max())
+
+
+def _loss(found: CodeComparison, name: str) -> float:
+    return drift_at_loss(found.values, name)
+
+
+def _axial_failure(found: CodeComparison, name: str) -> float:
+    turned = yield_drift(found.values, "asce_41.stiffness") if name == "asce_41.b" else 0.0
+    return turned + found.values[name]
+
+
+_YIELD = {
+    "ASCE 41": "asce_41.stiffness",
+    "EC 8-3": "ec_8.yield",
+    "Elwood": "elwood.stiffness",
+    "Haselton": "haselton.stiffness",
+}
+_SHEAR = {"ASCE 41": "asce_41.shear", "EC 8-3": "ec_8.shear", "Elwood": "sezen.shear"}
+_BUCKLING = {"Berry": "berry.buckling", "Goodnight": "goodnight.drift"}
+_LOSS = {
+    "ASCE 41": "ASCE 41-17, yield + a",
+    "EC 8-3": "EN 1998-3, theta_um (A.1)",
+    "Elwood": "Elwood, Moehle 2005, shear",
+    "Haselton": "Haselton, one push: cap + 0.2 post-cap",
+}
+_AXIAL = {"ASCE 41": "asce_41.b", "Elwood": "elwood.axial_drift"}
+
+#: Meaning, unit, how the values of codes are found, and from what, by source.
+_QUANTITIES: dict[str, tuple[str, str, Callable[[CodeComparison, str], float], dict[str, str]]] = {
+    "stiffness": ("secant stiffness (codes: to yield)", "N/m", _secant, _YIELD),
+    "yield_drift": ("drift at yield, idealised", "drift", _at_yield, _YIELD),
+    "largest_force": ("largest lateral force", "N", _largest, {name: name for name in _YIELD}),
+    "shear_strength": ("shear strength", "N", _value, _SHEAR),
+    "spalling": ("drift at spalling", "drift", _value, {"Berry": "berry.spalling"}),
+    "bar_buckling": ("drift at bar buckling", "drift", _value, _BUCKLING),
+    "strength_loss": ("drift at a loss of 20 %", "drift", _loss, _LOSS),
+    "axial_failure": ("drift at axial failure", "drift", _axial_failure, _AXIAL),
 }

@@ -19,8 +19,7 @@ from rbsdem.errors import InputError
 from rbsdem.model.column import Column
 from rbsdem.model.response import Response
 from rbsdem.model.shape import Section
-from rbsdem.model.springs import Layered, Spring
-from rbsdem.model.strains import Gauge
+from rbsdem.model.springs import Gauge, Layered, Spring
 from rbsdem.section.layered import LayeredColumn
 
 #: The limit states that criteria find, and what each is.

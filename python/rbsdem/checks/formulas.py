@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from rbsdem.errors import InputError
-from rbsdem.model.reinforcement import Bar
+from rbsdem.model.materials import Bar
 from rbsdem.model.shape import Section, checked_section
 from rbsdem.section.ranges import carried_load, column_length
 

@@ -26,8 +26,7 @@ from rbsdem import _arguments
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.measured.specimens import Specimen
 from rbsdem.model.column import Column
-from rbsdem.model.materials import Concrete, Steel
-from rbsdem.model.reinforcement import Spiral, Ties
+from rbsdem.model.materials import Concrete, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection, Section
 from rbsdem.section.columns import DEFAULT, MODELS, Model
 from rbsdem.section.columns import column as column_of

@@ -1,26 +1,169 @@
-"""The column: rigid bodies joined by springs."""
+"""The column: rigid bodies joined by springs, its footing, and parameters that may be fitted."""
 
 from __future__ import annotations
 
+import math
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, cast, runtime_checkable
 
 from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.damping import Damping
-from rbsdem.model.footing import Footing
 from rbsdem.model.shape import Section
-from rbsdem.model.springs import Layered, Spring, checked_spring, layer_springs, whole_column
-from rbsdem.model.strains import Gauge
+from rbsdem.model.springs import Gauge, Layered, Spring, checked_spring, layer_springs, whole_column
 
 if TYPE_CHECKING:
     from typing_extensions import Self
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A parameter with the range in which it has a meaning.
+
+    If both bounds are positive, the parameter is searched on a logarithmic scale, on which half and
+    twice the value are equally far away. This suits stiffnesses, strengths and lengths.
+
+    Parameters
+    ----------
+    value : float
+        Value to start from, within the bounds [unit].
+    low, high : float
+        Bounds [unit].
+    unit : str, optional
+        Unit, as in "N/m"; empty for a bare number.
+    what : str, optional
+        Its meaning, for reports.
+
+    Raises
+    ------
+    InputError
+        If a value or bound is not finite, the bounds are reversed, or the value is outside them.
+    """
+
+    value: float
+    low: float
+    high: float
+    unit: str = ""
+    what: str = ""
+
+    def __post_init__(self) -> None:
+        about = f"parameter{f' {self.what}' if self.what else ''}"
+        _arguments.convert(self, about)
+        for name in ("value", "low", "high"):
+            if not math.isfinite(getattr(self, name)):
+                raise InputError(f"{about}: {name} = {getattr(self, name)} must be a finite number")
+        if not self.low < self.high:
+            raise InputError(
+                f"{about}: bounds {self.low:g} and {self.high:g} must be a lower and a higher one"
+            )
+        if not self.low <= self.value <= self.high:
+            raise InputError(
+                f"{about}: value = {self.value:g} is outside its bounds {self.low:g} to "
+                f"{self.high:g}; move the bounds or the value"
+            )
+
+    @property
+    def logarithmic(self) -> bool:
+        """Whether the parameter is searched on a logarithmic scale."""
+        return self.low > 0
+
+    def place(self, value: float) -> float:
+        """Return the place of a value between the bounds, from 0 to 1."""
+        if self.logarithmic:
+            return math.log(value / self.low) / math.log(self.high / self.low)
+        return (value - self.low) / (self.high - self.low)
+
+    def at(self, place: float) -> float:
+        """Return the value at a place from 0 to 1 between the bounds."""
+        if place <= 0 or place >= 1:
+            return self.low if place <= 0 else self.high
+        if self.logarithmic:
+            value = self.low * math.pow(self.high / self.low, place)
+        else:
+            value = self.low + place * (self.high - self.low)
+        return min(max(value, self.low), self.high)
+
+    def per_place(self, value: float) -> float:
+        """Return the derivative of the value with respect to its place [unit]."""
+        if self.logarithmic:
+            return value * math.log(self.high / self.low)
+        return self.high - self.low
+
+
+@runtime_checkable
+class Recipe(Protocol):
+    """A column made from few parameters, such as strengths, that a calibration may change."""
+
+    @property
+    def parameters(self) -> Mapping[str, Parameter]:
+        """The parameters, by name."""
+
+    def with_parameters(self, **values: float) -> Column:
+        """Return the column with other values; values that are not named are kept."""
+
+
+def is_recipe(column: Any) -> bool:
+    """Return whether a column offers its own parameters for a calibration."""
+    return isinstance(column, Recipe) and isinstance(column.parameters, Mapping)
+
+
+@dataclass(frozen=True)
+class Footing:
+    """A rigid footing on springs: the joint beneath it is joint 0 of the column.
+
+    Parameters
+    ----------
+    shear, flexure : Spring
+        Springs between the ground and the footing: against sliding, and against turning. A footing
+        that rocks has a `Layered` spring of `Compression` layers.
+    axial_spring : Spring, optional
+        Spring against settling, opening and tension positive; needed where the joints of the column
+        have axial springs, and only there.
+    mass : float, optional
+        Mass of the footing [kg]. A static path does not need it.
+    inertia : float, optional
+        Its rotary inertia about its centroid, at half its height [kg m2].
+    height : float, optional
+        Height of the footing [m]. Its springs are at its bottom, the column stands on its top.
+
+    Raises
+    ------
+    InputError
+        If a spring is missing or a number is not one. What depends on the column is checked there.
+    """
+
+    shear: Spring
+    flexure: Spring
+    axial_spring: Spring | None = None
+    mass: float = 0.0
+    inertia: float = 0.0
+    height: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("shear", "flexure", "axial_spring"):
+            spring = getattr(self, name)
+            if spring is not None or name != "axial_spring":
+                checked_spring(spring, f"footing: {name}", name)
+        _arguments.convert(self, "footing")
+
+    def __repr__(self) -> str:
+        given = (
+            f"{part.name}={getattr(self, part.name)!r}"
+            for part in fields(self)
+            if getattr(self, part.name) != part.default
+        )
+        return f"Footing({', '.join(given)})"
+
+    def keys(self) -> dict[str, Any]:
+        """Return the keys of the column that state the footing."""
+        return {f"footing_{name}": getattr(self, name) for name in ("mass", "inertia", "height")}
+
 
 #: Standard acceleration of gravity [m/s2].
 STANDARD_GRAVITY = 9.80665

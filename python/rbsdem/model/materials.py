@@ -1,14 +1,18 @@
-"""Concrete and reinforcing steel under a monotonic uniaxial strain."""
+"""Concrete and reinforcing steel, bars by a regular layout, and the ties or spiral around them."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Literal
+from typing import ClassVar, Literal
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array, Derived, given
+from rbsdem.errors import InputError
 
 Tension = Literal["ts", "bare", "zero"]
 """Tension laws of concrete: with tension stiffening beyond f_t; up to f_t only; no tension."""
@@ -144,3 +148,270 @@ class Steel:
         strains = _arguments.finite_vector(strain, "strain", shape="any")
         stress = _core.evaluate("steel_response", self.statement(), strain=strains).values
         return stress.reshape(strains.shape)[()]
+
+
+#: Bars at mid-depth count half in tension; the others whole from this share of the depth on.
+_MIDDLE = 0.05
+
+#: Bars of a layout; more are a mistake, and fill the memory.
+_MOST_BARS = 1000
+
+Bar = tuple[float, float, Steel]
+"""One bar: distance from mid-depth [m], positive to the tension face; area [m2]; steel."""
+
+
+def share_in_tension(y: float, depth: float) -> float:
+    """Return the share of a bar that counts in the half in tension, y > 0.
+
+    From 0 to 1 in a straight line over a tenth of the depth around mid-depth, so that no strength
+    jumps when a bar is moved.
+    """
+    return min(max(0.5 + 0.5 * y / (_MIDDLE * depth), 0.0), 1.0)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Bars along the ties: on the four faces of a rectangle, or around a circle.
+
+    Parameters
+    ----------
+    number : int
+        Number of bars.
+    diameter : float
+        Their diameter [m].
+    steel : Steel
+        Their steel.
+    face : int, optional
+        Bars on the tension face, its corners included, and as many on the opposite face; the rest
+        is on the two sides. The default is number/4 + 1: the same on all four. Rectangles only.
+    between_diameter : float, optional
+        Diameter of the bars between the corners, if it differs [m]. Rectangles only.
+    between_steel : Steel, optional
+        Steel of the bars between the corners, if it differs. Rectangles only.
+
+    Raises
+    ------
+    InputError
+        If the numbers of bars do not fit together.
+    """
+
+    number: int
+    diameter: float
+    steel: Steel
+    face: int | None = None
+    between_diameter: float | None = None
+    between_steel: Steel | None = None
+
+    def __post_init__(self) -> None:
+        _arguments.convert(self, "layout")
+        if self.number > _MOST_BARS:
+            raise InputError(f"layout: number = {self.number} must not be above {_MOST_BARS}")
+        _check_positive(self, "layout", diameter="m", between_diameter="m")
+
+    @property
+    def steels(self) -> list[Steel]:
+        """The steels of its bars."""
+        return [steel for steel in (self.steel, self.between_steel) if steel is not None]
+
+    def statement(self, name: str, numbers: Mapping[Steel, int]) -> _core.Statement:
+        """Return the keys of the layout with their values.
+
+        Parameters
+        ----------
+        name : str
+            Of the group.
+        numbers : mapping
+            The numbers of the steels.
+        """
+        own = {field.name: getattr(self, field.name) for field in fields(self)}
+        steels = {key: numbers[value] for key, value in own.items() if isinstance(value, Steel)}
+        return _core.group(name, own | steels)
+
+    def bars(self, shape: str, depth: float, inset: float) -> list[Bar]:
+        """Return the bars in a "rectangle" or a "circle" of a depth; see the two functions."""
+        return (self.circular if shape == "circle" else self.rectangular)(depth, inset)
+
+    def rectangular(self, depth: float, inset: float) -> list[Bar]:
+        """Return the bars of a rectangle.
+
+        Parameters
+        ----------
+        depth : float
+            Of the section [m].
+        inset : float
+            From the faces to the outer edge of the bars: cover and tie [m].
+
+        Returns
+        -------
+        list of (y, area, steel)
+            The bars in rows, from the tension face on.
+        """
+        face = self.face
+        if face is None:
+            if self.number < 4 or self.number % 4:
+                raise InputError(
+                    f"layout: number = {self.number} does not spread over four equal faces; "
+                    f"give a multiple of 4, or `face`, the bars on the tension face"
+                )
+            face = self.number // 4 + 1
+        side = self.number - 2 * face
+        if face < 2 or side < 0 or side % 2:
+            raise InputError(
+                f"layout: {face} bars on each face leave {side} of {self.number} for the two "
+                f"sides; face must be 2 or more, and an even number must be left",
+                "layout.face",
+            )
+        edge = self._edge(depth, inset)
+        corner = (_area(self.diameter), self.steel)
+        between = (
+            _area(self.between_diameter or self.diameter),
+            self.between_steel or self.steel,
+        )
+        rows = np.linspace(edge, -edge, side // 2 + 2).tolist()
+        bars: list[Bar] = []
+        for place, y in enumerate(rows):
+            if place in (0, len(rows) - 1):
+                # Thinner bars between the corners touch the tie as well.
+                shift = 0.5 * (self.diameter - (self.between_diameter or self.diameter))
+                bars += [(y, *corner)] * 2
+                bars += [(y + math.copysign(shift, y), *between)] * (face - 2)
+            else:
+                bars += [(y, *between)] * 2
+        return bars
+
+    def _edge(self, depth: float, inset: float) -> float:
+        """Return the distance of the outermost bars from the middle [m]."""
+        edge = 0.5 * depth - inset - 0.5 * self.diameter
+        if not edge > 0.0:
+            raise InputError(
+                f"section: cover and hoops of {inset:g} m and bars of {self.diameter:g} m leave no "
+                f"core in a section of {depth:g} m",
+                "section.cover",
+            )
+        return edge
+
+    def circular(self, diameter: float, inset: float) -> list[Bar]:
+        """Return the bars of a circle, the first at the tension face.
+
+        Parameters
+        ----------
+        diameter : float
+            Of the section [m].
+        inset : float
+            From the surface to the outer edge of the bars: cover and spiral [m].
+
+        Returns
+        -------
+        list of (y, area, steel)
+            The bars.
+        """
+        for name in ("face", "between_diameter", "between_steel"):
+            if getattr(self, name) is not None:
+                raise InputError(f"layout: {name} is for rectangular sections; remove it")
+        if self.number < 1:
+            raise InputError(f"layout: number = {self.number} must be one or more")
+        radius = self._edge(diameter, inset)
+        angles = 2.0 * math.pi * np.arange(self.number) / self.number
+        area = _area(self.diameter)
+        return [(float(y), area, self.steel) for y in radius * np.cos(angles)]
+
+
+@dataclass(frozen=True)
+class Ties:
+    """Rectangular hoops and ties.
+
+    Parameters
+    ----------
+    diameter : float
+        Of the bar [m].
+    spacing : float
+        From hoop to hoop along the column [m].
+    steel : Steel
+        Its `eps_u` is the strain of hoop fracture.
+    legs : float, optional
+        Bars that cross the section in the direction of its depth (the loading); a diagonal tie
+        counts with its component.
+    legs_across : float, optional
+        Bars in the direction of the width; as many as `legs` if not given.
+
+    Raises
+    ------
+    InputError
+        If a number is refused.
+    """
+
+    #: Whether the hoops are round.
+    is_round: ClassVar[bool] = False
+
+    diameter: float
+    spacing: float
+    steel: Steel
+    legs: float = 2.0
+    legs_across: float | None = None
+
+    def __post_init__(self) -> None:
+        _arguments.convert(self, "ties")
+        if given(self.legs_across) is None:
+            object.__setattr__(self, "legs_across", Derived(self.legs))
+        _check_positive(self, "ties", diameter="m", spacing="m", legs="", legs_across="")
+
+    def statement(self, steel: int) -> _core.Statement:
+        """Return the keys of the ties with their values; `steel` is the number of their steel."""
+        names = ("diameter", "spacing", "legs", "legs_across")
+        return _core.group("ties", {"steel": steel} | {n: given(getattr(self, n)) for n in names})
+
+
+@dataclass(frozen=True)
+class Spiral:
+    """A spiral, or circular hoops.
+
+    Parameters
+    ----------
+    diameter : float
+        Of the bar [m].
+    spacing : float
+        Pitch of the spiral, or distance between hoops, along the column [m].
+    steel : Steel
+        Its `eps_u` is the strain of fracture.
+    hoops : bool, optional
+        Whether these are single hoops, which confine less than a spiral.
+
+    Raises
+    ------
+    InputError
+        If a number is refused.
+    """
+
+    #: Bars that cross the section, along the depth and across it: both sides of a turn.
+    legs: ClassVar[float] = 2.0
+    legs_across: ClassVar[float] = 2.0
+    #: Whether the hoops are round.
+    is_round: ClassVar[bool] = True
+
+    diameter: float
+    spacing: float
+    steel: Steel
+    hoops: bool = False
+
+    def __post_init__(self) -> None:
+        _arguments.convert(self, "spiral")
+        _check_positive(self, "spiral", diameter="m", spacing="m")
+
+    def statement(self, steel: int) -> _core.Statement:
+        """Return the keys of the spiral with their values; `steel` is the number of its steel."""
+        names = ("diameter", "spacing", "hoops")
+        return _core.group("spiral", {"steel": steel} | {n: getattr(self, n) for n in names})
+
+
+def _area(diameter: float) -> float:
+    # A power of a huge number raises; the section refuses an area without end.
+    return 0.25 * math.pi * diameter * diameter
+
+
+def _check_positive(record: object, who: str, **units: str) -> None:
+    """Refuse sizes of bars that are not above zero; their units are given by name."""
+    for name, unit in units.items():
+        value = getattr(record, name)
+        if value is not None and not 0 < value < math.inf:
+            given = f"{who}: {name} = {value} {unit}".rstrip()
+            raise InputError(f"{given} must be finite and above zero")

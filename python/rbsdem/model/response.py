@@ -14,8 +14,7 @@ from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
-from rbsdem.model.springs import Layered
-from rbsdem.model.strains import Gauge, Strains, strains_of
+from rbsdem.model.springs import Gauge, Layered, Strains, strains_of
 
 #: Names of the energies.
 ENERGIES = ("input", "kinetic", "spring", "damping", "axial", "residual")

@@ -17,8 +17,7 @@ import numpy as np
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array, Derived, given
 from rbsdem.errors import InputError
-from rbsdem.model.materials import Concrete, Steel
-from rbsdem.model.reinforcement import Bar, Layout, Spiral, Ties, share_in_tension
+from rbsdem.model.materials import Bar, Concrete, Layout, Spiral, Steel, Ties, share_in_tension
 
 if TYPE_CHECKING:
     from typing_extensions import Self

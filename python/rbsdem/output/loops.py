@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.calibration.outcome import Calibration
-from rbsdem.checks.code_comparison import CodeComparison
+from rbsdem.checks.code_values import CodeComparison
 from rbsdem.checks.limit_states import LimitStates
 from rbsdem.curves.envelope import Envelope, Method
 from rbsdem.curves.metrics import Curve, loop_pair

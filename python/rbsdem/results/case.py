@@ -13,9 +13,8 @@ import numpy as np
 from rbsdem import _core
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError, SolveError
-from rbsdem.model.column import Column
+from rbsdem.model.column import Column, Footing
 from rbsdem.model.damping import Damping
-from rbsdem.model.footing import Footing
 from rbsdem.model.springs import SPRINGS, Spring
 from rbsdem.results.result import Result, cyclic, time_history
 from rbsdem.section.drawing import Groups, layered_column, recipe_of

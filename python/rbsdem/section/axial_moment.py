@@ -22,8 +22,7 @@ from numpy.typing import ArrayLike
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
-from rbsdem.model.materials import Steel
-from rbsdem.model.reinforcement import Spiral
+from rbsdem.model.materials import Spiral, Steel
 from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Layered, SteelSpring
 from rbsdem.section.curvature import largest_moment

@@ -8,8 +8,7 @@ from typing import Any, Literal, TypeAlias, get_args, overload
 
 from rbsdem import _arguments
 from rbsdem.errors import AccuracyWarning, InputError
-from rbsdem.model.column import MOST_BODIES, Column, Top
-from rbsdem.model.footing import Footing
+from rbsdem.model.column import MOST_BODIES, Column, Footing, Top
 from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Elastic, Spring
 from rbsdem.section.layered import LayeredColumn, LayeredModel, body_lengths, lumping

@@ -10,8 +10,7 @@ from typing import Any
 from rbsdem import _core
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import Column
-from rbsdem.model.materials import Concrete, Steel
-from rbsdem.model.reinforcement import Layout, Spiral, Ties
+from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection, Section
 from rbsdem.section.layered import LayeredColumn, LayeredModel
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters

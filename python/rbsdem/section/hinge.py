@@ -15,8 +15,7 @@ from rbsdem import _core
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Steel
 from rbsdem.model.shape import Section
-from rbsdem.model.springs import ConcreteSpring, Layered, SteelSpring, unchecked
-from rbsdem.model.strains import Gauge, Part
+from rbsdem.model.springs import ConcreteSpring, Gauge, Layered, Part, SteelSpring, unchecked
 from rbsdem.section.parameters import ModelParameters
 
 _STRIPS = 14

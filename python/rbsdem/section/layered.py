@@ -15,11 +15,9 @@ from typing import Any
 
 from rbsdem import _arguments, _core
 from rbsdem.errors import AccuracyWarning, InputError
-from rbsdem.model.column import Column, without_notes
-from rbsdem.model.parameter import Parameter
+from rbsdem.model.column import Column, Parameter, without_notes
 from rbsdem.model.shape import Section
-from rbsdem.model.springs import Elastic, Layered, Spring, Takeda, check_springs, unchecked
-from rbsdem.model.strains import Gauge
+from rbsdem.model.springs import Elastic, Gauge, Layered, Spring, Takeda, check_springs, unchecked
 from rbsdem.section.axial_moment import InteractionDiagram, joint_interaction
 from rbsdem.section.hinge import HingeJoint, hinge_joint
 from rbsdem.section.parameters import FACTORS, ModelParameters, directions, table

@@ -12,8 +12,7 @@ from typing import Any
 from rbsdem import _package
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column, Kinematics, without_notes
-from rbsdem.model.materials import Concrete, Steel
-from rbsdem.model.reinforcement import Layout, Ties
+from rbsdem.model.materials import Concrete, Layout, Steel, Ties
 from rbsdem.model.shape import RectangularSection
 from rbsdem.model.springs import Bilinear, Takeda
 from rbsdem.section.columns import CONCRETE_DENSITY

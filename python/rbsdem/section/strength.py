@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from rbsdem.errors import InputError
-from rbsdem.model.reinforcement import share_in_tension
+from rbsdem.model.materials import share_in_tension
 from rbsdem.model.shape import Section
 from rbsdem.section.ranges import carried_load, checked_load, column_length
 

@@ -20,8 +20,7 @@ from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import STANDARD_GRAVITY, Column
-from rbsdem.model.materials import Concrete, Steel
-from rbsdem.model.reinforcement import Layout, Spiral, Ties
+from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import (
     CircularSection,
     RectangularSection,
