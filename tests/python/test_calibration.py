@@ -106,20 +106,6 @@ def test_parameters_of_a_synthetic_test_come_back(key, seed):
     assert fit.start is start
 
 
-def test_one_number_is_as_good_as_a_dense_grid():
-    start = COLUMNS["tanaka_park_1"]
-    other = replace(start, flexure=replace(start.flexure, k_c=9e7, k_u=1e6))
-    test = noisy(other, path(start), 0.05)
-    fit = quiet(start, test, ["flexure.d_y"])
-    low, high = fit.parameters[0].low, fit.parameters[0].high
-    target = Target(test)
-    grid = []
-    for d_y in np.geomspace(low, high, 1500):
-        column = replace(start, flexure=replace(start.flexure, d_y=d_y))
-        grid.append(np.sqrt(np.mean(target.error(response(column, test[0])[1]) ** 2)))
-    assert fit.nrmse <= min(grid) * (1 + 1e-5)
-
-
 def test_nearby_columns_are_no_better():
     start = COLUMNS["zahn_7"]
     test = noisy(replace(start, flexure=replace(start.flexure, b0=0.2, d_y=4e-3)), path(start), 0.1)

@@ -56,25 +56,6 @@ def test_each_run_is_that_of_time_history() -> None:
         assert found.measures["peak_base_shear"][run] == alone.summary["peak_base_shear"]
 
 
-def test_the_aftershock_of_a_sequence() -> None:
-    """Main shock, rest and aftershock in one record, or the aftershock from where they ended."""
-    time, acceleration = motion(1, 500)
-    acceleration[300:400] = 0.0
-    whole = rbsdem.ensemble(column(), (time, acceleration), scales=2.0, **NEWMARK)
-    first = rbsdem.ensemble(column(), (time[:400], acceleration[:400]), scales=2.0, **NEWMARK)
-    after = rbsdem.ensemble(
-        column(),
-        (time[399:], acceleration[399:]),
-        scales=2.0,
-        initial=first.history(0),
-        **NEWMARK,
-    )
-    for name in ("residual_displacement", "spring_energy", "input_energy", "end_time"):
-        assert after.measures[name] == pytest.approx(whole.measures[name], rel=1e-12)
-    parts = [found.measures["peak_drift"][0] for found in (first, after)]
-    assert max(parts) == pytest.approx(whole.measures["peak_drift"][0], rel=1e-12)
-
-
 def test_states_are_checked_before_the_start(tmp_path: Path) -> None:
     state = shaken(column())
     broken = state.state.copy()

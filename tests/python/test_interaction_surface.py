@@ -113,34 +113,3 @@ def test_concrete_and_bars() -> None:
         result = rbsdem.cyclic(column(joint, axial_load=load), displacement=path)
         expected = fibre_moment(np.array(load), places, tension, compression)
         assert result.moment.max() == pytest.approx(float(expected), rel=2e-3)
-
-
-def test_a_joint_cut_from_a_section() -> None:
-    """Largest moments along paths against those of the section's own diagram.
-
-    The fibres have strength, stiffness and strain at the peak of the section's concrete, straight
-    lines for its curve, and no tension: the two differ by 3.5 % at the most from a tenth of f'c A
-    up. Below that the section has the tension between its cracks, which the joint has not.
-    """
-    layout = rbsdem.Layout(12, 0.016, rbsdem.Steel(446e6, 447e6))
-    section = rbsdem.RectangularSection(0.4, 0.4, rbsdem.Concrete(30e6), layout=layout, cover=0.02)
-    law, area = section.concrete_law, 0.4 * 0.4 / 60
-    concrete = ConcreteSpring(
-        k=law["ec"] * area,
-        f_peak=law["fc"] * area,
-        d_peak=law["eps0"],
-        k_soft=0.5 * law["fc"] * area / 0.004,
-        f_res=0.2 * law["fc"] * area,
-    )
-    layers: list[tuple[float, rbsdem.springs.Spring]] = [
-        (0.4 * ((i + 0.5) / 60 - 0.5), concrete) for i in range(60)
-    ]
-    for y, bar, steel in section.bars:
-        layers.append((y, Bilinear(k=steel.es * bar, d_y=steel.fy / steel.es, k_post=0.0)))
-    diagram = rbsdem.section.interaction(section)
-    for share in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7):
-        load = share * 30e6 * 0.16
-        about = column(Layered(layers), axial_load=load)
-        path = rbsdem.cyclic(about, displacement=2 * np.linspace(5e-4, 0.05, 100))
-        expected = float(diagram.moment_at(load))
-        assert path.moment.max() == pytest.approx(expected, rel=0.035)

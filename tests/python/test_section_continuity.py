@@ -129,22 +129,6 @@ def test_nothing_jumps(name):
     assert jumps(lambda value: predicted(column(**{name: value})), low, high) == []
 
 
-@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
-@pytest.mark.parametrize(("name", "place"), [("row", 0.0), ("legs", 2.0), ("legs", 2.5)])
-def test_predicted_loops_do_not_jump(name, place):
-    """A column that fails in shear, with bars at mid-depth and legs where counts change."""
-    found = []
-    for moved in (place - 1e-8, place, place + 1e-8):
-        squat = column(**{"height": 0.8, "bar": 0.025, "spacing": 0.2, name: moved})
-        path = 0.8 * np.linspace(0.0, 0.06, 300)
-        force = rbsdem.cyclic(squat, displacement=path).force
-        lost = rbsdem.curves.strength_loss(path, force)
-        found.append((force.max(), lost))
-    for near in found:
-        np.testing.assert_allclose(near, found[1], rtol=1e-5)
-    assert found[1][1] < 0.8 * 0.06
-
-
 @pytest.mark.parametrize("height", [0.8, 1.6])
 @pytest.mark.parametrize("top", ["free", "fixed"])
 def test_a_column_drawn_upside_down(height, top):

@@ -5,11 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from samples import SPECIMEN
 
-import rbsdem
 from rbsdem import peer
 from rbsdem.section import hinge
 from rbsdem.section.hinge import Strip, Strips
@@ -105,24 +103,6 @@ def test_confinement_by_hoops_by_hand():
     for specimen in (SQUARE, ROUND, CASED):
         bare = cut(replace(specimen, transverse_spacing=None), 10)
         assert (bare.confining_stress, bare.tie_ratio, bool(bare.core)) == (0.0, 0.0, True)
-
-
-@pytest.mark.parametrize("specimen", [ROUND, CASED], ids=lambda s: s.name)
-def test_a_column_with_a_spiral(specimen):
-    """Equal in both directions; as strong as the section by strips and plane sections."""
-    column = peer.column(specimen, "layered")
-    d = 0.03 * np.sin(np.linspace(0, 4 * np.pi, 161))
-    force = rbsdem.cyclic(column, displacement=d).force
-    assert rbsdem.cyclic(column, displacement=-d).force == pytest.approx(-force, abs=1.0)
-    section = peer.draw(specimen).section
-    curvature = np.linspace(0, 0.1, 60)[1:]
-    moment = rbsdem.section.moment_curvature(
-        section, specimen.axial_load, curvature, tension="zero"
-    )
-    rotation = curvature * 0.2
-    assert np.max(
-        column.joints("flexure")[0].response(rotation, specimen.axial_load)
-    ) == pytest.approx(np.max(moment), rel=0.2)
 
 
 @ALL
