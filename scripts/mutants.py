@@ -289,7 +289,7 @@ MUTANTS = (
         "collapsed = abs(self%displacement)/self%structure%height",
         "collapsed = self%displacement/self%structure%height",
         "collapse",
-        "test_summary test_limit_states test_messages",
+        "test_summary test_limit_states test_doors",
     ),
     # The section
     Mutant(
@@ -331,7 +331,7 @@ MUTANTS = (
         "else if (self%seen(place) .and. all(repeated /= group)) then",
         "else if (.false.) then",
         "refusal",
-        "test_command_line",
+        "test_messages",
     ),
     Mutant(
         "unit-of-a-moment",

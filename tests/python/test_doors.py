@@ -675,6 +675,20 @@ def test_collapse_is_told_with_its_place(
         assert not beyond[:-1].any()
 
 
+@pytest.mark.parametrize("side", [1, -1])
+def test_collapse_that_was_asked_for_is_no_warning(side):
+    """Large rotations belong to a run that ends at `collapse_drift`; without it they are noted."""
+    elastic = Elastic(1e6)
+    column = rbsdem.Column(1.0, 100.0, elastic, elastic, axial_load=2e3, kinematics="pdelta")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        run = rbsdem.cyclic(column, displacement=[0.0, 0.6 * side], collapse_drift=0.5)
+    assert run.summary["status"] == "collapsed"
+    assert run.summary["peak_rotation"] > 0.1
+    with pytest.warns(AccuracyWarning, match="the rotation of a body goes beyond 0.1 rad"):
+        rbsdem.cyclic(column, displacement=[0.0, 0.4 * side])
+
+
 def test_note_of_large_rotations_is_right_about_the_error():
     """One body turned by 0.3 rad: the top of the exact one is at l sin(0.3)."""
     spring = Elastic(1e9), Elastic(1e4)
