@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import Column, InputError
+from rbsdem import Column
 from rbsdem.springs import Bilinear, Compression, Elastic, Layered
 
 HEIGHT, LOAD = 2.0, 2e5
@@ -57,21 +57,6 @@ def test_a_history_of_the_load_acts_there_too():
         column(axial_height=2.6, axial_load=0.0), **common, axial_load=np.full(t.size, LOAD)
     )
     assert history.displacement == pytest.approx(constant.displacement, rel=1e-9, abs=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("options", "text"),
-    [
-        ({"kinematics": "small"}, "axial_height needs kinematics = 'pdelta', not 'small'"),
-        ({"kinematics": "finite"}, "axial_height needs kinematics = 'pdelta', not 'finite'"),
-        ({"axial_spring": Elastic(1e9)}, "axial_height cannot stand with axial springs"),
-        ({"axial_height": -1.0}, "axial_height = -1"),
-        ({"axial_height": np.nan}, "axial_height"),
-    ],
-)
-def test_where_it_has_no_meaning_it_is_refused(options, text):
-    with pytest.raises(InputError, match=text):
-        column(**{"axial_height": 2.5} | options)
 
 
 def test_it_comes_back_from_a_case_file(tmp_path):

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import dataclasses
-import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +11,6 @@ import pytest
 import rbsdem
 from rbsdem import Footing, peer
 from rbsdem.springs import (
-    Bilinear,
     Compression,
     Elastic,
     Layered,
@@ -45,15 +42,9 @@ PATH = np.concatenate([np.linspace(a, b, 5) for a, b in ((0, 0.02), (0.02, -0.03
 
 def cantilever(flexure, *, kinematics="pdelta", shear=RIGID, n=1, **more):
     return rbsdem.Column(
-        1.6,
-        600.0,
-        shear,
-        [flexure, *[Elastic(3e8)] * (n - 1)],
-        n=n,
-        kinematics=kinematics,
-        axial_load=4e5,
-        **more,
-    )
+        1.6, 600.0, shear, [flexure, *[Elastic(3e8)] * (n - 1)], n=n, kinematics=kinematics,
+        axial_load=4e5, **more,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("flexure", [TAKEDA, TWO_SIDED, UNEVEN], ids=lambda s: type(s).__name__)
@@ -122,15 +113,9 @@ def test_critical_load_and_frequency_of_a_held_column():
 
     def column(load):
         return rbsdem.Column(
-            length,
-            1e-4,
-            Elastic(shear),
-            Elastic(k),
-            kinematics="pdelta",
-            axial_load=load,
-            top="fixed",
-            top_mass=mass,
-        )
+            length, 1e-4, Elastic(shear), Elastic(k), kinematics="pdelta", axial_load=load,
+            top="fixed", top_mass=mass,
+        )  # fmt: skip
 
     critical = 2 * k / length
     load = 0.7 * critical
@@ -182,24 +167,14 @@ def test_a_footing_is_one_body_more():
     springs = [Elastic(6e8), Elastic(4e8)], [Takeda(4e8, 4e-4, 1e8, 3e-3, 1e7), TAKEDA]
     common = {"kinematics": "pdelta", "axial_load": 4e5, "top_mass": 2e4, "self_weight": True}
     column = rbsdem.Column(
-        1.6,
-        600.0,
-        springs[0][1],
-        springs[1][1],
+        1.6, 600.0, springs[0][1], springs[1][1], rotary_inertia=50.0,
         footing=Footing(springs[0][0], springs[1][0], mass=900.0, inertia=100.0, height=0.4),
-        rotary_inertia=50.0,
         **common,
-    )
+    )  # fmt: skip
     chain = rbsdem.Column(
-        2.0,
-        None,
-        *springs,
-        n=2,
-        lengths=[0.4, 1.6],
-        masses=[900.0, 600.0],
-        rotary_inertia=[100.0, 50.0],
-        **common,
-    )
+        2.0, None, *springs, n=2, lengths=[0.4, 1.6], masses=[900.0, 600.0],
+        rotary_inertia=[100.0, 50.0], **common,
+    )  # fmt: skip
     for one, other in (
         (rbsdem.cyclic(c, displacement=PATH) for c in (column, chain)),
         (shaken(c, "rk45", ground_acceleration=SHAKE) for c in (column, chain)),
@@ -213,16 +188,11 @@ def test_a_footing_is_one_body_more():
 def rocking(kinematics="pdelta", **more):
     """A stiff column of 4 m on a footing 1 m wide with two contacts at its edges."""
     edges = Layered([(-0.5, Compression(1e12)), (0.5, Compression(1e12))])
+    footing = Footing(Elastic(1e13), edges, **more.pop("inertia", {}))
     return rbsdem.Column(
-        4.0,
-        1e-3,
-        Elastic(1e13),
-        Elastic(1e13),
-        kinematics=kinematics,
-        axial_load=2e5,
-        footing=Footing(Elastic(1e13), edges, **more.pop("inertia", {})),
-        **more,
-    )
+        4.0, 1e-3, Elastic(1e13), Elastic(1e13), kinematics=kinematics, axial_load=2e5,
+        footing=footing, **more,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("kinematics", ["pdelta", "finite"])
@@ -285,110 +255,13 @@ CASE = """
 """
 
 
-def test_ends_have_two_doors(tmp_path: Path):
-    """A case file gives the column of Python, comes back from it, and the csv names the joints."""
-    path = tmp_path / "ends.nml"
-    path.write_text(CASE, "utf-8")
-    case = rbsdem.read_case(path)
-    layers = [(-0.4, Compression(1e9, 1e-4)), (-0.2, Compression(2e9))]
-    column = rbsdem.Column(
-        3.0,
-        900.0,
-        Elastic(4e8),
-        [Elastic(2e8), Elastic(2e8), Elastic(1e8)],
-        n=2,
-        kinematics="pdelta",
-        axial_load=2e5,
-        top="fixed",
-        top_mass=2e4,
-        footing=Footing(
-            Bilinear(4e8, 1e-3, 1e6),
-            Layered([*layers, *((-y, spring) for y, spring in reversed(layers))]),
-            mass=3e3,
-            inertia=2e3,
-            height=0.3,
-        ),
-    )
-    assert case.column == column
-    path.write_text(column.to_namelist() + CASE[CASE.index("&loading") :], "utf-8")
-    assert rbsdem.read_case(path).column == column
-    result = case.run()
-    subprocess.run(["rbsdem", "run", "--quiet", str(path)], check=True, cwd=tmp_path)
-    with (tmp_path / "ends.csv").open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    assert float(rows[-1]["moment_3_Nm"]) == result.moment[-1, -1]
-    assert float(rows[-1]["rotation_0_rad"]) == result.rotation[-1, 0]
-
-
-HELD = {"top": "fixed"}
-SPRING = Elastic(1e8)
-FOOTING = Footing(SPRING, SPRING)
-REFUSED = {
-    "a footing without inertia in time": (
-        {"footing": FOOTING},
-        "footing_mass = 0 kg and footing_inertia = 0 kg m2 must be above zero",
-    ),
-    "a fixed top without mass in time": (HELD, "a dynamic analysis needs top_mass"),
-    "inertia of a top that does not turn": (
-        {"top": "fixed", "top_inertia": 5.0},
-        "top_inertia = 5 kg m2 has no effect",
-    ),
-    "loads that turn with it": (
-        {"top": "fixed", "kinematics": "finite", "axial_follows": True},
-        "remove axial_follows and force_follows",
-    ),
-    "a lever of the load": (
-        {"top": "fixed", "kinematics": "pdelta", "axial_height": 2.0},
-        "axial_height is the lever of the load on a cantilever",
-    ),
-    "another word for the top": (
-        {"top": "pinned"},
-        "top = 'pinned' is not known; it is one of free",
-    ),
-    "springs of one joint too few": (
-        {"top": "fixed", "flexure": [SPRING, SPRING], "n": 2},
-        "flexure has 2 springs",
-    ),
-    "a negative mass": (
-        {"footing": Footing(SPRING, SPRING, mass=-1.0)},
-        "footing_mass = -1 kg must not be negative",
-    ),
-    "joints that open on a footing that does not": (
-        {"footing": FOOTING, "axial_spring": SPRING},
-        "there is no &axial_spring with joint = 0",
-    ),
-    "an axial spring beneath the footing alone": (
-        {"footing": Footing(SPRING, SPRING, SPRING)},
-        "joint 1 has no &axial_spring",
-    ),
-    "contacts that only tension could hold": (
-        {"footing": Footing(SPRING, CONTACTS), "axial_load": -1e3},
-        "flexure spring of joint 0: its layers cannot carry the axial load of -1000 N",
-    ),
-}
-
-
-@pytest.mark.parametrize("given", REFUSED)
-def test_ends_that_make_no_sense_are_refused(given):
-    changes, message = REFUSED[given]
-    with pytest.raises(rbsdem.InputError) as caught:  # noqa: PT012
-        column = rbsdem.Column(
-            **({"height": 2.0, "mass": 9.0, "shear": SPRING, "flexure": SPRING} | changes)
-        )
-        rbsdem.time_history(column, [0.0, 1.0], ground_acceleration=[0.0, 1.0])
-    assert message in str(caught.value)
-
-
-def test_other_refusals():
-    column = rbsdem.Column(2.0, 9.0, SPRING, SPRING, top="fixed", top_mass=1e3)
-    with pytest.raises(rbsdem.InputError, match=r"must add up to zero, not to 0\.01"):
-        rbsdem.time_history(column, [0.0, 1.0], initial={"rotation": [0.01, 0.0]})
-    with pytest.raises(rbsdem.InputError, match="flexure = 3 must be a spring"):
-        Footing(SPRING, 3)
-    with pytest.raises(rbsdem.InputError, match="must be a Footing"):
-        rbsdem.Column(2.0, 9.0, SPRING, SPRING, footing=SPRING)
-    with pytest.raises(rbsdem.InputError, match="plain cantilever, without top_mass"):
-        rbsdem.Column(2.0, 9.0, SPRING, SPRING, top_mass=1.0).double_curvature()
+def test_rows_of_the_executable_name_all_joints(run_cli, read_csv, tmp_path: Path):
+    (tmp_path / "ends.nml").write_text(CASE, "utf-8")
+    result = rbsdem.read_case(tmp_path / "ends.nml").run()
+    assert run_cli(["run", "--quiet", "ends.nml"], tmp_path).returncode == 0
+    rows = read_csv(tmp_path / "ends.csv")
+    assert np.array_equal(rows["moment_3_Nm"], result.moment[:, -1])
+    assert np.array_equal(rows["rotation_0_rad"], result.rotation[:, 0])
 
 
 def test_footing_keys_need_a_footing(tmp_path: Path):
@@ -435,28 +308,13 @@ def test_double_curvature_specimens_are_their_equivalents():
     does not soften here.
     """
     specimen = peer.Specimen(
-        name="one",
-        section="rectangular",
-        length=0.9,
-        width=0.3,
-        depth=0.3,
-        concrete_strength=30e6,
-        axial_load=500e3,
-        longitudinal_number=8,
-        config="DC",
-        cover=0.025,
-        corner_diameter=0.019,
-        intermediate_diameter=0.019,
-        intermediate_perpendicular=1,
-        intermediate_parallel=1,
-        corner_yield_stress=400e6,
-        intermediate_yield_stress=400e6,
-        transverse_yield_stress=350e6,
-        transverse_diameter=0.008,
-        transverse_spacing=0.1,
-        shear_legs=2,
-        confinement="R",
-    )
+        name="one", section="rectangular", length=0.9, width=0.3, depth=0.3,
+        concrete_strength=30e6, axial_load=500e3, longitudinal_number=8, config="DC", cover=0.025,
+        corner_diameter=0.019, intermediate_diameter=0.019, intermediate_perpendicular=1,
+        intermediate_parallel=1, corner_yield_stress=400e6, intermediate_yield_stress=400e6,
+        transverse_yield_stress=350e6, transverse_diameter=0.008, transverse_spacing=0.1,
+        shear_legs=2, confinement="R",
+    )  # fmt: skip
     drift = np.linspace(0, 0.03, 31)
     for model in ("layered", "paper"):
         half, whole = (peer.column(specimen, model, ends=ends) for ends in ("equivalent", "tested"))

@@ -163,10 +163,6 @@ def test_a_state_of_another_column_is_refused():
     with pytest.raises(InputError, match="kinematics = 'pdelta', this column has 'finite'"):
         begin(column(kinematics="finite"))
     begin(column(mass=1.0, axial_load=3e5, damping=rbsdem.Damping(mass=1.0)))
-    with pytest.raises(InputError, match="must be a Result"):
-        begin(column(), {"slip": [0.0]})
-    with pytest.raises(InputError, match="no such file"):
-        begin(column(), "nowhere.state")
 
 
 def test_a_state_that_is_damaged_is_refused(tmp_path):
@@ -289,7 +285,3 @@ def test_the_motion_of_the_top_in_tables_files_and_summary(tmp_path):
     frame = moved.to_frame()
     assert np.array_equal(frame["velocity_m/s"], moved.velocity)
     assert np.array_equal(frame["acceleration_m/s2"], moved.acceleration)
-    with pytest.raises(InputError, match="motion=True"):
-        plain.velocity  # noqa: B018
-    with pytest.raises(InputError, match="nothing moves in a static path"):
-        rbsdem.cyclic(column(), displacement=[0.01]).acceleration  # noqa: B018

@@ -222,52 +222,6 @@ def test_layers_carry_moment_and_axial_load() -> None:
     np.testing.assert_allclose(forces.sum(axis=1), -1e5 * (1 + time), rtol=1e-9)
 
 
-def test_openings_must_be_asked_for() -> None:
-    """Without them the layers are unknown, and the message says how to get them."""
-    result = rbsdem.cyclic(one_body(), displacement=[0.001])
-    with pytest.raises(rbsdem.InputError, match="openings=True"):
-        result.layer_deformation()
-    with pytest.raises(rbsdem.InputError, match="openings=True"):
-        _ = result.elongation
-    with pytest.raises(rbsdem.InputError, match="from 1 to n = 1"):
-        result.layer_deformation(2)
-
-
-@pytest.mark.parametrize(
-    ("fields", "call", "part"),
-    [
-        ({}, {"axial_load": [1e5, 2e5]}, "2 values for 3 points"),
-        (
-            {"kinematics": "finite", "axial_follows": True},
-            {"axial_load": [1e5, 2e5, 3e5]},
-            "no potential",
-        ),
-        ({}, {"axial_load": [1e5, float("nan"), 3e5]}, "axial_load"),
-    ],
-)
-def test_what_a_static_path_refuses(
-    fields: dict[str, object], call: dict[str, object], part: str
-) -> None:
-    """Wrong sizes, kinematics and numbers."""
-    with pytest.raises(rbsdem.InputError, match=part):
-        rbsdem.cyclic(one_body(**fields), displacement=[0.01, 0.02, 0.03], **call)
-
-
-def test_a_history_without_effect_is_refused() -> None:
-    """Small rotations without layered joints do not see the axial load."""
-    column = rbsdem.Column(1.5, 1e3, Elastic(1e9), Elastic(1e8))
-    with pytest.raises(rbsdem.InputError, match="does nothing"):
-        rbsdem.cyclic(column, displacement=[0.01], axial_load=[1e5])
-
-
-def test_a_ratio_belongs_to_a_static_path() -> None:
-    """A dynamic analysis has no one lateral force."""
-    with pytest.raises(rbsdem.InputError, match="axial_force_ratio"):
-        rbsdem.time_history(
-            one_body(axial_force_ratio=1.0), [0.0, 1.0], ground_acceleration=[0.0, 1.0]
-        )
-
-
 def test_the_case_file_says_the_same(tmp_path) -> None:
     """A static case with a history of the axial load, written and read back."""
     load = [3e5, 6e5, -1e5, 5e5, 8e5, 2e5]

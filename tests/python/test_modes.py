@@ -149,13 +149,6 @@ def test_shapes_are_orthonormal_and_satisfy_the_eigenproblem(n):
     np.testing.assert_allclose(inner.T @ inner, np.eye(2 * n), atol=1e-12)
 
 
-def test_modes_of_too_many_bodies_are_refused():
-    column = chain([0.004] * 501, [1.0] * 501, [1e9] * 501, [1e9] * 501)
-    with pytest.raises(rbsdem.InputError, match="up to 500 bodies, not for n = 501"):
-        rbsdem.modes(column)
-    np.testing.assert_array_less(np.diff(-rbsdem.modes(column, count=3).omega), 0)
-
-
 @pytest.mark.parametrize("top", ["free", "fixed"])
 def test_the_first_modes_are_those_of_all_modes(top):
     """With openings, whose modes lie between the others."""

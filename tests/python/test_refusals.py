@@ -1,4 +1,4 @@
-"""What the rooms of sections, curves, many runs and measured tests refuse, by `refusals.txt`."""
+"""What the rooms refuse, by `refusals.txt`: what no file says, and what no key says by itself."""
 
 from __future__ import annotations
 
@@ -15,7 +15,14 @@ import rbsdem
 from rbsdem import calibration, codes, curves, fragility, peer, plot
 from rbsdem.section import shear, strength
 from rbsdem.section.parameters import parameters
-from rbsdem.springs import Elastic, Gauge, Layered
+from rbsdem.springs import (
+    Compression,
+    ConcreteSpring,
+    Elastic,
+    Gauge,
+    Layered,
+    PeakOriented,
+)
 
 C30 = rbsdem.Concrete(30e6)
 COLUMN = rbsdem.peer.paper_columns("pdelta")["zahn_7"]
@@ -44,6 +51,21 @@ def capacities(low: list, high: list) -> fragility.Fragility:
     return fragility.fit_fragility("x", fragility.Capacities(np.array(low), np.array(high)))
 
 
+def column(**given: object) -> rbsdem.Column:
+    plain = {"height": 2.0, "mass": 9.0, "shear": Elastic(1e8), "flexure": Elastic(1e8)}
+    return rbsdem.Column(**plain | given)
+
+
+def moved(**given: object) -> rbsdem.Result:
+    """Move a column; what is none of its fields goes to the analysis."""
+    names = ("time", "force", "ground_acceleration", "initial")
+    loads = {"time": [0.0, 1.0], "method": "rk4"}
+    loads |= {name: given.pop(name) for name in names if name in given}
+    if len(loads) == 2:
+        loads["force"] = np.zeros(np.size(loads["time"]))
+    return rbsdem.time_history(column(**given), **loads)
+
+
 def broken(result: rbsdem.Result) -> float:
     raise KeyError(result.summary["status"])
 
@@ -51,7 +73,11 @@ def broken(result: rbsdem.Result) -> float:
 #: What the lines may name besides what `import rbsdem` brings.
 NAMES = {name: getattr(rbsdem, name) for name in rbsdem.__all__} | {
     "BOX": BOX,
+    "BLOCKS": Layered([(y, ConcreteSpring(2e9, 1e6, 8e-4, 1e8)) for y in (-0.2, 0.0, 0.2)]),
     "C30": C30,
+    "CONTACTS": Layered([(-0.2, Compression(1e9)), (0.2, Compression(1e9))]),
+    "ConcreteSpring": ConcreteSpring,
+    "E": Elastic(1e8),
     "COLUMN": COLUMN,
     "broken": broken,
     "CURVE": capacities([1.0, 2.0, 3.0], [1.0, 2.0, 3.0]),
@@ -74,7 +100,11 @@ NAMES = {name: getattr(rbsdem, name) for name in rbsdem.__all__} | {
     "box": lambda **more: rbsdem.RectangularSection(2.0, 3.0, C30, **BOX | more),
     "calibration": calibration,
     "capacities": capacities,
+    "capped": lambda **more: PeakOriented(
+        **{"d_y": 1.0, "f_y": 100.0, "d_cap": 3.0, "f_cap": 120.0, "d_pc": 12.0} | more
+    ),
     "codes": codes,
+    "column": column,
     "counts": counts,
     "curves": curves,
     "drawn": lambda **more: replace(SECTION, **{"bars": ()} | more),
@@ -87,6 +117,7 @@ NAMES = {name: getattr(rbsdem, name) for name in rbsdem.__all__} | {
         **{"column": COLUMN, "motions": motions, "method": "newmark"} | more
     ),
     "inf": math.inf,
+    "moved": moved,
     "nan": math.nan,
     "parameters": parameters,
     "peer": peer,

@@ -323,11 +323,6 @@ def test_deformation_that_is_not_finite_is_refused_by_index(
         spring.response(path)
 
 
-def test_an_unknown_inner_unloading_is_refused() -> None:
-    with pytest.raises(rbsdem.InputError, match=r"\binner\b"):
-        Takeda(**(GOOD["Takeda"] | {"inner": "xx"}))
-
-
 def test_shapes_of_the_deformation(spring: Any) -> None:
     path = np.array([0.1, 2.0, -1.0, 5.0, 0.0])
     force = spring.response(path)

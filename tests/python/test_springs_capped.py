@@ -7,14 +7,12 @@ every rule is in `test_invariants.py`.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 import pytest
 import reference_capped
 from numpy.typing import ArrayLike, NDArray
 
-import rbsdem
 from rbsdem.springs import PeakOriented, Pinching
 
 Array = NDArray[np.float64]
@@ -179,19 +177,6 @@ def test_property_11_partial_unloading_leaves_no_trace():
 
 
 # ---- refusals --------------------------------------------------------------------------------
-
-# What parameters are to each other; each by itself is refused in `test_same_errors.py`.
-BAD: list[tuple[str, Any]] = [
-    ("d_cap", 0.9), ("f_cap", 99.0), ("f_cap", 310.0), ("f_res", 100.0), ("d_u", 2.9),
-    ("d_c", 0.1), ("f_c", 10.0), ("c", 0.9), ("d_cap_neg", 0.5), ("f_y_neg", 130.0),
-    ("f_res_neg", 100.0), ("d_y", None), ("d_pc", "x"),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("name", "value"), BAD)
-def test_bad_numbers_are_refused_by_name(name, value):
-    with pytest.raises(rbsdem.InputError, match=rf"\b{name}\b"):
-        PeakOriented(**(HAND | {name: value}))
 
 
 def test_limits_of_the_numbers_are_allowed():

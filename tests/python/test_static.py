@@ -12,21 +12,12 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem.springs import Bilinear, Compression, Elastic, Layered, Takeda
+from rbsdem.springs import Bilinear, Compression, Elastic, Layered
 
 # The same column is made at every level of kinematics, and masses without weight are tried.
 pytestmark = pytest.mark.filterwarnings(
     "ignore:column. (axial_load|self_weight|top_mass|height|shear has) "
 )
-
-# Column 1 of table 3 (Soesianawati No 1).
-SHEAR = Bilinear(7.0387e8, 1.2960e-4, 8.3185e6)
-FLEXURE = Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
-HEIGHT, MASS = 1.6, 614.4
-
-
-def paper_column(**options) -> rbsdem.Column:
-    return rbsdem.Column(HEIGHT, MASS, SHEAR, FLEXURE, **options)
 
 
 def assert_energy(run: rbsdem.Result, rel: float = 1e-12) -> None:
@@ -161,34 +152,3 @@ def test_small_steps_far_out_do_not_stop():
     start = np.nextafter(at, 0.0)
     run = rbsdem.cyclic(column, displacement=[start, *targets, *targets[::-1], start])
     np.testing.assert_allclose(run.force, 1e5, rtol=1e-12)
-
-
-def test_a_path_without_points_is_refused():
-    column = paper_column(n=2)
-    for drive in ("displacement", "force"):
-        with pytest.raises(rbsdem.InputError, match=f"{drive} is empty; give at least one point"):
-            rbsdem.cyclic(column, **{drive: []})
-
-
-BAD = [
-    ({}, "exactly one"),
-    ({"displacement": [0.1], "force": [1.0]}, "exactly one"),
-    ({"displacement": [0.1, float("nan")]}, "displacement: value 2 of 2 is NaN"),
-    ({"force": [1.0, 2.0, float("inf")]}, "force: value 3 of 3 is Infinity"),
-    ({"force": [-float("inf")]}, "force: value 1 of 1 is -Infinity"),
-    ({"displacement": 0.1}, "displacement has shape ()"),
-    ({"displacement": [[0.1, 0.2]]}, "displacement has shape (1, 2)"),
-    ({"force": ["a"]}, "force must be an array of numbers"),
-    ({"force": [1 + 2j]}, "force must be an array of numbers"),
-    ({"force": [1.0, [2.0]]}, "force must be an array of numbers"),
-    ({"force": [None]}, "force must be an array of numbers"),
-    ({"force": [1.0], "every": 0}, "every = 0"),
-    ({"force": [1.0], "every": 1.5}, "every = 1.5"),
-    ({"force": [1.0], "every": -2}, "every = -2"),
-]
-
-
-@pytest.mark.parametrize(("arguments", "text"), BAD, ids=[text for _, text in BAD])
-def test_bad_loading_is_refused(arguments, text):
-    with pytest.raises(rbsdem.InputError, match=re.escape(text)):
-        rbsdem.cyclic(paper_column(), **arguments)
