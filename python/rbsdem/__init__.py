@@ -40,10 +40,10 @@ if TYPE_CHECKING:
     from rbsdem.motions.motion import GroundMotion as GroundMotion
     from rbsdem.motions.read import read_motions as read_motions
     from rbsdem.results.case import read_case as read_case
+    from rbsdem.results.case import read_result as read_result
     from rbsdem.results.result import Result as Result
     from rbsdem.results.result import cyclic as cyclic
     from rbsdem.results.result import time_history as time_history
-    from rbsdem.results.saved import read_result as read_result
     from rbsdem.solve.analysis import matrices as matrices
     from rbsdem.solve.analysis import modes as modes
     from rbsdem.solve.protocol import protocol as protocol
@@ -66,9 +66,8 @@ _HOMES = {
     "model.shape": ("CircularSection", "RectangularSection"),
     "motions.motion": ("GroundMotion",),
     "motions.read": ("read_motions",),
-    "results.case": ("read_case",),
+    "results.case": ("read_case", "read_result"),
     "results.result": ("Result", "cyclic", "time_history"),
-    "results.saved": ("read_result",),
     "solve.analysis": ("matrices", "modes"),
     "solve.protocol": ("protocol",),
     "solve.solver": ("Solver",),

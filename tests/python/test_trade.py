@@ -153,7 +153,7 @@ def test_settings_of_all_kinds_are_there(shaken):
             assert row.error == max(row.response_rms, row.moment, row.energy, row.peak)
             assert row.response_rms <= row.response_max
     chosen = next(row for row in shaken.rows if row.setting.method == "auto")
-    assert chosen.reason.split(":")[0] in rbsdem.solve.analysis.METHODS
+    assert chosen.reason.split(":")[0] in rbsdem.solve.solver.IN_TIME
 
 
 def test_a_step_beyond_the_limit_stays_in_the_table(shaken):

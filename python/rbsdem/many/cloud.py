@@ -63,17 +63,9 @@ class Logistic:
 
 def fit_line(x: Array, y: Array) -> PowerLaw:
     """Return the straight line of least squares through three or more points."""
-    n = x.size
-    middle = x.mean()
-    square = float(((x - middle) ** 2).sum())
-    b = float(((x - middle) * (y - y.mean())).sum() / square)
-    a = float(y.mean() - b * middle)
-    variance = float(((y - a - b * x) ** 2).sum() / (n - 2))
-    # Of (a, b): the inverse of the normal equations times the variance.
-    inverse = np.array(
-        [[1 / n + middle**2 / square, -middle / square], [-middle / square, 1 / square]]
-    )
-    return PowerLaw(a, b, float(np.sqrt(variance)), variance * inverse)
+    (b, a), covariance = np.polyfit(x, y, 1, cov=True)
+    sigma = np.sqrt(((y - a - b * x) ** 2).sum() / (x.size - 2))
+    return PowerLaw(float(a), float(b), float(sigma), covariance[::-1, ::-1])
 
 
 def fit_logistic(x: Array, happened: NDArray[np.bool_]) -> Logistic:

@@ -42,8 +42,7 @@ from rbsdem.many.inputs import (
     scale_array,
     states_of_columns,
 )
-from rbsdem.many.plan import Outcome, Piece, Plan, compute, cut, expected, one_run
-from rbsdem.many.run_store import RunStore
+from rbsdem.many.plan import Outcome, Piece, Plan, RunStore, compute, cut, expected, one_run
 from rbsdem.model.column import Column
 from rbsdem.results.result import Result
 from rbsdem.solve.solver import Solver, checked_solver

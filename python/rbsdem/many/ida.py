@@ -169,7 +169,8 @@ def _narrow_yield(work: Collector, low: Array) -> None:
     while True:
         level = np.full(low.shape, np.nan)
         for column, motion in np.ndindex(low.shape):
-            tried, yielded = _yields(work, column, motion)
+            tried, at, status = work.tried(column, motion, "intensity", _YIELD, "status")
+            yielded = np.isfinite(at) | np.isin(status, LOST)
             if not yielded.any():
                 continue
             first = tried[yielded].min()
@@ -181,21 +182,11 @@ def _narrow_yield(work: Collector, low: Array) -> None:
         work.run(level[:, :, None])
 
 
-def _yields(work: Collector, column: int, motion: int) -> tuple[Array, NDArray[np.bool_]]:
-    """Return the intensities of the runs of a column under a motion, and which of them yielded."""
-    tried, yielded = [], []
-    for part in work.parts:
-        own = (part["column"] == column) & (part["motion"] == motion)
-        tried.append(part["intensity"][own])
-        yielded.append(np.isfinite(part[_YIELD][own]) | np.isin(part["status"][own], LOST))
-    return np.concatenate(tried), np.concatenate(yielded)
-
-
 def _fill(work: Collector, hunt: Hunt, low: Array, high: Array) -> bool:
     """Add runs in the largest gaps below the collapses; return whether one collapsed."""
     wanted: dict[tuple[int, int], list[float]] = {}
     for column, motion in np.ndindex(low.shape):
-        tried = _levels(work, column, motion)
+        (tried,) = work.tried(column, motion, "intensity")
         own = sorted({0.0, *tried[tried <= low[column, motion]].tolist()})
         added: list[float] = []
         while len(own) - 1 < hunt.points and low[column, motion] > 0:
@@ -212,19 +203,10 @@ def _fill(work: Collector, hunt: Hunt, low: Array, high: Array) -> bool:
     collapsed = work.run(levels)
     for column, motion in np.argwhere(collapsed.any(axis=-1)):
         first = levels[column, motion][collapsed[column, motion]].min()
-        tried = _levels(work, column, motion)
+        (tried,) = work.tried(column, motion, "intensity")
         high[column, motion] = first
         low[column, motion] = max([0.0, *tried[tried < first]])
     return bool(collapsed.any())
-
-
-def _levels(work: Collector, column: int, motion: int) -> Array:
-    """Return the intensities that a column was run at under a motion."""
-    found = [
-        part["intensity"][(part["column"] == column) & (part["motion"] == motion)]
-        for part in work.parts
-    ]
-    return np.concatenate(found)
 
 
 #: Settings that change nothing in the answer.

@@ -335,6 +335,14 @@ class Collector:
         collapsed.ravel()[np.flatnonzero(~np.isnan(scales).ravel())] = np.isin(status, LOST)
         return collapsed
 
+    def tried(self, column: int, motion: int, *names: str) -> list[NDArray[Any]]:
+        """Return what is named of the runs so far of a column under a motion."""
+        own = [(p["column"] == column) & (p["motion"] == motion) for p in self.parts]
+        return [
+            np.concatenate([part[name][kept] for part, kept in zip(self.parts, own, strict=True)])
+            for name in names
+        ]
+
     def run_unshaken(self, who: str) -> None:
         """Run without motion, where columns begin in states that other analyses ended in.
 

@@ -17,9 +17,8 @@ from rbsdem.errors import InputError, RbsdemError
 from rbsdem.methods.scene import Attempt, Run, Scene, Setting
 from rbsdem.model.column import Column, Kinematics
 from rbsdem.results.accuracy import common_interval
-from rbsdem.solve.analysis import METHODS, no_watch, time_history
-from rbsdem.solve.solver import IMPLICIT, Solver
-from rbsdem.solve.solver import METHODS as FACTS
+from rbsdem.solve.analysis import no_watch, time_history
+from rbsdem.solve.solver import IMPLICIT, IN_TIME, METHODS, Solver
 
 #: Levels of kinematics, each with more physics than the one before.
 LEVELS: tuple[Kinematics, ...] = ("small", "pdelta", "finite")
@@ -29,7 +28,7 @@ RK4_RUNGS, IMPLICIT_RUNGS, TOLERANCES = 7, 8, range(4, 11)
 
 #: Cost of a step of rk45 in steps of rk4; its longest stable step as a share of that of rk4; and
 #: the tolerance below which accuracy, not stability, limits the step.
-PAIR_COST, PAIR_SHARE, PAIR_TOLERANCE = 7 / 4, FACTS["rk45"].limit_share, 1e-8
+PAIR_COST, PAIR_SHARE, PAIR_TOLERANCE = 7 / 4, METHODS["rk45"].limit_share, 1e-8
 
 
 class Budget:
@@ -229,11 +228,11 @@ def checked_methods(methods: Sequence[str] | None) -> tuple[str, ...]:
         If a method is not known.
     """
     if methods is None:
-        return METHODS
+        return IN_TIME
     wanted = (methods,) if isinstance(methods, str) else methods
     wanted = tuple(_arguments.several(wanted, "compare_methods: methods", "names"))
     for method in wanted:
-        _arguments.choice(method, "compare_methods: method", METHODS)
+        _arguments.choice(method, "compare_methods: method", IN_TIME)
     if not wanted:
         raise InputError("compare_methods: methods is empty; name one, or leave it out to try all")
     return wanted

@@ -19,15 +19,10 @@ from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning
 from rbsdem.model.column import Column, checked_column
 from rbsdem.model.response import Response, response_of, settings_of, state_of
 from rbsdem.motions.motion import GroundMotion, acting
-from rbsdem.solve.solver import IN_TIME, MethodName, Solver, checked_solver
+from rbsdem.solve.solver import Solver, checked_solver
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
-
-#: Names of the methods in time.
-METHODS = IN_TIME
-
-Method = MethodName
 
 #: What a run in time is watched for: limit states of the column as criteria in numbers, shape
 #: (criteria, 6), given whether openings are kept.
@@ -115,7 +110,7 @@ def modes(column: Column, count: int | None = None) -> Modes:
     """
     if count is not None:
         count = _arguments.whole(count, "count")
-    answer = _core.evaluate("modes", _checked(column)._statement, count=count)
+    answer = _core.evaluate("modes", checked_column(column)._statement, count=count)
     if answer.text:
         warnings.warn(answer.text, AccuracyWarning, stacklevel=2)
     stable_step, omega = float(answer.values[0]), answer.values[1:]
@@ -135,7 +130,7 @@ def matrices(column: Column, form: Literal["symmetric", "paper"] = "symmetric") 
         M_symmetric = M_paper T with theta = cumulative sum of phi, and so for the others.
     """
     _arguments.choice(form, "form", ("symmetric", "paper"))
-    answer = _core.evaluate("matrices", _checked(column)._statement, paper=form == "paper")
+    answer = _core.evaluate("matrices", checked_column(column)._statement, paper=form == "paper")
     unknowns = tuple(answer.text.split())
     return Matrices(unknowns, *(matrix.copy() for matrix in np.split(answer.rows, 4)))
 
@@ -216,7 +211,7 @@ def cyclic(
     if values.size == 0:
         raise InputError(f"{name} is empty; give at least one point")
     load = None if axial_load is None else _arguments.vector(axial_load, "axial_load")
-    kept = not _checked(column).opens and _arguments.switch(openings, "openings")
+    kept = not checked_column(column).opens and _arguments.switch(openings, "openings")
     settings = settings_of(every, kept, collapse_drift=collapse_drift)
     run = _core.cyclic(
         column._statement + settings,
@@ -324,7 +319,10 @@ def time_history(
         "axial_load": axial_load,
     }
     time, arrays = acting(time, given, "time_history")
-    loads = {name: _loading(values, name) for name, values in arrays.items()}
+    loads = {name: _arguments.vector(values, name) for name, values in arrays.items()}
+    for name, values in loads.items():
+        if values.size == 0:
+            raise InputError(f"{name} is empty; give one value for each time")
     if not loads and not initial:
         raise InputError(
             "time_history: nothing acts; give a load (" + ", ".join(given) + ") or an initial state"
@@ -332,7 +330,7 @@ def time_history(
     if time is None:
         raise InputError("time_history: time is missing; give the times of the loading")
     chosen = checked_solver(solver, "time_history") | {"collapse_drift": collapse_drift}
-    kept = not _checked(column).opens and _arguments.switch(openings, "openings")
+    kept = not checked_column(column).opens and _arguments.switch(openings, "openings")
     moves = _arguments.switch(motion, "motion")
     settings = settings_of(every, kept, moves, **chosen)
     times = _arguments.vector(time, "time")
@@ -372,22 +370,11 @@ def _tell(note: str, kind: type[Warning], stacklevel: int) -> None:
         warnings.warn(note, kind, stacklevel=stacklevel)
 
 
-def _checked(column: Column) -> Column:
-    return checked_column(column)
-
-
 def _recorded_state(initial: Any) -> Any:
     """Return what a result records of `initial`: a path as text, of a result its state."""
     if isinstance(initial, Response):
         return initial.state
     return os.fspath(initial) if isinstance(initial, (str, os.PathLike)) else initial
-
-
-def _loading(values: ArrayLike, name: str) -> Array:
-    array = _arguments.vector(values, name)
-    if array.size == 0:
-        raise InputError(f"{name} is empty; give one value for each time")
-    return array
 
 
 def _initial_state(initial: Mapping[str, ArrayLike] | None, column: Column) -> tuple[Array, bool]:

@@ -313,17 +313,7 @@ class Answers:
 
 
 #: What can be asked, by the last part of the path.
-LANES: dict[str, Callable[[Answers, Asked, Pause], dict[str, Any]]] = {
-    "loops": Answers.loops,
-    "sections": Answers.sections,
-    "own": Answers.own,
-    "bands": Answers.bands,
-    "scales": Answers.scales,
-    "nearest": Answers.nearest,
-    "export": Answers.export,
-    "open": Answers.open,
-    "record": Answers.record,
-}
+LANES = ("loops", "sections", "own", "bands", "scales", "nearest", "export", "open", "record")
 
 #: What is asked for once: a newer question takes nothing from it.
 ONCE = ("export", "open", "record")

@@ -144,7 +144,7 @@ class ExploreServer(ThreadingHTTPServer):
         with self.computing:
             if check is not None:
                 check()
-            return {"number": number, **LANES[lane](self.answers, asked, pause)}
+            return {"number": number, **getattr(self.answers, lane)(asked, pause)}
 
 
 class _Handler(BaseHTTPRequestHandler):
