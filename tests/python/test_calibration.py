@@ -7,7 +7,6 @@ import warnings
 from dataclasses import replace
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
 import pytest
 
@@ -21,8 +20,6 @@ from rbsdem.curves.cycles import half_cycle_numbers
 from rbsdem.errors import AccuracyWarning
 from rbsdem.peer import find_history, read_peer
 from rbsdem.springs import Bilinear, ConcreteSpring, Elastic, Layered, Pinching, SteelSpring, Takeda
-
-mpl.use("Agg")
 
 PEER = os.environ.get("RBSDEM_PEER_DIR") or Path(__file__).resolve().parents[3] / "shared" / "peer"
 COLUMNS = rbsdem.peer.paper_columns("pdelta")
@@ -463,14 +460,10 @@ def test_zero_start_with_bounds():
 # ---- report, table, figure -----------------------------------------------------------------------
 
 
-@pytest.fixture(scope="module")
-def fit() -> rbsdem.calibration.Calibration:
+def test_report():
     start = COLUMNS["zahn_7"]
     other = replace(start, flexure=replace(start.flexure, k_y=4e7, d_y=4e-3))
-    return quiet(start, noisy(other, path(start), 0.05), ["flexure.k_y", "flexure.d_y"])
-
-
-def test_report(fit):
+    fit = quiet(start, noisy(other, path(start), 0.05), ["flexure.k_y", "flexure.d_y"])
     text = fit.report
     for part in ("nrmse", "before", "after", "flexure.k_y", "N m/rad", "Std. error", "Correlation"):
         assert part in text
@@ -478,6 +471,9 @@ def test_report(fit):
     assert f"{fit.evaluations} analyses" in text
     assert f"{fit.values['flexure.k_y']:.4g}" in text
     assert max(map(len, text.splitlines())) <= 110
+    frame = fit.to_frame()
+    assert list(frame["name"]) == list(fit.values)
+    assert list(frame["value"]) == list(fit.values.values())
 
 
 def test_progress_on_stderr(capsys, monkeypatch):

@@ -192,21 +192,6 @@ def test_a_section_where_nothing_is_alike():
     assert {name: values[name] for name in by_hand} == pytest.approx(by_hand, rel=1e-6)
 
 
-def test_legs_and_sides_trade_places_together():
-    """The confinement knows no direction of loading: (A.2) is the same for the turned section."""
-    bars = rbsdem.Layout(12, 0.02, STEEL)
-
-    def alpha(width, depth, legs, across):
-        ties = rbsdem.Ties(0.01, 0.1, STEEL, legs=legs, legs_across=across)
-        section = rbsdem.RectangularSection(
-            width, depth, rbsdem.Concrete(3e7), layout=bars, ties=ties, cover=0.03
-        )
-        return formulas.ec_8_confinement(quantities(section, 1.5, 5e5))
-
-    assert alpha(0.3, 0.6, 2, 4) == pytest.approx(alpha(0.6, 0.3, 4, 2))
-    assert alpha(0.3, 0.6, 2, 4) > alpha(0.3, 0.6, 3, 3) > alpha(0.3, 0.6, 4, 2)
-
-
 def test_the_order_of_bars_does_not_matter():
     """Two steels in one row count by their areas: f_y of the four outer bars is their mean."""
     mixed = rbsdem.RectangularSection(

@@ -121,21 +121,6 @@ def test_wires_stronger_than_the_plateau_is_long():
     assert peer.draw(strong).section.confinement is not None
 
 
-def test_the_papers_columns_are_drawn_as_table_2_has_them(peer_folder):
-    table = peer.read_specimens(peer_folder)
-    names = {"soesianawati_1": "7", "tanaka_park_1": "18", "tanaka_park_5": "22", "zahn_7": "11"}
-    for key, printed in rbsdem.peer.paper_sections().items():
-        drawn = peer.draw(table[names[key]])
-        d = drawn.section
-        assert (d.width, d.depth, d.cover) == (printed.width, printed.depth, printed.cover)
-        assert d.concrete.fc == printed.concrete_strength
-        assert d.steel_area == pytest.approx(
-            printed.longitudinal_number * area(printed.longitudinal_diameter)
-        )
-        assert d.ties.legs == printed.shear_legs
-        assert not drawn.assumed
-
-
 @pytest.mark.filterwarnings("ignore:.*(is not given; taken as|bundled bars)")
 def test_every_specimen_of_the_database_is_drawn(peer_folder):
     for specimen in peer.read_specimens(peer_folder):

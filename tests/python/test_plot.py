@@ -243,7 +243,30 @@ def test_drawing_of_a_section():
     assert labels == ["Cracking", "Yielding", "Peak", "Ultimate"]
 
 
-def test_interaction_shows_both_strengths_and_the_demand():
+def test_what_is_written_and_marked(figures):
+    """Scores, names in legends, lines of springs, envelopes and measured tests, demands."""
+    (found,), (fit,), (compared,) = (
+        figures[name][1] for name in ("comparison", "calibration", "code_comparison")
+    )
+    assert f"{found.nrmse:.3f}" in plot.comparison(found).texts[0].get_text()
+    axes = plot.calibration(fit)
+    assert f"(b) after: NRMSE {fit.nrmse:.3f}" in [t.get_text() for ax in axes for t in ax.texts]
+    assert axes[0].get_ylim() == axes[1].get_ylim()
+    labels = [text.get_text() for text in plot.code_comparison(compared).get_legend().get_texts()]
+    assert labels[:3] == ["model", "ASCE 41", "EC 8-3"]
+    spring = shear.fit_shear_spring(PAPER.section, 1.6, PAPER.axial_load, 0.022)
+    ax = plot.shear_diagram(*figures["shear_diagram"][1], spring=spring)
+    lines = {line.get_label(): line.get_xydata() for line in ax.get_lines()}
+    assert lines["Spring"][1] == pytest.approx(lines["Knee"][0])
+    assert lines["Knee"][0, 1] == pytest.approx(spring.knee.force / 1e3)
+    (envelope,) = figures["envelope"][1]
+    corner = plot.envelope(envelope, method="asce_41").get_lines()[1].get_xydata()[1]
+    assert corner == pytest.approx([20.0, 200.0])
+    (band,) = figures["spread"][1]
+    ax = plot.spread(band, test=band)
+    assert (len(ax.lines), len(ax.collections)) == (3, 1)
+    springs = rbsdem.section.springs(PAPER.section, 1.6, PAPER.axial_load)
+    assert len(plot.section_springs(springs).axes) == 2
     diagram = rbsdem.section.interaction(SECTION, "ec2")
     nominal, design, demand = plot.interaction(diagram, demand=[(1e6, -2e5)]).get_lines()[:3]
     assert nominal.get_ydata()[-1] == pytest.approx(1e-3 * diagram.axial_load[-1])
