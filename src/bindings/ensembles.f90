@@ -14,7 +14,7 @@ module rbs_bindings_ensembles
    use rbs_solve_ensemble_block, only: plan_column, run_block
    use rbs_solve_ensemble_run_result, only: run_result, measure_count
    use rbs_solve_ensemble_ensemble_input, only: ensemble_column, ensemble_motion, run_type
-   use rbs_loading_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type, horizontal
    implicit none
    private
 
@@ -151,7 +151,7 @@ contains
       end associate
       at = next
       if (allocated(error)) return
-      loads%ground%value = motion%acceleration(:1)
+      loads%signal(horizontal)%value = motion%acceleration(:1)
       call choose_method(case, loads, error)
       column%analysis = case%analysis
    end subroutine next_column

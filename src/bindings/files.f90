@@ -8,6 +8,7 @@ module rbs_bindings_files
    use rbs_io_case_file, only: case_history, load_case
    use rbs_io_loading_file, only: read_test
    use rbs_loading_loading_record, only: drive_names
+   use rbs_loading_loads, only: signals
    use rbs_loading_signal, only: signal_type
    use rbs_solve_end_state, only: end_state
    use rbs_solve_begin_make_structure, only: make_structure
@@ -32,7 +33,7 @@ contains
       class(structure_type), allocatable :: structure
       type(end_state) :: before
       type(case_text) :: statements
-      integer :: place, m
+      integer :: place, m, i
 
       call load_case(path, case, history, answer%error, unloaded=.true.)
       if (.not. allocated(answer%error)) call make_structure(case, structure, before, answer%error)
@@ -45,10 +46,9 @@ contains
             ! What will shake it is not known yet: the method is left to that.
             if (.not. case%analysis%named) case%analysis%method = 'auto'
          else if (case%analysis%dynamic()) then
-            call sample(history%loads%force, history%time, rows(:, 2))
-            call sample(history%loads%ground, history%time, rows(:, 3))
-            call sample(history%loads%vertical, history%time, rows(:, 4))
-            call sample(history%loads%axial, history%time, rows(:, 5))
+            do i = 1, signals
+               call sample(history%loads%signal(i), history%time, rows(:, 1 + i))
+            end do
          else
             place = merge(2, 1, any(case%loading(:case%loadings)%drive == 'force'))
             rows(:, place) = [1.0_c_double, history%target]

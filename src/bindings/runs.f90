@@ -19,7 +19,7 @@ module rbs_bindings_runs
    use rbs_solve_static_path, only: kept_rows
    use rbs_solve_task, only: task_type
    use rbs_solve_time_effort, only: expected_seconds, long_run_note, patience
-   use rbs_loading_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, signals, signal_names
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic
@@ -161,8 +161,8 @@ contains
          call fatal_error(error, bad_input, &
                           "analysis: method = 'static' takes no time; call cyclic, or set "// &
                           "method = 'auto'")
-      else if (case%analysis%method == '' .and. loads%force%acts() .and. .not. &
-               (loads%ground%acts() .or. loads%vertical%acts())) then
+      else if (case%analysis%method == '' .and. loads%signal(lateral)%acts() .and. .not. &
+               (loads%signal(horizontal)%acts() .or. loads%signal(vertical)%acts())) then
          call fatal_error(error, bad_input, 'analysis: a force with time needs a method that is named: '// &
                           "method = 'auto', or cyclic for the path without inertia")
       else
@@ -181,12 +181,12 @@ contains
       type(time_plan) :: plan
       real(c_double), pointer, contiguous :: time(:), start(:)
       character(len=:), allocatable :: note
+      integer :: i
 
       time => request%array('time')
-      call take_signal(request, 'force', time, loads%force, error)
-      call take_signal(request, 'ground_acceleration', time, loads%ground, error)
-      call take_signal(request, 'vertical_acceleration', time, loads%vertical, error)
-      call take_signal(request, 'axial_load', time, loads%axial, error)
+      do i = 1, signals
+         call take_signal(request, trim(signal_names(i)), time, loads%signal(i), error)
+      end do
       if (.not. allocated(error)) call choose_method(run%case, loads, error)
       if (allocated(error)) return
       associate (structure => run%structure, analysis => run%case%analysis, output => run%case%output)

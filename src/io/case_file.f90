@@ -9,7 +9,7 @@ module rbs_io_case_file
    use rbs_loading_protocol, only: protocol_values
    use rbs_loading_signal, only: signal_type
    use rbs_solve_check_values, only: check_values
-   use rbs_loading_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type, signals, signal_names
    use rbs_case_analysis_record, only: analysis_record
    use rbs_case_case_record, only: case_record
    use rbs_base_check, only: is_given
@@ -66,7 +66,7 @@ contains
       type(message_list) :: own
       type(signal_type) :: signal
       real(wp), allocatable :: time(:), value(:)
-      integer :: i
+      integer :: i, j
 
       allocate (history%axial_load(0))
       do i = 1, case%loadings
@@ -93,17 +93,10 @@ contains
             end if
             signal%time = time
             signal%value = value
-            select case (spec%drive)
-            case ('force')
-               history%loads%force = signal
-            case ('ground_acceleration')
-               history%loads%ground = signal
-            case ('vertical_acceleration')
-               history%loads%vertical = signal
-            case ('axial_load')
-               history%loads%axial = signal
-            case default                            ! a displacement is not an action in time
-            end select
+            ! A displacement is not an action in time.
+            do j = 1, signals
+               if (spec%drive == signal_names(j)) history%loads%signal(j) = signal
+            end do
             if (spec%drive == 'axial_load') then
                history%axial_load = value
             else

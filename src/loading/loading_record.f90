@@ -8,14 +8,15 @@ module rbs_loading_loading_record
    use rbs_base_key_visitor, only: key_visitor, visited_record
    use rbs_base_keys, only: any_number, any_value, above_zero, not_negative, one_or_more
    use rbs_base_units, only: unit_type, unit_named, to_si, length_units, force_units, acceleration_units
+   use rbs_structure_structure, only: signal_names
    use rbs_loading_named_protocols, only: protocol_names, counted_in_drift
    implicit none
    private
 
    public :: loading_record, drive_names, units_of
 
-   character(len=21), parameter :: drive_names(5) = [character(len=21) :: &
-      'displacement', 'force', 'ground_acceleration', 'vertical_acceleration', 'axial_load']
+   !> A displacement is no action in time; the others are its signals.
+   character(len=21), parameter :: drive_names(5) = [character(len=21) :: 'displacement', signal_names]
    character(len=8), parameter :: source_names(3) = ['file    ', 'protocol', 'values  ']
 
    !> Most values of one loading in a case file; longer histories are read from files.

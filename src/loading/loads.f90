@@ -1,24 +1,19 @@
-!> The loads on a column in time.
+!> The loads on a structure in time.
 module rbs_loading_loads
    use rbs_base_kinds, only: wp
    use rbs_loading_signal, only: signal_type
-   use rbs_structure_structure, only: lateral, horizontal, vertical, axial => top_axial
+   use rbs_structure_structure, only: lateral, horizontal, vertical, top_axial, signals, signal_names
    implicit none
    private
 
    public :: loads_type
-   public :: lateral, horizontal, vertical, axial
+   public :: lateral, horizontal, vertical, top_axial, signals, signal_names
 
-   !> Signals without points are zero.
    type :: loads_type
-      !> Lateral force at the top [N]
-      type(signal_type) :: force
-      !> Acceleration of the ground to +x and upward [m/s2]
-      type(signal_type) :: ground, vertical
-      !> Axial load besides the constant one, compression positive [N]
-      type(signal_type) :: axial
-      !> Which of the four act; found by `find_acting`
-      logical :: acts(4) = .false.
+      !> Signals, in the order of `lateral` and so on [N, m/s2, m/s2, N]; one without points is zero
+      type(signal_type) :: signal(signals)
+      !> Which of them act; found by `find_acting`
+      logical :: acts(signals) = .false.
    contains
       procedure :: find_acting
       procedure :: set_begin
@@ -30,11 +25,11 @@ module rbs_loading_loads
 
 contains
 
-   !> Find which of the four act; to be called once before `at_time`.
+   !> Find which of them act; to be called once before `at_time`.
    subroutine find_acting(self)
       class(loads_type), intent(inout) :: self
 
-      self%acts = [self%force%acts(), self%ground%acts(), self%vertical%acts(), self%axial%acts()]
+      self%acts = self%signal%acts()
    end subroutine find_acting
 
    !> Count times from a begin.
@@ -42,62 +37,62 @@ contains
       class(loads_type), intent(inout) :: self
       !> Time of the clock there [s]
       real(wp), intent(in) :: begin
+      integer :: i
 
-      if (self%force%acts()) self%force%time = self%force%time - begin
-      if (self%ground%acts()) self%ground%time = self%ground%time - begin
-      if (self%vertical%acts()) self%vertical%time = self%vertical%time - begin
-      if (self%axial%acts()) self%axial%time = self%axial%time - begin
+      do i = 1, signals
+         if (self%acts(i)) self%signal(i)%time = self%signal(i)%time - begin
+      end do
    end subroutine set_begin
 
-   !> All four loads at a time [N, m/s2, m/s2, N].
+   !> All loads at a time.
    subroutine at_time(self, t, load)
       class(loads_type), intent(inout) :: self
       !> Time [s]
       real(wp), intent(in) :: t
-      real(wp), intent(out) :: load(4)
+      real(wp), intent(out) :: load(signals)
+      integer :: i
 
-      load = 0.0_wp
-      if (self%acts(lateral)) load(lateral) = self%force%at_time(t)
-      if (self%acts(horizontal)) load(horizontal) = self%ground%at_time(t)
-      if (self%acts(vertical)) load(vertical) = self%vertical%at_time(t)
-      if (self%acts(axial)) load(axial) = self%axial%at_time(t)
+      do i = 1, signals
+         load(i) = 0.0_wp
+         if (self%acts(i)) load(i) = self%signal(i)%at_time(t)
+      end do
    end subroutine at_time
 
-   !> Slopes of all four loads until the first corner after t [per s].
+   !> Slopes of all loads until the first corner after t [per s].
    subroutine slope_after(self, t, slope)
       class(loads_type), intent(inout) :: self
       real(wp), intent(in) :: t
-      real(wp), intent(out) :: slope(4)
+      real(wp), intent(out) :: slope(signals)
+      integer :: i
 
       slope = 0.0_wp
-      if (self%acts(lateral)) slope(lateral) = self%force%slope_after(t)
-      if (self%acts(horizontal)) slope(horizontal) = self%ground%slope_after(t)
-      if (self%acts(vertical)) slope(vertical) = self%vertical%slope_after(t)
-      if (self%acts(axial)) slope(axial) = self%axial%slope_after(t)
+      do i = 1, signals
+         if (self%acts(i)) slope(i) = self%signal(i)%slope_after(t)
+      end do
    end subroutine slope_after
 
    !> The first time after t at which a load changes its slope; `huge` if there is none [s].
    real(wp) function corner_after(self, t) result(corner)
       class(loads_type), intent(inout) :: self
       real(wp), intent(in) :: t
+      integer :: i
 
       corner = huge(1.0_wp)
-      if (self%acts(lateral)) corner = min(corner, self%force%corner_after(t))
-      if (self%acts(horizontal)) corner = min(corner, self%ground%corner_after(t))
-      if (self%acts(vertical)) corner = min(corner, self%vertical%corner_after(t))
-      if (self%acts(axial)) corner = min(corner, self%axial%corner_after(t))
+      do i = 1, signals
+         if (self%acts(i)) corner = min(corner, self%signal(i)%corner_after(t))
+      end do
    end function corner_after
 
    !> Largest values of the loads, in size.
    pure subroutine find_largest(self, largest)
       class(loads_type), intent(in) :: self
-      real(wp), intent(out) :: largest(4)
+      real(wp), intent(out) :: largest(signals)
+      integer :: i
 
       largest = 0.0_wp
-      if (self%acts(lateral)) largest(lateral) = maxval(abs(self%force%value))
-      if (self%acts(horizontal)) largest(horizontal) = maxval(abs(self%ground%value))
-      if (self%acts(vertical)) largest(vertical) = maxval(abs(self%vertical%value))
-      if (self%acts(axial)) largest(axial) = maxval(abs(self%axial%value))
+      do i = 1, signals
+         if (self%acts(i)) largest(i) = maxval(abs(self%signal(i)%value))
+      end do
    end subroutine find_largest
 
 end module rbs_loading_loads

@@ -27,7 +27,7 @@ module rbs_loading_signal
 contains
 
    !> Whether there is a signal.
-   pure logical function acts(self)
+   elemental logical function acts(self)
       class(signal_type), intent(in) :: self
 
       acts = allocated(self%value)

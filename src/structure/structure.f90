@@ -19,7 +19,7 @@ module rbs_structure_structure
 
    public :: structure_type, motion_result, load_pattern, unknown_group, accelerate_unknowns
    public :: small, pdelta, finite
-   public :: lateral, horizontal, vertical, top_axial, signals
+   public :: lateral, horizontal, vertical, top_axial, signals, signal_names
 
    !> Levels of kinematics.
    integer, parameter :: small = 1, pdelta = 2, finite = 3
@@ -27,6 +27,8 @@ module rbs_structure_structure
    !> Signals of the loads: lateral force [N], acceleration of the ground to +x and upward [m/s2], axial load
    !> besides the constant one, compression positive [N].
    integer, parameter :: lateral = 1, horizontal = 2, vertical = 3, top_axial = 4, signals = 4
+   character(len=21), parameter :: signal_names(signals) = [character(len=21) :: &
+      'force', 'ground_acceleration', 'vertical_acceleration', 'axial_load']
 
    !> Forces on the unknowns per unit of a signal.
    type :: load_pattern
@@ -398,14 +400,13 @@ contains
       !> Which loads act (signals)
       logical, intent(in) :: acts(signals)
       type(error_type), allocatable, intent(inout) :: error
-      character(len=*), parameter :: name(signals) = [character(len=21) :: 'force', 'ground_acceleration', &
-                                                      'vertical_acceleration', 'axial_load']
       integer :: j
 
       do j = 1, signals
          if (.not. acts(j) .or. self%pattern(j)%last >= self%pattern(j)%first) cycle
          if (self%kinematics /= small .and. (j == vertical .or. j == top_axial)) cycle
-         call fatal_error(error, bad_input, trim(name(j))//': it does nothing on this structure; remove it')
+         call fatal_error(error, bad_input, trim(signal_names(j))// &
+                          ': it does nothing on this structure; remove it')
          return
       end do
    end subroutine check_loads

@@ -25,7 +25,7 @@ program time_solver
    use rbs_solve_begin_make_column, only: make_column
    use rbs_solve_static_run_static, only: run_static
    use rbs_solve_task, only: task_type
-   use rbs_loading_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type, lateral
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: plan_dynamic, run_dynamic
@@ -285,16 +285,18 @@ contains
       integer, parameter :: points = 101
 
       call make_paper_column(column, kinematics, n)
-      allocate (loads%force%time(points), loads%force%value(points))
-      loads%force%time = [(0.02_wp*(i - 1), i=1, points)]
-      loads%force%value = 1.5e5_wp*sin(2.0_wp*pi*5.0_wp*loads%force%time)
+      allocate (loads%signal(lateral)%time(points), loads%signal(lateral)%value(points))
+      loads%signal(lateral)%time = [(0.02_wp*(i - 1), i=1, points)]
+      loads%signal(lateral)%value = 1.5e5_wp*sin(2.0_wp*pi*5.0_wp*loads%signal(lateral)%time)
       analysis%method = 'rk4'
       ! Once for the limit, of a motion too long to be run, then as long as the work is worth measuring.
       analysis%max_seconds = 1.0e4_wp
-      call plan_dynamic(column, analysis, loads%force%time, loads, plan, error)
+      call plan_dynamic(column, analysis, loads%signal(lateral)%time, loads, plan, error)
       if (allocated(error)) call give_up(error)
       steps = max(400000/(divisor*n), 50)
-      loads%force%time = loads%force%time*(steps*0.2_wp*plan%limit/loads%force%time(points))
+      associate (time => loads%signal(lateral)%time)
+         time = time*(steps*0.2_wp*plan%limit/time(points))
+      end associate
       call run(column, analysis, loads, summary, used)
       write (output_unit, '(a, 1x, f0.3)') what, 1.0e9_wp*used/(n*summary%steps)
       if (n > 1) return
@@ -316,14 +318,14 @@ contains
       type(error_type), allocatable :: error
       real(wp) :: begin, finish
 
-      call plan_dynamic(column, analysis, loads%force%time, loads, plan, error)
+      call plan_dynamic(column, analysis, loads%signal(lateral)%time, loads, plan, error)
       if (allocated(error)) call give_up(error)
       recorder%channels = new_channels(column, .true., .false., .false.)
       recorder%expected = plan%rows(1000)
       task%recorder => recorder
       task%every = 1000
       call cpu_time(begin)
-      call run_dynamic(column, analysis, plan, loads%force%time, loads, rest, task, error)
+      call run_dynamic(column, analysis, plan, loads%signal(lateral)%time, loads, rest, task, error)
       call cpu_time(finish)
       summary = task%summary
       used = finish - begin
@@ -374,8 +376,8 @@ contains
       call make_bilinear_column(column, n, strength)
       analysis%method = method
       analysis%dt = dt
-      loads%force%time = [(i*dt, i=0, steps, spacing)]
-      loads%force%value = [(1.5e5_wp*sin(2.0_wp*pi*i/period), i=0, steps, spacing)]
+      loads%signal(lateral)%time = [(i*dt, i=0, steps, spacing)]
+      loads%signal(lateral)%value = [(1.5e5_wp*sin(2.0_wp*pi*i/period), i=0, steps, spacing)]
       call run(column, analysis, loads, summary, used)
       call tell_case(used/summary%steps, summary%peak_displacement)
    end subroutine compare_dynamic

@@ -11,7 +11,7 @@ module runs
    use rbs_output_channels, only: new_channels
    use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: summary_type
-   use rbs_loading_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, top_axial
    use rbs_solve_static_run_static, only: run_static
    use rbs_solve_task, only: task_type
    use rbs_solve_time_located, only: located_stepper
@@ -108,10 +108,10 @@ contains
    type(loads_type) function loads_of(data) result(loads)
       type(run_data), intent(in) :: data
 
-      if (allocated(data%force)) loads%force = signal_of(data%time, data%force)
-      if (allocated(data%ground)) loads%ground = signal_of(data%time, data%ground)
-      if (allocated(data%vertical)) loads%vertical = signal_of(data%time, data%vertical)
-      if (allocated(data%axial)) loads%axial = signal_of(data%time, data%axial)
+      if (allocated(data%force)) loads%signal(lateral) = signal_of(data%time, data%force)
+      if (allocated(data%ground)) loads%signal(horizontal) = signal_of(data%time, data%ground)
+      if (allocated(data%vertical)) loads%signal(vertical) = signal_of(data%time, data%vertical)
+      if (allocated(data%axial)) loads%signal(top_axial) = signal_of(data%time, data%axial)
    end function loads_of
 
    type(signal_type) function signal_of(time, value) result(signal)
@@ -276,7 +276,7 @@ contains
       scene%finish = 0.05_wp
       value = [(random%uniform(-2.0e5_wp, 2.0e5_wp), i=1, 8)]
       value(1) = 0.0_wp
-      scene%loads%force = signal_of([(scene%finish*i/7, i=0, 7)], value)
+      scene%loads%signal(lateral) = signal_of([(scene%finish*i/7, i=0, 7)], value)
       allocate (scene%q(scene%column%unknowns), scene%v(scene%column%unknowns), source=0.0_wp)
       scene%v(1) = 0.3_wp
       scene%v(scene%column%n + 1) = 1.0_wp

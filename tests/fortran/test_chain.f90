@@ -10,7 +10,7 @@ module test_chain
    use rbs_loading_signal, only: signal_type
    use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
    use rbs_solve_modal_modes, only: modes_type, find_modes
-   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, axial
+   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, top_axial
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_rk4, only: rk4_scheme
    use rbs_solve_time_state, only: state_type
@@ -64,10 +64,10 @@ contains
       integer :: step
 
       column = made(spec)
-      loads%force = constant(random%uniform(-1.0e6_wp, 1.0e6_wp))
-      loads%ground = constant(random%uniform(-9.0_wp, 9.0_wp))
-      loads%vertical = constant(random%uniform(-9.0_wp, 9.0_wp))
-      loads%axial = constant(random%uniform(-1.0e6_wp, 1.0e6_wp))
+      loads%signal(lateral) = constant(random%uniform(-1.0e6_wp, 1.0e6_wp))
+      loads%signal(horizontal) = constant(random%uniform(-9.0_wp, 9.0_wp))
+      loads%signal(vertical) = constant(random%uniform(-9.0_wp, 9.0_wp))
+      loads%signal(top_axial) = constant(random%uniform(-1.0e6_wp, 1.0e6_wp))
       allocate (q(column%unknowns), source=0.0_wp)
       v = random%uniform_array(-1.0_wp, 1.0_wp, column%unknowns)
       call new_state(state, column, loads, q, v)
@@ -139,7 +139,7 @@ contains
             call add_dead_load(column, own, k, 0.5_wp*spec%lengths(k), state%q, spec%kinematics == 'pdelta', &
                                right)
          end do
-         call add_dead_load(column, spec%axial_load + load(axial) + spec%top_mass*load(vertical), n, &
+         call add_dead_load(column, spec%axial_load + load(top_axial) + spec%top_mass*load(vertical), n, &
                             spec%lengths(n), state%q, spec%kinematics == 'pdelta', right)
          right = right - spec%damping%mass*matmul(mass, state%v)
          do i = 1, m
@@ -314,10 +314,10 @@ contains
          call slow%create(column)
          loads = loads_type()
          if (mod(trial, 5) /= 0) then
-            loads%force = signal_of([0.0_wp, 1.0_wp], [random%uniform(-1.0e6_wp, 1.0e6_wp), 0.0_wp])
+            loads%signal(lateral) = signal_of([0.0_wp, 1.0_wp], [random%uniform(-1.0e6_wp, 1.0e6_wp), 0.0_wp])
          end if
          if (mod(trial, 7) /= 0) then
-            loads%ground = signal_of([0.0_wp, 1.0e-4_wp, 1.0_wp], [3.0_wp, 0.0_wp, 0.0_wp])
+            loads%signal(horizontal) = signal_of([0.0_wp, 1.0e-4_wp, 1.0_wp], [3.0_wp, 0.0_wp, 0.0_wp])
          end if
          q = random%uniform_array(-1.0e-2_wp, 1.0e-2_wp, 2)
          v = random%uniform_array(-1.0_wp, 1.0_wp, 2)

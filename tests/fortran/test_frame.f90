@@ -16,7 +16,7 @@ module test_frame
    use rbs_structure_frame_new_frame, only: frame_node, frame_member, new_frame
    use rbs_structure_spring_place, only: flexure
    use rbs_structure_structure, only: small, pdelta, lateral
-   use rbs_loading_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type, horizontal
    use rbs_solve_time_implicit, only: implicit_stepper, new_newmark
    use rbs_solve_time_state, only: state_type
    use rbs_case_analysis_record, only: analysis_record
@@ -361,7 +361,7 @@ contains
       member(1)%node = [1, 2]
       call put_springs(member(1), h, never, 0.5_wp)
       call new_frame(frame, node, member, small, 2)
-      loads%ground = signal_of([0.0_wp, 1.0_wp], [ground, ground])
+      loads%signal(horizontal) = signal_of([0.0_wp, 1.0_wp], [ground, ground])
       stepper = new_newmark()
       call new_state(state, frame, loads, spread(0.0_wp, 1, size(frame%place)), &
                      spread(0.0_wp, 1, size(frame%place)))
@@ -421,7 +421,7 @@ contains
 
       call new_portal(frame)
       time = [(finish*i/20, i=0, 20)]
-      loads%ground = signal_of(time, 12.0_wp*sin(17.0_wp*time))
+      loads%signal(horizontal) = signal_of(time, 12.0_wp*sin(17.0_wp*time))
       do j = 1, 4
          stepper = new_newmark()
          call new_state(state, frame, loads, spread(0.0_wp, 1, size(frame%place)), &
@@ -449,7 +449,7 @@ contains
 
       call new_portal(frame)
       time = times(100, 0.01_wp)
-      loads%ground = signal_of(time, 12.0_wp*sin(17.0_wp*time))
+      loads%signal(horizontal) = signal_of(time, 12.0_wp*sin(17.0_wp*time))
       call run(time, whole, all_rows)
       first%keeps_end = .true.
       call run(time(:51), first, half)

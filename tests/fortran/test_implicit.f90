@@ -9,7 +9,7 @@ module test_implicit
    use rbs_structure_column_column, only: column_type
    use rbs_solve_modal_modes, only: frequency_bounds
    use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha
-   use rbs_loading_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, top_axial
    use rbs_solve_time_state, only: state_type
    use rbs_structure_column_column_record, only: column_record
    use runs, only: scene_type, new_scene, new_mass, play, play_located, find_reference, new_state, &
@@ -79,7 +79,7 @@ contains
       spec%damping%stiffness = 1.0e-3_wp
       column = made(spec)
       c = 2.0_wp*mass + 1.0e-3_wp*k
-      loads%axial = signal_of([0.0_wp, 1.0e6_wp], [30.0_wp, 30.0_wp + 1.0e6_wp])
+      loads%signal(top_axial) = signal_of([0.0_wp, 1.0e6_wp], [30.0_wp, 30.0_wp + 1.0e6_wp])
       do number = 1, methods
          rho = radius(number)
          am = 0.0_wp
@@ -216,8 +216,8 @@ contains
             end if
             column = made(spec)
             m = column%unknowns
-            loads%force = signal_of([0.0_wp, 0.013_wp, 0.1_wp], [0.0_wp, 1.0e6_wp, -1.0e6_wp])
-            loads%ground = signal_of([0.0_wp, 0.017_wp, 0.1_wp], [3.0_wp, -5.0_wp, 9.0_wp])
+            loads%signal(lateral) = signal_of([0.0_wp, 0.013_wp, 0.1_wp], [0.0_wp, 1.0e6_wp, -1.0e6_wp])
+            loads%signal(horizontal) = signal_of([0.0_wp, 0.017_wp, 0.1_wp], [3.0_wp, -5.0_wp, 9.0_wp])
             call new_state(state, column, loads, spread(0.0_wp, 1, m), &
                            random%uniform_array(-1.0_wp, 1.0_wp, m))
             largest = state%at_begin
@@ -260,10 +260,10 @@ contains
          allocate (scene%q(scene%column%unknowns), scene%v(scene%column%unknowns), source=0.0_wp)
          scene%finish = 0.04_wp
          time = scene%finish*[0.0_wp, 0.25_wp, 0.5_wp, 0.75_wp, 1.0_wp]
-         scene%loads%force = signal_of(time, 1.0e5_wp*[0.0_wp, 1.0_wp, -1.0_wp, 2.0_wp, 0.0_wp])
-         scene%loads%ground = signal_of(time, [0.0_wp, 5.0_wp, -5.0_wp, 0.0_wp, 5.0_wp])
-         scene%loads%vertical = signal_of(time, 1.0e4_wp*[0.0_wp, 1.0_wp, 0.0_wp, -1.0_wp, 0.0_wp])
-         scene%loads%axial = signal_of(time, 1.0e7_wp*[0.0_wp, 1.0_wp, 1.0_wp, -2.0_wp, 0.0_wp])
+         scene%loads%signal(lateral) = signal_of(time, 1.0e5_wp*[0.0_wp, 1.0_wp, -1.0_wp, 2.0_wp, 0.0_wp])
+         scene%loads%signal(horizontal) = signal_of(time, [0.0_wp, 5.0_wp, -5.0_wp, 0.0_wp, 5.0_wp])
+         scene%loads%signal(vertical) = signal_of(time, 1.0e4_wp*[0.0_wp, 1.0_wp, 0.0_wp, -1.0_wp, 0.0_wp])
+         scene%loads%signal(top_axial) = signal_of(time, 1.0e7_wp*[0.0_wp, 1.0_wp, 1.0_wp, -2.0_wp, 0.0_wp])
          call play_located(scene, 1.0e-12_wp, 1, reference, outcome)
          call check_passed(error, outcome, 'reference')
          call check_close(error, residual_of(reference)/reference%of_loads, 0.0_wp, 0.0_wp, 1.0e-9_wp, &
@@ -342,7 +342,7 @@ contains
          scene%column = made(spec)
          allocate (scene%q(2*bodies(i)), scene%v(2*bodies(i)), source=0.0_wp)
          scene%finish = 0.5_wp
-         scene%loads%ground = signal_of(0.1_wp*[0.0_wp, 1.0_wp, 2.0_wp, 3.0_wp, 4.0_wp, 5.0_wp], &
+         scene%loads%signal(horizontal) = signal_of(0.1_wp*[0.0_wp, 1.0_wp, 2.0_wp, 3.0_wp, 4.0_wp, 5.0_wp], &
                                         [0.0_wp, 20.0_wp, -25.0_wp, 20.0_wp, -15.0_wp, 10.0_wp])
          stepper = method(5)
          call play(scene, stepper, 100, state, outcome)

@@ -10,7 +10,7 @@ module test_implicit_finite
                                           joint_at, add_joint_forces, joint_tangent, local
    use rbs_solve_time_implicit, only: new_newmark, new_hht, new_generalised_alpha, with_finite_rotations
    use rbs_solve_time_implicit_finite, only: finite_stepper
-   use rbs_loading_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, top_axial
    use rbs_solve_time_state, only: state_type
    use rbs_structure_column_column_record, only: column_record
    use runs, only: scene_type, play, find_reference, new_state, signal_of, check_order, residual_of, distance
@@ -216,10 +216,10 @@ contains
       spec%force_follows = btest(kind, 2)
       scene%column = made(spec)
       scene%finish = 0.03_wp
-      scene%loads%force = signal_of([0.0_wp, 0.011_wp, 0.03_wp], [0.0_wp, 4.0e5_wp, -4.0e5_wp])
-      scene%loads%ground = signal_of([0.0_wp, 0.013_wp, 0.03_wp], [3.0_wp, -50.0_wp, 90.0_wp])
-      scene%loads%vertical = signal_of([0.0_wp, 0.017_wp, 0.03_wp], [0.0_wp, 50.0_wp, -20.0_wp])
-      scene%loads%axial = signal_of([0.0_wp, 0.019_wp, 0.03_wp], [0.0_wp, -1.0e5_wp, 2.0e5_wp])
+      scene%loads%signal(lateral) = signal_of([0.0_wp, 0.011_wp, 0.03_wp], [0.0_wp, 4.0e5_wp, -4.0e5_wp])
+      scene%loads%signal(horizontal) = signal_of([0.0_wp, 0.013_wp, 0.03_wp], [3.0_wp, -50.0_wp, 90.0_wp])
+      scene%loads%signal(vertical) = signal_of([0.0_wp, 0.017_wp, 0.03_wp], [0.0_wp, 50.0_wp, -20.0_wp])
+      scene%loads%signal(top_axial) = signal_of([0.0_wp, 0.019_wp, 0.03_wp], [0.0_wp, -1.0e5_wp, 2.0e5_wp])
       allocate (scene%q(scene%column%unknowns), scene%v(scene%column%unknowns), source=0.0_wp)
       scene%v(n + 1) = 10.0_wp
    end subroutine new_chain
@@ -304,7 +304,8 @@ contains
       spec%flexure(1) = bilinear(2.0e7_wp*n, 0.01_wp/n, 1.0e6_wp*n)
       column = made(spec)
       allocate (rest(2*n), source=0.0_wp)
-      loads%ground = signal_of([0.0_wp, 0.2_wp, 0.6_wp, 1.0_wp], [0.0_wp, 8.0_wp, -9.0_wp, 5.0_wp])
+      loads%signal(horizontal) = signal_of([0.0_wp, 0.2_wp, 0.6_wp, 1.0_wp], &
+                                           [0.0_wp, 8.0_wp, -9.0_wp, 5.0_wp])
       do number = 1, 3, 2
          call new_state(state, column, loads, rest, rest)
          stepper = method(number)

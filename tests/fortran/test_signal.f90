@@ -4,7 +4,7 @@ module test_signal
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_loading_signal, only: signal_type
-   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, axial
+   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, top_axial
    use samples, only: random_type
    implicit none
    private
@@ -175,10 +175,10 @@ contains
       call check_same(error, loads%corner_after(0.0_wp), huge(1.0_wp), 'no corner')
       call loads%at_time(1.0_wp, load)
       call check_same(error, load, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], 'no load')
-      loads%force = table([0.0_wp, 3.0_wp], [0.0_wp, 3.0_wp])
-      loads%ground = table([0.0_wp, 2.0_wp, 6.0_wp], [0.0_wp, 1.0_wp, 5.0_wp])
-      loads%vertical = table([1.0_wp, 5.0_wp], [7.0_wp, 7.0_wp])
-      loads%axial = table([0.0_wp, 4.0_wp], [0.0_wp, -4.0_wp])
+      loads%signal(lateral) = table([0.0_wp, 3.0_wp], [0.0_wp, 3.0_wp])
+      loads%signal(horizontal) = table([0.0_wp, 2.0_wp, 6.0_wp], [0.0_wp, 1.0_wp, 5.0_wp])
+      loads%signal(vertical) = table([1.0_wp, 5.0_wp], [7.0_wp, 7.0_wp])
+      loads%signal(top_axial) = table([0.0_wp, 4.0_wp], [0.0_wp, -4.0_wp])
       call loads%find_acting()
       call check_true(error, all(loads%acts), 'all act')
       call check_same(error, loads%corner_after(0.0_wp), 1.0_wp, 'of the vertical motion')
@@ -186,7 +186,7 @@ contains
       call check_same(error, loads%corner_after(2.5_wp), 3.0_wp, 'of the force')
       call check_same(error, loads%corner_after(3.0_wp), 4.0_wp, 'of the axial load')
       call loads%at_time(2.5_wp, load)
-      call check_same(error, load([lateral, horizontal, vertical, axial]), [2.5_wp, 1.5_wp, 7.0_wp, &
+      call check_same(error, load([lateral, horizontal, vertical, top_axial]), [2.5_wp, 1.5_wp, 7.0_wp, &
                       -2.5_wp], 'loads')
    end subroutine load_corners
 

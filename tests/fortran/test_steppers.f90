@@ -8,7 +8,7 @@ module test_steppers
    use rbs_base_text, only: to_text
    use rbs_structure_column_column, only: column_type
    use rbs_solve_modal_modes, only: modes_type, find_modes
-   use rbs_loading_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type, lateral
    use rbs_solve_time_located, only: located_stepper
    use rbs_solve_time_pair45, only: pair45_scheme
    use rbs_solve_time_rk4, only: rk4_stepper
@@ -147,7 +147,7 @@ contains
          m = scene%column%unknowns
          ! A binary fraction: no round-off in the times
          scene%finish = 2.0_wp**(-7)
-         scene%loads%force = signal_of(scene%finish*[0.0_wp, 1.0_wp], [0.0_wp, 1.0e5_wp])
+         scene%loads%signal(lateral) = signal_of(scene%finish*[0.0_wp, 1.0_wp], [0.0_wp, 1.0e5_wp])
          allocate (scene%q(m), scene%v(m), source=0.0_wp)
          scene%v(1) = 1.0_wp
          call play_located(scene, 0.0_wp, 2048, located, outcome)

@@ -11,7 +11,7 @@ module rbs_solve_ensemble_block
    use rbs_solve_ensemble_simd_batch, only: run_in_lanes
    use rbs_solve_task, only: task_type
    use rbs_solve_time_effort, only: expected_seconds
-   use rbs_loading_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type, horizontal
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic
@@ -68,8 +68,8 @@ contains
 
       if (.not. allocated(column%before)) return
       call take_before(column, before)
-      loads%ground%time = motion%time
-      loads%ground%value = motion%acceleration
+      loads%signal(horizontal)%time = motion%time
+      loads%signal(horizontal)%value = motion%acceleration
       plan = planned
       call resume_state(state, column%structure, loads, before, plan, standing, error)
    end subroutine check_start
@@ -200,8 +200,8 @@ contains
          error = column%error
          return
       end if
-      loads%ground%time = motion%time
-      loads%ground%value = motion%acceleration
+      loads%signal(horizontal)%time = motion%time
+      loads%signal(horizontal)%value = motion%acceleration
       call plan_dynamic(column%structure, column%analysis, motion%time, loads, plan, error)
    end subroutine plan_run
 
@@ -228,8 +228,8 @@ contains
       end if
       task%recorder => no_rows
       task%collapse_drift = column%analysis%collapse_drift
-      loads%ground%time = motion%time
-      loads%ground%value = scale*motion%acceleration
+      loads%signal(horizontal)%time = motion%time
+      loads%signal(horizontal)%value = scale*motion%acceleration
       call take_before(column, task%before)
       call run_dynamic(column%structure, column%analysis, plan, motion%time, loads, at_rest, task, error, &
                        sight)

@@ -188,7 +188,7 @@ contains
 
       time = [x%begin(l), x%finish(l), x%next_finish(l)]
       value = [x%value(l), x%next_value(l), x%after_value(l)]
-      call state%loads%ground%replace(time, value)
+      call state%loads%signal(horizontal)%replace(time, value)
    end subroutine ground_from_lane
 
    !> The bounds of what is watched for, and the deformations that were seen last.

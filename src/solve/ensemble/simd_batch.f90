@@ -8,7 +8,7 @@ module rbs_solve_ensemble_simd_batch
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column, only: column_type
-   use rbs_loading_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type, horizontal
    use rbs_output_summary, only: summary_type
    use rbs_solve_ensemble_dispatch, only: chosen_kernel
    use rbs_solve_ensemble_ensemble_input, only: column_of, ensemble_column, ensemble_motion, run_type, &
@@ -249,8 +249,8 @@ contains
 
       associate (x => batch%x, b => batch%block((l - 1)/batch%block(1)%width + 1), lane => batch%lane(l))
          lane%column = 0
-         loads%ground%time = [x%begin(l), x%finish(l), x%next_finish(l)]
-         loads%ground%value = [x%value(l), x%next_value(l), x%after_value(l)]
+         loads%signal(horizontal)%time = [x%begin(l), x%finish(l), x%next_finish(l)]
+         loads%signal(horizontal)%value = [x%value(l), x%next_value(l), x%after_value(l)]
          call start_state(lane%state, column%structure, loads, at_rest, 0.0_wp, error)
          if (allocated(error)) return
          call new_stepper(lane%stepper, column%structure, column%analysis, task%plan)

@@ -11,7 +11,7 @@ module rbs_solve_time_motion
    use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_modal_matrices, only: modal_damping
-   use rbs_loading_loads, only: lateral, horizontal, vertical, axial
+   use rbs_loading_loads, only: lateral, horizontal, vertical, top_axial
    use rbs_structure_structure, only: structure_type, motion_result, signals, pdelta, finite
    implicit none
    private
@@ -56,7 +56,7 @@ contains
 
       self%structure => structure
       self%acts = acts
-      self%varies = acts(vertical) .or. acts(axial)
+      self%varies = acts(vertical) .or. acts(top_axial)
       self%joint_damping = structure%stiffness_damping*structure%initial_stiffness
       if (structure%tangent_numbers > 0) self%joint_damping = 0.0_wp
       self%damped = structure%damped

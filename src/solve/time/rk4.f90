@@ -172,13 +172,13 @@ contains
       ground = 0.0_wp
       if (state%motion%acts(lateral)) then
          force(1) = state%load(lateral)
-         force(2) = state%loads%force%at_time(state%time + 0.5_wp*h)
-         force(3) = state%loads%force%at_time(state%time + h)
+         force(2) = state%loads%signal(lateral)%at_time(state%time + 0.5_wp*h)
+         force(3) = state%loads%signal(lateral)%at_time(state%time + h)
       end if
       if (state%motion%acts(horizontal)) then
          ground(1) = state%load(horizontal)
-         ground(2) = state%loads%ground%at_time(state%time + 0.5_wp*h)
-         ground(3) = state%loads%ground%at_time(state%time + h)
+         ground(2) = state%loads%signal(horizontal)%at_time(state%time + 0.5_wp*h)
+         ground(3) = state%loads%signal(horizontal)%at_time(state%time + h)
       end if
       call body%take_step(state%springs, h, force, ground, state%q, state%v, of_loads)
       state%time = state%time + h

@@ -6,14 +6,13 @@ module rbs_solve_time_run_dynamic
    use rbs_base_text, only: to_text
    use rbs_case_methods, only: method_type, methods, method_named, responses_tried, usual_tolerance, &
                                usual_rho_infinity
-   use rbs_loading_signal, only: signal_type
    use rbs_solve_check_values, only: check_values
    use rbs_solve_task, only: task_type
    use rbs_solve_modal_modes, only: frequency_bounds, stability_limit
    use rbs_solve_time_effort, only: check_effort
    use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha, &
                                       with_finite_rotations
-   use rbs_loading_loads, only: loads_type
+   use rbs_loading_loads, only: loads_type, lateral, signals, signal_names
    use rbs_solve_time_located, only: located_stepper
    use rbs_solve_time_march, only: initial_state, march
    use rbs_solve_time_pair45, only: pair45_scheme
@@ -119,8 +118,7 @@ contains
       end if
       call new_plan(plan, time, analysis%dt, longest, bound, error)
       if (allocated(error)) return
-      call structure%check_loads([loads%force%acts(), loads%ground%acts(), loads%vertical%acts(), &
-                                  loads%axial%acts()], error)
+      call structure%check_loads(loads%signal%acts(), error)
    end subroutine plan_steps
 
    !> The longest natural period [s]; a long time where there is no restoring force.
@@ -197,11 +195,12 @@ contains
       !> What to watch for, and what has been seen
       type(sight_type), intent(inout), optional :: sight
       class(stepper_type), allocatable :: stepper
+      integer :: i
 
-      call check_signal(loads%force, 'force', error)
-      call check_signal(loads%ground, 'ground_acceleration', error)
-      call check_signal(loads%vertical, 'vertical_acceleration', error)
-      call check_signal(loads%axial, 'axial_load', error)
+      do i = 1, signals
+         if (allocated(error) .or. .not. loads%signal(i)%acts()) cycle
+         call check_values(loads%signal(i)%value, trim(signal_names(i)), error)
+      end do
       if (.not. allocated(error) .and. allocated(initial%deformation)) then
          call check_values(initial%deformation, 'initial deformation', error)
          call structure%check_initial('initial deformation', initial%deformation, error)
@@ -211,7 +210,7 @@ contains
          call structure%check_initial('initial velocity', initial%velocity, error)
       end if
       if (allocated(error)) return
-      task%summary%has_force = loads%force%acts()
+      task%summary%has_force = loads%signal(lateral)%acts()
       task%summary%stable_step = plan%limit
       task%summary%method = plan%method
       task%summary%reason = plan%reason
@@ -281,15 +280,5 @@ contains
          allocate (stepper, source=method)
       end if
    end subroutine set_implicit
-
-   !> Values of a signal that acts must be finite; the first fault counts.
-   subroutine check_signal(signal, name, error)
-      type(signal_type), intent(in) :: signal
-      character(len=*), intent(in) :: name
-      type(error_type), allocatable, intent(inout) :: error
-
-      if (allocated(error) .or. .not. signal%acts()) return
-      call check_values(signal%value, name, error)
-   end subroutine check_signal
 
 end module rbs_solve_time_run_dynamic

@@ -6,7 +6,7 @@ module rbs_solve_time_start
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: go_under, vary_axial_loads
    use rbs_solve_end_state, only: end_state, standing_type, moving_state
-   use rbs_loading_loads, only: loads_type, lateral, vertical, top_axial => axial
+   use rbs_loading_loads, only: loads_type, lateral, vertical, top_axial
    use rbs_solve_time_plan, only: time_plan, same_step
    use rbs_solve_time_state, only: state_type, stepper_type
    use rbs_structure_spring_place, only: spring_name, axial
@@ -210,7 +210,7 @@ contains
       call state%loads%set_begin(state%begin)
       ! The history is that of the whole axial load; the motion takes what it adds to the constant one.
       if (state%loads%acts(top_axial)) then
-         state%loads%axial%value = state%loads%axial%value - structure%axial_load
+         state%loads%signal(top_axial)%value = state%loads%signal(top_axial)%value - structure%axial_load
       end if
       call state%loads%at_time(state%time, state%load)
    end subroutine prepare_loads
