@@ -62,25 +62,19 @@ def softening() -> rbsdem.Column:
 def test_an_elastic_column_collapses_at_the_same_intensity_under_all_records(hunted, omega):
     """Sa = w^2 Sd: at the limit d of the drift it is w^2 d h, whatever the record.
 
-    The hunt brackets it within 2 %; the method errs by 2e-3.
+    The hunt brackets it within 2 %; the method errs by 2e-3. Curves are straight, fractiles one.
     """
     wanted = omega**2 * 0.05 * HEIGHT
     assert (hunted.lower <= 1.003 * wanted).all()
     assert (hunted.upper >= 0.997 * wanted).all()
     assert (hunted.upper <= 1.021 * hunted.lower).all()
     assert hunted.collapse_intensity == pytest.approx(wanted * np.ones((1, 6)), rel=0.02)
-
-
-def test_curves_of_an_elastic_column_are_straight(hunted, omega, records):
-    for name in (record.name for record in records):
-        level, drift = hunted.curve(name)
+    for motion in range(6):
+        level, drift = hunted.curve(motion)
         stands = np.isfinite(drift)
         assert stands.sum() >= 11
         assert drift[stands] == pytest.approx(level[stands] / omega**2 / HEIGHT, rel=3e-3)
         assert not stands[-1]
-
-
-def test_fractiles_of_an_elastic_column_are_one(hunted, omega):
     levels = omega**2 * HEIGHT * np.array([0.01, 0.03, 0.06])
     at, fractiles = hunted.fractiles(levels)
     assert np.array_equal(at, levels)

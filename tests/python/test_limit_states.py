@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from samples import SECTION as DRAWN
 
 import rbsdem
 from rbsdem import InputError
@@ -160,15 +161,7 @@ def test_strains_of_the_hinge_are_read():
 def test_bars_of_two_steels_in_a_row_yield_each_at_its_strain():
     """The order in which the bars are listed says nothing: the softer ones yield first."""
     strong, soft = rbsdem.Steel(450e6, 650e6), rbsdem.Steel(300e6, 650e6)
-    ties = rbsdem.Ties(0.01, 0.08, rbsdem.Steel(400e6), legs=4)
-    section = rbsdem.RectangularSection(
-        0.4,
-        0.4,
-        rbsdem.Concrete(40e6),
-        layout=rbsdem.Layout(12, 0.02, strong, between_steel=soft),
-        ties=ties,
-        cover=0.02,
-    )
+    section = replace(DRAWN, layout=rbsdem.Layout(12, 0.02, strong, between_steel=soft))
     listed = {"layout": None, "bar_diameter": 0.02}
     found = []
     for bars in (section.bars, section.bars[::-1]):

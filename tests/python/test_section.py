@@ -23,7 +23,6 @@ from rbsdem import (
     Spiral,
     Steel,
     Ties,
-    _core,
 )
 from rbsdem.section import diagram, moment_curvature
 from rbsdem.section.hinge import cut
@@ -128,20 +127,6 @@ def test_strips_converge():
     assert errors[0] > errors[1] > errors[2]
 
 
-def test_bars_of_a_column_can_be_listed():
-    section = tied()
-    again = RectangularSection(
-        0.4, 0.4, Concrete(30e6), bars=section.bars, ties=section.ties, cover=0.03
-    )
-    assert again.bar_diameter == pytest.approx(0.02)
-    curvature = np.linspace(0, 0.05, 9)
-    for confined in (False, True):
-        np.testing.assert_array_equal(
-            moment_curvature(again, 5e5, curvature, confined=confined),
-            moment_curvature(section, 5e5, curvature, confined=confined),
-        )
-
-
 def test_confinement_only_helps_past_the_peak():
     section = tied()
     curvature = np.array([0.001, 0.08])
@@ -188,6 +173,7 @@ def test_what_follows_from_others_follows_their_changes():
         other = RectangularSection(0.4, 0.4, Concrete(30e6), **given | changes)
         assert dataclasses.replace(section, **changes) == other != section
         assert hash(dataclasses.replace(section, **changes)) == hash(other)
+    assert dataclasses.replace(section, layout=None).bar_diameter == pytest.approx(0.02)
     # What was given stays; bars and a layout contradict each other as before.
     own = dataclasses.replace(section, bar_diameter=0.018)
     assert dataclasses.replace(own, layout=thicker).bar_diameter == 0.018
@@ -409,22 +395,3 @@ def test_axial_load_near_capacity():
     assert cracked[1] < moment_curvature(section, 0.0, 0.01)
     with pytest.raises(InputError, match="the axial load alone cracks"):
         rbsdem.section.springs(section, 1.6, -8e5)
-
-
-def test_parameters_are_the_keys():
-    """Each value has one name: that of its key."""
-    keys = _core.keys()["section"]
-
-    def names(group: str) -> set[str]:
-        return {key["name"] for key in keys[group]}
-
-    for record, group, more in (
-        (Concrete, "concrete", set()),
-        (Steel, "steel", {"id"}),
-        (Ties, "ties", set()),
-        (Spiral, "spiral", set()),
-    ):
-        assert {field.name for field in dataclasses.fields(record)} | more == names(group)
-    assert names("section") == {"shape", "cover", "side_cover", "bar_diameter", "strips"}
-    assert names("rectangle") == {"width", "depth"}
-    assert names("circle") == {"diameter"}

@@ -11,7 +11,7 @@ import pytest
 from samples import SECTION
 
 import rbsdem
-from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties
+from rbsdem import Concrete, Layout, Steel
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.section.parameters import parameters
 from rbsdem.section.spread import (
@@ -131,13 +131,11 @@ def test_intervals() -> None:
 
 def test_outside_the_range_of_the_tests_it_says_so() -> None:
     assert column().outside == ()
-    section = RectangularSection(
-        0.4,
-        0.4,
-        Concrete(140e6),
+    section = replace(
+        SECTION,
+        concrete=Concrete(140e6),
         layout=Layout(8, 0.01, Steel(700e6, 900e6)),
-        ties=Ties(0.01, 0.3, Steel(400e6), legs=3),
-        cover=0.02,
+        ties=replace(SECTION.ties, spacing=0.3),
     )
     with pytest.warns(AccuracyWarning, match="is outside") as caught:
         far = rbsdem.section.column(section, 4.0, axial_load=-1e5)
