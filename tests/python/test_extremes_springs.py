@@ -12,7 +12,7 @@ import pytest
 import reference_springs
 
 import rbsdem
-from rbsdem.springs import Bilinear, Compression, Takeda
+from rbsdem.springs import Bilinear, Compression, PeakOriented, Pinching, Takeda
 
 EPS = np.finfo(float).eps
 BILINEAR = Bilinear(7.0387e8, 1.296e-4, 8.3185e6)
@@ -23,13 +23,16 @@ NUMBERS = {
 }  # fmt: skip
 TAKEDA = {inner: Takeda(**NUMBERS, inner=inner) for inner in ("kc", "kr", "one")}
 SPRINGS = {"bilinear": BILINEAR, "plastic": PLASTIC, "compression": Compression(1e9)}
+CAPPED = {"d_y": 1e-3, "f_y": 1e5, "d_cap": 0.02, "f_cap": 1.5e5, "d_pc": 0.1}
+SPRINGS |= {"peak_oriented": PeakOriented(**CAPPED)}
+SPRINGS |= {"pinching": Pinching(**CAPPED, kappa_f=0.4, kappa_d=0.5)}
 SPRINGS |= {f"takeda {inner}": spring for inner, spring in TAKEDA.items()}
 
 every_spring = pytest.mark.parametrize("spring", SPRINGS.values(), ids=SPRINGS)
 
 
 def steepest(spring) -> float:
-    return getattr(spring, "k_c", None) or spring.k
+    return next((getattr(spring, name) for name in ("k_c", "k") if hasattr(spring, name)), 1e8)
 
 
 def yield_of(spring) -> float:

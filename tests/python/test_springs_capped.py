@@ -157,6 +157,32 @@ def test_property_04_monotone_is_the_backbone(kind):
             np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * scale(numbers))
 
 
+@pytest.mark.parametrize("kind", KINDS)
+def test_property_05_elastic_before_the_first_corner(kind):
+    rng = np.random.default_rng(5)
+    for numbers, _ in cases(kind)[:300]:
+        given = reference(numbers).given
+        first = {s: side.d_c or side.d_y for s, side in given.items()}
+        path = rng.uniform(-0.99, 0.99, 20)
+        path *= np.where(path > 0, first[1], first[-1])
+        slope = np.where(path > 0, given[1].slope, given[-1].slope)
+        assert np.array_equal(make(numbers).response(path), slope * path)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_property_10_cycles_repeat_without_deterioration(kind):
+    """From the third on; the independent method knows cycles that grow."""
+    rng = np.random.default_rng(10)
+    for _ in range(300):
+        numbers = random_numbers(rng, kind, deteriorates=False)
+        top = numbers["d_y"] * rng.uniform(0.3, 10)
+        cycles = make(numbers).response(refined([top, -top] * 5, 16)).reshape(5, 32)
+        for later in (3, 4):
+            np.testing.assert_allclose(
+                cycles[later], cycles[2], rtol=0, atol=1e-11 * scale(numbers)
+            )
+
+
 def test_property_11_partial_unloading_leaves_no_trace():
     """Down toward zero force and up again, on one line: nothing deteriorates.
 
