@@ -20,6 +20,9 @@ from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 
+#: Standard acceleration of gravity [m/s2].
+STANDARD_GRAVITY = 9.80665
+
 #: Value of each unit in metres and in newtons; capital letters do not matter.
 LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254, "inch": 0.0254, "inches": 0.0254}
 FORCES = {

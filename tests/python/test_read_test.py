@@ -69,6 +69,8 @@ def test_layouts(tmp_path, head, separator, number, end, given):
     np.testing.assert_allclose(test.displacement, D, rtol=1e-5, atol=1e-9)
     np.testing.assert_allclose(test.force, F, rtol=1e-5, atol=1e-3)
     assert test.name == "test 7"
+    as_text = read_test(path.read_text("latin-1"), **NAMED, **given)
+    assert np.array_equal(as_text.force, test.force)
     assert (test.height, test.pdelta_code) == (LENGTH, 2)
 
 

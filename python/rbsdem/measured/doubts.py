@@ -37,8 +37,8 @@ import math
 import statistics
 import warnings
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -95,6 +95,9 @@ class Indicators:
     strength: float
     stiffness: float
     symmetry: float
+
+
+_NUMBERS = tuple(field.name for field in fields(Indicators) if field.name != "specimen")
 
 
 def indicators(specimen: Specimen) -> Indicators:
@@ -350,18 +353,6 @@ def _remedy(doubt: Doubt) -> str:
     return "set aside" if doubt.code is None else f"code {doubt.code}"
 
 
-_NUMBERS = (
-    "second_order_share",
-    "slope",
-    "growth_labelled",
-    "growth_net",
-    "growth_effective",
-    "strength",
-    "stiffness",
-    "symmetry",
-)
-
-
 def check(specimens: Iterable[Specimen]) -> Checked:
     """Look for tests whose labels contradict their loops; no model of a column enters.
 
@@ -390,21 +381,12 @@ def check(specimens: Iterable[Specimen]) -> Checked:
     return Checked(tuple(found), tuple(doubt for one in found for doubt in doubts[id(one)]))
 
 
-class _Middle(NamedTuple):
-    """What says whether a force is net."""
-
-    slope: float
-    growth_labelled: float
-    growth_net: float
-    growth_effective: float
-
-
-def _not_net(one: _Middle) -> bool:
+def _not_net(one: Indicators) -> bool:
     """Whether a force that is labelled as not net is net."""
     return one.slope <= -0.95 and one.growth_labelled <= -0.3 and one.growth_net >= -0.2
 
 
-def _is_net(one: _Middle) -> bool:
+def _is_net(one: Indicators) -> bool:
     """Whether a force that is labelled as net is not."""
     return one.slope >= -0.5 and one.growth_labelled > 0.15 and one.growth_effective >= -0.1
 
@@ -426,18 +408,16 @@ def _force(found: list[Indicators], doubts: dict[int, list[Doubt]]) -> None:
                 doubts[id(one)].append(_doubt_of_force(one, effective, sure=sure))
 
 
-def _middle(members: list[Indicators]) -> _Middle:
+def _middle(members: list[Indicators]) -> Indicators:
     """Return the medians of some tests; comparisons with NaN are false."""
-
-    def median(name: str) -> float:
-        values = [getattr(one, name) for one in members]
-        known = [value for value in values if math.isfinite(value)]
-        return statistics.median(known) if known else math.nan
-
-    return _Middle(*(median(name) for name in _Middle._fields))
+    medians: dict[str, Any] = {}
+    for name in _NUMBERS:
+        known = [v for one in members if math.isfinite(v := getattr(one, name))]
+        medians[name] = statistics.median(known) if known else math.nan
+    return replace(members[0], **medians)
 
 
-def _is_net_perhaps(one: _Middle) -> bool:
+def _is_net_perhaps(one: Indicators) -> bool:
     return one.slope >= -0.9 and one.growth_labelled > -0.1 and one.growth_effective > -0.35
 
 

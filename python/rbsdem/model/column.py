@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, cast, runtim
 from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
+from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.damping import Damping
 from rbsdem.model.shape import Section
@@ -164,9 +165,6 @@ class Footing:
         """Return the keys of the column that state the footing."""
         return {f"footing_{name}": getattr(self, name) for name in ("mass", "inertia", "height")}
 
-
-#: Standard acceleration of gravity [m/s2].
-STANDARD_GRAVITY = 9.80665
 
 #: Levels of kinematics.
 Kinematics = Literal["small", "pdelta", "finite"]

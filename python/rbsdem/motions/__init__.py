@@ -1,6 +1,6 @@
 """Ground motions: records read, measured, scaled and joined, and synthetic ones."""
 
-from rbsdem.motions.motion import STANDARD_GRAVITY as STANDARD_GRAVITY
+from rbsdem._tables import STANDARD_GRAVITY as STANDARD_GRAVITY
 from rbsdem.motions.motion import GroundMotion as GroundMotion
 from rbsdem.motions.motion import Spectrum as Spectrum
 from rbsdem.motions.read import read_motion as read_motion

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
 from rbsdem._files import whole_file
+from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem.errors import InputError
 
 _MOST_DAMPING = 10.0
@@ -86,9 +87,6 @@ def response_spectrum(
     ).rows
     return Spectrum(period, ratio, *np.ascontiguousarray(peaks.T))
 
-
-#: Standard acceleration of gravity [m/s2].
-STANDARD_GRAVITY = 9.80665
 
 #: Longest step that has a meaning for an earthquake [s]; a longer one is a slip in its unit.
 _LONGEST_STEP = 10.0

@@ -18,9 +18,9 @@ import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
-from rbsdem._tables import NumberTable, read_lines, read_table
+from rbsdem._tables import STANDARD_GRAVITY, NumberTable, read_lines, read_table
 from rbsdem.errors import InputError, RepairWarning
-from rbsdem.motions.motion import STANDARD_GRAVITY, GroundMotion
+from rbsdem.motions.motion import GroundMotion
 
 #: Value of each unit in m/s2.
 UNITS = {"g": STANDARD_GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001}

@@ -15,8 +15,9 @@ import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
+from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem.errors import InputError
-from rbsdem.motions.motion import STANDARD_GRAVITY, GroundMotion, checked_motion
+from rbsdem.motions.motion import GroundMotion, checked_motion
 
 _MOST_DEGREE = 8
 _MOST_VALUES = 20_000_000

@@ -18,8 +18,9 @@ import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
+from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem.errors import AccuracyWarning, InputError
-from rbsdem.model.column import STANDARD_GRAVITY, Column
+from rbsdem.model.column import Column
 from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import (
     CircularSection,
