@@ -23,7 +23,10 @@ def names(folder: Path) -> list[str]:
 
 
 def test_no_module_opens_a_file_for_writing_but_this_one():
-    """A table or a figure that is written in another way would follow links and be half of one."""
+    """A table or a figure that is written in another way would follow links and be half of one.
+
+    A case in a scratch folder of its own is no such file.
+    """
     ways = (
         'open("w',
         ".write_text(",
@@ -35,7 +38,7 @@ def test_no_module_opens_a_file_for_writing_but_this_one():
     for path in SOURCES.rglob("*.py"):
         text = path.read_text(encoding="utf-8")
         found = [way for way in ways if way in text]
-        assert not found or path.name == "_files.py", (path, found)
+        assert not found or path.name in ("_files.py", "case.py"), (path, found)
 
 
 def test_name_comes_when_the_file_is_whole(tmp_path):
