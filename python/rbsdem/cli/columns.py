@@ -80,9 +80,12 @@ def trade(
     Exit codes: 0 success, 1 the analysis failed, 2 the input is wrong.
     """
     model = read_case(case)
+    loads: dict[str, Any] = dict(model.loads)
     study = compare_methods(
         model.column,
-        **_loading(model),
+        time=None if model.method == "static" else model.time,
+        **loads,
+        collapse_drift=model.settings.get("collapse_drift"),
         methods=methods.split(",") if methods else None,
         setting=cast(Solver, {n: v for n, v in model.solver.items() if n in OF_SETTING}),
         tolerance=tolerance,
@@ -104,17 +107,6 @@ def trade(
             print("no figure: there is no reference")
         _tell_files(written)
     return 0
-
-
-def _loading(case: Case) -> dict[str, Any]:
-    """Return the arguments of a comparison of methods for a case."""
-    names = ("displacement", "force", "ground_acceleration", "vertical_acceleration", "axial_load")
-    loads = {name: getattr(case, name) for name in names if getattr(case, name) is not None}
-    if case.method != "static":
-        loads["time"] = case.time
-    if "collapse_drift" in case.settings:
-        loads["collapse_drift"] = case.settings["collapse_drift"]
-    return loads
 
 
 def _tell_files(paths: Sequence[Path]) -> None:
@@ -232,12 +224,12 @@ def _own_motion(path: Path, case: Case) -> Any:
         raise InputError(
             f"{path} has no ground acceleration; give records: rbsdem ensemble {path} RECORD ..."
         )
-    for name in ("force", "vertical_acceleration", "axial_load"):
-        if getattr(case, name) is not None:
-            raise InputError(
-                f"{path}: an ensemble takes horizontal ground motions only, no {name}; remove it "
-                "from the case, or run the case alone: rbsdem run"
-            )
+    others = [name for name in case.loads if name != "ground_acceleration"]
+    if others:
+        raise InputError(
+            f"{path}: an ensemble takes horizontal ground motions only, no {others[0]}; remove it "
+            "from the case, or run the case alone: rbsdem run"
+        )
     return case.time, case.ground_acceleration
 
 

@@ -60,13 +60,11 @@ def named_columns(columns: Any, faults: list[str]) -> tuple[list[str | int], lis
     """Return names and columns; without names they are numbered from 0."""
     if isinstance(columns, Column):
         columns = [columns]
-    names, items = _named(columns, "columns", "Column", faults)
+    names, items = named(columns, "columns", "Column", faults)
     for name, item in zip(names, items, strict=True):
         with collected(faults, f"column {name!r}: "):
             checked_column(item)
-    _check_names(names, "columns", "Column", faults)
-    if not names and not faults:
-        faults.append("columns is empty; give at least one Column")
+    check_names(names, "columns", "Column", faults)
     return names, items
 
 
@@ -78,21 +76,17 @@ def named_motions(motions: Any, faults: list[str]) -> tuple[int, list[Motion]]:
     """
     if hasattr(motions, "acceleration") or _is_pair(motions):
         motions = [motions]
-    own = not isinstance(motions, Mapping)
-    names, items = _named(motions, "motions", "motion", faults)
-    if own:
-        names = [_own_name(item, name) for name, item in zip(names, items, strict=True)]
+    names, items = named(motions, "motions", "motion", faults)
     found = []
     for name, item in zip(names, items, strict=True):
         with collected(faults, f"motion {name!r}: "):
             found.append(_motion(name, item))
-    _check_names(names, "motions", "motion", faults)
-    if not names and not faults:
-        faults.append("motions is empty; give at least one motion")
+    check_names(names, "motions", "motion", faults)
     return len(names), found
 
 
-def _named(given: Any, what: str, one: str, faults: list[str]) -> tuple[list[str | int], list[Any]]:
+def named(given: Any, what: str, one: str, faults: list[str]) -> tuple[list[str | int], list[Any]]:
+    """Return names and items; those of a sequence have their own names, else their numbers."""
     if isinstance(given, Mapping):
         return list(given.keys()), list(given.values())
     try:
@@ -100,11 +94,14 @@ def _named(given: Any, what: str, one: str, faults: list[str]) -> tuple[list[str
     except TypeError:
         faults.append(f"{what} = {type(given).__name__} must be a {one}, or several of them")
         return [], []
-    return list(range(len(items))), items
+    names = (getattr(item, "name", None) for item in items)
+    return [name if isinstance(name, str) and name else i for i, name in enumerate(names)], items
 
 
-def _check_names(names: list[str | int], what: str, one: str, faults: list[str]) -> None:
-    """Add a fault for names that a table cannot have, or could not tell apart."""
+def check_names(names: list[str | int], what: str, one: str, faults: list[str]) -> None:
+    """Add a fault for names that a table cannot have, or could not tell apart, and for none."""
+    if not names and not faults:
+        faults.append(f"{what} is empty; give at least one {one}")
     for name in names:
         if isinstance(name, bool) or not isinstance(name, (str, int, np.integer)):
             faults.append(f"{what}: the name {name!r} must be a text or a whole number")
@@ -113,11 +110,6 @@ def _check_names(names: list[str | int], what: str, one: str, faults: list[str])
     count = Counter(map(str, names))
     for name in sorted(name for name, number in count.items() if number > 1):
         faults.append(f"{what}: two are called {name!r}; give them other names, as {{name: {one}}}")
-
-
-def _own_name(item: Any, number: str | int) -> str | int:
-    name = getattr(item, "name", None)
-    return name if isinstance(name, str) and name else number
 
 
 def _is_pair(item: Any) -> bool:

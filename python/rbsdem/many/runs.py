@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -16,7 +16,15 @@ from rbsdem._arguments import Array
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.many.ensemble import ensemble
-from rbsdem.many.inputs import Measure, collected, measures_in_a_list, named_columns, raise_faults
+from rbsdem.many.inputs import (
+    Measure,
+    check_names,
+    collected,
+    measures_in_a_list,
+    named,
+    named_columns,
+    raise_faults,
+)
 from rbsdem.many.plan import FAULT_OF_MEASURE
 from rbsdem.model.column import Column
 from rbsdem.motions.motion import GroundMotion, checked_motion
@@ -87,33 +95,16 @@ def make_intensity(name: str, column: Column, period: float | None, damping: flo
 
 def motions_by_name(motions: Any) -> dict[str, GroundMotion]:
     """Return motions under their names, or raise `InputError` with all that is wrong."""
-    if isinstance(motions, GroundMotion):
-        motions = [motions]
-    items: Iterable[tuple[str, Any]]
-    if isinstance(motions, Mapping):
-        items = [(str(name), motion) for name, motion in motions.items()]
-    else:
-        try:
-            given = list(motions)
-        except TypeError:
-            raise InputError(
-                f"motions = {type(motions).__name__} must be a GroundMotion, or several of them"
-            ) from None
-        items = [(getattr(m, "name", "") or str(i), m) for i, m in enumerate(given)]
-    found: dict[str, GroundMotion] = {}
     faults: list[str] = []
-    for name, motion in items:
+    given = [motions] if isinstance(motions, GroundMotion) else motions
+    names, items = named(given, "motions", "GroundMotion", faults)
+    found: dict[str, GroundMotion] = {}
+    for name, item in zip(names, items, strict=True):
         with collected(faults):
-            checked_motion(motion, f"motion {name}: ")
-        if not isinstance(motion, GroundMotion):
-            continue
-        if name in found:
-            faults.append(f"motions: two are called {name!r}; give a mapping {{name: motion}}")
-        elif motion.pga == 0:
-            faults.append(f"motion {name}: has no acceleration")
-        found[name] = motion
-    if not found and not faults:
-        faults.append("motions is empty; give at least one GroundMotion")
+            motion = found[str(name)] = checked_motion(item, f"motion {name}: ")
+            if motion.pga == 0:
+                raise InputError(f"motion {name}: has no acceleration")
+    check_names(names, "motions", "motion", faults)
     raise_faults(faults)
     return found
 

@@ -73,6 +73,12 @@ class Case:
         given = {"method": self.method} | self.settings
         return cast(Solver, {name: given[name] for name in Solver.__annotations__ if name in given})
 
+    @property
+    def loads(self) -> dict[str, Array]:
+        """The loadings that are there, by the names of the attributes."""
+        given = {name: getattr(self, name) for name in _DRIVES}
+        return {name: values for name, values in given.items() if values is not None}
+
     def run(self, column: Column | None = None, **changes: Any) -> Result:
         """Solve the case as the executable does.
 
@@ -94,13 +100,13 @@ class Case:
                 "the case has no loading; give it a group &loading, or run its column: "
                 "rbsdem.cyclic(case.column, ...), rbsdem.time_history(case.column, ...)"
             )
-        loads = {name: getattr(self, name) for name in _DRIVES if getattr(self, name) is not None}
+        given: dict[str, Any] = self.loads | self.settings
         try:
             if self.method == "static":
-                result = cyclic(column, **loads, **(self.settings | changes))
+                result = cyclic(column, **(given | changes))
             else:
-                keywords = {"method": self.method} | self.settings | changes
-                result = time_history(column, self.time, **loads, **keywords)
+                given |= {"time": self.time, "method": self.method}
+                result = time_history(column, **(given | changes))
         except SolveError as error:
             if isinstance(error.result, Result):
                 error.result = replace(error.result, case=self)
@@ -114,11 +120,8 @@ class Case:
         """
         head = {"title": _core.Text(self.title) if self.title else None}
         parts = [_core.group("case", head), self.column._groups()]
-        for name in _DRIVES:
-            values = getattr(self, name)
-            if values is None:
-                continue
-            time = None if self.method == "static" else self.time
+        time = None if self.method == "static" else self.time
+        for name, values in self.loads.items():
             parts.append(_core.group("loading", {"drive": name, "time": time, "values": values}))
         settings = dict(self.settings)
         output = {name: settings.pop(name, None) for name in ("every", "openings", "motion")}
