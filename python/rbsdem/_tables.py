@@ -258,8 +258,8 @@ def _values(lines: list[str], first: int, mark: str, point: str, where: str) -> 
         words = _split(line, mark)
         if found and len(words) != len(found[0]):
             raise InputError(
-                f"{where} line {number}: has {len(words)} values, the rows before have "
-                f"{len(found[0])}; every row has one for each column"
+                f"{where} line {number}: has {len(words)} value{'s' * (len(words) != 1)}, the rows "
+                f"before have {len(found[0])}; every row has one for each column"
             )
         found.append([_number(word, f"{where} line {number}, value {i}")
                       for i, word in enumerate(words, 1)])  # fmt: skip

@@ -328,7 +328,8 @@ contains
             allocate (history%values(fields%count, rows))
          else if (fields%count /= history%columns) then
             call fatal_error(error, bad_input, path//' line '//to_text(file%line)//': has '// &
-                             to_text(fields%count)//' values, the rows before have '// &
+                             to_text(fields%count)//trim(merge(' value ', ' values', fields%count == 1))// &
+                             ', the rows before have '// &
                              to_text(history%columns))
             return
          end if
