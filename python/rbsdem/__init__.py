@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from rbsdem import curves as curves
     from rbsdem import errors as errors
     from rbsdem import fragility as fragility
+    from rbsdem import frames as frames
     from rbsdem import motions as motions
     from rbsdem import peer as peer
     from rbsdem import plot as plot
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
     from rbsdem.model.column import Column as Column
     from rbsdem.model.column import Footing as Footing
     from rbsdem.model.damping import Damping as Damping
+    from rbsdem.model.frame import Frame as Frame
+    from rbsdem.model.frame import FrameMember as FrameMember
     from rbsdem.model.materials import Concrete as Concrete
     from rbsdem.model.materials import Layout as Layout
     from rbsdem.model.materials import Spiral as Spiral
@@ -43,6 +46,7 @@ if TYPE_CHECKING:
     from rbsdem.results.case import read_result as read_result
     from rbsdem.results.result import Result as Result
     from rbsdem.results.result import cyclic as cyclic
+    from rbsdem.results.result import pushover as pushover
     from rbsdem.results.result import time_history as time_history
     from rbsdem.solve.analysis import matrices as matrices
     from rbsdem.solve.analysis import modes as modes
@@ -62,19 +66,20 @@ _HOMES = {
     "methods.study": ("compare_methods",),
     "model.column": ("Column", "Footing"),
     "model.damping": ("Damping",),
+    "model.frame": ("Frame", "FrameMember"),
     "model.materials": ("Concrete", "Layout", "Spiral", "Steel", "Ties"),
     "model.shape": ("CircularSection", "RectangularSection"),
     "motions.motion": ("GroundMotion",),
     "motions.read": ("read_motions",),
     "results.case": ("read_case", "read_result"),
-    "results.result": ("Result", "cyclic", "time_history"),
+    "results.result": ("Result", "cyclic", "pushover", "time_history"),
     "solve.analysis": ("matrices", "modes"),
     "solve.protocol": ("protocol",),
     "solve.solver": ("Solver",),
 }
 _MODULE_OF = {name: home for home, names in _HOMES.items() for name in names}
 #: Public modules, and those that hold what the names above return, raise or read.
-_MODULES = ("codes", "fragility", "peer", "plot", "section", "springs")
+_MODULES = ("codes", "fragility", "frames", "peer", "plot", "section", "springs")
 _RECORDS = ("curves", "errors", "motions")
 
 __all__ = sorted([*_MODULE_OF, *_MODULES])  # noqa: PLE0605

@@ -169,7 +169,7 @@ contains
 
    !> Names of nodes, of members and of the springs of members ('C-1-1 flexure bilinear'), a line each with
    !> tabs between. Values: for the nodes x, y and floor; for the members numbers of their nodes, compression
-   !> under dead load; for the springs place in the clear length; the total mass along x.
+   !> under dead load; for the springs place in the clear length and initial stiffness; the mass along x.
    subroutine tell_parts(frame, answer)
       type(frame_type), intent(in) :: frame
       type(answer_type), intent(inout) :: answer
@@ -193,7 +193,8 @@ contains
       answer%text = text%text(:text%length)
       answer%value = [frame%x, frame%y, real(frame%storey, c_double), &
                       (real(frame%element(i)%node, c_double), i=1, size(frame%element)), frame%compression, &
-                      frame%spring_place, -sum(frame%pattern(horizontal)%force)]
+                      frame%spring_place, frame%initial_stiffness(:frame%inside), &
+                      -sum(frame%pattern(horizontal)%force)]
    end subroutine tell_parts
 
    subroutine tell_matrices(structure, paper, answer)

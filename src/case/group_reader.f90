@@ -3,8 +3,8 @@
 module rbs_case_group_reader
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor
-   use rbs_base_keys, only: key_type, find_key, choice_list, choice_place, word_kind, force, deformation, &
-                            stiffness
+   use rbs_base_keys, only: key_type, find_key, choice_list, choice_place, text_kind, word_kind, force, &
+                            deformation, stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text, suggestion, list_of
    use rbs_base_units, only: unit_system
@@ -219,6 +219,10 @@ contains
             call self%entries%entry(self%entries%count)%set_rule(text)
             call keys_of(text, self%rule_keys)
             call self%collect_keys()
+         else if (key%kind == text_kind) then
+            call self%visitor%put(key%name, text=text)
+            call self%visit_open()
+            call self%visitor%end_check(messages)
          else if (choice_place(key, text) > 0) then
             call self%put_numbers(place, [real(choice_place(key, text), wp)])
          else

@@ -119,7 +119,7 @@ def test_keywords_of_the_analyses_are_the_keys_of_their_groups():
     known = keywords(rbsdem.cyclic) | keywords(rbsdem.time_history)
     # The end of the times is the duration; the rest has no key.
     hints = get_type_hints(rbsdem.Solver)
-    own = {"column", "time", "initial", "solver"}
+    own = {"column", "time", "initial", "solver", "corners"}
     assert set(known) | set(hints) == (set(settings) | loads | own) - {"duration"}
     for name in set(settings) & set(known):
         default = known[name].default

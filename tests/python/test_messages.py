@@ -86,6 +86,17 @@ RECORD = motions.synthetic(1)[0]
 LOADING = "&loading drive = 'displacement', amplitudes = 0.001 /\n"
 DRAWN = rbsdem.section.column(SECTION, 1.6, axial_load=744e3).to_namelist() + LOADING
 
+FRAMED = """\
+&frame storeys = 3.2, 3.2, bays = 6.0, 5.0, kinematics = 'pdelta' /
+&floor mass = 4e4, load = 2e4 /
+&member_kind name = 'C', modulus = 3e10, area = 0.16, inertia = 2e-3, yield_moment = 2.5e5 /
+&member_kind name = 'B', modulus = 3e10, area = 0.15, inertia = 2e-3, between = 'rigid' /
+&flexure kind = 'B', place = 0, 0.5, 1, rule = 'bilinear', k = 6e7, d_y = 4e-3, k_post = 1e5 /
+&column_of kind = 'C', panel = 0.3 /
+&beam_of kind = 'B' /
+&node name = 'A', x = 14.0, y = 3.2, support = 'roller' /
+&member name = 'M', from = 'N-3-1', to = 'A', kind = 'C' /
+"""
 STRIP = "rule = 'concrete', k = 2e9, f_peak = 6e5, d_peak = 6e-4, k_soft = 4e7"
 LAYER_SPRINGS = [f"id = 1, {STRIP}", "id = 2, rule = 'steel', k = 6e8, f_y = 5.4e5, k_post = 0"]
 #: A layered joint whose bars do not harden.
@@ -172,6 +183,16 @@ def refused(result: Any) -> list[str]:
     lines = result.stderr.splitlines()
     assert all(line.startswith("rbsdem: ") for line in lines), lines
     return [line.removeprefix("rbsdem: ") for line in lines]
+
+
+def framed(given: str) -> str:
+    """Return the case of a frame with changes, ``old -> new`` with semicolons between."""
+    text = FRAMED + LOADING
+    for change in given.split("; "):
+        old, new = change.split(" -> ")
+        assert old in text, old
+        text = text.replace(old, "" if new == "nothing" else new)
+    return text
 
 
 @pytest.fixture
@@ -268,6 +289,7 @@ def doors(run_cli, case_text, folder, by_file, capsys) -> dict[str, Tell]:
         "case in time": lambda given: by_file(case_text(**DYNAMIC | changes(given))),
         "layers": layers,
         "drawing": drawing,
+        "frame": lambda given: by_file(framed(given)),
         "file": lambda given: by_file(plain(given)),
         "history": of_history,
         "record": record,
@@ -346,7 +368,6 @@ KEYWORDS: dict[str, Callable[..., object]] = {
 #: Keys of a file that are no keywords, or go by other words.
 IN_FILES = {"footing_mass", "footing_inertia", "footing_height", "duration", "period", "interval"}
 IN_FILES |= {"reference", "largest", "strips", "scale", "time", "values"}
-OF_FRAMES = {"frame", "floor", "member_kind", "column_of", "beam_of", "node", "member"}
 #: Keys whose refusals name what they refer to, and stand in `messages.txt`.
 REFERENCES = {"joint", "id", "spring", "steel", "between_steel", "y", "place"}
 OF_OTHER_KINDS = {
@@ -398,8 +419,8 @@ def test_a_key_refuses_what_it_cannot_take(folder, case_text, group):
         text = case_text(**LAYERED, layer_spring=LAYER_SPRINGS)
     elif group in ("spiral", "inner_layout"):
         text = rbsdem.section.column(ROUND, 3.0, axial_load=1e6).to_namelist() + LOADING
-    elif group in OF_FRAMES:
-        text = "&frame storeys = 3.0, bays = 5.0 /\n" + LOADING
+    elif f"&{group} " not in text and f"&{group} " in FRAMED:
+        text = FRAMED + LOADING
     elif f"&{group} " not in text and f"&{group} " in DRAWN:
         text = DRAWN
     for key in KEYS["groups"][group]:

@@ -17,9 +17,11 @@ from rbsdem._arguments import Array
 from rbsdem.checks.formulas import goodnight_buckling_strain, quantities
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
+from rbsdem.model.frame import Frame, Structure
+from rbsdem.model.frame_result import landmarks_of
 from rbsdem.model.response import Response
 from rbsdem.model.shape import Section
-from rbsdem.model.springs import Gauge, Layered, Spring
+from rbsdem.model.springs import Gauge, Landmark, Layered, Spring
 from rbsdem.section.layered import LayeredColumn
 
 #: The limit states that criteria find, and what each is.
@@ -85,13 +87,13 @@ class Criterion:
         return np.asarray(self.rotation * turned + self.opening * result.opening[:, at])
 
 
-def criteria(column: Column, names: Collection[str] = tuple(WATCHED)) -> Sequence[Criterion]:
+def criteria(column: Structure, names: Collection[str] = tuple(WATCHED)) -> Sequence[Criterion]:
     """Return the criteria of a column; a state may have several, of which the first counts.
 
     Parameters
     ----------
-    column : Column
-        The column.
+    column : Column or Frame
+        The structure.
     names : collection of str, optional
         The limit states that are wanted.
     """
@@ -104,8 +106,15 @@ def criteria(column: Column, names: Collection[str] = tuple(WATCHED)) -> Sequenc
     return _criteria(column, names)
 
 
-def _criteria(column: Column, names: Collection[str]) -> list[Criterion]:
+def _criteria(column: Structure, names: Collection[str]) -> list[Criterion]:
     found: list[Criterion] = []
+    if isinstance(column, Frame):
+        for group, states, what in (("flexure", _TURNS, "rotation"), ("shear", _SLIPS, "slip")):
+            for number, own in enumerate(column.parts.springs_of(group), 1):
+                where = f"the {group} spring of {own.member} at {own.place:g} of its length"
+                marks = landmarks_of(column, own)
+                found += _of_landmarks(number, marks, where, states, what)
+        return [criterion for criterion in found if criterion.name in names]
     for joint, spring in zip(column.joint_numbers, column.joints("flexure"), strict=True):
         if joint == 0:  # A footing is not the column.
             continue
@@ -119,7 +128,7 @@ def _criteria(column: Column, names: Collection[str]) -> list[Criterion]:
     return [criterion for criterion in found if criterion.name in names]
 
 
-def all_watches(column: Column, openings: bool) -> Array:
+def all_watches(column: Structure, openings: bool) -> Array:
     """Return what a run is watched for: all criteria, those of openings only if they are kept.
 
     Each counts for itself. A run without openings is told of the others, but cannot reach them.
@@ -132,7 +141,7 @@ def all_watches(column: Column, openings: bool) -> Array:
     return numbers
 
 
-def watches(column: Column, found: Sequence[Criterion], states: Iterable[int]) -> Array:
+def watches(column: Structure, found: Sequence[Criterion], states: Iterable[int]) -> Array:
     """Return criteria in numbers, shape (criteria, 6), as the Fortran part watches for them.
 
     Parameters
@@ -158,8 +167,15 @@ def _of_spring(
 ) -> Iterator[Criterion]:
     """Yield where a spring leaves its lines, to either side."""
     kind = f"{type(spring).__name__}{' shear' if what == 'slip' else ''}"
-    for mark in spring.landmarks():
-        source = f"{mark.source} of the {kind} spring of joint {joint}"
+    where = f"the {kind} spring of joint {joint}"
+    yield from _of_landmarks(joint, spring.landmarks(), where, names, what)
+
+
+def _of_landmarks(
+    joint: int, marks: Sequence[Landmark], where: str, names: Mapping[str, str], what: str
+) -> Iterator[Criterion]:
+    for mark in marks:
+        source = f"{mark.source} of {where}"
         side = float(mark.side)
         yield Criterion(names[mark.name], joint, mark.deformation, source, **{what: side})
 

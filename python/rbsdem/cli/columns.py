@@ -82,7 +82,7 @@ def trade(
     model = read_case(case)
     loads: dict[str, Any] = dict(model.loads)
     study = compare_methods(
-        model.column,
+        model.plain_column("trade"),
         time=None if model.method == "static" else model.time,
         **loads,
         collapse_drift=model.settings.get("collapse_drift"),

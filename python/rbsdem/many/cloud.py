@@ -16,7 +16,7 @@ from rbsdem.errors import InputError
 from rbsdem.many.fragility import Fragile, Fragility, Hazard
 from rbsdem.many.inputs import is_switch
 from rbsdem.many.runs import RunOptions, Runs, make_collector, motions_by_name
-from rbsdem.model.column import Column
+from rbsdem.model.frame import Structure
 from rbsdem.motions.motion import GroundMotion
 
 if TYPE_CHECKING:
@@ -305,7 +305,7 @@ class Cloud(Fragile[CloudFragility]):
 
 
 def cloud(
-    column: Column | Sequence[Column] | Mapping[str, Column],
+    column: Structure | Sequence[Structure] | Mapping[str, Structure],
     motions: GroundMotion | Sequence[GroundMotion] | Mapping[str, GroundMotion],
     *,
     scales: ArrayLike = 1.0,
@@ -315,7 +315,7 @@ def cloud(
 
     Parameters
     ----------
-    column : Column, or sequence or mapping of Column
+    column : Column or Frame, or sequence or mapping of them
         The column, or several, which are all run with every motion.
     motions : GroundMotion, or sequence or mapping of GroundMotion
         The records, many and of different strength.

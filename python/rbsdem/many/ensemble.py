@@ -43,7 +43,7 @@ from rbsdem.many.inputs import (
     states_of_columns,
 )
 from rbsdem.many.plan import Outcome, Piece, Plan, RunStore, compute, cut, expected, one_run
-from rbsdem.model.column import Column
+from rbsdem.model.frame import Structure
 from rbsdem.results.result import Result
 from rbsdem.solve.solver import Solver, checked_solver
 
@@ -91,7 +91,7 @@ class Ensemble:
         Number of runs that the store had.
     """
 
-    columns: Mapping[str | int, Column]
+    columns: Mapping[str | int, Structure]
     motions: Mapping[str | int, Motion]
     settings: dict[str, Any]
     initial: dict[str | int, Array]
@@ -194,7 +194,7 @@ def ensemble(
 
     Parameters
     ----------
-    columns : Column, sequence or mapping of Column
+    columns : Column or Frame, sequence or mapping of them
         The columns; without names they are numbered from 0.
     motions : motion, sequence or mapping of motions
         A motion has `time` [s] and `acceleration` [m/s2], and perhaps a `name`, as `GroundMotion`

@@ -31,7 +31,7 @@ from rbsdem.many.runs import (
     make_collector,
     motions_by_name,
 )
-from rbsdem.model.column import Column
+from rbsdem.model.frame import Structure
 from rbsdem.motions.motion import GroundMotion
 
 if TYPE_CHECKING:
@@ -364,7 +364,7 @@ class IDA(Fragile[Fragility]):
 
 
 def ida(
-    column: Column | Sequence[Column] | Mapping[str, Column],
+    column: Structure | Sequence[Structure] | Mapping[str, Structure],
     motions: GroundMotion | Sequence[GroundMotion] | Mapping[str, GroundMotion],
     *,
     levels: ArrayLike | Literal["hunt"] | Hunt = "hunt",
@@ -374,7 +374,7 @@ def ida(
 
     Parameters
     ----------
-    column : Column, or sequence or mapping of Column
+    column : Column or Frame, or sequence or mapping of them
         The column; several, as from `Uncertain`, are all run with every motion.
     motions : GroundMotion, or sequence or mapping of GroundMotion
         The records, whose own scale does not matter.
@@ -535,7 +535,7 @@ class Stripes(Fragile[Fragility]):
 
 
 def stripes(
-    column: Column | Sequence[Column] | Mapping[str, Column],
+    column: Structure | Sequence[Structure] | Mapping[str, Structure],
     motions: Any,
     levels: ArrayLike | None = None,
     **options: Unpack[RunOptions],
@@ -544,7 +544,7 @@ def stripes(
 
     Parameters
     ----------
-    column : Column, or sequence or mapping of Column
+    column : Column or Frame, or sequence or mapping of them
         The column, or several, which are all run with every motion.
     motions : sequence or mapping of GroundMotion, or mapping of sequences
         The records; or for each level [m/s2] its own ones, as ``{2.0: [...], 4.0: [...]}``, scaled

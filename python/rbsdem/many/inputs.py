@@ -18,7 +18,8 @@ from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import InputError
-from rbsdem.model.column import Column, checked_column
+from rbsdem.model.column import Column
+from rbsdem.model.frame import Frame, Structure, checked_structure
 from rbsdem.model.response import Response, state_of
 from rbsdem.results.result import Result
 
@@ -56,14 +57,14 @@ def raise_faults(faults: list[str]) -> None:
     raise InputError(text + (f"\nand {more} more" if more > 0 else ""))
 
 
-def named_columns(columns: Any, faults: list[str]) -> tuple[list[str | int], list[Column]]:
+def named_columns(columns: Any, faults: list[str]) -> tuple[list[str | int], list[Structure]]:
     """Return names and columns; without names they are numbered from 0."""
-    if isinstance(columns, Column):
+    if isinstance(columns, (Column, Frame)):
         columns = [columns]
     names, items = named(columns, "columns", "Column", faults)
     for name, item in zip(names, items, strict=True):
         with collected(faults, f"column {name!r}: "):
-            checked_column(item)
+            checked_structure(item)
     check_names(names, "columns", "Column", faults)
     return names, items
 

@@ -26,6 +26,7 @@ from rbsdem.checks.criteria import criteria, watches
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.many.inputs import AT_REST, STATUSES, Measure, Motion, core_measures
 from rbsdem.model.column import Column
+from rbsdem.model.frame import Structure
 from rbsdem.model.springs import Layered
 from rbsdem.results.result import time_history
 from rbsdem.solve.analysis import without_notes
@@ -57,7 +58,7 @@ class Plan:
     runs of each column begin in; an empty one is at rest, no list that all are.
     """
 
-    columns: list[Column]
+    columns: list[Structure]
     motions: list[Motion]
     settings: dict[str, Any]
     column: Integers
@@ -244,10 +245,12 @@ def _number(value: Any) -> float:
 
 
 def one_run(
-    column: Column, motion: Motion, scale: float, settings: dict[str, Any], initial: Array
+    column: Any, motion: Motion, scale: float, settings: dict[str, Any], initial: Array
 ) -> Any:
     """Return the `Result` of one run, with its history; an empty state is at rest."""
-    layered = any(isinstance(spring, Layered) for spring in column.joints("flexure"))
+    layered = isinstance(column, Column) and any(
+        isinstance(spring, Layered) for spring in column.joints("flexure")
+    )
     return time_history(
         column,
         motion.time,
@@ -258,7 +261,7 @@ def one_run(
     )
 
 
-def watched(column: Column, states: tuple[str, ...]) -> Array:
+def watched(column: Structure, states: tuple[str, ...]) -> Array:
     """Return what runs of a column are watched for, as `_core.run_ensemble` takes it."""
     numbers = {name: number for number, name in enumerate(("first_yield", *states), 1)}
     found = criteria(column, numbers)

@@ -27,6 +27,7 @@ from rbsdem.many.inputs import (
 )
 from rbsdem.many.plan import FAULT_OF_MEASURE
 from rbsdem.model.column import Column
+from rbsdem.model.frame import Frame, Structure
 from rbsdem.motions.motion import GroundMotion, checked_motion
 from rbsdem.solve.analysis import modes
 from rbsdem.solve.solver import Solver, checked_solver
@@ -79,7 +80,7 @@ class Intensity:
         return f"{mean}({self.period:.3g} s, {100 * self.damping:g} %) (m/s²)"
 
 
-def make_intensity(name: str, column: Column, period: float | None, damping: float) -> Intensity:
+def make_intensity(name: str, column: Structure, period: float | None, damping: float) -> Intensity:
     """Return an intensity measure; its period is that of the column unless one is given."""
     _arguments.choice(name, "intensity", NAMES)
     if name == "pga":
@@ -190,7 +191,7 @@ class Runs:
         Measures of the response by name.
     """
 
-    columns: Mapping[str | int, Column]
+    columns: Mapping[str | int, Structure]
     motions: Mapping[str, GroundMotion]
     measure: Intensity
     column: NDArray[np.int_]
@@ -265,7 +266,7 @@ class Collector:
         Keywords of `rbsdem.ensemble`.
     """
 
-    columns: Mapping[str | int, Column]
+    columns: Mapping[str | int, Structure]
     motions: Mapping[str, GroundMotion]
     measure: Intensity
     names: Sequence[Any]
@@ -395,7 +396,7 @@ _KEPT = ("collapse_drift", "initial", "jobs", "progress", "store")
 
 def make_collector(
     who: str,
-    columns: Column | Sequence[Column] | Mapping[str, Column],
+    columns: Structure | Sequence[Structure] | Mapping[str, Structure],
     motions: Mapping[str, GroundMotion],
     *,
     intensity: Name = "sa_t1",
@@ -423,9 +424,9 @@ def make_collector(
     return Collector(named, motions, measure, measures_in_a_list(measures), settings)
 
 
-def columns_by_name(columns: Any) -> dict[str | int, Column]:
+def columns_by_name(columns: Any) -> dict[str | int, Structure]:
     """Return columns under their names; one column, a sequence, or a mapping."""
-    if isinstance(columns, Column):
+    if isinstance(columns, (Column, Frame)):
         return {"column": columns}
     faults: list[str] = []
     names, items = named_columns(columns, faults)

@@ -177,7 +177,9 @@ class Scene:
             warnings.simplefilter("ignore", LongRunWarning)
             if self.static:
                 return self._solve_static(setting, column)
-            result = time_history(no_watch, column, self.time, **self.keywords(setting, column))
+            result: Any = time_history(
+                no_watch, column, self.time, **self.keywords(setting, column)
+            )
         return answer_of(result, self.time)
 
     def keywords(self, setting: Setting, column: Column) -> dict[str, Any]:
@@ -217,7 +219,7 @@ class Scene:
             driven[::parts] = path
         every = parts if parts and parts > 1 else None
         load: dict[str, Any] = {name: driven}
-        result = cyclic(column, **load, every=every, collapse_drift=self.collapse_drift)
+        result: Any = cyclic(column, **load, every=every, collapse_drift=self.collapse_drift)
         response = result.force if name == "displacement" else result.displacement
         histories = [response, result.moment[:, 0], result.energy["spring"]]
         if parts == 0:

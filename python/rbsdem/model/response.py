@@ -6,7 +6,7 @@ import math
 import os
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any, Protocol, TypeVar
+from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
@@ -34,6 +34,19 @@ class Recorded(Protocol):
 
     def to_namelist(self) -> str:
         """Return the text of the case file."""
+
+
+@runtime_checkable
+class Ended(Protocol):
+    """What an analysis can begin from: the result of another one."""
+
+    @property
+    def state(self) -> Array | None:
+        """State at the end."""
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """What was done."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -488,7 +501,7 @@ def state_of(initial: Any, call: str) -> Array:
     """
     if isinstance(initial, (str, os.PathLike)):
         return _read_state(_arguments.file(initial, f"{call}: initial"))
-    if isinstance(initial, Response):
+    if isinstance(initial, Ended):
         return last_state(initial)
     if isinstance(initial, np.ndarray):
         # The state of a result, as `Result.call` keeps it.
@@ -500,7 +513,7 @@ def state_of(initial: Any, call: str) -> Array:
     )
 
 
-def last_state(response: Response) -> Array:
+def last_state(response: Ended) -> Array:
     """Return the state that an analysis ended in; `InputError` if it has none."""
     if response.state is None:
         why = {

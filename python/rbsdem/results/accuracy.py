@@ -162,7 +162,7 @@ def refined_error(result: Response) -> Errors:
         # They were told with the result itself.
         warnings.simplefilter("ignore", AccuracyWarning)
         if result.dynamic:
-            finer = time_history(no_watch, result.column, **_finer(result))
+            finer: Any = time_history(no_watch, result.column, **_finer(result))
         else:
             finer = cyclic(result.column, **_divided(result))
     driven = "displacement" in result.call

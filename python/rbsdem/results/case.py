@@ -18,8 +18,11 @@ from rbsdem._package import extra
 from rbsdem.errors import InputError, SolveError
 from rbsdem.model.column import Column, Footing, without_notes
 from rbsdem.model.damping import Damping
+from rbsdem.model.frame import Frame, Structure
+from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.springs import SPRINGS, Spring
 from rbsdem.results.files import FORMAT, FORMAT_VERSION, ending_of
+from rbsdem.results.frame_case import frame_of
 from rbsdem.results.result import Result, cyclic, time_history
 from rbsdem.section.drawing import Groups, layered_column, recipe_of
 from rbsdem.solve.solver import Solver
@@ -35,8 +38,8 @@ class Case:
     ----------
     title : str
         Title of the case.
-    column : Column
-        The column.
+    column : Column or Frame
+        The structure.
     method : str
         "static", or a method of `time_history`.
     time : ndarray, shape (m,)
@@ -55,7 +58,7 @@ class Case:
     """
 
     title: str
-    column: Column
+    column: Column | Frame
     method: str
     time: Array
     displacement: Array | None
@@ -79,7 +82,7 @@ class Case:
         given = {name: getattr(self, name) for name in _DRIVES}
         return {name: values for name, values in given.items() if values is not None}
 
-    def run(self, column: Column | None = None, **changes: Any) -> Result:
+    def run(self, column: Structure | None = None, **changes: Any) -> Result | FrameResult:
         """Solve the case as the executable does.
 
         Parameters
@@ -103,7 +106,7 @@ class Case:
         given: dict[str, Any] = self.loads | self.settings
         try:
             if self.method == "static":
-                result = cyclic(column, **(given | changes))
+                result: Result | FrameResult = cyclic(column, **(given | changes))
             else:
                 given |= {"time": self.time, "method": self.method}
                 result = time_history(column, **(given | changes))
@@ -111,7 +114,13 @@ class Case:
             if isinstance(error.result, Result):
                 error.result = replace(error.result, case=self)
             raise
-        return replace(result, case=self)
+        return replace(result, case=self) if isinstance(result, Result) else result
+
+    def plain_column(self, what: str) -> Column:
+        """Return the column; `InputError` for a frame, which an analysis does not take."""
+        if isinstance(self.column, Frame):
+            raise InputError(f"{what} is for columns, and the case has a frame; give it a &column")
+        return self.column
 
     def to_namelist(self) -> str:
         """Return the text of a case file, from which the same case comes back.
@@ -177,6 +186,8 @@ def read_case(path: str | os.PathLike[str]) -> Case:
         settings.pop(name, None)
     if "initial" in settings:
         settings["initial"] = os.path.join(os.path.dirname(os.fspath(path)), settings["initial"])
+    if "frame" in groups:
+        return _case_of(frame_of(groups), found, settings, time, values, acting)
     column = _core.typed("column", found["column"])
     column |= springs.of_joints(column.get("n", 1) + (column.get("top") == "fixed"))
     beneath = {name: column.pop(f"{name}_0", None) for name in ("shear", "flexure", "axial_spring")}
@@ -190,15 +201,25 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     if "damping" in found:
         column["damping"] = Damping(**_core.typed("damping", found["damping"]))
     column = {"mass": None} | column
+    made = layered_column(recipe_of(groups), column) if "drawing" in groups else Column(**column)
+    return _case_of(made, found, settings, time, values, acting)
+
+
+def _case_of(
+    structure: Column | Frame,
+    found: dict[str, dict[str, Any]],
+    settings: dict[str, Any],
+    time: Array,
+    values: Array,
+    acting: Any,
+) -> Case:
     loads = {
         name: np.ascontiguousarray(values[:, i]) if acting[i] else None
         for i, name in enumerate(_DRIVES)
     }
     return Case(
         title=found.get("case", {}).get("title", ""),
-        column=layered_column(recipe_of(groups), column)
-        if "drawing" in groups
-        else Column(**column),
+        column=structure,
         method=settings.pop("method"),
         time=time,
         **loads,
@@ -348,7 +369,7 @@ def _result(about: dict[str, Any], arrays: dict[str, Any]) -> Result:
     }
     own = {field.name: arrays[field.name] for field in fields(Result) if field.name in arrays}
     with without_notes():
-        column = case_of_text(about["column"] + _LOADING).column
+        column = case_of_text(about["column"] + _LOADING).plain_column("a saved result")
         case = None if about["case"] is None else case_of_text(about["case"])
     absent = dict.fromkeys(("axial_force", "rest", "state", "motion", "reached"))
     return Result(

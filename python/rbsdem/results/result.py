@@ -8,9 +8,12 @@ import inspect
 import math
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Concatenate, Literal, ParamSpec
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Concatenate, Literal, ParamSpec, Protocol, cast, overload
 
+import numpy as np
+
+from rbsdem import _arguments
 from rbsdem.checks.criteria import all_watches
 from rbsdem.checks.limit_states import Hinge, LimitStates
 from rbsdem.checks.limit_states import hinge as hinge_of
@@ -19,7 +22,10 @@ from rbsdem.curves.cycles import HalfCycles, half_cycles
 from rbsdem.curves.envelope import Envelope, Idealisation, Method, strength_loss
 from rbsdem.curves.envelope import envelope as curve_envelope
 from rbsdem.curves.metrics import loop_pair
-from rbsdem.errors import SolveError
+from rbsdem.errors import InputError, SolveError
+from rbsdem.model.column import Column
+from rbsdem.model.frame import Frame, Structure
+from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.response import Response
 from rbsdem.results import files
 from rbsdem.results.accuracy import Errors, refined_error
@@ -253,31 +259,99 @@ class Result(Response):
 Result.__doc__ = Response.__doc__
 
 
-def result_of(response: Response) -> Result:
-    """Return a response as the object that users get."""
+def result_of(response: Any) -> Any:
+    """Return a response as the object that users get; that of a frame is one already."""
+    if not isinstance(response, Response):
+        return response
     return Result(**{field: getattr(response, field) for field in response.__dataclass_fields__})
 
 
-def _public(run: Callable[P, Response], documented: Callable[..., Response]) -> Callable[P, Result]:
+class Analysis(Protocol[P]):
+    """An analysis: what it returns depends on the structure."""
+
+    @overload
+    def __call__(self, column: Column, *arguments: P.args, **options: P.kwargs) -> Result: ...
+    @overload
+    def __call__(self, column: Frame, *arguments: P.args, **options: P.kwargs) -> FrameResult: ...
+    @overload
+    def __call__(
+        self, column: Structure, *arguments: P.args, **options: P.kwargs
+    ) -> Result | FrameResult: ...
+
+
+#: An analysis that returns plain responses.
+Plain = Callable[Concatenate[Structure, P], Response | FrameResult]
+
+
+def _public(run: Plain[P], documented: Callable[..., Any]) -> Analysis[P]:
     """Return an analysis with a `Result` in place of the plain response."""
 
     @functools.wraps(documented)
-    def analyse(*arguments: P.args, **options: P.kwargs) -> Result:
+    def analyse(column: Structure, *arguments: P.args, **options: P.kwargs) -> Any:
         try:
-            return result_of(run(*arguments, **options))
+            return result_of(run(column, *arguments, **options))
         except SolveError as error:
-            if isinstance(error.result, Response):
-                error.result = result_of(error.result)
+            error.result = result_of(error.result)
             raise
 
-    signature = inspect.signature(run).replace(return_annotation="Result")
+    signature = inspect.signature(run).replace(return_annotation="Result | FrameResult")
     analyse.__signature__ = signature  # type: ignore[attr-defined]
-    return analyse
+    return cast("Analysis[P]", analyse)
 
 
-def _watched(run: Callable[Concatenate[analysis.Watch, P], Response]) -> Callable[P, Response]:
+def _watched(run: Callable[Concatenate[analysis.Watch, Structure, P], Any]) -> Plain[P]:
     """Return the analysis in time that watches for the limit states of its column."""
     return functools.partial(run, all_watches)
+
+
+def pushover(
+    structure: Structure,
+    *,
+    drift: float | None = None,
+    displacement: float | None = None,
+    force: float | None = None,
+    pattern: str | None = None,
+    points: int = 100,
+    initial: Any = None,
+) -> Any:
+    """Push a frame or a column to one side, exactly from event to event.
+
+    Parameters
+    ----------
+    structure : Frame or Column
+        The structure; a frame stands under its dead load already.
+    drift, displacement, force : float, optional
+        How far: displacement of the top over the height, displacement [m], or lateral force [N];
+        exactly one of them. Under a force a path ends where the structure can carry no more.
+    pattern : str, optional
+        Shares of the lateral load of a frame in place of its own, see `Frame`.
+    points : int, optional
+        Rows at equal steps; there is one at each event in addition.
+    initial : FrameResult, Result or path, optional
+        What the path begins in.
+
+    Returns
+    -------
+    FrameResult or Result
+        With a row for each point and each event; `events` are the limit states in their order.
+    """
+    given = {"drift": drift, "displacement": displacement, "force": force}
+    said = [name for name, value in given.items() if value is not None]
+    if len(said) != 1:
+        raise InputError("pushover: give exactly one of drift, displacement and force")
+    if pattern is not None:
+        if not isinstance(structure, Frame):
+            raise InputError("pushover: pattern is for frames; a column is pushed at its top")
+        structure = replace(structure, pattern=pattern)  # type: ignore[arg-type]
+    far = _arguments.number(given[said[0]], f"pushover: {said[0]}")
+    if said[0] == "drift":
+        far *= structure.height
+    points = _arguments.whole(points, "pushover: points")
+    if points < 1:
+        raise InputError(f"pushover: points = {points} must be 1 or more")
+    name = "force" if said[0] == "force" else "displacement"
+    way: dict[str, Any] = {name: far * np.arange(1, points + 1) / points}
+    return cyclic(structure, **way, initial=initial, corners=True)
 
 
 cyclic = _public(analysis.cyclic, analysis.cyclic)

@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,8 +16,10 @@ from numpy.typing import ArrayLike
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning
-from rbsdem.model.column import Column, checked_column
-from rbsdem.model.response import Response, response_of, settings_of, state_of
+from rbsdem.model.column import Column
+from rbsdem.model.frame import Frame, Structure, checked_structure
+from rbsdem.model.frame_result import FrameResult, frame_result_of
+from rbsdem.model.response import Ended, Response, response_of, settings_of, state_of
 from rbsdem.motions.motion import GroundMotion, acting
 from rbsdem.solve.solver import Solver, checked_solver
 
@@ -26,7 +28,7 @@ if TYPE_CHECKING:
 
 #: What a run in time is watched for: limit states of the column as criteria in numbers, shape
 #: (criteria, 6), given whether openings are kept.
-Watch = Callable[[Column, bool], Array]
+Watch = Callable[[Structure, bool], Array]
 
 _DEFORMATIONS = ("slip", "rotation", "opening")
 _NONE = np.empty(0)
@@ -34,7 +36,7 @@ _NONE.flags.writeable = False
 _NO_CRITERIA = np.empty((0, 6))
 
 
-def no_watch(column: Column, openings: bool) -> Array:
+def no_watch(column: Structure, openings: bool) -> Array:
     """Watch for nothing."""
     return _NO_CRITERIA
 
@@ -86,12 +88,53 @@ class Matrices:
     damping: Array
 
 
-def modes(column: Column, count: int | None = None) -> Modes:
+@dataclass(frozen=True)
+class FrameModes:
+    """Natural modes of a frame before anything yields, under its dead load.
+
+    Attributes
+    ----------
+    omega, frequency, period : ndarray, shape (count,)
+        Circular frequencies [rad/s], frequencies [Hz] and periods [s], the lowest first.
+    x, y, turn : ndarray, shape (nodes, count)
+        Shapes: displacements of the nodes along x and upward, clockwise rotations, with unit modal
+        mass.
+    mass : ndarray, shape (count,)
+        Modal mass that a motion of the ground along x moves [kg].
+    participation : ndarray, shape (count,)
+        Its share of the mass of the frame.
+    """
+
+    omega: Array
+    frequency: Array
+    period: Array
+    x: Array
+    y: Array
+    turn: Array
+    mass: Array
+    participation: Array
+
+
+def _frame_modes(frame: Frame, count: int | None) -> FrameModes:
+    answer = _core.evaluate("modes", frame._statement, count=count)
+    omega = answer.values[1:]
+    x, y, turn, mass = np.split(answer.rows.T, np.arange(1, 4) * frame.n)
+    share = mass[0] / frame.parts.mass
+    return FrameModes(
+        omega, omega / (2 * np.pi), 2 * np.pi / omega, x, y, turn, mass[0].copy(), share
+    )
+
+
+@overload
+def modes(column: Column, count: int | None = None) -> Modes: ...
+@overload
+def modes(column: Frame, count: int | None = None) -> FrameModes: ...
+def modes(column: Structure, count: int | None = None) -> Modes | FrameModes:
     """Return natural frequencies, mode shapes and the stable step of RK4.
 
     Parameters
     ----------
-    column : Column
+    column : Column or Frame
         The axial load takes part with `kinematics` "pdelta" and "finite".
     count : int, optional
         How many modes, the lowest first; each takes a time in proportion to the number of bodies.
@@ -110,33 +153,35 @@ def modes(column: Column, count: int | None = None) -> Modes:
     """
     if count is not None:
         count = _arguments.whole(count, "count")
-    answer = _core.evaluate("modes", checked_column(column)._statement, count=count)
+    if isinstance(column, Frame):
+        return _frame_modes(column, count)
+    answer = _core.evaluate("modes", checked_structure(column)._statement, count=count)
     if answer.text:
         warnings.warn(answer.text, AccuracyWarning, stacklevel=2)
     stable_step, omega = float(answer.values[0]), answer.values[1:]
     return Modes(omega, omega / (2 * np.pi), answer.rows.T, stable_step)
 
 
-def matrices(column: Column, form: Literal["symmetric", "paper"] = "symmetric") -> Matrices:
+def matrices(column: Structure, form: Literal["symmetric", "paper"] = "symmetric") -> Matrices:
     """Return the matrices of mass, stiffness, geometric stiffness and damping, in full.
 
     Parameters
     ----------
-    column : Column
-        The column.
+    column : Column or Frame
+        The structure; a frame has the displacements of its nodes as unknowns, x_N-1-1 and so on.
     form : {"symmetric", "paper"}
         In (slip, relative rotation), or in the paper's (slip, absolute rotation) with the rows of
         its eqs 1 and 2 and the mass matrix [A B; C D] of eq 3, its misprints corrected.
         M_symmetric = M_paper T with theta = cumulative sum of phi, and so for the others.
     """
     _arguments.choice(form, "form", ("symmetric", "paper"))
-    answer = _core.evaluate("matrices", checked_column(column)._statement, paper=form == "paper")
+    answer = _core.evaluate("matrices", checked_structure(column)._statement, paper=form == "paper")
     unknowns = tuple(answer.text.split())
     return Matrices(unknowns, *(matrix.copy() for matrix in np.split(answer.rows, 4)))
 
 
 def cyclic(
-    column: Column,
+    column: Structure,
     *,
     displacement: ArrayLike | None = None,
     force: ArrayLike | None = None,
@@ -145,7 +190,8 @@ def cyclic(
     every: int | None = None,
     collapse_drift: float | None = None,
     openings: bool = False,
-) -> Response:
+    corners: bool = False,
+) -> Response | FrameResult:
     """Follow the static path of a column through displacements of the top, or lateral forces.
 
     The path is exact for `kinematics` "small" and "pdelta": it goes from event to event (a spring
@@ -155,8 +201,8 @@ def cyclic(
 
     Parameters
     ----------
-    column : Column
-        The column.
+    column : Column or Frame
+        The structure.
     displacement, force : array_like, shape (m,)
         The loading, exactly one of the two: displacement of the top [m] or lateral force [N].
     axial_load : array_like, shape (m,), optional
@@ -180,10 +226,12 @@ def cyclic(
     openings : bool, optional
         Whether to keep the openings of layered joints, for `Result.elongation` and
         `Result.layer_deformation`.
+    corners : bool, optional
+        Whether to keep rows between the points too, where a spring leaves its line.
 
     Returns
     -------
-    Result
+    Result or FrameResult
         A row for each point kept. Where the layers of a joint can no longer carry the axial load,
         the path ends with the state there as its last row; `summary["status"]` is "axial_failure"
         and `summary["lost_joint"]` is the number of the joint. `summary` has then also the
@@ -211,7 +259,7 @@ def cyclic(
     if values.size == 0:
         raise InputError(f"{name} is empty; give at least one point")
     load = None if axial_load is None else _arguments.vector(axial_load, "axial_load")
-    kept = not checked_column(column).opens and _arguments.switch(openings, "openings")
+    kept = not checked_structure(column).opens and _arguments.switch(openings, "openings")
     settings = settings_of(every, kept, collapse_drift=collapse_drift)
     run = _core.cyclic(
         column._statement + settings,
@@ -219,6 +267,7 @@ def cyclic(
         values,
         load,
         None if initial is None else state_of(initial, "cyclic"),
+        corners,
     )
     call = {
         name: values,
@@ -232,7 +281,7 @@ def cyclic(
 
 def time_history(
     watch: Watch,
-    column: Column,
+    column: Structure,
     time: ArrayLike | None = None,
     *,
     force: ArrayLike | None = None,
@@ -245,13 +294,13 @@ def time_history(
     openings: bool = False,
     motion: bool = False,
     **solver: Unpack[Solver],
-) -> Response:
+) -> Response | FrameResult:
     """Compute the response in time to forces at the top and motions of the ground.
 
     Parameters
     ----------
-    column : Column
-        The column.
+    column : Column or Frame
+        The structure; a frame needs an implicit method ("newmark", "hht", "generalised_alpha").
     time : array_like, shape (m,), optional
         Times of the loading, ascending [s]; two are enough for a free vibration. A ground motion
         that is a `GroundMotion` brings its own.
@@ -330,7 +379,7 @@ def time_history(
     if time is None:
         raise InputError("time_history: time is missing; give the times of the loading")
     chosen = checked_solver(solver, "time_history") | {"collapse_drift": collapse_drift}
-    kept = not checked_column(column).opens and _arguments.switch(openings, "openings")
+    kept = not checked_structure(column).opens and _arguments.switch(openings, "openings")
     moves = _arguments.switch(motion, "motion")
     settings = settings_of(every, kept, moves, **chosen)
     times = _arguments.vector(time, "time")
@@ -372,18 +421,25 @@ def _tell(note: str, kind: type[Warning], stacklevel: int) -> None:
 
 def _recorded_state(initial: Any) -> Any:
     """Return what a result records of `initial`: a path as text, of a result its state."""
-    if isinstance(initial, Response):
+    if isinstance(initial, Ended):
         return initial.state
     return os.fspath(initial) if isinstance(initial, (str, os.PathLike)) else initial
 
 
-def _initial_state(initial: Mapping[str, ArrayLike] | None, column: Column) -> tuple[Array, bool]:
+def _initial_state(
+    initial: Mapping[str, ArrayLike] | None, column: Structure
+) -> tuple[Array, bool]:
     """Return deformations and velocities at the start, and whether openings are given.
 
     An empty array means a column at rest.
     """
     if not initial:
         return _NONE, False
+    if isinstance(column, Frame):
+        raise InputError(
+            "time_history: a frame begins under its dead load, or with initial= in the state that "
+            "another analysis ended in; it takes no deformations of joints"
+        )
     n = len(column.joint_numbers)
     known = _DEFORMATIONS if column.opens else _DEFORMATIONS[:2]
     parts = {name: np.zeros(n) for name in (*known, *(f"{name}_velocity" for name in known))}
@@ -402,19 +458,23 @@ def _initial_state(initial: Mapping[str, ArrayLike] | None, column: Column) -> t
 
 
 def _return(
-    column: Column,
+    column: Structure,
     run: _core.Run,
     about: dict[str, str],
     call: dict[str, Any],
     reached: Array | None = None,
-) -> Response:
+) -> Response | FrameResult:
     arrays, state, summary, error, note = run
     summary |= about
     summary["kinematics"] = column.kinematics
-    if "lost_joint" in summary:
-        summary["lost_joint"] = column.joint_numbers[summary["lost_joint"] - 1]
     given = {name: value for name, value in call.items() if value is not None}
-    result = response_of(Response, arrays, column, summary, given, state, reached)
+    result: Response | FrameResult
+    if isinstance(column, Frame):
+        result = frame_result_of(arrays, column, summary, given, state)
+    else:
+        if "lost_joint" in summary:
+            summary["lost_joint"] = column.joint_numbers[summary["lost_joint"] - 1]
+        result = response_of(Response, arrays, column, summary, given, state, reached)
     if error is not None:
         error.result = result
         raise error

@@ -16,7 +16,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -157,7 +157,7 @@ class Answers:
             warnings.simplefilter("always")
             try:
                 # The strains of a layered hinge follow from its openings.
-                result = case.run(openings=True)
+                result = cast(Result, case.run(case.plain_column("the page"), openings=True))
             except RbsdemError as error:
                 if not isinstance(error, SolveError) or error.result is None:
                     faults.add("case" if "case" in given else "loading.kind", str(error))

@@ -118,7 +118,7 @@ contains
          associate (from => size(heavy) + 1 - i)
             modes%omega(i) = 1.0_wp/sqrt(max(square(from), tiny(1.0_wp)))
             ! F M^(1/2) y omega^2 is the shape of all unknowns, with unit modal mass.
-            modes%shapes(:, i) = matmul(all_of, flexible(:, from))*modes%omega(i)
+            modes%shapes(:, i) = matmul(all_of, flexible(:, from))*modes%omega(i)**2
          end associate
          if (structure%work_of(horizontal, modes%shapes(:, i)) > 0.0_wp) then
             modes%shapes(:, i) = -modes%shapes(:, i)

@@ -200,8 +200,9 @@ contains
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
       type(message_list), intent(inout) :: messages
-      integer :: bays, i, l, lines, s, storeys
+      integer :: bays, i, known, l, lines, s, storeys
 
+      known = messages%count
       storeys = 0
       bays = 0
       if (allocated(record%storeys)) storeys = size(record%storeys)
@@ -231,15 +232,40 @@ contains
       end do
       do s = 1, storeys
          do l = 1, lines
-            call add_cell(self, record, 'C', l, s, [(s - 1)*lines + l, s*lines + l], messages)
+            call add_cell(self, record, 'C', l, s, [(s - 1)*lines + l, s*lines + l])
          end do
       end do
       do s = 1, storeys
          do l = 1, bays
-            call add_cell(self, record, 'B', l, s, [s*lines + l, s*lines + l + 1], messages)
+            call add_cell(self, record, 'B', l, s, [s*lines + l, s*lines + l + 1])
          end do
       end do
+      ! A group that is wrong has been told, and names nothing.
+      if (messages%count > known) return
+      call check_named(self%member, 'C', '&column_of, with line = 0', messages)
+      call check_named(self%member, 'B', '&beam_of, with bay = 0', messages)
    end subroutine lay_grid
+
+   !> Columns or beams of the grid that no group names, told once.
+   subroutine check_named(member, letter, group, messages)
+      type(frame_member), intent(in) :: member(:)
+      !> 'C' or 'B'
+      character(len=1), intent(in) :: letter
+      character(len=*), intent(in) :: group
+      type(message_list), intent(inout) :: messages
+      character(len=:), allocatable :: others
+      integer :: first, missing
+
+      associate (unnamed => member%kind_of == 0 .and. member%name(1:1) == letter)
+         missing = count(unnamed)
+         first = findloc(unnamed, .true., dim=1)
+      end associate
+      if (missing == 0) return
+      others = ''
+      if (missing > 1) others = ' and '//to_text(missing - 1)//' more'
+      call messages%add(trim(merge('column', 'beam  ', letter == 'C'))//' '//trim(member(first)%name)// &
+                        others//': no kind is given; give '//group//' and storey = 0 for all')
+   end subroutine check_named
 
    !> Groups of a grid must lie in it.
    subroutine check_cells(record, storeys, bays, messages)
@@ -307,12 +333,11 @@ contains
    end subroutine put_mass
 
    !> A column or a beam of the grid.
-   subroutine add_cell(self, record, letter, line, storey, node, messages)
+   subroutine add_cell(self, record, letter, line, storey, node)
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
       character(len=1), intent(in) :: letter
       integer, intent(in) :: line, storey, node(2)
-      type(message_list), intent(inout) :: messages
       type(frame_member) :: member
       integer :: i
 
@@ -320,16 +345,8 @@ contains
       member%node = node
       if (letter == 'C') then
          call choose(record%column_of)
-         if (member%kind_of == 0) then
-            call messages%add('column '//trim(member%name)//' has no kind; give &column_of, with line = '// &
-                              '0 and storey = 0 for all')
-         end if
       else
          call choose(record%beam_of)
-         if (member%kind_of == 0) then
-            call messages%add('beam '//trim(member%name)//' has no kind; give &beam_of, with bay = 0 and '// &
-                              'storey = 0 for all')
-         end if
          do i = 1, size(record%floor)
             if (any(record%floor(i)%storey == [0, storey])) member%load = record%floor(i)%load
          end do

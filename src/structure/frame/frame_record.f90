@@ -259,7 +259,7 @@ contains
       call v%key('y', self%y, 'm', any_number, 'place above the ground', optional=.true.)
       call v%word('support', self%support, 'what holds it: a roller only along y, a pin along x and y', &
                   support_names)
-      call v%key('mass', self%mass, 'kg', not_negative, 'mass')
+      call v%key('mass', self%mass, 'kg', not_negative, 'mass of the node')
       call v%key('inertia', self%inertia, 'kg m2', not_negative, 'rotary inertia')
       call v%key('load_x', self%load_x, 'N', any_number, 'dead load to the right')
       call v%key('load_y', self%load_y, 'N', any_number, 'dead load upward; a weight is negative')

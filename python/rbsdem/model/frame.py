@@ -1,0 +1,576 @@
+"""Planar frames: columns and beams as one assembly of bodies and springs."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rbsdem import _arguments, _core
+from rbsdem._arguments import Array
+from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.model.column import Column, checked_column
+from rbsdem.model.damping import Damping
+from rbsdem.model.springs import Spring
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+_PLACES = ("shear", "flexure", "axial_spring")
+_SUPPORTS = ("free", "roller", "pinned", "fixed")
+
+#: What a frame is honest about, printed with its results.
+HONESTY = (
+    "The frame is computed from the properties of its members. Predicted columns carry the error "
+    "that tests gave; beams, nodes and slabs are computed, and no frame was fitted."
+)
+
+
+@dataclass(frozen=True)
+class FrameMember:
+    """A kind of column or beam: elastic, with sections that yield, or with springs of its own.
+
+    Parameters
+    ----------
+    modulus, area, inertia : float
+        Young's modulus [Pa], area [m2] and second moment of area [m4] of the section; of the
+        cracked section, if that is meant.
+    yield_moment : float, optional
+        Moment at which sections yield [N m]. The member is then the force-based beam-column element
+        with three points (Gauss and Lobatto), bilinear each.
+    hardening : float, optional
+        Stiffness of a section after yielding over the one before.
+    shear_rigidity : float, optional
+        Shear modulus times shear area [N]; 0: no deformation by shear.
+    flexure : Spring, sequence of two, or mapping, optional
+        Rotational springs in place of `yield_moment`: one for both ends, one for each end, or a
+        mapping from places in shares of the clear length to springs. Of any rule but `Layered`.
+    shear, axial_spring : Spring, optional
+        Springs that slip and that open.
+    between : {"elastic", "rigid"}, optional
+        What is between the springs: the elastic beam, or nothing that bends, where the springs
+        hold all of the flexibility.
+    panel : float, optional
+        Rigid length in each node of a grid that the member ends in, half the depth of the other
+        member [m]; not at the base.
+    name : str, optional
+        Name in case files; made up if it is not given.
+    """
+
+    modulus: float
+    area: float
+    inertia: float
+    yield_moment: float | None = None
+    hardening: float = 0.0
+    shear_rigidity: float = 0.0
+    flexure: Spring | Sequence[Spring] | Mapping[float, Spring] | None = None
+    shear: Spring | None = None
+    axial_spring: Spring | None = None
+    between: Literal["elastic", "rigid"] = "elastic"
+    panel: float = 0.0
+    name: str = field(default="", compare=False)
+
+    def __post_init__(self) -> None:
+        _arguments.convert(self, "FrameMember")
+        springs: Any = self.flexure
+        if isinstance(springs, Mapping):
+            springs = tuple(
+                (_arguments.number(place, "FrameMember: flexure"), spring)
+                for place, spring in springs.items()
+            )
+        elif isinstance(springs, Spring):
+            springs = ((0.0, springs), (1.0, springs))
+        elif springs is not None:
+            both = _arguments.several(springs, "FrameMember: flexure", "springs")
+            if len(both) == 2 and all(isinstance(one, Spring) for one in both):
+                springs = ((0.0, both[0]), (1.0, both[1]))
+            else:
+                springs = tuple(both)
+        for item in springs or ():
+            if not (isinstance(item, tuple) and len(item) == 2 and isinstance(item[1], Spring)):
+                raise InputError(
+                    f"FrameMember: flexure = {_arguments.shown(self.flexure)} must be a spring, "
+                    "one for each end, or a mapping from places (0 to 1) to springs"
+                )
+        object.__setattr__(self, "flexure", springs)
+
+    @property
+    def places(self) -> tuple[tuple[float, Spring], ...]:
+        """Rotational springs with their places in shares of the clear length."""
+        own: Any = self.flexure
+        return own or ()
+
+    def _groups(self, name: str) -> Iterator[_core.Statement]:
+        """Yield the groups of a case file, under a name."""
+        yield _core.group(
+            "member_kind",
+            {
+                "name": _core.Text(name),
+                "modulus": self.modulus,
+                "area": self.area,
+                "inertia": self.inertia,
+                "shear_rigidity": self.shear_rigidity or None,
+                "yield_moment": self.yield_moment,
+                "hardening": self.hardening or None,
+                "between": None if self.between == "elastic" else self.between,
+            },
+        )
+        places: dict[Spring, list[float]] = {}
+        for place, spring in self.places:
+            places.setdefault(spring, []).append(place)
+        for spring, where in places.items():
+            yield spring.statement("flexure", kind=_core.Text(name), place=where)
+        for group in ("shear", "axial_spring"):
+            spring = getattr(self, group)
+            if spring is not None:
+                yield spring.statement(group, kind=_core.Text(name))
+
+
+@dataclass(frozen=True)
+class FrameNode:
+    """A node of a frame, or what a node of the grid has in addition.
+
+    Parameters
+    ----------
+    name : str
+        Its name; nodes of a grid are called N-line-floor, with floor 0 at the base.
+    x, y : float, optional
+        Place [m]; not for a node of the grid.
+    support : {"free", "roller", "pinned", "fixed"}, optional
+        What holds it: a roller along y alone, a pin along x and y.
+    mass, inertia : float, optional
+        Mass [kg] and rotary inertia [kg m2].
+    load_x, load_y, load_moment : float, optional
+        Dead load to the right and upward [N], and clockwise [N m]; a weight is a negative load_y.
+    push_x, push_y : float, optional
+        Shares of the lateral load with ``pattern="nodes"``.
+    moves_with : str, optional
+        A node whose displacement along x it shares.
+    shear, axial_spring, flexure : Spring, optional
+        Springs from the ground: along x, upward, and against rotation (soil, braces, bearings).
+    """
+
+    name: str
+    x: float | None = None
+    y: float | None = None
+    support: str = ""
+    mass: float = 0.0
+    inertia: float = 0.0
+    load_x: float = 0.0
+    load_y: float = 0.0
+    load_moment: float = 0.0
+    push_x: float = 0.0
+    push_y: float = 0.0
+    moves_with: str = ""
+    shear: Spring | None = None
+    axial_spring: Spring | None = None
+    flexure: Spring | None = None
+
+    def __post_init__(self) -> None:
+        _arguments.convert(self, "FrameNode")
+        if self.support:
+            _arguments.choice(self.support, "FrameNode: support", _SUPPORTS)
+
+    def _groups(self) -> Iterator[_core.Statement]:
+        values = {
+            own.name: getattr(self, own.name) or None
+            for own in fields(self)
+            if own.name not in (*_PLACES, "x", "y")
+        }
+        for name in ("name", "moves_with"):
+            if values[name]:
+                values[name] = _core.Text(values[name])
+        yield _core.group("node", values | {"x": self.x, "y": self.y})
+        for group in _PLACES:
+            spring = getattr(self, group)
+            if spring is not None:
+                yield spring.statement(group, node=_core.Text(self.name))
+
+
+@dataclass(frozen=True)
+class Member:
+    """A member between two nodes of a frame.
+
+    Parameters
+    ----------
+    name, start, end : str
+        Its name, and those of the nodes that it begins and ends at.
+    kind : FrameMember
+        What it is of.
+    panel : tuple of float, optional
+        Rigid lengths at its beginning and at its end [m].
+    load : float, optional
+        Dead load downward, per length along x [N/m].
+    """
+
+    name: str
+    start: str
+    end: str
+    kind: FrameMember
+    panel: tuple[float, float] = (0.0, 0.0)
+    load: float = 0.0
+
+    def __post_init__(self) -> None:
+        _arguments.convert(self, "Member")
+
+    def _group(self, kind: str) -> _core.Statement:
+        values = {
+            "name": _core.Text(self.name),
+            "from": _core.Text(self.start),
+            "to": _core.Text(self.end),
+            "kind": _core.Text(kind),
+            "panel_from": float(self.panel[0]) or None,
+            "panel_to": float(self.panel[1]) or None,
+            "load": self.load or None,
+        }
+        return _core.group("member", values)
+
+
+class FrameSpring(NamedTuple):
+    """A spring in a member: its number among those of its group, in the order of the members.
+
+    Attributes
+    ----------
+    member, group, rule : str
+        Name of the member; "flexure", "shear" or "axial_spring"; name of its rule.
+    place : float
+        In shares of the clear length of the member.
+    stiffness : float
+        The initial one [N m/rad or N/m].
+    """
+
+    member: str
+    group: str
+    rule: str
+    place: float
+    stiffness: float
+
+
+@dataclass(frozen=True)
+class FrameParts:
+    """Nodes, members and springs of a frame, as it was laid out.
+
+    Attributes
+    ----------
+    nodes, members : tuple of str
+        Names, in the order of the columns of a result.
+    x, y : ndarray, shape (nodes,)
+        Places [m].
+    floor : ndarray of int, shape (nodes,)
+        Floor of the grid, 0 at the base; -1 for nodes that are none of it.
+    ends : ndarray of int, shape (members, 2)
+        Numbers of the nodes that members begin and end at, from 0.
+    compression : ndarray, shape (members,)
+        Axial force under the dead load, compression positive [N].
+    springs : tuple of FrameSpring
+        Springs of the members.
+    mass : float
+        Mass that moves along x [kg].
+    """
+
+    nodes: tuple[str, ...]
+    members: tuple[str, ...]
+    x: Array
+    y: Array
+    floor: NDArray[np.int64]
+    ends: NDArray[np.int64]
+    compression: Array
+    springs: tuple[FrameSpring, ...]
+    mass: float
+
+    def springs_of(self, group: str) -> list[FrameSpring]:
+        """Return the springs of a group, as the columns of a result hold them."""
+        return [spring for spring in self.springs if spring.group == group]
+
+
+@dataclass(frozen=True, repr=False)
+class Frame:
+    """A planar frame: a grid of storeys and bays, single nodes and members, or both.
+
+    Nodes of the grid are called N-line-floor (N-2-1: second line of columns, first floor; floor 0
+    is the base), columns C-line-storey, beams B-bay-storey.
+
+    Parameters
+    ----------
+    storeys, bays : sequence of float, optional
+        Heights of the storeys from the ground up and widths of the bays from the left [m]. Without
+        bays there is one line of columns.
+    columns, beams : FrameMember or mapping, optional
+        Kinds of the columns and beams of the grid: one for all, or a mapping from (line, storey) or
+        (bay, storey) to a kind, where 0 means all and the last pair that fits counts.
+    floor_mass : float or sequence of float, optional
+        Mass of each floor, shared by its nodes as the widths beside them [kg]. Its weight acts as
+        far as it is given as a load.
+    beam_load : float or sequence of float, optional
+        Dead load on the beams of each floor, downward [N/m].
+    kinematics : {"small", "pdelta"}, optional
+        Small rotations, or the same with the second-order work of the axial forces under the dead
+        load, which stay as they are so that paths are exact.
+    base : {"fixed", "pinned", "free"}, optional
+        How the columns of the grid stand; "free" with springs from the ground.
+    diaphragm : bool, optional
+        Whether all nodes of a floor of the grid move alike along x.
+    pattern : {"triangular", "uniform", "modal", "nodes"}, optional
+        Shares of the lateral load: as mass times height, as mass, as the first mode, adding up to
+        1; or `push_x` and `push_y` of the nodes. Where no mass is given all nodes count alike.
+    control_node, control : str, optional
+        Node and direction ("x" or "y") whose displacement is that of the top; without it the first
+        node of the highest.
+    nodes : sequence of FrameNode, optional
+        Nodes, or what nodes of the grid have in addition.
+    members : sequence of Member, optional
+        Members between nodes.
+    damping : Damping, optional
+        In proportion to mass and to the stiffness of the members.
+
+    Raises
+    ------
+    InputError
+        With a line for everything that is wrong: the member or node, and the remedy.
+
+    Warns
+    -----
+    AccuracyWarning
+        For lengths that are those of no building, and masses without weight.
+    """
+
+    storeys: ArrayLike | None = None
+    bays: ArrayLike | None = None
+    columns: FrameMember | Mapping[tuple[int, int], FrameMember] | None = None
+    beams: FrameMember | Mapping[tuple[int, int], FrameMember] | None = None
+    floor_mass: ArrayLike = 0.0
+    beam_load: ArrayLike = 0.0
+    kinematics: Literal["small", "pdelta"] = "small"
+    base: Literal["fixed", "pinned", "free"] = "fixed"
+    diaphragm: bool = False
+    pattern: Literal["triangular", "uniform", "modal", "nodes"] = "triangular"
+    control_node: str = ""
+    control: Literal["x", "y"] = "x"
+    nodes: Sequence[FrameNode] = ()
+    members: Sequence[Member] = ()
+    damping: Damping | None = None
+
+    if TYPE_CHECKING:
+        #: Its keys, as the groups of a case file.
+        _statement: ClassVar[_core.Statement]
+
+    #: Joints of a frame do not open by themselves.
+    opens: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        def put(name: str, value: Any) -> None:
+            object.__setattr__(self, name, value)
+
+        _arguments.convert(self, "frame")
+        for name in ("storeys", "bays"):
+            if getattr(self, name) is not None:
+                given = _arguments.vector(getattr(self, name), f"frame: {name}", shape="1 or m")
+                put(name, tuple(given.tolist()))
+        for name in ("floor_mass", "beam_load"):
+            given = _arguments.vector(getattr(self, name), f"frame: {name}", shape="1 or m")
+            if given.size not in (1, len(self.storeys or ())):  # type: ignore[arg-type]
+                raise InputError(
+                    f"frame: {name} has {given.size} values for "
+                    f"{len(self.storeys or ())} storeys; give one, or one for each"  # type: ignore[arg-type]
+                )
+            put(name, tuple(given.tolist()))
+        for name in ("columns", "beams"):
+            put(name, _cells(getattr(self, name), name))
+        for name, kind in (("nodes", FrameNode), ("members", Member)):
+            items = tuple(_arguments.several(getattr(self, name), f"frame: {name}", name))
+            for item in items:
+                _arguments.instance(item, f"frame: {name}", kind)
+            put(name, items)
+        put("_statement", self._state())
+        for note in _core.evaluate("check_structure", self._statement).text.splitlines():
+            warnings.warn(note, AccuracyWarning, stacklevel=4)
+
+    @classmethod
+    def grid(
+        cls,
+        storeys: ArrayLike,
+        bays: ArrayLike | None = None,
+        *,
+        columns: FrameMember | Mapping[tuple[int, int], FrameMember],
+        beams: FrameMember | Mapping[tuple[int, int], FrameMember] | None = None,
+        **more: Any,
+    ) -> Self:
+        """Return a frame of storeys and bays; further keywords are those of `Frame`."""
+        return cls(storeys, bays, columns, beams, **more)
+
+    def __repr__(self) -> str:
+        grid = f"{len(self.storeys or ())} storeys, {len(self.bays or ())} bays"  # type: ignore[arg-type]
+        parts = self.parts
+        return (
+            f"Frame({grid}, {len(parts.nodes)} nodes, {len(parts.members)} members, "
+            f"kinematics={self.kinematics!r})"
+        )
+
+    def __hash__(self) -> int:
+        return hash((self._statement.text, *self._statement.numbers))
+
+    @cached_property
+    def parts(self) -> FrameParts:
+        """Nodes, members and springs as they were laid out, with the forces of the dead load."""
+        answer = _core.evaluate("frame_parts", self._statement)
+        nodes, members, springs = (tuple(line.split("\t")[:-1]) for line in answer.text.split("\n"))
+        n, m, s = len(nodes), len(members), len(springs)
+        x, y, floor, ends, compression, place, stiffness, mass = np.split(
+            answer.values, np.cumsum([n, n, n, 2 * m, m, s, s])
+        )
+        return FrameParts(
+            nodes,
+            members,
+            x,
+            y,
+            floor.astype(np.int64),
+            ends.reshape(m, 2).astype(np.int64) - 1,
+            compression,
+            tuple(
+                _spring_of(text, float(where), float(k))
+                for text, where, k in zip(springs, place, stiffness, strict=True)
+            ),
+            float(mass[0]),
+        )
+
+    @property
+    def height(self) -> float:
+        """Height from the lowest to the highest node [m]."""
+        return float(self.parts.y.max() - self.parts.y.min())
+
+    @property
+    def n(self) -> int:
+        """Number of nodes."""
+        return len(self.parts.nodes)
+
+    @property
+    def joint_numbers(self) -> range:
+        """Numbers of the rotational springs in members, from 1, as limit states know them."""
+        return range(1, len(self.parts.springs) + 1)
+
+    @property
+    def damped(self) -> bool:
+        """Whether the frame has viscous damping."""
+        return self.damping is not None and self.damping.acts
+
+    def kind_of(self, member: str) -> FrameMember:
+        """Return the kind of a member by the name of the member."""
+        for own in self.members:
+            if own.name == member:
+                return own.kind
+        letter, line, storey = member.split("-")
+        cells = self.columns if letter == "C" else self.beams
+        found = [
+            kind
+            for (at, level), kind in (cells or {}).items()  # type: ignore[union-attr]
+            if at in (0, int(line)) and level in (0, int(storey))
+        ]
+        return found[-1]
+
+    def to_namelist(self) -> str:
+        """Return the frame as groups of a case file, from which the same frame comes back."""
+        return _core.evaluate("to_namelist", self._statement).text
+
+    def _groups(self) -> _core.Statement:
+        return self._statement
+
+    def _state(self) -> _core.Statement:
+        # The same kind may end in nodes of different sizes.
+        names: dict[FrameMember, str] = {}
+        taken = {own.name for own in self._kinds() if own.name}
+        for own in (with_panel(kind, 0.0) for kind in self._kinds()):
+            if own not in names:
+                number = len(names) + 1
+                while f"kind-{number}" in taken:
+                    number += 1
+                names[own] = own.name or f"kind-{number}"
+        usual = {"kinematics": "small", "base": "fixed", "pattern": "triangular", "control": "x"}
+        grid = {
+            name: getattr(self, name)
+            for name in ("storeys", "bays", "diaphragm", "control_node", *usual)
+        }
+        own_values = {k: v for k, v in grid.items() if v not in (None, False, "", usual.get(k))}
+        parts = [_core.group("frame", own_values)]
+        masses, loads = self.floor_mass, self.beam_load
+        count = max(len(masses), len(loads))  # type: ignore[arg-type]
+        for i in range(count):
+            mass = masses[min(i, len(masses) - 1)]  # type: ignore[arg-type, index]
+            load = loads[min(i, len(loads) - 1)]  # type: ignore[arg-type, index]
+            if mass or load:
+                storey = None if count == 1 else i + 1
+                values = {"storey": storey, "mass": mass or None, "load": load or None}
+                parts.append(_core.group("floor", values))
+        for kind, name in names.items():
+            parts += kind._groups(name)
+        for group, key, cells in (
+            ("column_of", "line", self.columns),
+            ("beam_of", "bay", self.beams),
+        ):
+            for (at, storey), kind in (cells or {}).items():  # type: ignore[union-attr]
+                values = {
+                    key: at or None,
+                    "storey": storey or None,
+                    "kind": _core.Text(names[with_panel(kind, 0.0)]),
+                    "panel": kind.panel or None,
+                }
+                parts.append(_core.group(group, values))
+        for node in self.nodes:
+            parts += node._groups()
+        parts += [member._group(names[with_panel(member.kind, 0.0)]) for member in self.members]
+        if self.damping is not None:
+            parts.append(self.damping.statement())
+        numbers = [number for part in parts for number in part.numbers]
+        return _core.Statement("\n".join(part.text for part in parts), numbers)
+
+    def _kinds(self) -> Iterator[FrameMember]:
+        for cells in (self.columns, self.beams):
+            yield from (cells or {}).values()  # type: ignore[union-attr]
+        yield from (member.kind for member in self.members)
+
+
+def _spring_of(text: str, place: float, stiffness: float) -> FrameSpring:
+    member, group, rule = text.rsplit(" ", 2)
+    return FrameSpring(member, group, rule, place, stiffness)
+
+
+def _cells(given: Any, name: str) -> dict[tuple[int, int], FrameMember] | None:
+    """Return kinds by line (or bay) and storey."""
+    if given is None or isinstance(given, FrameMember):
+        return None if given is None else {(0, 0): given}
+    if not isinstance(given, Mapping):
+        raise InputError(
+            f"frame: {name} = {_arguments.shown(given)} must be a FrameMember, or a mapping from "
+            "pairs (line or bay, storey), 0 for all, to FrameMember"
+        )
+    found = {}
+    for pair, kind in given.items():
+        if not (isinstance(pair, tuple) and len(pair) == 2):
+            raise InputError(
+                f"frame: {name}: {_arguments.shown(pair)} must be a pair (line or bay, storey)"
+            )
+        at, storey = (_arguments.whole(number, f"frame: {name}") for number in pair)
+        found[at, storey] = _arguments.instance(kind, f"frame: {name}", FrameMember)
+    return found
+
+
+#: What analyses take.
+Structure = Column | Frame
+
+
+def checked_structure(structure: object, who: str = "") -> Structure:
+    """Return a column or a frame, or raise `InputError` with what makes one."""
+    return structure if isinstance(structure, Frame) else checked_column(structure, who)
+
+
+def with_panel(kind: FrameMember, panel: float) -> FrameMember:
+    """Return a kind of members with other rigid lengths in its nodes."""
+    if kind.panel == panel:
+        return kind
+    values = {own.name: getattr(kind, own.name) for own in fields(kind)}
+    values["flexure"] = dict(values["flexure"]) if values["flexure"] else None
+    return FrameMember(**values | {"panel": panel})

@@ -1,0 +1,431 @@
+"""What an analysis of a frame returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from rbsdem import _arguments, _core
+from rbsdem._arguments import Array
+from rbsdem.errors import InputError
+from rbsdem.model.frame import HONESTY, Frame, FrameSpring
+from rbsdem.model.response import ENERGIES
+from rbsdem.model.springs import Landmark
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: Names of the springs' deformations and forces in rows, by group.
+_CHANNELS = {
+    "flexure": ("rotation", "moment"),
+    "shear": ("slip", "shear"),
+    "axial_spring": ("opening", "axial_force"),
+}
+
+#: A threshold counts as reached within round-off: a path stands on it exactly.
+_REACHED = 1.0 - 1e-9
+
+
+class FrameEvent(NamedTuple):
+    """A limit state of a spring in a member, where it is reached first.
+
+    Attributes
+    ----------
+    step : float
+        Time [s], or number of the point of a static path with the share of the way.
+    member, group : str
+        Name of the member, and which of its springs: "flexure", "shear" or "axial_spring".
+    end : str
+        "start", "end", or the place between them in shares of the clear length.
+    what : str
+        "cracking", "yield" or "cap".
+    side : int
+        1 or -1.
+    displacement : float
+        Of the top [m].
+    drift : float
+        Displacement of the top over the height.
+    force : float
+        Lateral force, in time base shear [N].
+    """
+
+    step: float
+    member: str
+    group: str
+    end: str
+    what: str
+    side: int
+    displacement: float
+    drift: float
+    force: float
+
+
+@dataclass(frozen=True)
+class MemberHistory:
+    """How a member goes: arrays with a row for each of the result.
+
+    Attributes
+    ----------
+    name : str
+        The member.
+    axial : ndarray, shape (rows,)
+        Axial force, compression positive [N].
+    moment : ndarray, shape (rows, 2)
+        Moments at the ends of its clear length, clockwise on the member positive [N m].
+    shear : ndarray, shape (rows,)
+        Change of the moment along the clear length, (M_a + M_b)/L, without the share of a load on
+        the member [N].
+    springs : tuple of FrameSpring
+        Its springs.
+    deformation, force : ndarray, shape (rows, springs)
+        Of the springs [rad, N m; m, N].
+    ductility : ndarray, shape (springs,)
+        Largest deformation over that at yield, NaN for springs that do not yield.
+    """
+
+    name: str
+    axial: Array
+    moment: Array
+    shear: Array
+    springs: tuple[FrameSpring, ...]
+    deformation: Array
+    force: Array
+    ductility: Array
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class FrameResult:
+    """Rows of an analysis of a frame: arrays with a row for each that was kept.
+
+    Attributes
+    ----------
+    time : ndarray, shape (rows,)
+        Time [s]; on a static path the number of the point.
+    displacement : ndarray, shape (rows,)
+        Displacement of the top (`Frame.control_node`) [m], counted from the frame without load.
+    force : ndarray, shape (rows,)
+        Factor of the lateral load [N]: its sum, unless ``pattern="nodes"``.
+    base_shear : ndarray, shape (rows,)
+        What supports and springs from the ground hold the frame with along x [N]; in time with
+        damping by mass.
+    energy : dict of ndarray
+        Energies [J] as those of `Result`; "axial" is the potential of dead load, of second-order
+        work and of what is elastic.
+    x, y, turn : ndarray, shape (rows, nodes)
+        Displacements of the nodes along x and upward [m], clockwise rotations [rad].
+    member_axial, moment_from, moment_to : ndarray, shape (rows, members)
+        Axial forces, compression positive [N], and moments of the ends [N m].
+    springs : dict of ndarray, shape (rows, springs)
+        Deformations and forces of the springs in members: rotation and moment, slip and shear,
+        opening and axial_force, in the order of `Frame.parts`.
+    summary : dict
+        As that of `Result`.
+    frame : Frame
+        The frame.
+    call : dict
+        The loading and the settings that were given.
+    acceleration : ndarray, shape (rows, nodes), or None
+        Accelerations of the nodes along x in space [m/s2], if they were kept (``motion=True``);
+        NaN where a node has no mass along x.
+    state : ndarray or None
+        The state at the end, for ``initial=``.
+    """
+
+    time: Array
+    displacement: Array
+    force: Array
+    base_shear: Array
+    energy: dict[str, Array]
+    x: Array
+    y: Array
+    turn: Array
+    member_axial: Array
+    moment_from: Array
+    moment_to: Array
+    springs: dict[str, Array]
+    summary: dict[str, Any]
+    frame: Frame
+    call: dict[str, Any]
+    acceleration: Array | None = None
+    state: Array | None = None
+    honesty: str = field(default=HONESTY, init=False)
+
+    @property
+    def dynamic(self) -> bool:
+        """Whether it is a response in time."""
+        return bool(self.summary["analysis"] == "dynamic")
+
+    @property
+    def column(self) -> Frame:
+        """The structure, by the name that results of columns have for it."""
+        return self.frame
+
+    @property
+    def drift(self) -> Array:
+        """Displacement of the top over the height, shape (rows,)."""
+        return self.displacement / self.frame.height
+
+    @property
+    def storey_drift(self) -> Array:
+        """Drift ratio of each storey of the grid, shape (rows, storeys).
+
+        Difference of the displacements of the floors, mean of their nodes, over the height.
+        """
+        heights, floors = np.array(self._storeys()), self.floor_displacement
+        return np.asarray(np.diff(floors, axis=1) / heights)
+
+    @property
+    def floor_displacement(self) -> Array:
+        """Displacement of the floors from the base up, mean of their nodes [m]."""
+        count = len(self._storeys()) + 1
+        floor = self.frame.parts.floor
+        return np.column_stack([self.x[:, floor == i].mean(axis=1) for i in range(count)])
+
+    @property
+    def floor_acceleration(self) -> Array:
+        """Accelerations of the floors in space, mean of their nodes [m/s2]; needs motion=True."""
+        if self.acceleration is None:
+            raise InputError("accelerations were not kept; run the analysis with motion=True")
+        count = len(self._storeys()) + 1
+        floor = self.frame.parts.floor
+        return np.column_stack(
+            [self.acceleration[:, floor == i].mean(axis=1) for i in range(1, count)]
+        )
+
+    @property
+    def residual_drift(self) -> Array:
+        """Storey drifts in the last row, shape (storeys,)."""
+        return np.asarray(self.storey_drift[-1])
+
+    def _storeys(self) -> tuple[float, ...]:
+        storeys: Any = self.frame.storeys
+        if not storeys:
+            raise InputError("the frame has no grid, and no storeys; look at `x` of its nodes")
+        return tuple(storeys)
+
+    def node(self, name: str) -> Array:
+        """Return displacement along x and upward [m] and rotation [rad] of a node, (rows, 3)."""
+        at = _place(name, self.frame.parts.nodes, "node")
+        return np.column_stack((self.x[:, at], self.y[:, at], self.turn[:, at]))
+
+    def member(self, name: str) -> MemberHistory:
+        """Return how a member goes.
+
+        Parameters
+        ----------
+        name : str
+            Its name: C-line-storey, B-bay-storey, or its own.
+
+        Raises
+        ------
+        InputError
+            If there is no such member; the message names the nearest.
+        """
+        parts = self.frame.parts
+        at = _place(name, parts.members, "member")
+        springs, deformation, force, ductility = [], [], [], []
+        for spring, values, forces in self._springs():
+            if spring.member != name:
+                continue
+            springs.append(spring)
+            deformation.append(values)
+            force.append(forces)
+            yields = [
+                point.deformation for point in self._landmarks(spring) if point.name == "yield"
+            ]
+            largest = float(np.abs(values).max(initial=0.0))
+            ductility.append(largest / min(yields) if yields else np.nan)
+        start, end = parts.ends[at]
+        length = float(np.hypot(parts.x[end] - parts.x[start], parts.y[end] - parts.y[start]))
+        moment = np.column_stack((self.moment_from[:, at], self.moment_to[:, at]))
+        clear = length - _rigid_lengths(self.frame, name)
+        rows = (self.time.size, 0)
+        return MemberHistory(
+            name,
+            self.member_axial[:, at],
+            moment,
+            moment.sum(axis=1) / clear,
+            tuple(springs),
+            np.column_stack(deformation) if springs else np.empty(rows),
+            np.column_stack(force) if springs else np.empty(rows),
+            np.array(ductility),
+        )
+
+    def _springs(self) -> list[tuple[FrameSpring, Array, Array]]:
+        found = []
+        for group, (deformation, force) in _CHANNELS.items():
+            for i, spring in enumerate(self.frame.parts.springs_of(group)):
+                found.append((spring, self.springs[deformation][:, i], self.springs[force][:, i]))
+        return found
+
+    def _landmarks(self, spring: FrameSpring) -> list[Landmark]:
+        return landmarks_of(self.frame, spring)
+
+    @cached_property
+    def events(self) -> tuple[FrameEvent, ...]:
+        """Limit states of the springs in members, in the order in which they are reached first.
+
+        Cracking, yield and cap of each side. On a path of `pushover` each is a row of its own and
+        exact; else they are those of the rows that were kept.
+        """
+        forces = self.base_shear if self.dynamic else self.force
+        found = []
+        for spring, values, _ in self._springs():
+            for point in self._landmarks(spring):
+                reached = np.flatnonzero(point.side * values >= _REACHED * point.deformation)
+                if not reached.size:
+                    continue
+                row = int(reached[0])
+                end = {0.0: "start", 1.0: "end"}.get(spring.place, f"{spring.place:g}")
+                found.append(
+                    FrameEvent(
+                        float(self.time[row]),
+                        spring.member,
+                        spring.group,
+                        end,
+                        point.name,
+                        point.side,
+                        float(self.displacement[row]),
+                        float(self.displacement[row]) / self.frame.height,
+                        float(forces[row]),
+                    )
+                )
+        return tuple(sorted(found, key=lambda event: event.step))
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return a DataFrame, a row for each of the result, nodes and members by their names."""
+        import pandas  # noqa: PLC0415
+
+        columns: dict[str, Array] = {
+            "time" if self.dynamic else "step": self.time,
+            "displacement_m": self.displacement,
+            "force_N": self.force,
+            "base_shear_N": self.base_shear,
+        }
+        columns |= {f"{name}_J": values for name, values in self.energy.items()}
+        parts, units = self.frame.parts, _core.units()
+        named = (
+            (parts.nodes, ("x", "y", "turn")),
+            (parts.members, ("member_axial", "moment_from", "moment_to")),
+        )
+        for owners, channels in named:
+            for channel in channels:
+                unit = units[channel].replace(" ", "")
+                for i, owner in enumerate(owners):
+                    columns[f"{channel}_{owner}_{unit}"] = getattr(self, channel)[:, i]
+        for group, pair in _CHANNELS.items():
+            for channel in pair:
+                unit = units[channel].replace(" ", "")
+                for i, spring in enumerate(parts.springs_of(group)):
+                    name = f"{channel}_{spring.member}_{spring.place:g}_{unit}"
+                    columns[name] = self.springs[channel][:, i]
+        frame = pandas.DataFrame(columns)
+        frame.attrs["summary"] = dict(self.summary) | {"honesty": self.honesty}
+        return frame
+
+    def to_csv(self, path: Any) -> None:
+        """Write the rows as csv, whole or not at all."""
+        from rbsdem._files import whole_file  # noqa: PLC0415
+
+        text = self.to_frame().to_csv(index=False)
+        with whole_file(path) as file:
+            file.write(f"# rbsdem {_core.version()}\n# {self.honesty}\n{text}".encode())
+
+    def __repr__(self) -> str:
+        about = self.summary
+        return (
+            f"FrameResult({about['method']}, {self.time.size} rows, {about['status']}, "
+            f"peak displacement {about['peak_displacement']:.4g} m, "
+            f"peak base shear {about['peak_base_shear']:.4g} N, {len(self.events)} limit states)"
+        )
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether another result has the same frame, rows and summary, bit for bit."""
+        if not isinstance(other, FrameResult):
+            return NotImplemented
+        return self.frame == other.frame and all(
+            np.array_equal(one, two, equal_nan=True)
+            for one, two in zip(self._arrays(), other._arrays(), strict=True)
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def _arrays(self) -> list[Array]:
+        own = [getattr(self, one.name) for one in fields(self)]
+        mappings = [*self.energy.values(), *self.springs.values()]
+        return [value for value in own if isinstance(value, np.ndarray)] + mappings
+
+
+def landmarks_of(frame: Frame, spring: FrameSpring) -> list[Landmark]:
+    """Return where a spring of a member cracks, yields and caps, first time on the virgin curve."""
+    kind = frame.kind_of(spring.member)
+    if kind.yield_moment is not None:
+        if spring.group != "flexure":
+            return []
+        turned = kind.yield_moment / spring.stiffness
+        return [
+            Landmark("yield", 1, turned, "yield_moment"),
+            Landmark("yield", -1, turned, "yield_moment"),
+        ]
+    if spring.group == "flexure":
+        own = next(own for place, own in kind.places if place == spring.place)
+        return list(own.landmarks())
+    other = kind.shear if spring.group == "shear" else kind.axial_spring
+    return [] if other is None else list(other.landmarks())
+
+
+def _rigid_lengths(frame: Frame, member: str) -> float:
+    """Return the rigid lengths of a member [m]."""
+    for own in frame.members:
+        if own.name == member:
+            return float(sum(own.panel))
+    both = member.startswith("B") or not member.endswith("-1")
+    return frame.kind_of(member).panel * (2 if both else 1)
+
+
+def _place(name: str, names: tuple[str, ...], what: str) -> int:
+    if name not in names:
+        import difflib  # noqa: PLC0415
+
+        near = difflib.get_close_matches(str(name), names, 1, 0.0)
+        raise InputError(
+            f"{what} = {_arguments.shown(name)} is not of this frame; did you mean {near[0]!r}?"
+        )
+    return names.index(name)
+
+
+def frame_result_of(
+    arrays: dict[str, Array],
+    frame: Frame,
+    summary: dict[str, Any],
+    call: dict[str, Any],
+    state: Array | None = None,
+) -> FrameResult:
+    """Return the result of the arrays of a run."""
+    acceleration = None
+    if "node_acceleration" in arrays:
+        ground = arrays["ground_acceleration"]
+        acceleration = arrays["node_acceleration"] + ground[:, None]
+    names = [name for pair in _CHANNELS.values() for name in pair]
+    return FrameResult(
+        time=arrays["time" if "time" in arrays else "step"],
+        displacement=arrays["displacement"],
+        force=arrays["force"],
+        base_shear=arrays["base_shear"],
+        energy={name: arrays[name] for name in ENERGIES},
+        x=arrays["x"],
+        y=arrays["y"],
+        turn=arrays["turn"],
+        member_axial=arrays["member_axial"],
+        moment_from=arrays["moment_from"],
+        moment_to=arrays["moment_to"],
+        springs={name: arrays[name] for name in names if name in arrays},
+        summary=summary,
+        frame=frame,
+        call=call,
+        acceleration=acceleration,
+        state=state,
+    )

@@ -1,0 +1,99 @@
+"""The frame of a case file, from its groups."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from rbsdem import _core
+from rbsdem.model.damping import Damping
+from rbsdem.model.frame import Frame, FrameMember, FrameNode, Member, with_panel
+from rbsdem.model.springs import SPRINGS, Spring
+
+#: Groups by name, each as often as it was given.
+Groups = Mapping[str, list[dict[str, Any]]]
+
+_SPRINGS = ("shear", "flexure", "axial_spring")
+
+
+def frame_of(groups: Groups) -> Frame:
+    """Return the frame of the groups of a case."""
+    kinds = {given["name"]: _kind(given, groups) for given in groups.get("member_kind", [])}
+    frame = _core.typed("frame", groups["frame"][-1])
+    storeys = max(len(frame.get("storeys", ())), 1)
+    damping = groups.get("damping")
+    return Frame(
+        **frame,
+        columns=_cells("column_of", "line", groups, kinds),
+        beams=_cells("beam_of", "bay", groups, kinds),
+        floor_mass=_by_floor("mass", storeys, groups),
+        beam_load=_by_floor("load", storeys, groups),
+        nodes=_nodes(groups, len(frame.get("bays", ())) + 1),
+        members=[
+            Member(
+                given["name"],
+                given["from"],
+                given["to"],
+                kinds[given["kind"]],
+                (given.get("panel_from", 0.0), given.get("panel_to", 0.0)),
+                given.get("load", 0.0),
+            )
+            for given in groups.get("member", [])
+        ],
+        damping=Damping(**_core.typed("damping", damping[-1])) if damping else None,
+    )
+
+
+def _kind(given: dict[str, Any], groups: Groups) -> FrameMember:
+    """Return a kind of members with its springs."""
+    flexure: dict[float, Spring] = {}
+    others: dict[str, Any] = {}
+    for group in _SPRINGS:
+        for spring in groups.get(group, []):
+            if spring.get("kind") != given["name"]:
+                continue
+            if group == "flexure":
+                places = _core.several(spring.get("place", [0.0, 1.0]))
+                flexure |= dict.fromkeys(places, _spring(spring))
+            else:
+                others[group] = _spring(spring)
+    own: dict[str, Any] = _core.typed("member_kind", given)
+    return FrameMember(**own, flexure=flexure or None, **others)
+
+
+def _cells(
+    group: str, key: str, groups: Groups, kinds: Mapping[str, FrameMember]
+) -> dict[tuple[int, int], FrameMember] | None:
+    found: dict[tuple[int, int], FrameMember] = {}
+    for given in groups.get(group, []):
+        pair = (int(given.get(key, 0)), int(given.get("storey", 0)))
+        # The last that fits counts.
+        found.pop(pair, None)
+        found[pair] = with_panel(kinds[given["kind"]], given.get("panel", 0.0))
+    return found or None
+
+
+def _by_floor(name: str, storeys: int, groups: Groups) -> list[float]:
+    values = [0.0] * storeys
+    for given in groups.get("floor", []):
+        for i in range(storeys):
+            if given.get("storey", 0) in (0, i + 1):
+                values[i] = given.get(name, 0.0)
+    return values[:1] if len(set(values)) == 1 else values
+
+
+def _nodes(groups: Groups, lines: int) -> list[FrameNode]:
+    """Return the nodes with the springs that hold them to the ground."""
+    nodes = {given["name"]: dict(given) for given in groups.get("node", [])}
+    for group in _SPRINGS:
+        for spring in groups.get(group, []):
+            name = spring.get("node", "")
+            base = [f"N-{line}-0" for line in range(1, lines + 1)]
+            for one in base if name == "base" else [name] if name else []:
+                nodes.setdefault(one, {"name": one})[group] = _spring(spring)
+    return [FrameNode(**node) for node in nodes.values()]
+
+
+def _spring(given: Mapping[str, Any]) -> Spring:
+    places = ("rule", "kind", "node", "place")
+    return SPRINGS[given["rule"]](**{k: v for k, v in given.items() if k not in places})
