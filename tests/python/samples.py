@@ -23,7 +23,26 @@ SECTION = rbsdem.RectangularSection(
     ties=rbsdem.Ties(0.01, 0.08, rbsdem.Steel(400e6), legs=3),
     cover=0.02,
 )
-#: The same column as a row of the table of tests.
+#: 500 x 500 mm of 35 MPa, 8 bars of 25 mm of 460 MPa at 62.5 mm from the faces, three legs.
+MILD = rbsdem.Steel(460e6, 575e6, es=200e9)
+BAR = np.pi / 4 * 0.025**2
+EIGHT_BARS = rbsdem.RectangularSection(
+    0.5,
+    0.5,
+    rbsdem.Concrete(35e6),
+    bars=[(0.1875, 3 * BAR, MILD), (0.0, 2 * BAR, MILD), (-0.1875, 3 * BAR, MILD)],
+    bar_diameter=0.025,
+    ties=rbsdem.Ties(0.01, 0.1, MILD, legs=3),
+    cover=0.04,
+)
+TWELVE_BARS = rbsdem.CircularSection(
+    0.6,
+    rbsdem.Concrete(30e6),
+    layout=rbsdem.Layout(12, 0.025, MILD),
+    spiral=rbsdem.Spiral(0.01, 0.08, MILD),
+    cover=0.03,
+)
+#: SECTION in a column of 1.6 m as a row of the table of tests.
 SPECIMEN = peer.Specimen(
     name="Square",
     section="rectangular",
@@ -45,7 +64,7 @@ SPECIMEN = peer.Specimen(
     transverse_spacing=0.08,
     shear_legs=3.0,
 )
-#: The same as the table has it; a row changes what differs.
+#: The same as the file has it; a row changes what differs.
 ROW = {
     "peer_id": "1", "file": "a.csv", "name": "Me 1990 No. 1", "author": "Me", "year": "1990",
     "section": "rectangular", "L_mm": "1600", "b_mm": "400", "h_mm": "400", "cover_mm": "20",

@@ -12,6 +12,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from samples import BAR
+from samples import EIGHT_BARS as SECTION
+from samples import MILD as STEEL
+from samples import TWELVE_BARS as ROUND
 
 import rbsdem
 from rbsdem.checks import formulas
@@ -20,24 +24,6 @@ from rbsdem.codes import code_values, compare, quantities
 from rbsdem.section.axial_moment import nominal_moment
 from rbsdem.springs import Bilinear, Elastic
 
-STEEL = rbsdem.Steel(460e6, 575e6, es=200e9)
-BAR = 0.25 * math.pi * 0.025**2
-SECTION = rbsdem.RectangularSection(
-    0.5,
-    0.5,
-    rbsdem.Concrete(35e6),
-    bars=[(0.1875, 3 * BAR, STEEL), (0.0, 2 * BAR, STEEL), (-0.1875, 3 * BAR, STEEL)],
-    bar_diameter=0.025,
-    ties=rbsdem.Ties(0.01, 0.1, STEEL, legs=3),
-    cover=0.04,
-)
-ROUND = rbsdem.CircularSection(
-    0.6,
-    rbsdem.Concrete(30e6),
-    layout=rbsdem.Layout(12, 0.025, STEEL),
-    spiral=rbsdem.Spiral(0.01, 0.08, STEEL),
-    cover=0.03,
-)
 C1 = quantities(SECTION, 1.5, 1750e3)
 
 
