@@ -22,6 +22,7 @@ from rbsdem.errors import InputError
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
+Number = TypeVar("Number", int, float)
 
 #: Larger numbers have no meaning in any unit (the constant `beyond_meaning`).
 BEYOND_MEANING = 1e50
@@ -49,8 +50,10 @@ def one_line(text: str) -> str:
     return "".join(character if character.isprintable() else " " for character in text)
 
 
-def number(value: Any, name: str) -> float:
-    """Return `value` as a float."""
+def number(value: Any, name: str, **bounds: Any) -> float:
+    """Return `value` as a float; with bounds see `within`."""
+    if bounds:
+        return within(number(value, name), name, **bounds)
     if type(value) is float:
         return value
     try:
@@ -65,8 +68,37 @@ def number(value: Any, name: str) -> float:
         raise InputError(f"{name} = {shown(value)} must be a number") from None
 
 
-def whole(value: Any, name: str) -> int:
-    """Return `value` as an int."""
+def within(
+    value: Number,
+    name: str,
+    *,
+    above: float | None = None,
+    least: float | None = None,
+    below: float | None = None,
+    most: float | None = None,
+    unit: str = "",
+    why: str = "",
+) -> Number:
+    """Return a number if it is finite and within its bounds; `why` ends the message."""
+    low = -np.inf if least is None else least
+    high = np.inf if most is None else most
+    inside = low <= value <= high and abs(value) < np.inf
+    if inside and (above is None or value > above) and (below is None or value < below):
+        return value
+    ends = {"above": above, "from": least, "below": below, "at most": most}
+    said = [f"{word} {bound:.15g}" for word, bound in ends.items() if bound is not None]
+    text = " and ".join(said)
+    if least is not None:
+        text = f"{least:.15g} or more" if len(said) == 1 else text.replace(" and ", " to ", 1)
+        text = text.replace(" to at most ", " to ")
+    text += "" if abs(value) < np.inf else " and finite"
+    raise InputError(f"{name} = {value:.6g}{unit and ' '}{unit} must be {text}{why}")
+
+
+def whole(value: Any, name: str, **bounds: Any) -> int:
+    """Return `value` as an int; with bounds see `within`."""
+    if bounds:
+        return within(whole(value, name), name, **bounds)
     # A time of numpy is one of its whole numbers.
     if isinstance(value, _NO_NUMBERS) or not isinstance(value, (int, np.integer)):
         raise InputError(f"{name} = {shown(value)} must be a whole number")
@@ -96,10 +128,7 @@ def is_one_of(value: Any, words: Iterable[str]) -> bool:
 
 def seed(value: Any, name: str = "seed") -> int:
     """Return `value` as the seed of random numbers."""
-    start = whole(value, name)
-    if start < 0:
-        raise InputError(f"{name} = {start} must be 0 or more")
-    return start
+    return whole(value, name, least=0)
 
 
 def choice(value: Any, name: str, words: Iterable[str]) -> str:

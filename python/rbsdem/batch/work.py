@@ -140,8 +140,7 @@ def available_processors() -> int:
 
 def check_jobs(jobs: Any) -> int:
     """Return the number of threads or processes, or raise `InputError` if it is none."""
-    if _arguments.whole(jobs, "jobs") < 1:
-        raise InputError(f"jobs = {jobs} must be 1 or more")
+    _arguments.whole(jobs, "jobs", least=1)
     return int(jobs)
 
 

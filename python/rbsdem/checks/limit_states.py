@@ -271,9 +271,7 @@ def hinge(result: Response, joint: int, length: float | None) -> Hinge:
     joint = _arguments.whole(joint, "joint")
     at = result.column.place_of(joint)
     if length is not None:
-        length = _arguments.number(length, "length")
-        if not 0 < length < math.inf:
-            raise InputError(f"length = {length:g} m of the hinge must be above 0")
+        length = _arguments.number(length, "hinge: length", above=0, unit="m")
     else:
         gauge = result.column.gauge(joint)
         if gauge is not None:

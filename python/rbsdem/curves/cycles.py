@@ -81,8 +81,7 @@ def turning_points(displacement: ArrayLike, *, share: float = TURN) -> np.ndarra
         If a number is not finite, or if `share` is out of its range.
     """
     d = _arguments.finite_vector(displacement, "displacement")
-    if not 0 <= _arguments.number(share, "share") <= 1:
-        raise InputError(f"share = {share} must be from 0 to 1")
+    _arguments.number(share, "share", least=0, most=1)
     if d.size < 3:
         return np.empty(0, dtype=np.intp)
     # Only local extremes can be turning points; of a plateau, its first row.

@@ -174,8 +174,7 @@ def strength_loss_point(
     InputError
         As `strength_loss`.
     """
-    if not 0 < _arguments.number(share, "share") < 1:
-        raise InputError(f"share = {share} must be above 0 and below 1")
+    _arguments.number(share, "share", above=0, below=1)
     found = (math.nan, math.nan)
     d, f = columns(("displacement", "force"), displacement, force, least=0)
     turns = turning_points(d)
@@ -358,8 +357,7 @@ class Envelope:
         float
             The displacement; NaN if the force does not fall so far.
         """
-        if not 0 < share <= 1:
-            raise InputError(f"share = {share} must be above 0 and up to 1")
+        _arguments.number(share, "share", above=0, most=1)
         return _crossing(self.displacement, self.force, share * self.peak_force, falling=falling)
 
     def idealise(self, method: Method = "asce_41", *, end: float | None = None) -> Idealisation:

@@ -167,8 +167,7 @@ class PathPoints:
 
     def __init__(self, driver: ArrayLike, n: int = N_POINTS, name: str = "driver") -> None:
         (d,) = columns((name,), driver)
-        if not 2 <= _arguments.whole(n, "resample: n") <= _MOST_POINTS:
-            raise InputError(f"resample: n = {n} points must be from 2 to {_MOST_POINTS}")
+        _arguments.whole(n, "resample: n", least=2, most=_MOST_POINTS)
         self.row_path = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(d)))))
         if not self.row_path[-1] > 0:
             raise InputError(f"{name} is {d[0]:g} in every row; a loop needs a {name} that changes")
@@ -285,10 +284,7 @@ def secant_stiffness(
         or `level` is outside its range.
     """
     d, f = columns(("displacement", "force"), displacement, force)
-    level = _arguments.number(level, "level")
-    if not 0 < level <= 1:
-        raise InputError(f"level = {level}; give a share of the peak force above 0 and up to 1")
-    return _secant(d, f, level)
+    return _secant(d, f, _arguments.number(level, "level", above=0, most=1))
 
 
 def resample(

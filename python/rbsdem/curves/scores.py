@@ -363,10 +363,7 @@ def _model_rows(result: Any, d: Array) -> tuple[Array, int]:
 
 def _height(height: float | None, test: Any, result: Any) -> float:
     if height is not None:
-        value = _arguments.number(height, "height")
-        if not 0 < value < math.inf:
-            raise InputError(f"height = {height} m must be positive")
-        return value
+        return _arguments.number(height, "height", above=0, unit="m")
     if getattr(test, "height", None):
         return float(test.height)
     top = getattr(result, "top", None)

@@ -177,8 +177,7 @@ class CloudFragility(Fragility):
         self, intensity: ArrayLike, level: float = 0.9, n: int = 1000, seed: int = 1
     ) -> tuple[Array, Array]:
         """Return the confidence band of the curve by the bootstrap; see `Fragility.band`."""
-        if not 0 < _arguments.number(level, "level") < 1:
-            raise InputError(f"band: level = {level} must be above 0 and below 1")
+        _arguments.number(level, "band: level", above=0, below=1)
         u = np.log(np.atleast_1d(np.asarray(intensity, dtype=float)))
         curves = [data.curve(data.parts(), u) for data in self._draws(n, seed)]
         ends = np.quantile(curves, [0.5 - level / 2, 0.5 + level / 2], axis=0)

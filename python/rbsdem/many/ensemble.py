@@ -160,8 +160,7 @@ class Ensemble:
         SolveError
             If the run failed; its attribute `result` holds the rows up to there.
         """
-        if not 0 <= _arguments.whole(run, "run") < len(self):
-            raise InputError(f"run = {run} must be from 0 to {len(self) - 1}")
+        _arguments.whole(run, "run", least=0, most=len(self) - 1)
         name, column = list(self.columns.items())[self.column[run]]
         motion = list(self.motions.values())[self.motion[run]]
         state = self.initial.get(name, AT_REST)

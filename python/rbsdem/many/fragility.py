@@ -323,9 +323,7 @@ class Fragility:
         InputError
             If these are more than half.
         """
-        number = _arguments.whole(n, "n")
-        if not 10 <= number <= _MOST_SAMPLES:
-            raise InputError(f"samples: n = {n} must be from 10 to {_MOST_SAMPLES}")
+        number = _arguments.whole(n, "samples: n", least=10, most=_MOST_SAMPLES)
         random = np.random.default_rng(_arguments.seed(seed))
         mu, beta = self.data.fit_samples(random, number, self.beta if self.stated else None)
         good = np.isfinite(mu)
@@ -359,8 +357,7 @@ class Fragility:
         tuple of ndarray, shape (m,)
             Lower and upper bound of the probability.
         """
-        if not 0 < _arguments.number(level, "level") < 1:
-            raise InputError(f"band: level = {level} must be above 0 and below 1")
+        _arguments.number(level, "band: level", above=0, below=1)
         from scipy import special  # noqa: PLC0415
 
         theta, beta = self.samples(n, seed)
@@ -431,9 +428,7 @@ def fit_fragility(
     if not isinstance(data, (Counts, Capacities)):
         raise InputError(f"{who}data = {_arguments.shown(data)} must be Counts or Capacities")
     if beta is not None:
-        beta = _arguments.number(beta, "beta")
-        if not 0 < beta < np.inf:
-            raise InputError(f"{who}beta = {beta:g} must be above 0 and finite, as 0.4")
+        beta = _arguments.number(beta, f"{who}beta", above=0, why=", as 0.4")
     _check(who, data, beta)
     if isinstance(data, Capacities) and data.known and beta is None:
         mu, spread = (float(value) for value in fit_points(data.values))

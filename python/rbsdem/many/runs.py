@@ -88,9 +88,8 @@ def make_intensity(name: str, column: Structure, period: float | None, damping: 
             raise InputError("intensity: 'pga' has no period; leave period out, or take 'sa_t1'")
         return Intensity("pga", 0.0, 0.0)
     at = 1 / float(modes(column).frequency[0]) if period is None else period
-    at, ratio = _arguments.number(at, "period"), _arguments.number(damping, "damping")
-    if not 0 < at < 100:
-        raise InputError(f"period = {at:g} s must be above 0 and below 100")
+    at = _arguments.number(at, "period", above=0, below=100, unit="s")
+    ratio = _arguments.number(damping, "damping")
     return Intensity("sa_t1" if name == "sa_t1" else "sa_avg", at, ratio)
 
 

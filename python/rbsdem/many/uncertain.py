@@ -28,9 +28,8 @@ def lognormal(median: float, beta: float) -> Any:
     beta : float
         Standard deviation of the logarithm, about the coefficient of variation.
     """
-    middle, spread = _arguments.number(median, "median"), _arguments.number(beta, "beta")
-    if not (middle > 0 and spread > 0):
-        raise InputError(f"lognormal: median = {middle:g} and beta = {spread:g} must be above 0")
+    middle = _arguments.number(median, "lognormal: median", above=0)
+    spread = _arguments.number(beta, "lognormal: beta", above=0)
     from scipy.stats import lognorm as frozen  # noqa: PLC0415
 
     return frozen(spread, scale=middle)
@@ -136,9 +135,8 @@ class Uncertain:
         seed : int, optional
             The same seed gives the same values.
         """
-        number, start = _arguments.whole(n, "n"), _arguments.seed(seed)
-        if not 1 <= number <= _MOST:
-            raise InputError(f"uncertain: n = {n} must be from 1 to {_MOST}")
+        number = _arguments.whole(n, "uncertain: n", least=1, most=_MOST)
+        start = _arguments.seed(seed)
         size = len(self.variables)
         random = np.random.default_rng(start)
         from scipy import special  # noqa: PLC0415

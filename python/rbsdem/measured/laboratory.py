@@ -192,8 +192,8 @@ def _code(code: int | None, length: float | None, axial_load: float | None) -> i
     ):
         if value is None and code in needed:
             raise InputError(f"pdelta_code = {code} ({PDELTA_CODES[code]}) needs {what}")
-    if length is not None and not 0 < _arguments.number(length, "length") < math.inf:
-        raise InputError(f"length = {length} m must be positive")
+    if length is not None:
+        _arguments.number(length, "length", above=0, unit="m")
     return code
 
 

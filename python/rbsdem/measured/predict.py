@@ -513,8 +513,7 @@ def nearest(
     InputError
         If `n` is below 1.
     """
-    if _arguments.whole(n, "n") < 1:
-        raise InputError(f"nearest: n = {n} must be 1 or more")
+    _arguments.whole(n, "nearest: n", least=1)
     place = place_of(section, height, axial_load)
     is_round = isinstance(section, CircularSection) if but is None else _is_round(but)
     found = []

@@ -372,14 +372,11 @@ def compare_methods(
 
 def _check(tolerance: float | None, budget: float, digits: float, repeats: int) -> None:
     who = "compare_methods: "
-    if tolerance is not None and not 0 < _arguments.number(tolerance, f"{who}tolerance") < 1:
-        raise InputError(f"{who}tolerance = {tolerance!r} must be above 0 and below 1")
-    if not 0 < _arguments.number(budget, f"{who}budget") < math.inf:
-        raise InputError(f"{who}budget = {budget!r} must be a positive number of seconds")
-    if not 0 < _arguments.number(digits, f"{who}digits") <= 15:
-        raise InputError(f"{who}digits = {digits!r} must be above 0 and at most 15")
-    if _arguments.whole(repeats, f"{who}repeats") < 1:
-        raise InputError(f"{who}repeats = {repeats!r} must be a whole number, 1 or more")
+    if tolerance is not None:
+        _arguments.number(tolerance, f"{who}tolerance", above=0, below=1)
+    _arguments.number(budget, f"{who}budget", above=0, unit="s")
+    _arguments.number(digits, f"{who}digits", above=0, most=15)
+    _arguments.whole(repeats, f"{who}repeats", least=1)
 
 
 def _need_one(runs: Sequence[Attempt]) -> None:

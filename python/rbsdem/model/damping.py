@@ -76,16 +76,12 @@ class Damping:
         InputError
             If a frequency is not positive, or both are the same.
         """
-        ratio = _arguments.number(ratio, "damping: ratio")
-        if not 0.0 <= ratio < 1.0:
-            raise InputError(
-                f"damping: ratio = {ratio} must be from 0 to below 1 (critical damping)"
-            )
+        ratio = _arguments.number(
+            ratio, "damping: ratio", least=0, below=1, why=" (critical damping)"
+        )
         omega = []
         for name, value in (("frequency_1", frequency_1), ("frequency_2", frequency_2)):
-            frequency = _arguments.number(value, f"damping: {name}")
-            if not 0.0 < frequency < math.inf:
-                raise InputError(f"damping: {name} = {frequency} Hz must be above zero and finite")
+            frequency = _arguments.number(value, f"damping: {name}", above=0, unit="Hz")
             omega.append(2.0 * math.pi * frequency)
         if omega[0] == omega[1]:
             raise InputError(

@@ -477,8 +477,8 @@ def settings_of(
     statement = _core.settings({name: v for name, v in given.items() if v is not None})
     if every is None and not openings and not motion:
         return statement
-    if every is not None and _arguments.whole(every, "every") < 1:
-        raise InputError(f"every = {every} must be 1 or more")
+    if every is not None:
+        _arguments.whole(every, "every", least=1)
     return statement + _core.group(
         "output", {"every": every, "openings": int(openings) or None, "motion": int(motion) or None}
     )

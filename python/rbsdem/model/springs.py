@@ -128,8 +128,7 @@ class Spring:
         InputError
             If `n` is not a whole number of 1 or more.
         """
-        if _arguments.whole(n, "split: n") < 1:
-            raise InputError(f"split: n = {n} must be 1 or more")
+        _arguments.whole(n, "split: n", least=1)
         return self.scaled(n)
 
     def scaled(self, parts: float) -> Self:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -76,12 +75,8 @@ def response_spectrum(
             f"periods: value {first + 1} of {period.size} is {period[first]:g} s; natural periods "
             f"are 0 or from {_SHORTEST:g} to {_LONGEST:g} s"
         )
-    ratio = _arguments.number(damping, "damping")
-    if not 0 <= ratio <= _MOST_DAMPING:
-        raise InputError(
-            f"damping = {ratio:g} must be from 0 to {_MOST_DAMPING:g}; it is a ratio, not a "
-            "percentage"
-        )
+    why = "; it is a ratio, not a percentage"
+    ratio = _arguments.number(damping, "damping", least=0, most=_MOST_DAMPING, why=why)
     peaks = _core.evaluate(
         "spectrum", acceleration=acceleration, dt=dt, period=period, damping=ratio
     ).rows
@@ -266,8 +261,7 @@ class GroundMotion:
                 ) from None
             wanted, name = _arguments.number(wanted, "sa"), f"Sa({period:g} s)"
             has = self.sa(period, damping)
-        if not (math.isfinite(wanted) and wanted > 0):
-            raise InputError(f"scaled: {name} = {wanted:g} m/s2 must be above 0")
+        _arguments.number(wanted, f"scaled: {name}", above=0, unit="m/s2")
         if has == 0:
             raise InputError(f"{self._who()}: its {name} is 0, which no factor changes")
         return replace(self, acceleration=self.acceleration * (wanted / has))

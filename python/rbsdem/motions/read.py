@@ -354,8 +354,7 @@ def _even(time: Array, values: Array, dt: float | None, path: str) -> tuple[Arra
             f"{path}: the times are uneven: {steps[i]:g} s from row {i + 1} to row {i + 2}, but "
             f"{step:g} s on average; give dt= to interpolate the values to even steps"
         )
-    if not (math.isfinite(dt) and dt > 0):
-        raise InputError(f"{path}: dt = {dt:g} s must be above 0")
+    _arguments.number(dt, f"{path}: dt", above=0, unit="s")
     count = math.floor((time[-1] - time[0]) / dt * (1 + 1e-9)) + 1
     return np.interp(time[0] + dt * np.arange(count), time, values), dt
 

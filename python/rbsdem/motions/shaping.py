@@ -37,9 +37,8 @@ def corrected(motion: GroundMotion, degree: int = 1) -> GroundMotion:
         Degree of the polynomial in the acceleration: 0 takes off a constant, 1 a straight line.
     """
     checked_motion(motion)
-    wanted = _arguments.whole(degree, "degree")
-    if not 0 <= wanted <= min(_MOST_DEGREE, motion.acceleration.size - 2):
-        raise InputError(f"corrected: degree = {degree} must be from 0 to {_MOST_DEGREE}")
+    most = min(_MOST_DEGREE, motion.acceleration.size - 2)
+    wanted = _arguments.whole(degree, "corrected: degree", least=0, most=most)
     tau = np.linspace(0.0, 1.0, motion.acceleration.size)
     powers = np.arange(1, wanted + 2)
     # Velocities over the length of the record: their slope is what comes off the acceleration.
@@ -99,9 +98,7 @@ def sequence(
     parts = [checked_motion(motion) for motion in given]
     if not parts:
         raise InputError("sequence: there are no motions; give at least one")
-    pause = _arguments.number(rest, "rest")
-    if not 0 <= pause <= 1e6:
-        raise InputError(f"sequence: rest = {pause:g} s must be 0 or more")
+    pause = _arguments.number(rest, "sequence: rest", least=0, most=1e6, unit="s")
     dt = parts[0].dt
     other = next((motion for motion in parts if motion.dt != dt), None)
     if other is not None:
@@ -152,14 +149,9 @@ def synthetic(n: int = 20, seed: int = 1, dt: float = 0.01) -> tuple[GroundMotio
     dt : float, optional
         Step [s], at most 0.05.
     """
-    number, start = _arguments.whole(n, "n"), _arguments.whole(seed, "seed")
-    step = _arguments.number(dt, "dt")
-    if not 1 <= number <= _MOST:
-        raise InputError(f"synthetic: n = {n} must be from 1 to {_MOST}")
-    if start < 0:
-        raise InputError(f"synthetic: seed = {seed} must be 0 or more")
-    if not 1e-4 <= step <= 0.05:
-        raise InputError(f"synthetic: dt = {step:g} s must be from 0.0001 to 0.05 s")
+    number = _arguments.whole(n, "synthetic: n", least=1, most=_MOST)
+    start = _arguments.seed(seed, "synthetic: seed")
+    step = _arguments.number(dt, "synthetic: dt", least=1e-4, most=0.05, unit="s")
     return tuple(_one(start, i, step) for i in range(1, number + 1))
 
 

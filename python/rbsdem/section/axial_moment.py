@@ -143,9 +143,7 @@ def joint_interaction(
         With `code` "joint".
     """
     count = _points(points)
-    turned = _arguments.number(rotation, "interaction: rotation")
-    if not 0.0 < turned <= 1.0:
-        raise InputError(f"interaction: rotation = {turned:g} rad must be above 0, up to 1")
+    turned = _arguments.number(rotation, "interaction: rotation", above=0, most=1, unit="rad")
     loads = np.linspace(*joint_loads(joint, closing), count)
     path = np.concatenate(([0.0], np.geomspace(1e-4, 1.0, 100) * turned))
     moments = np.array([np.nanmax(joint.response(path, load)) for load in loads.tolist()])
@@ -178,10 +176,7 @@ _MOST_POINTS = 10_000
 
 
 def _points(points: int) -> int:
-    count = _arguments.whole(points, "interaction: points")
-    if not 5 <= count <= _MOST_POINTS:
-        raise InputError(f"interaction: points = {count} must be from 5 to {_MOST_POINTS}")
-    return count
+    return _arguments.whole(points, "interaction: points", least=5, most=_MOST_POINTS)
 
 
 def interaction(

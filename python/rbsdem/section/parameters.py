@@ -168,10 +168,7 @@ class ModelParameters:
 
 
 def _above_zero(value: float, name: str) -> float:
-    factor = _arguments.number(value, f"parameters: {name}")
-    if not 0 < factor < math.inf:
-        raise InputError(f"parameters: {name} = {factor:g} is a factor; it must be above zero")
-    return factor
+    return _arguments.number(value, f"parameters: {name}", above=0, why="; it is a factor")
 
 
 def _factors(along: Mapping[str, float]) -> dict[str, float]:

@@ -192,9 +192,7 @@ def shear_diagram(
     """
     checked_section(section)
     if curvature is None:
-        points = _arguments.whole(points, "points")
-        if not 2 <= points <= MOST_POINTS:
-            raise InputError(f"points = {points} must be from 2 to {MOST_POINTS}")
+        points = _arguments.whole(points, "points", least=2, most=MOST_POINTS)
         last = _FURTHEST / section.depth
         if furthest is not None:
             last = _arguments.number(furthest, "furthest")
@@ -389,8 +387,7 @@ def closed_form_shear(
         If a value is not positive.
     """
     for name, value in (("length", length), ("cracking_moment", cracking_moment), ("knee", knee)):
-        if not (math.isfinite(value) and value > 0.0):
-            raise InputError(f"closed form of shear: {name} = {value} must be above zero")
+        _arguments.number(value, f"closed form of shear: {name}", above=0)
     k = knee * 0.5 * section.concrete_law["ec"] * section.gross_area / length
     return k, CLOSED_FORM_FORCE * cracking_moment / length / k
 

@@ -116,9 +116,4 @@ def protocol(
 
 def _positive(value: float | None, name: str) -> float:
     """Return a number above zero, `UNSET` if there is none."""
-    if value is None:
-        return _core.UNSET
-    number = _arguments.number(value, f"protocol: {name}")
-    if not 0 < number < np.inf:
-        raise InputError(f"protocol: {name} = {number:g} must be above 0")
-    return number
+    return _core.UNSET if value is None else _arguments.number(value, f"protocol: {name}", above=0)
