@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rbsdem import _arguments, _rbsdem
-from rbsdem._arguments import Array, number, switch, vector
+from rbsdem._arguments import Array, boolean, number, vector
 from rbsdem.errors import InputError, SolveError
 
 #: A number that was not given.
@@ -327,7 +327,7 @@ def settings(given: Mapping[str, Any]) -> Statement:
     values: dict[str, Any] = {}
     for name, value in given.items():
         if kinds[name] == "logical":
-            values[name] = int(switch(value, name))
+            values[name] = int(boolean(value, name))
         else:
             values[name] = str(value) if kinds[name] == "word" else number(value, name)
     return group("analysis", values)

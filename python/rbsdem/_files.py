@@ -27,7 +27,7 @@ _STANDARD_OUTPUT = ("/dev/stdout", "/dev/fd/1", "/proc/self/fd/1")
 
 
 @contextmanager
-def whole_file(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
+def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     """Open a file for writing that gets its name when the block ends without an error.
 
     Until then it has a name of its own in the same folder, which is opened exclusively: no file is
@@ -91,7 +91,7 @@ def write_csv(path: str | os.PathLike[str], rows: Iterable[Sequence[object]]) ->
     text = io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\n")
     writer.writerows([_cell(value) for value in row] for row in rows)
-    with whole_file(path) as file:
+    with atomic_write(path) as file:
         file.write(text.getvalue().encode())
 
 
@@ -108,7 +108,7 @@ def write_figure(drawn: Any, path: str | os.PathLike[str], **options: Any) -> No
         Of `savefig`.
     """
     ending = Path(path).suffix.lower().lstrip(".")
-    with whole_file(path) as file:
+    with atomic_write(path) as file:
         drawn.figure.savefig(file, format=ending or "png", **options)
 
 

@@ -235,7 +235,7 @@ def test_two_at_one_part(tmp_path: Path) -> None:
 def test_a_full_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What was written before stays whole, nothing half written is left."""
     written = []
-    real = store.whole_file
+    real = store.atomic_write
 
     def full(path: Path) -> object:
         written.append(path)
@@ -243,7 +243,7 @@ def test_a_full_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
             raise OSError(errno.ENOSPC, "No space left on device")
         return real(path)
 
-    monkeypatch.setattr(store, "whole_file", full)
+    monkeypatch.setattr(store, "atomic_write", full)
     with pytest.raises(OSError, match=r"No space left on device; the shards .* are kept"):
         run(tmp_path)
     monkeypatch.undo()

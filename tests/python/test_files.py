@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from rbsdem._files import escape_formula, whole_file, write_csv
+from rbsdem._files import atomic_write, escape_formula, write_csv
 from rbsdem.errors import InputError
 
 SOURCES = Path(__file__).resolve().parents[2] / "python" / "rbsdem"
@@ -44,7 +44,7 @@ def test_no_module_opens_a_file_for_writing_but_this_one():
 def test_name_comes_when_the_file_is_whole(tmp_path):
     target = tmp_path / "table.csv"
     target.write_text("old")
-    with whole_file(target) as file:
+    with atomic_write(target) as file:
         file.write(b"ne")
         assert target.read_text() == "old"
         assert len(names(tmp_path)) == 2
@@ -58,7 +58,7 @@ def test_error_leaves_the_old_file(tmp_path):
     target.write_text("old")
 
     def broken_off() -> None:
-        with whole_file(target) as file:
+        with atomic_write(target) as file:
             file.write(b"half")
             raise KeyboardInterrupt
 
@@ -74,7 +74,7 @@ def test_temporary_name_follows_no_link_and_replaces_nothing(tmp_path):
     for number in (1, 2):
         (tmp_path / f"t.csv.{os.getpid()}-{number}.partial").symlink_to("precious")
     (tmp_path / "t.csv.partial").symlink_to("precious")
-    with whole_file(tmp_path / "t.csv") as file:
+    with atomic_write(tmp_path / "t.csv") as file:
         file.write(b"new")
     assert (tmp_path / "t.csv").read_text() == "new"
     assert (tmp_path / "precious").read_text() == "precious"
@@ -83,7 +83,7 @@ def test_temporary_name_follows_no_link_and_replaces_nothing(tmp_path):
 
 def test_long_names(tmp_path):
     name = "ä" * 125 + ".csv"  # 254 bytes
-    with whole_file(tmp_path / name) as file:
+    with atomic_write(tmp_path / name) as file:
         file.write(b"new")
     assert names(tmp_path) == [name]
 
@@ -91,7 +91,7 @@ def test_long_names(tmp_path):
 def test_folder_and_pipe_without_a_reader_are_refused(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     for name, words in (("", "is a folder"), ("pipe", "pipe that nobody reads")):
-        with pytest.raises(InputError, match=words), whole_file(tmp_path / name) as file:
+        with pytest.raises(InputError, match=words), atomic_write(tmp_path / name) as file:
             file.write(b"x")
     assert names(tmp_path) == ["pipe"]
 
@@ -107,12 +107,12 @@ def test_pipe_and_device_are_written_directly(tmp_path):
             got.append(file.read())
 
     thread = threading.Thread(target=read)
-    with whole_file(tmp_path / "pipe") as file:
+    with atomic_write(tmp_path / "pipe") as file:
         thread.start()
         file.write(b"x" * 200_000)
     thread.join()
     assert got == [b"x" * 200_000]
-    with pytest.raises(OSError, match="No space"), whole_file("/dev/full") as file:
+    with pytest.raises(OSError, match="No space"), atomic_write("/dev/full") as file:
         file.write(b"x")
     assert not Path("/dev/full").is_file()
 

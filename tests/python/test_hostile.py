@@ -246,7 +246,7 @@ def test_masks_without_a_masked_value_are_taken() -> None:
 
 @pytest.mark.parametrize("value", [np.datetime64(1, "s"), np.timedelta64(1, "s"), True, "1", 1j])
 def test_what_is_no_number(value: Any) -> None:
-    for kind in (_arguments.number, _arguments.whole):
+    for kind in (_arguments.number, _arguments.integer):
         with pytest.raises(InputError, match=r"a = .* must be a (whole )?number"):
             kind(value, "a")
 

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rbsdem._files import whole_file
+from rbsdem._files import atomic_write
 from rbsdem._package import extra
 from rbsdem.errors import InputError
 
@@ -146,7 +146,7 @@ class Store:
             if wanted != known:
                 for path in folder.glob(f"{_MANIFEST}.*.partial"):
                     path.unlink()
-                with whole_file(folder / _MANIFEST) as file:
+                with atomic_write(folder / _MANIFEST) as file:
                     file.write(_manifest_text(wanted))
 
     def _check_folder(self) -> None:
@@ -271,7 +271,7 @@ class Store:
             return
         data = self._form.encode([rows for rows, _ in waiting])
         path = self._shards / f"{self._prefix}{digest(data)}{self._form.ending}"
-        with _clear(self.folder), whole_file(path) as file:
+        with _clear(self.folder), atomic_write(path) as file:
             file.write(data)
 
     def remove(self, mine: Callable[[Any], bool]) -> None:

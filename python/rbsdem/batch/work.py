@@ -140,7 +140,7 @@ def available_processors() -> int:
 
 def check_jobs(jobs: Any) -> int:
     """Return the number of threads or processes, or raise `InputError` if it is none."""
-    _arguments.whole(jobs, "jobs", least=1)
+    _arguments.integer(jobs, "jobs", least=1)
     return int(jobs)
 
 

@@ -156,7 +156,7 @@ def calibrate(
     target = Target(test)
     parameters = Parameters(column)
     chosen = free_parameters(parameters, free, bounds)
-    wanted = _arguments.switch(progress, "calibrate: progress")
+    wanted = _arguments.boolean(progress, "calibrate: progress")
     showing = progress_bar(wanted, evaluations, "analyses")
     # Warnings about the many columns of the search do not help the user.
     with warnings.catch_warnings(), showing as show:
@@ -195,7 +195,7 @@ def _check(loss: str, seed: int, jobs: int, evaluations: int, seconds: float | N
     _arguments.choice(loss, "calibrate: loss", LOSSES)
     for name, value in (("seed", seed), ("jobs", jobs), ("evaluations", evaluations)):
         least = 0 if name == "seed" else 1
-        if _arguments.whole(value, f"calibrate: {name}") < least:
+        if _arguments.integer(value, f"calibrate: {name}") < least:
             raise InputError(f"calibrate: {name} = {value} must be {least} or more")
     if seconds is not None and not 0 < _arguments.number(seconds, "calibrate: seconds") < math.inf:
         raise InputError(f"calibrate: seconds = {seconds} must be a positive number")

@@ -268,7 +268,7 @@ class Hinge:
 
 def hinge(result: Response, joint: int, length: float | None) -> Hinge:
     """Return the response of a hinge; see `Result.hinge`."""
-    joint = _arguments.whole(joint, "joint")
+    joint = _arguments.integer(joint, "joint")
     at = result.column.place_of(joint)
     if length is not None:
         length = _arguments.number(length, "hinge: length", above=0, unit="m")

@@ -215,7 +215,7 @@ def _still_reached(force: Array, half_cycle: np.ndarray) -> Array:
 
 
 def _to_side(displacement: ArrayLike, force: ArrayLike, side: int) -> tuple[Array, Array]:
-    if _arguments.whole(side, "side") not in (1, -1):
+    if _arguments.integer(side, "side") not in (1, -1):
         raise InputError(f"side = {side!r} must be 1 or -1")
     d, f = columns(("displacement", "force"), displacement, force, least=0)
     return side * d, side * f

@@ -167,7 +167,7 @@ class PathPoints:
 
     def __init__(self, driver: ArrayLike, n: int = N_POINTS, name: str = "driver") -> None:
         (d,) = columns((name,), driver)
-        _arguments.whole(n, "resample: n", least=2, most=_MOST_POINTS)
+        _arguments.integer(n, "resample: n", least=2, most=_MOST_POINTS)
         self.row_path = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(d)))))
         if not self.row_path[-1] > 0:
             raise InputError(f"{name} is {d[0]:g} in every row; a loop needs a {name} that changes")

@@ -200,10 +200,10 @@ class CloudFragility(Fragility):
         return float((middle * -np.diff(rate)).sum())
 
     def _draws(self, n: int, seed: int) -> list[CloudData]:
-        number = _arguments.whole(n, "n")
+        number = _arguments.integer(n, "n")
         if number < 10:
             raise InputError(f"samples: n = {n} must be 10 or more")
-        random = np.random.default_rng(_arguments.whole(seed, "seed"))
+        random = np.random.default_rng(_arguments.integer(seed, "seed"))
         found = []
         for _ in range(number):
             draw = random.integers(0, self.data.size, self.data.size)

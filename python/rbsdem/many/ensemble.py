@@ -160,7 +160,7 @@ class Ensemble:
         SolveError
             If the run failed; its attribute `result` holds the rows up to there.
         """
-        _arguments.whole(run, "run", least=0, most=len(self) - 1)
+        _arguments.integer(run, "run", least=0, most=len(self) - 1)
         name, column = list(self.columns.items())[self.column[run]]
         motion = list(self.motions.values())[self.motion[run]]
         state = self.initial.get(name, AT_REST)
@@ -272,7 +272,7 @@ def ensemble(
             check_client(client)
     for name, value in (("progress", progress), ("allow_partial", allow_partial)):
         with collected(faults):
-            _arguments.switch(value, name)
+            _arguments.boolean(value, name)
     raise_faults(faults)
     wanted = np.flatnonzero(~np.isnan(full).ravel())
     column, motion, _ = np.unravel_index(wanted, full.shape)
@@ -499,7 +499,7 @@ def _checked_part(shard: Any, store: Any, faults: list[str]) -> tuple[int, int]:
     if shard is None:
         return 1, 1
     try:
-        place, parts = (_arguments.whole(number, "shard") for number in shard)
+        place, parts = (_arguments.integer(number, "shard") for number in shard)
         if not 1 <= place <= parts:
             raise ValueError
     except (InputError, TypeError, ValueError):

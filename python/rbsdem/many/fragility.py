@@ -323,7 +323,7 @@ class Fragility:
         InputError
             If these are more than half.
         """
-        number = _arguments.whole(n, "samples: n", least=10, most=_MOST_SAMPLES)
+        number = _arguments.integer(n, "samples: n", least=10, most=_MOST_SAMPLES)
         random = np.random.default_rng(_arguments.seed(seed))
         mu, beta = self.data.fit_samples(random, number, self.beta if self.stated else None)
         good = np.isfinite(mu)

@@ -91,8 +91,8 @@ class Hunt:
             object.__setattr__(self, name, value)
             if not least < value <= most:
                 faults.append(f"hunt: {name} = {value:g} must be above {least:g}, at most {most:g}")
-        _arguments.switch(self.yielding, "hunt: yielding")
-        if _arguments.whole(self.points, "hunt: points") < 1 or self.points > 1000:
+        _arguments.boolean(self.yielding, "hunt: yielding")
+        if _arguments.integer(self.points, "hunt: points") < 1 or self.points > 1000:
             faults.append(f"hunt: points = {self.points} must be from 1 to 1000")
         if not faults and self.first > self.highest:
             faults.append(f"hunt: first = {self.first:g} is above highest = {self.highest:g}")
@@ -469,7 +469,7 @@ def _crossing(level: Array, response: Array, limit: float, smooth: bool) -> tupl
 def _place(key: str | int, names: list[Any], what: str) -> int:
     if key in names:
         return names.index(key)
-    if isinstance(key, int) and 0 <= _arguments.whole(key, what) < len(names):
+    if isinstance(key, int) and 0 <= _arguments.integer(key, what) < len(names):
         return key
     raise InputError(f"{what} = {key!r} is not one of {', '.join(map(str, names[:20]))}")
 

@@ -135,7 +135,7 @@ class Uncertain:
         seed : int, optional
             The same seed gives the same values.
         """
-        number = _arguments.whole(n, "uncertain: n", least=1, most=_MOST)
+        number = _arguments.integer(n, "uncertain: n", least=1, most=_MOST)
         start = _arguments.seed(seed)
         size = len(self.variables)
         random = np.random.default_rng(start)

@@ -250,7 +250,7 @@ def _column(value: object, quantity: str, table: NumberTable) -> int | None:
             f"{table.source}: column {value!r} {several}; there are {table.describe()}; "
             "a number from 1 is taken as well"
         )
-    number = _arguments.whole(value, f"columns: {quantity}")
+    number = _arguments.integer(value, f"columns: {quantity}")
     if not 1 <= number <= table.columns:
         raise InputError(
             f"columns: {quantity} = {number}, but {table.source} has {table.describe()}, counted "

@@ -157,7 +157,7 @@ def net_force(
     if d.shape != f.shape:
         raise InputError(f"displacement has {d.size} rows, force {f.size}; they must be equal")
     if code is not None:
-        code = _arguments.whole(code, "code")
+        code = _arguments.integer(code, "code")
     axial_load, length = (
         _arguments.number(axial_load, "axial_load"),
         _arguments.number(length, "length"),

@@ -161,7 +161,7 @@ def predict(
         bands=_bands(bands, single or displacement is not None, model, options),
         samples=samples,
         displacement=None if displacement is None else tuple(_path(displacement)),
-        limit_states=_arguments.switch(limit_states, "limit_states"),
+        limit_states=_arguments.boolean(limit_states, "limit_states"),
     )
     if displacement is not None and not how.bands:
         raise InputError(
@@ -513,7 +513,7 @@ def nearest(
     InputError
         If `n` is below 1.
     """
-    _arguments.whole(n, "nearest: n", least=1)
+    _arguments.integer(n, "nearest: n", least=1)
     place = place_of(section, height, axial_load)
     is_round = isinstance(section, CircularSection) if but is None else _is_round(but)
     found = []

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from rbsdem._arguments import Array
-from rbsdem._files import whole_file
+from rbsdem._files import atomic_write
 from rbsdem._package import code_digest
 from rbsdem.batch.store import JSON_LINES, Store, digest
 from rbsdem.checks.criteria import WATCHED
@@ -392,7 +392,7 @@ class Predictions(Sequence[Prediction]):
                 c = row.comparison
                 rows = np.column_stack((c.displacement, c.test_force, c.model_force))
                 path.parent.mkdir(parents=True, exist_ok=True)
-                with whole_file(path) as file:
+                with atomic_write(path) as file:
                     np.savetxt(file, rows, "%.7g", delimiter=",", header=header, comments="")
 
     def _files(self, folder: str | os.PathLike[str]) -> Iterator[tuple[Prediction, Path]]:

@@ -337,7 +337,7 @@ def compare_methods(
     time, arrays = acting(time, loads, "compare_methods")
     scene = make_scene(column, time, arrays, initial, collapse_drift)
     clock = Budget(float(budget))
-    wanted = _arguments.switch(progress, "compare_methods: progress")
+    wanted = _arguments.boolean(progress, "compare_methods: progress")
     # Drawn between runs only, so that no thread disturbs what is timed.
     with progress_bar(wanted, round(clock.seconds), "s", between=True) as show:
 
@@ -376,7 +376,7 @@ def _check(tolerance: float | None, budget: float, digits: float, repeats: int) 
         _arguments.number(tolerance, f"{who}tolerance", above=0, below=1)
     _arguments.number(budget, f"{who}budget", above=0, unit="s")
     _arguments.number(digits, f"{who}digits", above=0, most=15)
-    _arguments.whole(repeats, f"{who}repeats", least=1)
+    _arguments.integer(repeats, f"{who}repeats", least=1)
 
 
 def _need_one(runs: Sequence[Attempt]) -> None:

@@ -372,7 +372,7 @@ class Column:
             If there is no such joint.
         """
         numbers = self.joint_numbers
-        if _arguments.whole(joint, "joint") not in numbers:
+        if _arguments.integer(joint, "joint") not in numbers:
             last = f"n = {self.n}" if self.top == "free" else f"n + 1 = {self.n + 1}"
             raise InputError(f"joint = {joint} must be from {numbers[0]} to {last}")
         return numbers.index(joint)
@@ -436,7 +436,7 @@ class Column:
         """
         if prismatic is None:
             prismatic = self._prismatic
-        prismatic = _arguments.switch(prismatic, "double_curvature: prismatic")
+        prismatic = _arguments.boolean(prismatic, "double_curvature: prismatic")
         refused = {
             "top": self.top != "free",
             "footing": self.footing is not None,

@@ -553,7 +553,7 @@ def _cells(given: Any, name: str) -> dict[tuple[int, int], FrameMember] | None:
             raise InputError(
                 f"frame: {name}: {_arguments.shown(pair)} must be a pair (line or bay, storey)"
             )
-        at, storey = (_arguments.whole(number, f"frame: {name}") for number in pair)
+        at, storey = (_arguments.integer(number, f"frame: {name}") for number in pair)
         found[at, storey] = _arguments.instance(kind, f"frame: {name}", FrameMember)
     return found
 

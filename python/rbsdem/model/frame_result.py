@@ -328,10 +328,10 @@ class FrameResult:
 
     def to_csv(self, path: Any) -> None:
         """Write the rows as csv, whole or not at all."""
-        from rbsdem._files import whole_file  # noqa: PLC0415
+        from rbsdem._files import atomic_write  # noqa: PLC0415
 
         text = self.to_frame().to_csv(index=False)
-        with whole_file(path) as file:
+        with atomic_write(path) as file:
             file.write(f"# rbsdem {_core.version()}\n# {self.honesty}\n{text}".encode())
 
     def __repr__(self) -> str:

@@ -478,7 +478,7 @@ def settings_of(
     if every is None and not openings and not motion:
         return statement
     if every is not None:
-        _arguments.whole(every, "every", least=1)
+        _arguments.integer(every, "every", least=1)
     return statement + _core.group(
         "output", {"every": every, "openings": int(openings) or None, "motion": int(motion) or None}
     )

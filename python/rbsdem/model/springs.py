@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
-from rbsdem._files import whole_file
+from rbsdem._files import atomic_write
 from rbsdem.errors import InputError
 
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ class Spring:
         InputError
             If `n` is not a whole number of 1 or more.
         """
-        _arguments.whole(n, "split: n", least=1)
+        _arguments.integer(n, "split: n", least=1)
         return self.scaled(n)
 
     def scaled(self, parts: float) -> Self:
@@ -865,7 +865,7 @@ class Strains:
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(found)
         writer.writerows(zip(*(column.tolist() for column in found.values()), strict=True))
-        with whole_file(path) as file:
+        with atomic_write(path) as file:
             file.write(text.getvalue().encode())
 
     def __repr__(self) -> str:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
-from rbsdem._files import whole_file
+from rbsdem._files import atomic_write
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem.errors import InputError
 
@@ -276,7 +276,7 @@ class GroundMotion:
         """
         head = f"# {_arguments.one_line(self.description or self.name)}\ntime_s,acceleration_m/s2\n"
         rows = zip(self.time.tolist(), self.acceleration.tolist(), strict=True)
-        with whole_file(path) as file:
+        with atomic_write(path) as file:
             file.write((head + "".join(f"{t!r},{a!r}\n" for t, a in rows)).encode())
 
     def _husid(self) -> Array:

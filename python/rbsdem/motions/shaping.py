@@ -38,7 +38,7 @@ def corrected(motion: GroundMotion, degree: int = 1) -> GroundMotion:
     """
     checked_motion(motion)
     most = min(_MOST_DEGREE, motion.acceleration.size - 2)
-    wanted = _arguments.whole(degree, "corrected: degree", least=0, most=most)
+    wanted = _arguments.integer(degree, "corrected: degree", least=0, most=most)
     tau = np.linspace(0.0, 1.0, motion.acceleration.size)
     powers = np.arange(1, wanted + 2)
     # Velocities over the length of the record: their slope is what comes off the acceleration.
@@ -149,7 +149,7 @@ def synthetic(n: int = 20, seed: int = 1, dt: float = 0.01) -> tuple[GroundMotio
     dt : float, optional
         Step [s], at most 0.05.
     """
-    number = _arguments.whole(n, "synthetic: n", least=1, most=_MOST)
+    number = _arguments.integer(n, "synthetic: n", least=1, most=_MOST)
     start = _arguments.seed(seed, "synthetic: seed")
     step = _arguments.number(dt, "synthetic: dt", least=1e-4, most=0.05, unit="s")
     return tuple(_one(start, i, step) for i in range(1, number + 1))

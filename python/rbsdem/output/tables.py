@@ -68,7 +68,7 @@ def write_parquet(frame: pd.DataFrame, path: str | os.PathLike[str]) -> None:
     path : path
         File to write.
     """
-    with _files.whole_file(path) as file:
+    with _files.atomic_write(path) as file:
         frame.to_parquet(file, index=False)
 
 

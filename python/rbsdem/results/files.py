@@ -12,7 +12,7 @@ import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
-from rbsdem._files import whole_file
+from rbsdem._files import atomic_write
 from rbsdem._package import extra
 from rbsdem.errors import InputError
 from rbsdem.model.response import STATE_HEAD, Response, last_state
@@ -89,7 +89,7 @@ def to_csv(result: Response, path: str | os.PathLike[str]) -> None:
         f"kinematics: {about['kinematics']}",
         ",".join(table),
     ]
-    with whole_file(path) as file:
+    with atomic_write(path) as file:
         file.write(("\n".join(head) + "\n").encode())
         np.savetxt(file, np.column_stack(list(table.values())), fmt="%.17g", delimiter=",")
 
@@ -98,7 +98,7 @@ def save_state(result: Response, path: str | os.PathLike[str]) -> None:
     """Write a state as text: a head, then one number a line, whole or not at all."""
     state = last_state(result)
     head = f"{STATE_HEAD}\n# version: {_core.version()}\n{state.size}\n"
-    with whole_file(path) as file:
+    with atomic_write(path) as file:
         file.write((head + "\n".join(map(_text, state)) + "\n").encode())
 
 
@@ -113,7 +113,7 @@ def save(result: Response, path: str | os.PathLike[str]) -> None:
     kind = ending_of(path)
     about, arrays = _parts(result)
     if kind == ".npz":
-        with whole_file(path) as file:
+        with atomic_write(path) as file:
             np.savez_compressed(file, about=np.array(json.dumps(about)), **arrays)
         return
     xarray = extra("xarray")
@@ -129,7 +129,7 @@ def save(result: Response, path: str | os.PathLike[str]) -> None:
     for name, variable in dataset.variables.items():
         if name in _core.units():
             variable.attrs["units"] = _core.units()[name]
-    with whole_file(path) as file:
+    with atomic_write(path) as file:
         file.write(bytes(dataset.to_netcdf(engine="scipy")))
 
 

@@ -346,7 +346,7 @@ def pushover(
     far = _arguments.number(given[said[0]], f"pushover: {said[0]}")
     if said[0] == "drift":
         far *= structure.height
-    points = _arguments.whole(points, "pushover: points")
+    points = _arguments.integer(points, "pushover: points")
     if points < 1:
         raise InputError(f"pushover: points = {points} must be 1 or more")
     name = "force" if said[0] == "force" else "displacement"

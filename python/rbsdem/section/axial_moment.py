@@ -176,7 +176,7 @@ _MOST_POINTS = 10_000
 
 
 def _points(points: int) -> int:
-    return _arguments.whole(points, "interaction: points", least=5, most=_MOST_POINTS)
+    return _arguments.integer(points, "interaction: points", least=5, most=_MOST_POINTS)
 
 
 def interaction(

@@ -171,9 +171,9 @@ def column(
     _arguments.choice(top, "top", get_args(Top))
     load = _arguments.number(axial_load, "axial_load")
     if restrained is not None:
-        restrained = _arguments.whole(restrained, "restrained")
-    round_core = _arguments.switch(round_core, "round_core")
-    if n is not None and not 1 <= _arguments.whole(n, "n") <= MOST_BODIES:
+        restrained = _arguments.integer(restrained, "restrained")
+    round_core = _arguments.boolean(round_core, "round_core")
+    if n is not None and not 1 <= _arguments.integer(n, "n") <= MOST_BODIES:
         raise InputError(f"n = {n} must be from 1 to {MOST_BODIES}")
     # The half between an end and the point of contraflexure is a cantilever.
     halves = 2 if top == "fixed" else 1

@@ -269,7 +269,7 @@ def diagram(
         furthest = _arguments.number(furthest, "furthest")
         if not 0.0 < furthest * section.depth <= 1.0:
             raise InputError(f"furthest = {furthest} 1/m must be above zero and below 1/depth")
-    points = _arguments.whole(points, "points", least=2, most=_MOST_POINTS)
+    points = _arguments.integer(points, "points", least=2, most=_MOST_POINTS)
     named = [point.curvature for point in (*_points(events), end) if point.curvature <= furthest]
     # Closer together where the diagram turns, at small curvatures.
     curvature = np.unique(np.concatenate([furthest * np.linspace(0.0, 1.0, points) ** 2, named]))

@@ -192,7 +192,7 @@ def shear_diagram(
     """
     checked_section(section)
     if curvature is None:
-        points = _arguments.whole(points, "points", least=2, most=MOST_POINTS)
+        points = _arguments.integer(points, "points", least=2, most=MOST_POINTS)
         last = _FURTHEST / section.depth
         if furthest is not None:
             last = _arguments.number(furthest, "furthest")
@@ -213,8 +213,8 @@ def shear_diagram(
         "axial_load": load,
         "tension": tension,
         "confined": is_confined(section, confined),
-        "coupled": _arguments.switch(coupled, "coupled"),
-        "layers": _arguments.whole(layers, "layers"),
+        "coupled": _arguments.boolean(coupled, "coupled"),
+        "layers": _arguments.integer(layers, "layers"),
         "knee": _arguments.number(knee, "knee"),
     }
     asked = section._statement + _core.group("shear", settings)

@@ -374,7 +374,7 @@ def spread(
     """
     remedy = "a column of rbsdem.section.column has bands; of other columns no tests are known"
     _arguments.instance(column, "spread: column", LayeredColumn, remedy)
-    number = _arguments.whole(samples, "samples")
+    number = _arguments.integer(samples, "samples")
     if not LEAST <= number <= MOST:
         raise InputError(f"samples = {samples} must be {LEAST} to {MOST}; 16 are enough")
     remarks = column.outside

@@ -152,7 +152,7 @@ def modes(column: Structure, count: int | None = None) -> Modes | FrameModes:
         digits.
     """
     if count is not None:
-        count = _arguments.whole(count, "count")
+        count = _arguments.integer(count, "count")
     if isinstance(column, Frame):
         return _frame_modes(column, count)
     answer = _core.evaluate("modes", checked_structure(column)._statement, count=count)
@@ -259,7 +259,7 @@ def cyclic(
     if values.size == 0:
         raise InputError(f"{name} is empty; give at least one point")
     load = None if axial_load is None else _arguments.vector(axial_load, "axial_load")
-    kept = not checked_structure(column).opens and _arguments.switch(openings, "openings")
+    kept = not checked_structure(column).opens and _arguments.boolean(openings, "openings")
     settings = settings_of(every, kept, collapse_drift=collapse_drift)
     run = _core.cyclic(
         column._statement + settings,
@@ -379,8 +379,8 @@ def time_history(
     if time is None:
         raise InputError("time_history: time is missing; give the times of the loading")
     chosen = checked_solver(solver, "time_history") | {"collapse_drift": collapse_drift}
-    kept = not checked_structure(column).opens and _arguments.switch(openings, "openings")
-    moves = _arguments.switch(motion, "motion")
+    kept = not checked_structure(column).opens and _arguments.boolean(openings, "openings")
+    moves = _arguments.boolean(motion, "motion")
     settings = settings_of(every, kept, moves, **chosen)
     times = _arguments.vector(time, "time")
     if initial is None or isinstance(initial, Mapping):

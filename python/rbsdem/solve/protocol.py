@@ -85,7 +85,7 @@ def protocol(
         steps = _arguments.finite_vector(amplitudes, "amplitudes", shape="1 or m")
         several = [1] if cycles is None else [cycles] if np.isscalar(cycles) else cycles
         whole = [
-            _arguments.whole(count, "cycles") for count in _arguments.several(several, "cycles")
+            _arguments.integer(count, "cycles") for count in _arguments.several(several, "cycles")
         ]
         counts = np.array(whole, dtype=np.int32)
         if negative_amplitudes is not None:
@@ -97,7 +97,7 @@ def protocol(
     if counts.size == 0 or steps.size == 0:
         empty = "amplitudes" if steps.size == 0 else "cycles"
         raise InputError("protocol: amplitudes and cycles must not be empty", f"protocol.{empty}")
-    repeats, points = _arguments.whole(repeats, "repeats"), _arguments.whole(points, "points")
+    repeats, points = _arguments.integer(repeats, "repeats"), _arguments.integer(points, "points")
     number = int(counts.sum()) if counts.size > 1 else int(counts[0]) * steps.size
     size = 4 * points * number * repeats + 1
     if size > np.iinfo(np.int32).max:

@@ -69,7 +69,7 @@ def checked_solver(given: Mapping[str, Any], who: str) -> dict[str, Any]:
     for name in given:
         if name not in names:
             raise TypeError(f"{who}() got an unexpected keyword argument {name!r}")
-    unstable = _arguments.switch(given.get("allow_unstable", False), "allow_unstable")
+    unstable = _arguments.boolean(given.get("allow_unstable", False), "allow_unstable")
     chosen = {**given, "allow_unstable": unstable or None}
     return {name: chosen[name] for name in names if chosen.get(name) is not None}
 

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from rbsdem._arguments import Array
-from rbsdem._files import whole_file
+from rbsdem._files import atomic_write
 from rbsdem.measured.predictions import Picture, Prediction, Predictions
 
 #: Modules of the page, each after those that it imports.
@@ -182,7 +182,7 @@ def gallery(predictions: Predictions, path: str | os.PathLike[str]) -> Path:
     }
     page = one_file(title, data, GALLERY)
     path.parent.mkdir(parents=True, exist_ok=True)
-    with whole_file(path) as file:
+    with atomic_write(path) as file:
         file.write(page.encode("utf-8"))
     return path
 

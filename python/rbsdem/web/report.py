@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rbsdem import _core
-from rbsdem._files import whole_file
+from rbsdem._files import atomic_write
 from rbsdem.errors import InputError
 from rbsdem.web.answers import Answers, NearestTests
 from rbsdem.web.pages import one_file
@@ -82,6 +82,6 @@ def write_report(
     """
     target = Path(path)
     page = one_file(title, report_data(state, title, near))
-    with whole_file(target) as file:
+    with atomic_write(target) as file:
         file.write(page.encode("utf-8"))
     return target

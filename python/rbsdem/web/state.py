@@ -279,7 +279,9 @@ def _loading_of(
     with faults.of("loading", "kind"):
         if kind == "amplitudes":
             steps, cycles = given.get("amplitudes", ()), given.get("cycles")
-            many = _arguments.whole(cycles, "cycles") * len(_arguments.vector(steps, "amplitudes"))
+            many = _arguments.integer(cycles, "cycles") * len(
+                _arguments.vector(steps, "amplitudes")
+            )
             if many > _MOST_CYCLES:
                 raise InputError(
                     f"cycles = {cycles}: {many} cycles are too many here; at most {_MOST_CYCLES}"
@@ -291,7 +293,7 @@ def _loading_of(
                 name, reference=_drift(given, "reference"), largest=_drift(given, "largest")
             )
         if kind == "synthetic":
-            seed = _arguments.whole(given.get("seed", 1), "seed")
+            seed = _arguments.integer(given.get("seed", 1), "seed")
             return synthetic(1, seed, dt=0.01)[0].scaled(_factor(given))
         if kind == "record":
             record = records.get(str(given.get("id")))
