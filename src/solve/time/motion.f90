@@ -40,7 +40,6 @@ module rbs_solve_time_motion
       procedure :: forces_on_bodies
       procedure :: joint_forces
       procedure :: press
-      procedure :: load_power
       procedure :: damping_power
       procedure :: base_shear
    end type motion_type
@@ -204,20 +203,6 @@ contains
          springs%press_to(i) = self%structure%axial_force(i, load)
       end do
    end subroutine press
-
-   !> Power of the loads [W].
-   real(wp) function load_power(self, q, v, load, result) result(watt)
-      class(motion_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: q(:), v(:), load(:)
-      !> What `acceleration` gave at the same state
-      type(motion_result), intent(in) :: result
-
-      if (result%has_power) then
-         watt = result%power
-      else
-         watt = self%structure%power_of_loads(q, v, load)
-      end if
-   end function load_power
 
    !> Power of the damping [W].
    real(wp) function damping_power(self, springs, q, v) result(watt)

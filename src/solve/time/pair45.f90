@@ -61,23 +61,21 @@ contains
       class(pair45_scheme), intent(inout) :: self
       type(state_type), intent(inout) :: state
       real(wp), intent(in) :: h
-      real(wp) :: load(4)
+      real(wp) :: load(4), of_loads, of_damping
       integer :: stage
 
       if (.not. self%begun) then
          call reach_stage(self, state, 1, h, state%load)
-         self%load_power = state%motion%load_power(self%q, self%v, state%load, self%now)
-         self%damping_power = state%motion%damping_power(state%springs, self%q, self%v)
+         call find_powers(self, state, state%load, self%load_power, self%damping_power)
       end if
       self%of_loads = h*row(1, stages)*self%load_power
       self%of_damping = h*row(1, stages)*self%damping_power
       do stage = 2, stages - 1
          call state%loads%at_time(state%time + place(stage)*h, load)
          call reach_stage(self, state, stage, h, load)
-         self%of_loads = self%of_loads &
-                         + h*row(stage, stages)*state%motion%load_power(self%q, self%v, load, self%now)
-         self%of_damping = self%of_damping &
-                           + h*row(stage, stages)*state%motion%damping_power(state%springs, self%q, self%v)
+         call find_powers(self, state, load, of_loads, of_damping)
+         self%of_loads = self%of_loads + h*row(stage, stages)*of_loads
+         self%of_damping = self%of_damping + h*row(stage, stages)*of_damping
       end do
       ! The last two stages stand at the same time.
       call reach_stage(self, state, stages, h, load)
@@ -86,6 +84,21 @@ contains
       self%error_q = h*matmul(self%rate_q, difference)
       self%error_v = h*matmul(self%rate_v, difference)
    end subroutine attempt
+
+   !> Powers of loads and damping at the stage that was reached last [W].
+   subroutine find_powers(self, state, load, of_loads, of_damping)
+      class(pair45_scheme), intent(in) :: self
+      type(state_type), intent(in) :: state
+      real(wp), intent(in) :: load(4)
+      real(wp), intent(out) :: of_loads, of_damping
+
+      associate (motion => state%motion)
+         of_loads = self%now%power
+         if (.not. self%now%has_power) of_loads = motion%structure%power_of_loads(self%q, self%v, load)
+         of_damping = 0.0_wp
+         if (motion%damped) of_damping = motion%damping_power(state%springs, self%q, self%v)
+      end associate
+   end subroutine find_powers
 
    !> Deformations, velocities and accelerations of a stage.
    subroutine reach_stage(self, state, stage, h, load)

@@ -107,11 +107,13 @@ contains
                   ! Velocity of the top and momentum are linear in v: they step as it does.
                   speed = start + h*reach(stage)*result%of_speeds
                else
-                  self%of_loads = self%of_loads + h*weight(stage)* &
-                                  motion%load_power(self%stage_q, self%stage_v, now, result)
-                  self%of_damping = self%of_damping &
-                                    + h*weight(stage)*motion%damping_power(state%springs, self%stage_q, &
-                                                                           self%stage_v)
+                  if (.not. result%has_power) then
+                     result%power = motion%structure%power_of_loads(self%stage_q, self%stage_v, now)
+                  end if
+                  self%of_loads = self%of_loads + h*weight(stage)*result%power
+                  if (motion%damped) self%of_damping = self%of_damping + h*weight(stage) &
+                                                       *motion%damping_power(state%springs, self%stage_q, &
+                                                                             self%stage_v)
                end if
             end associate
             if (stage < 4) then
