@@ -38,6 +38,9 @@ def follow(layer: Spring, points: list[tuple[float, float]]) -> rbsdem.Result:
 
 
 PLASTIC = Bilinear(100.0, 0.01, 0.0)
+STEEP, SLOW = crushing(50), crushing(20)
+#: All that falls is taken over without a loss of energy: the layers are flat together.
+FLAT = crushing(50 * (1 + 1e-7))
 
 
 @pytest.mark.parametrize(
@@ -46,53 +49,14 @@ PLASTIC = Bilinear(100.0, 0.01, 0.0)
         (PLASTIC, [(0, 2), (0.01, 2), (0.01, 6)], 0.01, -0.04, 0, 4, 4, None, None),
         (PLASTIC, [(0, 1e-9), (0.02, 8)], 0.01, -0.04, 0, 4, 4, None, None),
         (PLASTIC, [(0, -3), (0.005, -6)], 1 / 600, 0.015, 0, -4, -4, None, None),
-        # All that falls is taken over without a loss of energy: the layers are flat together.
-        (
-            crushing(50 * (1 + 1e-7)),
-            [(0, 6), (0.02, 6), (0.03, 6)],
-            0.02,
-            -0.02,
-            10,
-            6,
-            8,
-            -0.02,
-            0,
-        ),
-        (
-            crushing(50),
-            [(0, 10), (0.005, 10), (0.005, 20)],
-            0.005,
-            -0.045,
-            -0.5,
-            13.5,
-            13.5,
-            None,
-            None,
-        ),
-        (
-            crushing(20),
-            [(0, 6), (0.02, 6), (0.05, 6), (0.06, 6)],
-            0.05,
-            0.01,
-            10,
-            6,
-            8,
-            -0.0875,
-            0.10125,
-        ),
-        (crushing(20), [(0, 10), (0.03, 10)], 0.025, -0.115, -10, 10, 10, None, None),
+        (FLAT, [(0, 6), (0.02, 6), (0.03, 6)], 0.02, -0.02, 10, 6, 8, -0.02, 0),
+        (STEEP, [(0, 10), (0.005, 10), (0.005, 20)], 0.005, -0.045, -0.5, 13.5, 13.5, None, None),
+        (SLOW, [(0, 6), (0.02, 6), (0.05, 6), (0.06, 6)], 0.05, 0.01, 10, 6, 8, -0.0875, 0.10125),
+        (SLOW, [(0, 10), (0.03, 10)], 0.025, -0.115, -10, 10, 10, None, None),
     ],
 )
 def test_where_the_axial_load_is_lost_and_the_fall(
-    layer: Spring,
-    points: list[tuple[float, float]],
-    rotation: float,
-    opening: float,
-    moment: float,
-    load: float,
-    capacity: float,
-    fall: float | None,
-    energy: float | None,
+    layer, points, rotation, opening, moment, load, capacity, fall, energy
 ) -> None:
     """The path ends there, with the state as its last row."""
     lost = follow(layer, points)

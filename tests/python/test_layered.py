@@ -14,7 +14,6 @@ from rbsdem.springs import Compression, ConcreteSpring, Elastic, Layered, SteelS
 
 ARM = 0.2  # m
 K, FY, POST = 4e8, 4e5, 4e6  # N/m, N, N/m
-LOAD = 8e5  # N
 
 
 def steel(**changes: float) -> SteelSpring:
@@ -31,21 +30,6 @@ def joint(**changes: float) -> Layered:
     ys = np.array([-0.15, -0.05, 0.05, 0.15])
     layers = [(y, concrete(**changes)) for y in ys]
     return Layered([(-ARM, steel()), *layers, (ARM, steel())])
-
-
-def wander(seed: int, points: int = 60) -> np.ndarray:
-    growth = np.linspace(0.001, 0.02, points)
-    return np.random.default_rng(seed).uniform(-1, 1, points) * growth
-
-
-@pytest.mark.parametrize("seed", range(20))
-def test_forces_are_continuous(seed: int) -> None:
-    path = np.interp(np.arange(0, 20, 0.001), np.arange(21), np.append(0, wander(seed, 20)))
-    spring = joint(wear=0.03, contact=0.3, misfit=0.3)
-    moment = spring.response(path, LOAD)
-    stiffest = 4 * 2e9 * 0.25**2 + 2 * K * ARM**2
-    jump = np.abs(np.diff(moment)) - stiffest * np.abs(np.diff(path))
-    assert jump.max() < 1e-6 * np.abs(moment).max()
 
 
 def test_contacts_without_an_axial_load_stand_on_a_corner() -> None:
