@@ -95,10 +95,10 @@ def within(
     raise InputError(f"{name} = {value:.6g}{unit and ' '}{unit} must be {text}{why}")
 
 
-def whole(value: Any, name: str, **bounds: Any) -> int:
+def integer(value: Any, name: str, **bounds: Any) -> int:
     """Return `value` as an int; with bounds see `within`."""
     if bounds:
-        return within(whole(value, name), name, **bounds)
+        return within(integer(value, name), name, **bounds)
     # A time of numpy is one of its whole numbers.
     if isinstance(value, _NO_NUMBERS) or not isinstance(value, (int, np.integer)):
         raise InputError(f"{name} = {shown(value)} must be a whole number")
@@ -107,7 +107,7 @@ def whole(value: Any, name: str, **bounds: Any) -> int:
     return int(value)
 
 
-def switch(value: Any, name: str) -> bool:
+def boolean(value: Any, name: str) -> bool:
     """Return `value` as a bool."""
     if isinstance(value, (bool, np.bool_, int, np.integer)) and value in (0, 1):
         return bool(value)
@@ -128,7 +128,7 @@ def is_one_of(value: Any, words: Iterable[str]) -> bool:
 
 def seed(value: Any, name: str = "seed") -> int:
     """Return `value` as the seed of random numbers."""
-    return whole(value, name, least=0)
+    return integer(value, name, least=0)
 
 
 def choice(value: Any, name: str, words: Iterable[str]) -> str:
@@ -245,7 +245,7 @@ def convert(record: object, who: str) -> None:
 
 
 _PLAIN: dict[Any, Callable[[Any, str], Any]] = {
-    float: number, int: whole, bool: switch, str: text, Literal: text,
+    float: number, int: integer, bool: boolean, str: text, Literal: text,
 }  # fmt: skip
 
 
