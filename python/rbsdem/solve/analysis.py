@@ -267,7 +267,7 @@ def cyclic(
         values,
         load,
         None if initial is None else state_of(initial, "cyclic"),
-        corners,
+        _arguments.boolean(corners, "corners"),
     )
     call = {
         name: values,
