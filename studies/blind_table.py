@@ -24,16 +24,6 @@ from rbsdem.section.columns import MODELS
 SCORES = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio")
 CLASSES = (-1.0, 0.05, 0.15, 0.3, 0.45, 1.0)
 SIZES = (2, 3, 5, 9, 17)
-# Files of tests that the fit of version 2026.2 did not have; nor any other of their series, but for
-# Saatcioglu and Grira 1999, which are rectangular.
-NOT_FITTED = (
-    "Galeota_et_al_1996",
-    "Lynn_et_al_1996",
-    "Lynn_et_al_1998",
-    "NIST",
-    "Saatcioglu_and_Baingo_1999",
-    "Takemura_and_Kawashima_1997",
-)
 
 
 def line(name: str, rows: list[peer.Prediction]) -> str:
@@ -58,36 +48,6 @@ def table(
     print("| --- | ---: | ---: | ---: | ---: | ---: |")
     for name, belongs in groups.items():
         print(line(name, [row for row in found if belongs(row.specimen)]))
-
-
-def fitted(specimen: peer.Specimen) -> bool:
-    """Return whether a test was in the folder that version 2026.2 was fitted to."""
-    return not (specimen.file or "").startswith(NOT_FITTED)
-
-
-def summary(found: dict[str, peer.Predictions]) -> None:
-    """Print the table of the README: both models, tests that the fit had and had not."""
-    papers = {row.specimen.name: row.nrmse for row in found["paper"]}
-    print("\n| tests | number | nrmse, median (quartiles) | peak | energy | nrmse of paper |")
-    print("| --- | ---: | ---: | ---: | ---: | ---: |")
-    for section in ("rectangular", "round"):
-        for mode in ("flexure", "shear failures"):
-            for known in (True, False):
-                rows = [
-                    row
-                    for row in found["layered"]
-                    if (row.specimen.section == "rectangular") == (section == "rectangular")
-                    and (row.specimen.failure_mode == "Flexure") == (mode == "flexure")
-                    and fitted(row.specimen) == known
-                ]
-                if rows:
-                    name = f"{section}, {mode}, {'in' if known else 'not in'} the fit"
-                    paper = statistics.median(papers[row.specimen.name] for row in rows)
-                    # Without the column of the stiffness.
-                    print(line(name, rows).rsplit(" | ", 1)[0] + f" | {paper:.3f} |")
-    for known, name in ((True, "the fit had"), (False, "the fit had not")):
-        rows = [row for row in found["layered"] if fitted(row.specimen) == known]
-        print(line(f"all that {name}", rows))
 
 
 def by_axial_load(found: peer.Predictions) -> None:
@@ -158,7 +118,6 @@ def main() -> None:
                     and (s.section in members if members else s.section != "rectangular")
                 )
         table(f"model {model}", found[model], groups)
-    summary(found)
     rectangular = tests.where(section="rectangular")
     names = {row.name for row in rectangular}
     layered = [row for row in found["layered"] if row.specimen.name in names]

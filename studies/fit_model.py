@@ -1,57 +1,23 @@
-"""Fit the parameters of the layered model to all tests at once, and judge them on series left out.
+"""Fit the free numbers of the layered model to all tests, and judge them on series left out.
 
-    python studies/fit_model.py FOLDER [--groups 8] [--steps 9] [--jobs 2]
-        [--state FILE] [--out FILE]
+    python studies/fit_model.py FOLDER [--groups 8] [--steps 6] [--jobs 2] [--write]
 
 FOLDER holds the histories and the table of the tests (docs/peer.md). Doubtful labels are mended by
-the rules of `rbsdem.peer.check`, never by the error of the model.
+the rules of `rbsdem.peer.check`, never by the error of the model. The free numbers are the rows of
+`data/layered_parameters.csv` that have a prior; all others stand as they are there.
 
-**Forms.** The hinge and the shear spring, and
+**Prior.** Every free number has a value from the literature or from mechanics and a spread: the fit
+pays for leaving it (maximum a posteriori). **Loss.** A test counts n^2/(n^2 + h^2), n its nrmse
+with the errors of peak and energy: what no number mends does not pull. Its weight is
+1/sqrt(tests of its series), half-way between every test alike and every series alike.
 
-- *shear decays* with the work W of the hinge: strength S = s + (1 - s)/(1 + D), with
-  D = a W/(M_y theta_y) exp(-(f_l/f'c)/c0) and s what ties alone carry. Repeated yielding opens the
-  cracks that carry shear by interlock (Priestley 1994; Sezen and Moehle 2004); confined ones stay
-  closed. Work, not the number of excursions: it is the same for a cycle that is taken up again;
-- *bars buckle and break*: compression after an elongation beyond that of Goodnight, Kowalsky and
-  Nau (2013) wears a bar faster, in proportion to the excess;
-- *concrete rubs*: opening is below closing, so that concrete which stays closed dissipates;
-- *roundness by axial stress* in place of the axial load ratio;
+**Search.** Gauss-Newton with damping from the priors, all numbers at once. Groups of series are
+left out from the first step on: a search without a group never sees one of its tests, neither in
+its slopes nor in what decides on a step. What has seen all tests is the form of the model and its
+fixed values, some of which are rounded results of earlier fits (docs/peer.md).
 
-and, each absent where its parameter is zero (or a factor one),
-
-- *the column above cracks* at the moment of a tensile stress of 0.6 sqrt(f'c) and the axial load,
-  which is not fitted; what is, is the stiffness after it. A column that has cracked but does not
-  yield turns through narrow loops;
-- *bars slip in their bond*: the larger the length that anchors a bar is against the column,
-  f_y d_b/(10 sqrt(f'c) L), the rounder are its branches, and the more it gains with their reach;
-- *unloading in shear* becomes softer with ductility (Takeda's exponent), *the cracked truss* is
-  softer than with ties that do not slip, *axial load closes the cracks*, so that they pinch less,
-  and *round columns* may be stronger than the theory of webs says;
-
-and
-
-- *round columns fail as a whole*: 13 tests say that their strength is 1.2 to 1.5 times that of the
-  theory of webs (an arch of the axial force and spirals at 30 degrees: Kowalsky and Priestley
-  2000), and that it is lost faster. Until now spirals counted 2.5 times in what lasts, so a
-  stronger spring kept too much. What they count is a number now, with pi/4 cot 30 = 1.36 as prior;
-- *strength in shear fades*: energy wears cracks smooth, the smoother they are the more slowly. A
-  hyperbola, as by the work of the hinge, in place of a line that ends at nothing;
-- *faces that were pressed together fit*: rubble and misfit carry while a crack closes, not while it
-  opens. Opening leaves from where the concrete is closed, so that loops under axial load are wider
-  at zero displacement (by less than those of high-strength concrete are too narrow);
-- numbers that were held before and are not where the loss is least any more: roundness, length of
-  slip, strength of bars, and the shelter of confinement.
-
-**Prior.** Every parameter has a value from the literature or from mechanics and a spread: the fit
-pays for leaving it (maximum a posteriori). What the tests do not determine is not free; it stands
-in `FIXED`. **Loss.** A test counts n^2/(n^2 + h^2), n its nrmse with the errors of peak and energy:
-what no parameter mends does not pull. Its weight is 1/sqrt(tests of its series), half-way between
-every test alike and every series alike. **Search.** Gauss-Newton with differences and damping.
-Groups of series are left out from the beginning of the search on (`leave_out`): steps from the end
-of the fit to all would find it good enough without them too, and tell how well that fits. It begins
-at the priors. Version 2026.5 itself began at seven numbers that were chosen among some hundred
-points on all tests, and at the version before; from the priors the steps end in a worse minimum
-(docs/peer.md).
+`--write` puts the values into the table, and into `studies/results` what `spread_table.py` takes:
+the values with and without each group, and the scores of the tests that were left out.
 """
 
 from __future__ import annotations
@@ -62,142 +28,60 @@ import json
 import math
 import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import replace
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, NamedTuple
 
 import numpy as np
 
-import rbsdem
 from rbsdem import peer
 from rbsdem.calibration.misfit import Target, forces
-from rbsdem.errors import RbsdemError
-from rbsdem.section.parameters import ModelParameters, parameters
+from rbsdem.errors import AccuracyWarning, RbsdemError
+from rbsdem.section.parameters import ModelParameters, parameters, table
+
+ROOT = Path(__file__).resolve().parents[1]
+#: nrmse of a test that counts half.
+HALF = 0.13
+#: What an error of 1 in the ratio of peaks, or of energies, counts as nrmse.
+PEAK, ENERGY = 0.3, 0.08
+#: Weight of the prior, of one spread, against the mean over the tests.
+PRIOR = 5e-4
+#: One of this many points along the path is used.
+EVERY = 5
+#: Dampings that are tried in a step, and how far a number goes in it, in spreads.
+DAMPINGS = (3.0, 0.3, 0.03)
+FARTHEST = 1.0
+#: Farthest from the prior, and the difference for the slopes, in spreads.
+BOUND, STEP = 4.0, 0.3
+
+FREE = {row.name: (row.prior, row.spread) for row in table().values() if row.spread > 0}
 
 
-class Free(NamedTuple):
-    """A parameter: value and spread of the prior, bounds. The spread is relative if it is `log`."""
+def at(places: np.ndarray) -> ModelParameters:
+    """Return the parameters of places, which count spreads from the priors."""
+    values = {}
+    for (name, (prior, spread)), place in zip(FREE.items(), places.tolist(), strict=True):
+        way = spread * place
+        values[name] = prior * math.exp(way) if prior > 0 else way
+    # As a version of its own: what a column limits is limited, not refused.
+    return replace(parameters().with_values(**values), version="fit")
 
-    prior: float
-    spread: float
-    low: float
-    high: float
+
+@dataclass
+class Score:
+    """A test beside a model: errors for the loss, nrmse, peak and energy over those measured."""
+
+    error: np.ndarray
+    nrmse: float
+    peak: float
+    energy: float
 
     @property
-    def log(self) -> bool:
-        """Whether the place counts in logarithms."""
-        return self.low > 0
-
-    def value(self, place: float) -> float:
-        """Return the value at a place, which counts spreads from the prior."""
-        way = self.spread * place
-        return self.prior * math.exp(way) if self.log else self.prior + way
-
-    def place(self, value: float) -> float:
-        """Return the place of a value."""
-        value = min(max(value, self.low), self.high)
-        way = math.log(value / self.prior) if self.log else value - self.prior
-        return way / self.spread
-
-
-FREE = {
-    "isotropic_hardening": Free(0.05, 1.0, 0.005, 0.3),
-    "fatigue": Free(0.003, 0.7, 1e-4, 0.009),
-    "r0_stress": Free(1.0, 0.7, 0.0, 3.0),
-    "concrete_strength": Free(0.9, 0.15, 0.6, 1.2),
-    "concrete_size": Free(0.0, 0.1, -0.3, 0.4),
-    "cover_softening": Free(1.0, 0.7, 0.1, 10.0),
-    "hinge_axial": Free(0.0, 1.0, -3.0, 3.0),
-    "compression_length": Free(1.5, 0.4, 0.5, 3.0),
-    "slip_axial": Free(0.0, 1.0, -4.0, 3.0),
-    "misfit": Free(0.3, 0.5, 0.05, 0.8),
-    "plastic": Free(1.5, 0.4, 0.5, 3.0),
-    "wear": Free(0.05, 0.7, 0.005, 0.3),
-    "shear_strength": Free(1.0, 0.1, 0.8, 1.4),
-    "shear_decay": Free(0.25, 0.8, 0.01, 4.0),
-    "shear_decay_ties": Free(1.0, 0.5, 0.3, 3.0),
-    "shear_endurance": Free(100.0, 0.8, 10.0, 2000.0),
-    "shear_pinch_force": Free(0.3, 0.4, 0.05, 1.0),
-    "shear_softening": Free(0.1, 0.7, 0.01, 0.6),
-    "isotropic_bond": Free(0.0, 0.4, -2.0, 2.0),
-    "r0_bond": Free(0.0, 0.4, -2.0, 2.0),
-    "hinge_depth": Free(0.1, 0.05, -0.1, 0.4),
-    "cracked_above": Free(0.4, 0.4, 0.1, 0.95),
-    "shear_round_strength": Free(1.3, 0.15, 0.7, 1.8),
-    "shear_endurance_ties": Free(2.0, 1.0, 0.0, 6.0),
-    "shear_pinch_axial": Free(0.0, 1.0, -3.0, 5.0),
-    "shear_b0": Free(0.4, 0.2, 0.0, 0.8),
-    "shear_round_ties": Free(1.36, 0.4, 0.4, 4.0),
-    "shear_decay_shelter": Free(0.03, 0.7, 0.01, 0.3),
-    "steel_strength": Free(1.05, 0.05, 0.9, 1.2),
-    "slip_length": Free(0.015, 0.4, 0.004, 0.04),
-    "r0": Free(13.0, 0.3, 5.0, 30.0),
-}
-
-# What is not fitted: values of the literature, of mechanics or round ones, because the tests leave
-# them where the prior has them, or because they stand for each other. With all 42 of them free the
-# spread of the first group after the fit is 0.75 to 1 of that of the prior.
-FIXED: dict[str, float] = {
-    # Hardly determined by the tests.
-    "cr2": 0.4,
-    "residual": 0.3,
-    "stiffness": 1.0,
-    "stiffness_axial": 1.3,
-    "shear_stiffness": 0.75,
-    "friction": 0.4,
-    "buckling": 5.0,
-    "buckling_strain": 1.0,
-    # By mechanics: a hyperbola, and nothing of the early touch while a crack opens.
-    "shear_fade": 2.0,
-    "seating": 1.0,
-    # The tests agree with the prior.
-    "hinge_length": 1.0,
-    "peak_strain": 1.1,
-    "shear_cracked": 1.0,
-    "core_softening": 1.0,
-    "contact": 0.3,
-    # One of a pair that stand for each other.
-    "cr1": 0.93,
-    "hardening": 0.75,
-    "confinement": 0.8,
-    "shear_cap": 0.023,
-    "shear_pinch_slip": 0.75,
-    "shear_hardening": 1.1,
-    # Less than half of what the column above gives back: no snap-back.
-    "shear_snap_back": 0.5,
-}
-
-# Those of bars and lengths: a block of the search.
-BARS = {
-    "steel_strength",
-    "isotropic_hardening",
-    "isotropic_bond",
-    "fatigue",
-    "r0",
-    "r0_stress",
-    "r0_bond",
-    "slip_length",
-    "slip_axial",
-    "hinge_axial",
-    "hinge_depth",
-}
-
-# nrmse of a test that counts half.
-HALF = 0.13
-# What an error of 1 in the ratio of peaks, or of energies, counts as nrmse.
-PEAK, ENERGY = 0.3, 0.08
-# Weight of the prior, of one spread, against the mean over the tests.
-PRIOR = 5e-4
-# One of this many points along the path is used.
-EVERY = 5
-# Dampings that are tried, the most careful first until one is worse than that before it, and how
-# far a parameter goes in a step, in spreads.
-DAMPINGS = (30.0, 3.0, 0.3, 0.03)
-FARTHEST = 1.0
-# Difference for the slopes, in spreads.
-STEP = 0.3
+    def row(self) -> tuple[float, float, float]:
+        """The numbers of the tables."""
+        return self.nrmse, self.peak, self.energy
 
 
 class Case:
@@ -207,188 +91,134 @@ class Case:
         self.specimen, self.target = specimen, Target(specimen.test())
         self.column = peer.column(specimen)
 
-    def score(self, given: ModelParameters) -> tuple[np.ndarray, list[float]]:
-        """Return the errors along the path with those of the ratios, and nrmse, ratios, end."""
+    def score(self, given: ModelParameters) -> Score:
+        """Return the errors with some parameters."""
         try:
             # The section is drawn once; the parameters change nothing in it.
             recipe = replace(self.column.recipe, parameters=given)
             column = replace(self.column, recipe=recipe, **recipe.made)
-            force, stopped = forces(column, self.target.displacement)
+            force, _ = forces(column, self.target.displacement)
         except RbsdemError:
-            force, stopped = np.empty(0), True
+            force = np.empty(0)
         whole = self.target.error(force)
-        error = whole[::EVERY]
         peak, energy = self.target.ratios(force)
         ratios = np.clip([PEAK * (peak - 1), ENERGY * (energy - 1)], -HALF, HALF)
-        error = np.append(error / math.sqrt(len(error)), ratios)
+        error = np.append(whole[::EVERY] / math.sqrt(len(whole[::EVERY])), ratios)
         nrmse = float(np.sqrt(np.mean(whole**2)))
-        return error / math.sqrt(error @ error + HALF**2), [
-            nrmse,
-            peak,
-            energy,
-            float(stopped is not None and stopped is not False),
-        ]
+        return Score(error / math.sqrt(error @ error + HALF**2), nrmse, peak, energy)
 
 
 _cases: list[Case] = []
-_free: dict[str, Free] = FREE
-_fixed: dict[str, float] = FIXED
-
-
-def at(places: np.ndarray) -> ModelParameters:
-    """Return the parameters of places."""
-    values = dict(_fixed)
-    for (name, one), place in zip(_free.items(), places.tolist(), strict=True):
-        values[name] = one.value(place)
-    # As a version of its own, because its values are meant for all columns: those that a column
-    # limits are limited, not refused as those that a user gives to one column.
-    return replace(parameters().with_values(**values), version="fit")
-
-
-def start() -> np.ndarray:
-    """Return the places of the priors."""
-    return np.zeros(len(_free))
-
-
-def sides() -> tuple[np.ndarray, np.ndarray]:
-    """Return the bounds of the places."""
-    low, high = zip(
-        *((one.place(one.low), one.place(one.high)) for one in _free.values()), strict=True
-    )
-    return np.array(low), np.array(high)
-
-
-def _begin(folder: str) -> None:
-    warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
-    if not _cases:
-        _cases[:] = load(folder)
 
 
 def load(folder: str) -> list[Case]:
     """Return the tests with a history of their own, doubtful labels mended."""
-    tests = peer.read_specimens(folder).with_history()
-    return [Case(specimen) for specimen in peer.check(tests).mended()]
+    if not _cases:
+        warnings.simplefilter("ignore", AccuracyWarning)
+        tests = peer.read_specimens(folder).with_history()
+        _cases[:] = [Case(specimen) for specimen in peer.check(tests).mended()]
+    return _cases
 
 
-def _one(task: tuple[int, np.ndarray]) -> tuple[np.ndarray, list[float]]:
+def _score(task: tuple[int, np.ndarray]) -> Score:
     number, places = task
     return _cases[number].score(at(places))
 
 
-def _slopes(task: tuple[int, np.ndarray, list[int]]) -> tuple[np.ndarray, np.ndarray, list[float]]:
-    """Return residual, its change by each parameter of a block, and the scores."""
-    number, places, block = task
-    _, high = sides()
-    here, scores = _one((number, places))
-    columns = []
-    for i in block:
-        step = STEP if places[i] + STEP <= high[i] else -STEP
-        moved = places.copy()
-        moved[i] += step
-        columns.append((_one((number, moved))[0] - here) / step)
-    return here, np.column_stack(columns), scores
-
-
-Linear = tuple[list[np.ndarray], list[np.ndarray], list[list[float]]]
-Keep = Callable[[str, Any], None]
-Trail = list[tuple[np.ndarray, list[int], Linear]]
+def _slopes(task: tuple[int, np.ndarray]) -> np.ndarray:
+    """Return the change of the errors of a test by each place."""
+    number, places = task
+    here = _score(task).error
+    moved = places + STEP * np.eye(len(places))
+    return np.column_stack([(_score((number, one)).error - here) / STEP for one in moved])
 
 
 class Search:
-    """Gauss-Newton over some of the tests."""
+    """Gauss-Newton from the priors, over some of the tests."""
 
-    def __init__(self, pool: ProcessPoolExecutor | None) -> None:
-        self.run = map if pool is None else lambda f, tasks: pool.map(f, tasks, chunksize=4)
-        series = [case.specimen.series for case in _cases]
+    def __init__(self, cases: Sequence[Case], pool: ProcessPoolExecutor | None = None) -> None:
+        self.cases = cases
+        self.map = map if pool is None else lambda f, tasks: pool.map(f, tasks, chunksize=4)
+        series = [case.specimen.series for case in cases]
         self.weight = np.array([1 / math.sqrt(series.count(name)) for name in series])
+        self.start = np.zeros(len(FREE))
+        # No test sees another one here, so that all searches share the first slopes.
+        self.first = self.slopes(range(len(cases)), self.start)
 
-    def loss(self, places: np.ndarray, members: list[int]) -> float:
-        """Return the loss of some tests."""
-        rows = list(self.run(_one, [(i, places) for i in members]))
-        return self.total([row[0] for row in rows], places, members)
+    def scores(self, members: Iterable[int], places: np.ndarray) -> list[Score]:
+        """Return the scores of some tests."""
+        return list(self.map(_score, [(i, places) for i in members]))
 
-    def total(self, rows: list[np.ndarray], places: np.ndarray, members: list[int]) -> float:
+    def slopes(self, members: Iterable[int], places: np.ndarray) -> dict[int, np.ndarray]:
+        """Return the slopes of some tests by their numbers."""
+        members = list(members)
+        return dict(zip(members, self.map(_slopes, [(i, places) for i in members]), strict=True))
+
+    def loss(self, members: list[int], places: np.ndarray, scores: list[Score]) -> float:
         """Return the weighted mean of the losses of tests, and the prior."""
         weight = self.weight[members]
-        mean = sum(w * (row @ row) for w, row in zip(weight, rows, strict=True)) / weight.sum()
-        return float(mean + PRIOR * (places @ places))
+        losses = np.array([score.error @ score.error for score in scores])
+        return float(weight @ losses / weight.sum() + PRIOR * (places @ places))
 
-    def linear(self, places: np.ndarray, members: list[int], block: list[int]) -> Linear:
-        """Return residuals, slopes by the parameters of a block, and scores of some tests."""
-        rows = list(self.run(_slopes, [(i, places, block) for i in members]))
-        return [r[0] for r in rows], [r[1] for r in rows], [r[2] for r in rows]
+    def normal(
+        self, members: list[int], slopes: dict[int, np.ndarray], rest: list[Score], at: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return the matrix and the gradient of the quadratic model of the loss."""
+        share = self.weight[members] / self.weight[members].sum()
+        matrix, gradient = PRIOR * np.eye(len(at)), PRIOR * at
+        for w, i, score in zip(share, members, rest, strict=True):
+            matrix = matrix + w * slopes[i].T @ slopes[i]
+            gradient = gradient + w * slopes[i].T @ score.error
+        return matrix, gradient
 
-    def step(
-        self, places: np.ndarray, known: Linear, members: list[int], block: list[int]
-    ) -> tuple[np.ndarray, float, float]:
-        """Return places with a better block, and the losses before and after."""
-        rows, slopes, _ = known
-        weight = self.weight[members]
-        share = weight / weight.sum()
-        normal = PRIOR * np.eye(len(block))
-        gradient = PRIOR * places[block]
-        for w, row, slope in zip(share, rows, slopes, strict=True):
-            normal += w * slope.T @ slope
-            gradient = gradient + w * slope.T @ row
-        before = self.total(rows, places, members)
-        low, high = (side[block] - places[block] for side in sides())
-        low, high = np.maximum(low, -FARTHEST), np.minimum(high, FARTHEST)
-        best, least = places, before
-        for damping in DAMPINGS:
-            there = places.copy()
-            there[block] += _bounded(
-                normal + damping * np.diag(np.diag(normal)), gradient, low, high
-            )
-            loss = self.loss(there, members)
-            if loss < least:
-                best, least = there, loss
-            elif least < before:
-                break
-        return best, before, least
+    def fit(self, members: list[int], steps: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return the places that are best for some tests, and the matrix there.
 
-
-def _bounded(
-    normal: np.ndarray, gradient: np.ndarray, low: np.ndarray, high: np.ndarray
-) -> np.ndarray:
-    """Return the move that makes a quadratic function least within bounds."""
-    move, held = np.zeros(len(gradient)), np.zeros(len(gradient), bool)
-    for _ in range(len(gradient)):
-        free = ~held
-        right = gradient[free] + normal[np.ix_(free, held)] @ move[held]
-        move[free] = -np.linalg.solve(normal[np.ix_(free, free)], right)
-        beyond = (move < low) | (move > high)
-        if not np.any(beyond & free):
-            break
-        held |= beyond
-        move = np.clip(move, low, high)
-    return move
+        Slopes are taken anew every second step.
+        """
+        places, slopes = self.start, self.first
+        scores = self.scores(members, places)
+        least = self.loss(members, places, scores)
+        for number in range(steps):
+            if number > 0 and number % 2 == 0:
+                slopes = self.slopes(members, places)
+            matrix, gradient = self.normal(members, slopes, scores, places)
+            best = places, scores
+            for damping in DAMPINGS:
+                damped = matrix + damping * np.diag(np.diag(matrix))
+                move = np.clip(-np.linalg.solve(damped, gradient), -FARTHEST, FARTHEST)
+                there = np.clip(places + move, -BOUND, BOUND)
+                found = self.scores(members, there)
+                loss = self.loss(members, there, found)
+                if loss < least:
+                    least, best = loss, (there, found)
+                elif best[0] is not places:
+                    break
+            places, scores = best
+        return places, matrix
 
 
-def table(scores: np.ndarray, cases: list[Case]) -> list[str]:
-    """Return lines of a table: medians of classes, and means over series."""
-    lines = []
-    for form in ("rectangular", "round"):
-        for mode in ("Flexure", "Flexure-Shear", "Shear"):
-            chosen = [
-                (c.specimen.section == "rectangular") == (form == "rectangular")
-                and c.specimen.failure_mode == mode
-                for c in cases
-            ]
-            part = scores[chosen]
-            if len(part):
-                n, p, e = np.median(part[:, :3], axis=0)
-                lines.append(
-                    f"| {form}, {mode} | {len(part)} | {n:.3f} ({part[:, 0].mean():.3f}) "
-                    f"| {p:.2f} | {e:.2f} |"
-                )
-    names = np.array([c.specimen.series for c in cases])
+def groups_of(cases: Sequence[Case], number: int) -> list[list[int]]:
+    """Return the tests of each group of series; the alphabet has nothing to do with the tests."""
+    names = sorted({case.specimen.series for case in cases})
+    folds = [set(names[i::number]) for i in range(number)]
+    return [[i for i, c in enumerate(cases) if c.specimen.series in fold] for fold in folds]
+
+
+def summary(scores: np.ndarray, cases: Sequence[Case]) -> list[str]:
+    """Return lines of a table: medians (and mean) by class, and means over tests and series."""
+    lines = ["| tests | number | nrmse: median (mean) | peak | energy |", "| --- " * 5 + "|"]
+    kinds = np.array([case.specimen.kind for case in cases])
+    squat = np.array([case.specimen.length / case.specimen.depth < 2 for case in cases])
+    parts = {kind: kinds == kind for kind in sorted(set(kinds))} | {"L/h < 2": squat}
+    for name, chosen in (parts | {"all": np.full(len(cases), True)}).items():
+        part = scores[chosen]
+        n, p, e = np.median(part, axis=0)
+        mean = part[:, 0].mean()
+        lines.append(f"| {name} | {len(part)} | {n:.3f} ({mean:.4f}) | {p:.2f} | {e:.2f} |")
+    names = np.array([case.specimen.series for case in cases])
     means = [scores[names == name, 0].mean() for name in sorted(set(names))]
-    medians = [np.median(scores[names == name, 0]) for name in sorted(set(names))]
-    lines.append(
-        f"all {len(scores)}: median {np.median(scores[:, 0]):.4f}, mean of series means "
-        f"{np.mean(means):.4f}, median of series medians {np.median(medians):.4f}, "
-        f"{int(scores[:, 3].sum())} not to their end"
-    )
+    lines.append(f"\nmean of the means of {len(means)} series: {np.mean(means):.4f}")
     return lines
 
 
@@ -397,108 +227,72 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder")
     parser.add_argument("--groups", type=int, default=8)
-    parser.add_argument("--steps", type=int, default=7)
-    parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--state", type=Path, metavar="FILE", help="where a broken search goes on")
-    parser.add_argument("--out", type=Path, metavar="FILE", help="csv of the scores left out")
+    parser.add_argument("--steps", type=int, default=6)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--write", action="store_true", help="into data and studies/results")
     given = parser.parse_args()
 
-    _begin(given.folder)
-    state: dict[str, Any] = {}
-    if given.state and given.state.is_file():
-        state = json.loads(given.state.read_text("utf-8"))
-
-    def keep(name: str, value: Any) -> None:
-        state[name] = value
-        if given.state:
-            given.state.write_text(json.dumps(state), "utf-8")
-
-    pool = None
-    if given.jobs > 1:
-        pool = ProcessPoolExecutor(given.jobs, initializer=_begin, initargs=(given.folder,))
-    search = Search(pool)
-    trail = fit_all(search, given.steps, state, keep)
-    if not given.groups:
-        return
-    found = leave_out(search, trail, given.groups, state, keep)
-    if pool is not None:
-        pool.shutdown()
-    print("every series left out once\n" + "\n".join(table(found, _cases)))
-    if given.out:
-        with given.out.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            writer.writerow(["name", "series", "kind", "nrmse", "peak_ratio", "energy_ratio"])
-            for case, row in zip(_cases, found, strict=True):
-                s = case.specimen
-                writer.writerow([s.name, s.series, s.kind, *(f"{value:.4f}" for value in row[:3])])
-
-
-def blocks() -> tuple[list[int], ...]:
-    """Return the places of the shear spring, of the bars and lengths, and of the concrete."""
-    shear = [i for i, name in enumerate(_free) if name.startswith("shear_")]
-    steel = [i for i, name in enumerate(_free) if name in BARS]
-    return shear, steel, [i for i in range(len(_free)) if i not in shear and i not in steel]
-
-
-def fit_all(search: Search, steps: int, state: dict[str, Any], keep: Keep) -> Trail:
-    """Fit to all tests; return the places, the block and the linear model of each step.
-
-    The steps are of the shear spring, of bars and lengths, and of concrete in turn: a step of all
-    parameters at once is held back by those that go astray.
-    """
-    everyone = list(range(len(_cases)))
-    trail: Trail = []
-    places = np.array(state.get("all", start()))
-    for number in range(steps):
-        block = blocks()[number % 3]
-        if number < len(state.get("trail", [])):
-            places = np.array(state["trail"][number])
-        began = time.perf_counter()
-        known = search.linear(places, everyone, block)
-        trail.append((places, block, known))
-        keep("trail", [here.tolist() for here, *_ in trail])
-        places, before, after = search.step(places, known, everyone, block)
-        keep("all", places.tolist())
-        seconds = time.perf_counter() - began
-        print(f"step {number + 1}: {before:.5f} to {after:.5f}, {seconds:.0f} s", flush=True)
-    scores = [row[1] for row in search.run(_one, [(i, places) for i in everyone])]
-    print("\n".join(table(np.array(scores), _cases)), flush=True)
-    for (name, one), place in zip(_free.items(), places, strict=True):
-        print(f"    {name}={one.value(place):.3g},", flush=True)
-    return trail
+    began = time.perf_counter()
+    cases = load(given.folder)
+    with ExitStack() as stack:
+        pool = None
+        if given.jobs > 1:
+            pool = stack.enter_context(
+                ProcessPoolExecutor(given.jobs, initializer=load, initargs=(given.folder,))
+            )
+        search = Search(cases, pool)
+        everyone = list(range(len(cases)))
+        places, matrix = search.fit(everyone, given.steps)
+        fitted = np.array([score.row for score in search.scores(everyone, places)])
+        print("Fit to all tests\n\n" + "\n".join(summary(fitted, cases)), flush=True)
+        left, own = np.full_like(fitted, np.nan), []
+        for outside in groups_of(cases, given.groups):
+            inside = [i for i in everyone if i not in set(outside)]
+            own.append(search.fit(inside, given.steps)[0])
+            left[outside] = [score.row for score in search.scores(outside, own[-1])]
+    print("\nEvery series left out once\n\n" + "\n".join(summary(left, cases)))
+    gap = left[:, 0].mean() - fitted[:, 0].mean()
+    print(f"left out less fit, mean: {gap:.4f}; {time.perf_counter() - began:.0f} s")
+    # The spread that a number has after the fit over that of its prior; 1: the tests say nothing.
+    after = np.sqrt(PRIOR * np.diag(np.linalg.inv(matrix)))
+    print("\n| number | prior | spread | fit | without each group | spread after over before |")
+    print("| --- " * 6 + "|")
+    values = at(places)
+    others = [at(one) for one in own]
+    for (name, (prior, spread)), share in zip(FREE.items(), after, strict=True):
+        several = [one.values[name] for one in others] or [math.nan]
+        print(
+            f"| {name} | {prior:g} | {spread:g} | {values.values[name]:.3g} "
+            f"| {min(several):.3g} to {max(several):.3g} | {share:.2f} |"
+        )
+    names = sorted({case.specimen.series for case in cases})
+    of = np.array([case.specimen.series for case in cases])
+    print("\n| series | tests | fit | left out |\n| --- | --- | --- | --- |")
+    for name in names:
+        part = of == name
+        pair = f"{fitted[part, 0].mean():.3f} | {left[part, 0].mean():.3f}"
+        print(f"| {name} | {part.sum()} | {pair} |")
+    if given.write:
+        write(places, own, left)
 
 
-def leave_out(
-    search: Search, trail: Trail, groups: int, state: dict[str, Any], keep: Keep
-) -> np.ndarray:
-    """Leave groups of series out in turn; return the scores of the tests that were left out.
-
-    Each search begins where that to all tests began and never sees a test of its group. It takes as
-    many steps, with its own errors and the slopes of the tests at the same step of the search to
-    all: the two searches are near each other, so these are good, and whether a step is taken is
-    decided by its own loss alone.
-    """
-    names = sorted({case.specimen.series for case in _cases})
-    found = np.full((len(_cases), 4), np.nan)
-    for number in range(groups):
-        # The order of the alphabet has nothing to do with the tests.
-        fold = names[number::groups]
-        inside = [i for i, c in enumerate(_cases) if c.specimen.series not in fold]
-        outside = [i for i, c in enumerate(_cases) if c.specimen.series in fold]
-        key = f"without {number}"
-        if key in state:
-            own = np.array(state[key])
-        else:
-            own = trail[0][0]
-            for _, block, (_, slopes, _) in trail:
-                rows = [row[0] for row in search.run(_one, [(i, own) for i in inside])]
-                linear = rows, [slopes[i] for i in inside], []
-                own, _, _ = search.step(own, linear, inside, block)
-            keep(key, own.tolist())
-        for i, row in zip(outside, search.run(_one, [(i, own) for i in outside]), strict=True):
-            found[i] = row[1]
-        print(f"without {', '.join(fold)}: {np.median(found[outside, 0]):.4f}", flush=True)
-    return found
+def write(places: np.ndarray, own: list[np.ndarray], left: np.ndarray) -> None:
+    """Write the values, those without each group, and the scores left out."""
+    path = ROOT / "data/layered_parameters.csv"
+    lines = path.read_text("utf-8").splitlines()
+    for number, line in enumerate(lines):
+        name, *rest = line.split(",", 2)
+        if name in FREE:
+            lines[number] = f"{name},{at(places).values[name]:.3g},{rest[1]}"
+    path.write_text("\n".join(lines) + "\n", "utf-8")
+    kept = {"all": places.round(4).tolist(), "without": [one.round(4).tolist() for one in own]}
+    (ROOT / "studies/results/fit_model.json").write_text(json.dumps(kept) + "\n", "utf-8")
+    with (ROOT / "studies/results/fit_model.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["name", "series", "kind", "nrmse", "peak_ratio", "energy_ratio"])
+        for case, row in zip(_cases, left, strict=True):
+            s = case.specimen
+            writer.writerow([s.name, s.series, s.kind, *(f"{value:.4f}" for value in row)])
 
 
 if __name__ == "__main__":

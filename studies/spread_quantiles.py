@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rbsdem.section.spread import Middle
+from rbsdem.section.spread import Middle, Place
+from rbsdem.section.spread import between as place_between
 
 #: What bands and intervals are to hold.
 LEVEL = 0.8
@@ -21,8 +22,8 @@ class Numbers(NamedTuple):
 
     Attributes
     ----------
-    near : float
-        How near the model is to its shear strength.
+    near : Place
+        How near the model is to its shear strength, and how slender the column is.
     logs : dict of str to float
         ln of test over model. Of a drift at loss that the model does not come to along the path,
         the largest drift stands for it; NaN where the test did not come to it.
@@ -30,7 +31,7 @@ class Numbers(NamedTuple):
         Whether the model does not lose its strength along the path, so that there is no upper end.
     """
 
-    near: float
+    near: Place
     logs: dict[str, float]
     beyond: bool
 
@@ -42,14 +43,16 @@ def quantile(values: np.ndarray, weight: np.ndarray, share: float) -> float:
     return float(values[order][np.searchsorted(below, share * below[-1], side="left")])
 
 
-def both(near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return which tests are far from the shear strength, and which at it."""
-    return near < 0.5, near >= 0.5
+def parts(near: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Return which tests are far from the shear strength, and at it which are squat or slender."""
+    at, tall = near[:, 0] >= 0.5, near[:, 1] >= 0.5
+    return ~at, at & ~tall, at & tall
 
 
 def between(ends: np.ndarray, near: np.ndarray) -> np.ndarray:
-    """Return numbers between those far from the shear strength and at it, shape (tests, ...)."""
-    return ends[0] + near.reshape(-1, *(1 for _ in ends.shape[1:])) * (ends[1] - ends[0])
+    """Return numbers between those of the three parts, shape (tests, ...)."""
+    one = (-1, *(1 for _ in ends.shape[1:]))
+    return place_between(ends, Place(near[:, 0].reshape(one), near[:, 1].reshape(one)))
 
 
 def weights(series: np.ndarray) -> np.ndarray:
@@ -64,28 +67,30 @@ class Tests:
         self.group, self.near = group, near
         self.weight = weights(series)
 
-    def ends(self, chosen: np.ndarray, tail: float) -> np.ndarray:
-        """Return the ends far from the shear strength and at it."""
+    def ends(self, chosen: np.ndarray, tail: np.ndarray) -> np.ndarray:
+        """Return the ends of the three parts."""
         raise NotImplementedError
 
     def held(self, ends: np.ndarray) -> np.ndarray:
         """Return the share of each test that is within the ends; NaN if it does not count."""
         raise NotImplementedError
 
-    def tail(self, chosen: np.ndarray) -> float:
-        """Return the tail with which chosen groups hold each of them left out to 80 %."""
+    def tail(self, chosen: np.ndarray) -> np.ndarray:
+        """Return the tails of the parts with which chosen groups, each left out, hold 80 %."""
         groups = sorted(set(self.group[chosen].tolist()))
-        share = 1 - LEVEL
-        while share > 0.02:
+        share, found = 1 - LEVEL, np.full(3, np.nan)
+        while np.any(np.isnan(found)):
             held = np.full(len(self.near), np.nan)
             for one in groups:
                 own = chosen & (self.group == one)
-                held[own] = self.held(self.ends(chosen & ~own, share))[own]
-            known = np.isfinite(held)
-            if np.average(held[known], weights=self.weight[known]) >= LEVEL:
-                break
+                held[own] = self.held(self.ends(chosen & ~own, np.full(3, share)))[own]
+            for number, part in enumerate(parts(self.near)):
+                known = part & np.isfinite(held)
+                enough = np.average(held[known], weights=self.weight[known]) >= LEVEL
+                if np.isnan(found[number]) and (enough or share <= 0.02):
+                    found[number] = share
             share -= 0.005
-        return share
+        return found
 
 
 class Ratios(Tests):
@@ -97,16 +102,16 @@ class Ratios(Tests):
         self.beyond = np.array([row.beyond and name == "drift" for row in rows])
         self.drift = name == "drift"
 
-    def ends(self, chosen: np.ndarray, tail: float) -> np.ndarray:
+    def ends(self, chosen: np.ndarray, tail: np.ndarray) -> np.ndarray:
         """Return the quantiles; a model without a loss tells nothing of the upper one."""
         found = []
-        for place in both(self.near):
+        for place, share in zip(parts(self.near), tail, strict=True):
             low = chosen & place & np.isfinite(self.log)
             high = low & ~self.beyond
             found.append(
                 (
-                    quantile(self.log[low], self.weight[low], tail / 2),
-                    -quantile(-self.log[high], self.weight[high], tail / 2),
+                    quantile(self.log[low], self.weight[low], share / 2),
+                    -quantile(-self.log[high], self.weight[high], share / 2),
                 )
             )
         return np.array(found)
@@ -129,13 +134,13 @@ class Points(Tests):
         #: Distances over the half band that has grown with the distance from the middle.
         self.scores = scores / grown[:, None]
 
-    def ends(self, chosen: np.ndarray, tail: float) -> np.ndarray:
+    def ends(self, chosen: np.ndarray, tail: np.ndarray) -> np.ndarray:
         """Return the distance over the half band below which the points are."""
         found = []
-        for place in both(self.near):
+        for place, share in zip(parts(self.near), tail, strict=True):
             part = self.scores[chosen & place]
             weight = np.repeat(self.weight[chosen & place], part.shape[1])
-            found.append(quantile(part.ravel(), weight, 1 - tail))
+            found.append(quantile(part.ravel(), weight, 1 - share))
         return np.array(found)
 
     def held(self, ends: np.ndarray) -> np.ndarray:
@@ -167,5 +172,5 @@ def growth_of(
     known = np.column_stack([np.ones(len(w)), near[chosen], distance[chosen]])
     root = np.sqrt(w)
     found = np.linalg.lstsq(known * root[:, None], held * root, rcond=None)[0]
-    growth = round(max(float(found[2]), 0.0), 3)
+    growth = round(max(float(found[-1]), 0.0), 3)
     return Growth(middle, growth, np.exp(growth * distance))

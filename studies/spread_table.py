@@ -1,16 +1,16 @@
 """The scatter of left-out tests about the model, and what its bands hold: tables of docs/peer.md.
 
-    python studies/spread_table.py FOLDER STATE [--samples 16] [--jobs 2] [--once] [--write]
+    python studies/spread_table.py FOLDER [--samples 16] [--jobs 2] [--once] [--write]
 
-STATE is the file in which `studies/fit_model.py` keeps the parameters without each group of series.
+The numbers of the model without each group of series are those of `studies/fit_model.py`.
 
 **Numbers of the bands.** Every test is predicted with the parameters without its group. The scatter
 of strength, stiffness and drift at loss is split into that between series (laboratories) and that
 between the tests of a series. Samples of it go through the model; their band is widened until 80 %
 of the points of the tests lie within, and the ends of the intervals of single numbers are quantiles
 of the tests. A test counts 1/sqrt(tests of its series), half-way between every test alike and every
-series alike. There are two sets of numbers: for columns far from their shear strength and for those
-at it, as far as the model says, whatever the test said.
+series alike. There are three sets of numbers: for columns far from their shear strength, and for
+squat and for slender ones at it, as far as the model says, whatever the test said.
 
 **Distance.** Left-out tests are the farther from their prediction the farther they are from the
 middle of the tests that were not left out, in five properties (`spread.likeness`). The band
@@ -41,7 +41,6 @@ import argparse
 import json
 import math
 import time
-import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
@@ -51,11 +50,11 @@ import fit_model
 import numpy as np
 from spread_quantiles import LEVEL, Growth, Numbers, Points, Ratios, between, growth_of, weights
 
-import rbsdem
 from rbsdem import peer
 from rbsdem.curves.metrics import PathPoints, secant_stiffness
 from rbsdem.section.parameters import VERSION
 from rbsdem.section.spread import (
+    Place,
     Scatter,
     half_band,
     near_shear,
@@ -63,6 +62,7 @@ from rbsdem.section.spread import (
     path_force,
     place_of,
     sample,
+    slender,
 )
 
 #: What the band has without samples, over the largest force; and what else was tried.
@@ -74,29 +74,28 @@ ROOT = Path(__file__).resolve().parents[1]
 NUMBERS = ("peak", "energy", "drift")
 NAMES = {"peak": "strength", "stiffness": "stiffness", "drift": "degradation"}
 
-_state: dict[str, np.ndarray] = {}
+_all = np.empty(0)
+_without: list[np.ndarray] = []
 _group: dict[str, int] = {}
 
 
 # ---- predictions, in processes -------------------------------------------------------------------
 
 
-def _begin(folder: str, state: str, groups: int) -> None:
-    warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
-    fit_model._begin(folder)
-    kept = json.loads(Path(state).read_text("utf-8"))
-    _state.update({name: np.array(value) for name, value in kept.items()})
-    names = sorted({case.specimen.series for case in fit_model._cases})
-    for number in range(groups):
-        _group.update(dict.fromkeys(names[number::groups], number))
+def _begin(folder: str) -> None:
+    global _all
+    kept = json.loads((ROOT / "studies/results/fit_model.json").read_text("utf-8"))
+    _all, _without[:] = np.array(kept["all"]), map(np.array, kept["without"])
+    cases = fit_model.load(folder)
+    for number, members in enumerate(fit_model.groups_of(cases, len(_without))):
+        _group.update(dict.fromkeys((cases[i].specimen.series for i in members), number))
 
 
 def _column(number: int, judged: int | None) -> Any:
     """Return the column of a test with the parameters without its group and the judged one."""
     case = fit_model._cases[number]
     out = {_group[case.specimen.series]} | ({judged} if judged is not None else set())
-    moves = [_state[f"without {one}"] - _state["all"] for one in out]
-    places = np.clip(_state["all"] + np.sum(moves, axis=0), *fit_model.sides())
+    places = _all + np.sum([_without[one] - _all for one in out], axis=0)
     return peer.column(case.specimen, model_parameters=fit_model.at(places))
 
 
@@ -115,7 +114,8 @@ def _numbers(task: tuple[int, int | None]) -> Numbers:
     for name, value in ours.items():
         known = value > 0 and theirs[name] > 0
         logs[name] = math.log(theirs[name] / value) if known else math.nan
-    return Numbers(near_shear(column, float(np.max(np.abs(force)))), logs, beyond)
+    near = near_shear(column, float(np.max(np.abs(force))))
+    return Numbers(Place(near, slender(height, case.specimen.depth)), logs, beyond)
 
 
 class Band(NamedTuple):
@@ -186,9 +186,9 @@ def scatter_of(rows: list[Numbers], series: np.ndarray, chosen: np.ndarray) -> S
         # A drift that the model does not come to is no ratio.
         logs = [math.nan if name == "drift" and r.beyond else r.logs[name] for r in rows]
         parts[what] = components(np.array(logs)[chosen], series[chosen])
-    one = ((1.0, 1.0), (1.0, 1.0))
+    one = ((1.0, 1.0), (1.0, 1.0), (1.0, 1.0))
     # What the band has for the shape is added where bands are judged.
-    return Scatter(**parts, shape=0.0, force=(1.0, 1.0), peak=one, energy=one, drift=one)
+    return Scatter(**parts, shape=0.0, force=(1.0, 1.0, 1.0), peak=one, energy=one, drift=one)
 
 
 class Fold(NamedTuple):
@@ -230,7 +230,7 @@ def fold(
             found_growth = growth_of(scores, places, about[2], weights(series), chosen)
             grown = found_growth.grown if grows else np.ones(len(series))
             points = Points(scores, grown, *about)
-            ends = points.ends(chosen, 1 - LEVEL)
+            ends = points.ends(chosen, np.full(3, 1 - LEVEL))
             widen = between(ends, points.near) * grown
             both_ways = list(zip(bands, widen.tolist(), strict=True))
             choices[shape, grows] = np.array(
@@ -371,17 +371,15 @@ def main() -> None:
     """Predict, widen, judge, print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder")
-    parser.add_argument("state")
     parser.add_argument("--samples", type=int, default=16)
-    parser.add_argument("--groups", type=int, default=8)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--once", action="store_true", help="samples of each test once")
     parser.add_argument("--write", action="store_true", help="into docs and data")
     given = parser.parse_args()
 
     began = time.perf_counter()
-    source = given.folder, given.state, given.groups
-    _begin(*source)
+    source = (given.folder,)
+    _begin(given.folder)
     cases = fit_model._cases
     series = np.array([case.specimen.series for case in cases])
     group = np.array([_group[name] for name in series.tolist()])
@@ -402,7 +400,7 @@ def main() -> None:
 
         rows = list(run(_numbers, [(i, None) for i in range(len(cases))]))
         once: dict[str, Any] | None = {} if given.once else None
-        for judged in range(given.groups):
+        for judged in range(len(_without)):
             own = group == judged
             found = fold(judged, series, group, places, given.samples, run, once)
             width[own] = found.width[own]

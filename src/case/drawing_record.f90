@@ -180,7 +180,7 @@ contains
                            'made of it; give it, or remove the groups of the section')
       else
          call self%check('drawing', messages)
-         if (self%version == '') call messages%add("drawing: version is missing; give it, as '2026.5'")
+         if (self%version == '') call messages%add("drawing: version is missing; give it, as '2026.6'")
       end if
       call self%section%validate(messages)
       call check_layout(self%section, 'layout', self%layout, messages)

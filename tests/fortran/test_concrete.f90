@@ -25,8 +25,7 @@ contains
                unit_test('no misfit, no contact: back to the plastic closing', plain), &
                unit_test('wear: by the way of opening over the widest one', wear), &
                unit_test('partial unloading is one line both ways', partial), &
-               unit_test('friction: two paths, and the initial stiffness between them', friction), &
-               unit_test('seating: opening does not follow the early touch', seating)]
+               unit_test('friction: two paths, and the initial stiffness between them', friction)]
    end subroutine collect_concrete
 
    !> A spring with simple parameters: 100 at a closing of 2, then slope -10 down to 20 at 10.
@@ -189,26 +188,5 @@ contains
       call follow_path(spec, [-0.4_wp, -0.2_wp, 0.0_wp, -0.2_wp, -0.4_wp, -0.2_wp, 0.0_wp, 1.0_wp], f)
       call check_close(error, f(2), 0.5_wp*f(1), 1.0e-12_wp, 0.0_wp, 'elastic')
    end subroutine friction
-
-   !> c_p as for friction. After an opening of 1 faces touch 0.5 before c_p and are closed at a quarter of the
-   !> way from there to 4, with 20. Opening leads from that point straight to c_p, where no force is left.
-   subroutine seating(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp), parameter :: c_p = 2.0_wp*(0.84_wp - 0.0415625_wp), slope = 80.0_wp/(4.0_wp - c_p), &
-                             touch = c_p - 0.5_wp, closed = c_p + 0.25_wp*(4.0_wp - c_p), &
-                             rise = 20.0_wp/(closed - touch), back = rise*(1.4_wp - touch)
-      type(spring_record) :: spec
-      real(wp) :: f(10)
-
-      spec = hand()
-      call set_value(spec, 'contact', 0.25_wp)
-      call set_value(spec, 'misfit', 0.5_wp)
-      call set_value(spec, 'seating', 1.0_wp)
-      call follow_path(spec, -[4.0_wp, c_p - 1.0_wp, 1.5_wp, closed, 1.9_wp, 1.2_wp, 1.21_wp, 1.4_wp, &
-                               1.39_wp, 1.3_wp], f)
-      call check_close(error, f, -[80.0_wp, 0.0_wp, rise*(1.5_wp - touch), 20.0_wp, slope*(1.9_wp - c_p), &
-                                   0.0_wp, 1.0_wp, back, back - 1.0_wp, 0.0_wp], &
-                       1.0e-12_wp, 1.0e-12_wp, 'force')
-   end subroutine seating
 
 end module test_concrete

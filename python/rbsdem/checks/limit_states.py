@@ -18,6 +18,8 @@ from rbsdem.checks.criteria import Criterion, criteria
 from rbsdem.curves.envelope import strength_loss_point
 from rbsdem.errors import InputError
 from rbsdem.model.response import Response
+from rbsdem.section.layered import LayeredColumn
+from rbsdem.section.strength import axial_failure_drift
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -129,13 +131,13 @@ def limit_states(result: Response) -> LimitStates:
             found = _in_time(result, criterion, *result.reached[place])
         if found is not None and (found.name not in first or found.time < first[found.name].time):
             first[found.name] = found
-    states = [*first.values(), *_losses(result)]
+    states = [*first.values(), *_losses(result), *_axial_failure(result, first)]
     ends = {
         "axial_failure": ("axial_failure", "the layers lose the axial load"),
         "collapsed": ("collapse", "collapse_drift"),
     }
-    if result.summary["status"] in ends:
-        name, source = ends[result.summary["status"]]
+    name, source = ends.get(result.summary["status"], ("", ""))
+    if name and name not in {state.name for state in states}:
         states.append(_state(result, name, path.time.size - 1, math.nan, source))
     return LimitStates(result, states)
 
@@ -174,6 +176,26 @@ def _losses(result: Response) -> list[LimitState]:
     state = _state(result, "strength_loss", place, _LOSS, source)
     at = math.copysign(loss, state.displacement)
     return [replace(state, displacement=at, drift=at / result.column.height)]
+
+
+def _axial_failure(result: Response, first: dict[str, LimitState]) -> list[LimitState]:
+    """Return where a column that has failed in shear loses its axial load.
+
+    Its shear spring has yielded, and its drift is that at which the friction along the shear crack
+    carries the axial load no more (`rbsdem.section.strength.axial_failure_drift`).
+    """
+    column = result.column
+    if "shear_yield" not in first or not isinstance(column, LayeredColumn):
+        return []
+    assert column.recipe is not None
+    limit = axial_failure_drift(column.recipe.section, column.axial_load)
+    path = result.path
+    drift = np.abs(path.displacement) / column.height
+    rows = np.flatnonzero((drift >= limit) & (path.time >= first["shear_yield"].time))
+    if rows.size == 0:
+        return []
+    source = "friction along the shear crack, Elwood and Moehle 2005"
+    return [_state(result, "axial_failure", float(rows[0]), limit, source)]
 
 
 def _state(result: Response, name: str, place: float, threshold: float, source: str) -> LimitState:

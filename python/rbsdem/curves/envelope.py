@@ -450,6 +450,8 @@ def _idealise(x: Array, y: Array, method: str, end: float | None = None) -> Idea
     else:
         points = _equal_energy(*_up_to(x, y, ultimate), float(y[top]))
     at, force, end_at, end_force = (float(value) for value in points)
+    if not at > 0:
+        raise InputError("the envelope has its force at zero displacement; it has no first line")
     source = _SOURCES[method]
     return Idealisation(method, source, at, force, end_at, end_force, ultimate, lost)
 
@@ -532,7 +534,10 @@ def _ec_8(x: Array, y: Array) -> tuple[float, float, float, float]:
 
 def _equal_energy(x: Array, y: Array, top: float) -> tuple[float, float, float, float]:
     end = float(x[-1])
-    stiffness = 0.4 * top / _crossing(x, y, 0.4 * top)
+    first = _crossing(x, y, 0.4 * top)
+    if not first > 0:
+        return 0.0, top, end, top
+    stiffness = 0.4 * top / first
     root = end**2 - 2.0 * _area(x, y) / stiffness
     force = stiffness * (end - math.sqrt(root)) if root >= 0 else 0.85 * top
     at = min(force / stiffness, end)

@@ -529,9 +529,6 @@ class ConcreteSpring(Spring):
     friction : float, optional
         Share of the force by which the path of opening is below that of closing, once the spring
         was closed by `d_peak` or more; below 1.
-    seating : float, optional
-        Share of the early touch that opening does not follow, because faces that were pressed
-        together fit; 0 to 1.
 
     Raises
     ------
@@ -552,7 +549,6 @@ class ConcreteSpring(Spring):
     misfit: float = 0.0
     wear: float = 0.0
     friction: float = 0.0
-    seating: float = 0.0
 
 
 @dataclass(frozen=True)

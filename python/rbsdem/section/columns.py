@@ -30,7 +30,7 @@ CONCRETE_DENSITY = 2400.0
 
 
 def model_name(model: str, model_parameters: ModelParameters | None = None) -> str:
-    """Return the name of a model with the version of its parameters, as "layered 2026.5".
+    """Return the name of a model with the version of its parameters, as "layered 2026.6".
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def column(
     ... )
     >>> column = rbsdem.section.column(section, 1.6, axial_load=744e3)
     >>> column.n, column.version
-    (2, '2026.5')
+    (2, '2026.6')
     """
     checked_section(section)
     _arguments.choice(model, "model", MODELS)

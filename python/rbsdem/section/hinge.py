@@ -215,8 +215,6 @@ class HingeJoint:
         Moment at yield, about [N m].
     yield_work : float
         The same times the rotation of the hinge there [J].
-    confinement : float
-        Confining stress over the cylinder strength.
     gauge : Gauge
         What the layers stand for, and over which lengths they deform.
     limits : dict of str to (float, float)
@@ -230,7 +228,6 @@ class HingeJoint:
     shear_stiffness: float
     yield_moment: float
     yield_work: float
-    confinement: float
     gauge: Gauge
     limits: dict[str, tuple[float, float]]
 
@@ -303,9 +300,7 @@ def hinge_joint(
 
     # Most strips are alike, and so are most bars: what is the same to 1e-6 mm2 is made once.
     @cache
-    def concrete(
-        area: float, stress: float, strain: float, softening: float, rest: float
-    ) -> ConcreteSpring:
+    def concrete(area: float, stress: float, strain: float, softening: float) -> ConcreteSpring:
         secant = 1.3 * stress / strain
         return unchecked(
             ConcreteSpring,
@@ -313,32 +308,28 @@ def hinge_joint(
             f_peak=stress * area,
             d_peak=strain * concrete_length,
             k_soft=max(softening, _LEAST_SOFTENING) * area / concrete_length,
-            f_res=rest * area,
             plastic=given.plastic,
             contact=contact,
             misfit=given.misfit,
             wear=given.wear,
             friction=given.friction,
-            seating=given.seating,
         )
 
     layers: list[tuple[float, ConcreteSpring | SteelSpring]] = []
     core_slope = 0.2 * core / max(core_ultimate - core_peak, 0.002)
     softening = given.core_softening * core_slope
     for strip in strips.core:
-        spring = concrete(round(strip.area, 12), core, core_peak, softening, given.residual * core)
+        spring = concrete(round(strip.area, 12), core, core_peak, softening)
         layers.append((strip.y, spring))
     cover_slope = 0.8 * strength / 0.004
     softening = given.cover_softening * cover_slope
     for strip in strips.cover:
-        layers.append((strip.y, concrete(round(strip.area, 12), strength, peak, softening, 0.0)))
-    slip = by_axial(given.slip_length, given.slip_axial) * bond
+        layers.append((strip.y, concrete(round(strip.area, 12), strength, peak, softening)))
+    slip = given.slip_length * bond
     stress = min(axial_load / strips.area / 40e6, 1.5)
-    anchored = _bond_demand(bond, cylinder, length)
-    by_stress = math.exp(given.r0_stress * (stress - 0.15)) * anchored**-given.r0_bond
+    by_stress = math.exp(given.r0_stress * (stress - 0.15))
     buckles = given.buckling > 0 and given.fatigue > 0
-    bows = _buckling_strain(strips.tie_ratio * tie_yield, ratio) * given.buckling_strain
-    bows *= steel_length + slip
+    bows = _buckling_strain(strips.tie_ratio * tie_yield, ratio) * (steel_length + slip)
 
     @cache
     def bar(area: float, steel: Steel) -> SteelSpring:
@@ -352,7 +343,7 @@ def hinge_joint(
             r0=given.r0 * by_stress,
             cr1=given.cr1,
             cr2=given.cr2,
-            isotropic_hardening=given.isotropic_hardening * anchored**given.isotropic_bond,
+            isotropic_hardening=given.isotropic_hardening,
             endurance=max(1 / given.fatigue, _LEAST_ENDURANCE) if given.fatigue > 0 else 0.0,
             d_buckle=bows if buckles else None,
             buckling=given.buckling if buckles else 0.0,
@@ -369,7 +360,6 @@ def hinge_joint(
         given.shear_stiffness * modulus / 2.4 * strips.shear_area,
         moment,
         moment * _yield_curvature(section, yield_stress) * (steel_length + slip),
-        strips.confining_stress / cylinder,
         Gauge(
             _parts(strips, len(section.bars)),
             (concrete_length,) * (len(strips.core) + len(strips.cover))
@@ -401,14 +391,6 @@ def _buckling_strain(confinement: float, ratio: float) -> float:
     Goodnight, Kowalsky and Nau (2013); `confinement` is rho_s f_yh [Pa], `ratio` that of the load.
     """
     return max(0.01, 0.03 + 700 * confinement / _ES - 0.1 * ratio)
-
-
-def _bond_demand(force: float, cylinder: float, length: float) -> float:
-    """Return the length that anchors a bar over that of the column, over 0.12 as usual in tests.
-
-    `force` is f_y d_b [MPa m]; the bond stress is 2.5 sqrt(f'c) (MPa).
-    """
-    return max(force / (10 * math.sqrt(cylinder / 1e6) * length * 0.12), 1e-3)
 
 
 def _parts(strips: Strips, bars: int) -> tuple[Part, ...]:

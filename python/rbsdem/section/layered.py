@@ -296,7 +296,7 @@ class LayeredColumn(Column):
 
     @property
     def version(self) -> str:
-        """Version of the parameters, as "2026.2", or "2026.2 changed"."""
+        """Version of the parameters, as "2026.6", or "2026.6 changed"."""
         return self._recipe.parameters.label
 
     @property

@@ -16,7 +16,7 @@ from types import MappingProxyType
 from rbsdem import _arguments, _package
 from rbsdem.errors import InputError
 
-VERSION = "2026.5"
+VERSION = "2026.6"
 """Version of the parameters."""
 
 #: Names that stand for a factor on several parameters: which, and what they are.
@@ -47,6 +47,10 @@ class Row:
         Factors between which a calibration may change it; NaN if it may not.
     rank : int
         Its place among the parameters that a column offers one by one; 0: it is not offered.
+    prior, spread : float
+        What it was expected to be before the tests were looked at, and how far off it may be: the
+        standard deviation of its logarithm, or of itself where the prior is 0. NaN and 0 for those
+        that are not fitted.
     """
 
     name: str
@@ -54,6 +58,8 @@ class Row:
     low: float
     high: float
     rank: int
+    prior: float
+    spread: float
     unit: str
     meaning: str
     source: str
@@ -70,6 +76,8 @@ def table() -> Mapping[str, Row]:
             low=float(row["low"] or "nan"),
             high=float(row["high"] or "nan"),
             rank=int(row["rank"] or 0),
+            prior=float(row["prior"] or "nan"),
+            spread=float(row["spread"] or 0),
             unit=row["unit"],
             meaning=row["meaning"],
             source=row["source"],
@@ -132,7 +140,7 @@ class ModelParameters:
 
     @property
     def label(self) -> str:
-        """The version, as "2026.5", or "2026.5 changed" where parameters differ from it."""
+        """The version, as "2026.6", or "2026.6 changed" where parameters differ from it."""
         changed = self.version == VERSION and self.own
         return f"{self.version} changed" if changed else self.version
 

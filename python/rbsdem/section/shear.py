@@ -17,7 +17,6 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -33,7 +32,15 @@ from rbsdem.model.springs import Bilinear, Pinching, unchecked
 from rbsdem.section.hinge import HingeJoint
 from rbsdem.section.parameters import ModelParameters
 from rbsdem.section.ranges import checked_load, column_length, is_confined
-from rbsdem.section.strength import shear_sizes, shear_strength_mcft, shear_strength_sezen
+from rbsdem.section.strength import (
+    arch_factor,
+    axial_failure_drift,
+    axial_strut,
+    bond_demand,
+    shear_sizes,
+    shear_strength_mcft,
+    shear_strength_sezen,
+)
 
 KNEE = 0.48
 """Share of (E_c/2) A of the secant at the knee: calibrated on the four columns of table 3 of the
@@ -421,6 +428,18 @@ _ES = 200e9
 # stiffness and of the yield force that keep the lines of the spring apart.
 _LEAST = 0.01
 
+# Ties of a circle over those of a rectangle: pi/4 cot 30 (Kowalsky and Priestley 2000).
+_CIRCLE = 0.25 * math.pi * math.sqrt(3.0)
+# Twice the ties over the strength, below which fewer of them change nothing more.
+_FEWEST = 0.1
+# Bond demand that is usual in tests, and the least share of it that counts.
+_USUAL_BOND, _LEAST_BOND = 0.12, 0.2
+# Largest force over that at yield: on a level line with second-order effects nothing would hold.
+_RISES = 1.02
+# Slip from the largest force to none: over the length, and at least this times what the elastic
+# column above springs back by; what falls faster than that has no equilibrium.
+_SHORTEST_FALL, _LONGEST_FALL, _SPRINGS_BACK = 0.05, 20.0, 2.0
+
 
 def cracked_shear_stiffness(section: Section) -> float:
     """Return the shear stiffness of the truss of ties and concrete struts at 45 degrees.
@@ -475,8 +494,9 @@ def shear_spring(
     Pinching
         Of the slip of the whole length: cracks at the share V_c of the concrete by Sezen and Moehle
         (2004), which is that of a principal tension; goes on with `cracked_shear_stiffness`; yields
-        near `rbsdem.section.strength.shear_strength_mcft`. A section that is not symmetric has a
-        negative side of its own, that of the section upside down.
+        near `rbsdem.section.strength.shear_strength_mcft` with its `arch_factor`; loses its force
+        by the drift at axial failure of Elwood and Moehle (2005). A section that is not symmetric
+        has a negative side of its own, that of the section upside down.
 
     Raises
     ------
@@ -518,37 +538,45 @@ def _shear(
 ) -> tuple[Pinching, dict[str, tuple[float, float]]]:
     """Return the spring and the limits of its parameters."""
     mirrored = section.mirrored
-    positive = _side(section, length, axial_load, stiffness, given)
-    sides = [positive]
+    sides = [_side(section, length, axial_load, stiffness, given)]
+    lines = sides[0].line
     if mirrored is not section:
         sides.append(_side(mirrored, length, axial_load, stiffness, given))
+        lines = lines | {f"{name}_neg": value for name, value in sides[1].line.items()}
     # What both sides share is that of their mean.
     unit = sum(side.line["f_y"] * side.line["d_y"] for side in sides) / len(sides)
-    ties = sum(side.ties for side in sides) / len(sides)
     f_y = sum(side.line["f_y"] for side in sides) / len(sides)
-    # Few ties do not hold a crack together: what the concrete carried is soon gone.
-    endurance = given.shear_endurance
-    lasts = min(1.0, max(2.0 * ties, 0.1) ** given.shear_endurance_ties)
-    # The rule refuses what would fall faster than the spring is stiff.
-    soonest = 1.01 * max(side.fastest for side in sides) / (stiffness / length * unit)
-    lambda_h, s_min = _decay(sides, f_y, ties, given, joint)
-    ratio = axial_load / (section.concrete.fc * section.gross_area)
-    closed = math.exp(given.shear_pinch_axial * (ratio - 0.1))
-    limits = {name: _widest(side.limits[name] for side in sides) for name in positive.limits}
-    limits["shear_pinch_force"] = (0.0, 1.0 / closed)
-    lines = positive.line
-    if len(sides) > 1:
-        lines = lines | {f"{name}_neg": value for name, value in sides[1].line.items()}
+    ties = sum(side.ties for side in sides) / len(sides)
+    lambda_s = 0.0
+    if given.shear_endurance > 0.0:
+        # Few ties do not hold a crack together, and bars that slip split the cover.
+        lasts = min(1.0, max(2.0 * ties / f_y, _FEWEST) ** 2)
+        lasts /= max(bond_demand(section, length) / _USUAL_BOND, _LEAST_BOND)
+        # The rule refuses what would fall faster than the spring is stiff.
+        soonest = 1.01 * max(side.fastest for side in sides) / (stiffness / length * unit)
+        lambda_s = max(given.shear_endurance * lasts, soonest)
+    lambda_h = s_min = 0.0
+    if joint is not None and given.shear_decay > 0.0:
+        lambda_h = joint.yield_work / given.shear_decay / unit
+        sizes = shear_sizes(section)
+        strut = given.shear_decay_strut * sizes.fc * sizes.width * sizes.d
+        stays = given.shear_decay_ties * ties + axial_strut(section, length, axial_load)
+        s_min = min(0.95, stays / f_y, strut / f_y)
+    names = sides[0].limits
+    limits = {
+        name: (min(s.limits[name][0] for s in sides), max(s.limits[name][1] for s in sides))
+        for name in names
+    }
     spring = unchecked(
         Pinching,
         **lines,
-        lambda_s=max(endurance * lasts, soonest) if endurance > 0.0 else 0.0,
+        lambda_s=lambda_s,
         b0=given.shear_b0,
-        kappa_f=min(given.shear_pinch_force * closed, 1.0),
+        kappa_f=min(given.shear_pinch_force, 1.0),
         kappa_d=given.shear_pinch_slip,
-        lambda_h=lambda_h / unit,
+        lambda_h=lambda_h,
         s_min=s_min,
-        fade=given.shear_fade,
+        fade=2.0,
     )
     return spring, limits
 
@@ -562,9 +590,7 @@ class _Side:
     line : dict of str to float
         The backbone, by the names of `Pinching`.
     ties : float
-        Strength of the ties over that of the spring.
-    strut : float
-        f'c b d [N].
+        What the ties carry [N].
     fastest : float
         f_cap^2 (1 + d_cap/d_pc) [N2], which bounds how fast the strength may fall.
     limits : dict of str to (float, float)
@@ -573,7 +599,6 @@ class _Side:
 
     line: dict[str, float]
     ties: float
-    strut: float
     fastest: float
     limits: dict[str, tuple[float, float]]
 
@@ -583,72 +608,38 @@ def _side(
 ) -> _Side:
     """Return the spring where y > 0 is in tension."""
     sizes = shear_sizes(section)
+    arch = arch_factor(section, length, axial_load)
+    by_theory = shear_strength_mcft(section, length, axial_load, arch=arch)
     # A section without bars in tension, which has no strength, still needs a spring with one.
-    by_theory = shear_strength_mcft(section, length, axial_load)
     least = 1e-4 * sizes.fc * sizes.gross_area
-    is_round = section.ties is not None and section.ties.is_round
-    shaped = given.shear_round_strength if is_round else 1.0
-    f_y = max(given.shear_strength * shaped * by_theory, least)
-    f_cap = max(given.shear_hardening, 1.0) * f_y
+    f_y = max(given.shear_strength * by_theory, least)
     by_ties = sizes.tie_area * sizes.tie_yield * sizes.d / sizes.spacing
     by_concrete = shear_strength_sezen(section, length, axial_load) - by_ties
     f_c = min(max(by_concrete, _LEAST * f_y), 0.9 * f_y)
     whole = stiffness / length
-    truss = given.shear_cracked * cracked_shear_stiffness(section) / length
-    cracked = min(max(truss, _LEAST * whole), 0.9 * whole)
+    cracked = cracked_shear_stiffness(section) / length
+    cracked = min(max(cracked, _LEAST * whole), 0.9 * whole)
     d_c = f_c / whole
     d_y = d_c + (f_y - f_c) / cracked
+    f_cap = _RISES * f_y
     # Behind yield it may not go up steeper than before.
     least_rise = 1.01 * (f_cap - f_y) / cracked
-    rise = max(given.shear_cap * length, least_rise)
-    fall = given.shear_softening * length
-    if given.shear_snap_back > 0.0:
-        # What falls faster than the column above springs back has no equilibrium.
-        above = 3 * section.concrete_law["ec"] * section.inertia / length**3
-        fall = max(fall, f_cap / (given.shear_snap_back * above))
-    line = {
-        "d_c": d_c,
-        "f_c": f_c,
-        "d_y": d_y,
-        "f_y": f_y,
-        "d_cap": d_y + rise,
-        "f_cap": f_cap,
-        "d_pc": fall,
-        "f_res": min(given.shear_residual * f_cap, 0.9 * f_y),
-    }
+    d_cap = d_y + max(given.shear_cap * length, least_rise)
+    # The column has lost its axial load, and with it the friction in the crack.
+    lost = axial_failure_drift(section, axial_load) * length
+    above = f_cap * length**3 / (3 * section.concrete_law["ec"] * section.inertia)
+    shortest = max(_SHORTEST_FALL * length, _SPRINGS_BACK * above)
+    d_pc = min(max(lost - d_cap, shortest), max(_LONGEST_FALL * length, shortest))
+    line = {"d_c": d_c, "f_c": f_c, "d_y": d_y, "f_y": f_y, "d_cap": d_cap, "f_cap": f_cap}
+    is_round = section.ties is not None and section.ties.is_round
     return _Side(
-        line,
-        (given.shear_round_ties if is_round else 1.0) * by_ties / f_y,
-        sizes.fc * sizes.width * sizes.d,
-        f_cap**2 * (1.0 + (d_y + rise) / fall),
+        line | {"d_pc": d_pc},
+        (_CIRCLE if is_round else 1.0) * by_ties,
+        f_cap**2 * (1.0 + d_cap / d_pc),
         {
-            "shear_strength": (least / (shaped * by_theory) if by_theory > 0.0 else 0.0, math.inf),
-            "shear_hardening": (1.0, math.inf),
+            "shear_strength": (least / by_theory if by_theory > 0.0 else 0.0, math.inf),
             "shear_cap": (least_rise / length, math.inf),
-            "shear_residual": (0.0, 0.9 * f_y / f_cap),
             "shear_endurance": (0.0, math.inf),
+            "shear_pinch_force": (0.0, 1.0),
         },
     )
-
-
-def _widest(ends: Iterable[tuple[float, float]]) -> tuple[float, float]:
-    """Return the range that holds several."""
-    lows, highs = zip(*ends, strict=True)
-    return min(lows), max(highs)
-
-
-def _decay(
-    sides: list[_Side],
-    f_y: float,
-    ties: float,
-    given: ModelParameters,
-    joint: HingeJoint | None,
-) -> tuple[float, float]:
-    """Return the work of the hinge that halves what can decay [J], 0: none, and what stays."""
-    if joint is None or not given.shear_decay > 0.0:
-        return 0.0, 0.0
-    strut = sum(side.strut for side in sides) / len(sides)
-    stays = min(0.95, given.shear_decay_ties * ties, given.shear_decay_strut * strut / f_y)
-    # What is confined keeps the interlock of its cracks.
-    shelter = math.exp(min(joint.confinement / given.shear_decay_shelter, 50.0))
-    return joint.yield_work * shelter / given.shear_decay, stays

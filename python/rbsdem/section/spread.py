@@ -6,8 +6,8 @@ laboratory and from test to test (`Scatter`). Samples of it (Sobol points) go th
 force times a factor, the displacement over a factor, and the parameters of degradation times one.
 The bands of the samples are then widened by one number so that 80 % of the points of left-out tests
 lie within (conformal prediction), because a model is wrong in more ways than three. The number is
-another for columns that come near their shear strength, and grows with the distance from the middle
-of the tests: both are predicted worse.
+another for columns that come near their shear strength, squat or slender, and grows with the
+distance from the middle of the tests.
 """
 
 from __future__ import annotations
@@ -16,9 +16,10 @@ import json
 import math
 import os
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -44,6 +45,9 @@ _LOW, _HIGH = 0.1, 0.9
 
 #: Largest force over shear strength between which a column comes near failing in shear.
 _NEAR = 0.7, 0.95
+
+#: Shear span over depth between which a column that fails in shear goes over from squat to slender.
+_SLENDER = 2.0, 3.0
 
 #: Least work of a loop, over what its force moves without regard to signs, to which the interval of
 #: its work is in proportion: that of the tests is 0.17 and more.
@@ -107,11 +111,12 @@ class Scatter:
     shape : float
         What the band has above and below the samples before it is widened, over the largest force:
         nominally equal specimens differ, and loops have a shape of their own.
-    force : (float, float)
-        By what the band is widened: far from the shear strength, and at it.
-    peak, energy, drift : ((float, float), (float, float))
+    force : (float, float, float)
+        By what the band is widened: far from the shear strength, and at it of squat and of slender
+        columns.
+    peak, energy, drift : ((float, float), (float, float), (float, float))
         Ends of the 80 % intervals of largest force, work and drift at 20 % loss, over what is
-        predicted: far from the shear strength, and at it.
+        predicted, likewise.
     growth : float, optional
         By what the band grows with the distance from the middle of the tests: a factor exp(growth
         distance), in which `force` is that at the middle.
@@ -123,10 +128,10 @@ class Scatter:
     stiffness: tuple[float, float]
     degradation: tuple[float, float]
     shape: float
-    force: tuple[float, float]
-    peak: tuple[tuple[float, float], tuple[float, float]]
-    energy: tuple[tuple[float, float], tuple[float, float]]
-    drift: tuple[tuple[float, float], tuple[float, float]]
+    force: tuple[float, float, float]
+    peak: tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
+    energy: tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
+    drift: tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
     growth: float = 0.0
     middle: Middle | None = None
 
@@ -396,9 +401,10 @@ def spread(
     sampled = sample(column, d, scatter, number)
     peak = float(np.max(np.abs(force)))
     near = near_shear(column, peak)
+    place = Place(near, slender(column.height, column._recipe.section.depth))
     up, down = half_band(force, sampled, scatter)
     distance = _distance(column, scatter)
-    widen = between(scatter.force, near)
+    widen = between(scatter.force, place)
     if scatter.middle is not None:
         widen *= math.exp(scatter.growth * distance)
     values = numbers(d, force, column.height)
@@ -410,10 +416,10 @@ def spread(
         lower=force - widen * down,
         upper=force + widen * up,
         samples=sampled,
-        peak_force=_interval(values["peak"], scatter.peak, near),
-        energy=_interval(values["energy"], scatter.energy, near, scale=_LEAST_WORK * moved),
+        peak_force=_interval(values["peak"], scatter.peak, place),
+        energy=_interval(values["energy"], scatter.energy, place, scale=_LEAST_WORK * moved),
         drift_at_loss=_interval(
-            values["drift"], scatter.drift, near, float(np.max(np.abs(d))) / column.height
+            values["drift"], scatter.drift, place, float(np.max(np.abs(d))) / column.height
         ),
         near_shear=near,
         distance=distance,
@@ -526,15 +532,35 @@ def _distance(column: LayeredColumn, scatter: Scatter) -> float:
     return scatter.middle.distance(place_of(recipe.section, recipe.height, column.axial_load))
 
 
-def between(ends: tuple[float, float], share: float) -> float:
-    """Return the number at a share of the way between two."""
-    return ends[0] + share * (ends[1] - ends[0])
+class Place(NamedTuple):
+    """How near a column is to its shear strength, and how slender it is, both 0 to 1."""
+
+    near: float
+    slender: float
+
+
+def slender(span: float, depth: float) -> float:
+    """Return 0 for a shear span of twice the depth or less, 1 from three times on.
+
+    Parameters
+    ----------
+    span, depth : float
+        [m].
+    """
+    low, high = _SLENDER
+    return min(max((span / depth - low) / (high - low), 0.0), 1.0)
+
+
+def between(ends: Sequence[Any], place: Place) -> Any:
+    """Return the number at a place: far from the shear strength; at it, squat; at it, slender."""
+    far, squat, tall = ends
+    return far + place.near * (squat + place.slender * (tall - squat) - far)
 
 
 def _interval(
     value: float,
-    factors: tuple[tuple[float, float], tuple[float, float]],
-    share: float,
+    factors: Sequence[tuple[float, float]],
+    place: Place,
     least: float = math.nan,
     scale: float = 0.0,
 ) -> Interval:
@@ -543,7 +569,7 @@ def _interval(
     The ends are in proportion to the value, or to `scale` where that is more: a number that can
     come near zero is not known the better for it.
     """
-    lower, upper = (between(ends, share) for ends in zip(*factors, strict=True))
+    lower, upper = (between(ends, place) for ends in zip(*factors, strict=True))
     if math.isnan(value):
         # No more is known than that it lies beyond, as far as the model is right.
         return Interval(min(lower, 1.0) * least, value, math.inf)

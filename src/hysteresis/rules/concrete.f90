@@ -17,7 +17,7 @@
 module rbs_hysteresis_rules_concrete
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor
-   use rbs_base_keys, only: bound_type, above_zero, not_negative, share_below_one, force, deformation, &
+   use rbs_base_keys, only: above_zero, not_negative, share_below_one, force, deformation, &
                             stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
@@ -75,8 +75,7 @@ module rbs_hysteresis_rules_concrete
       real(wp) :: wear = 0.0_wp
       !> Share of the force by which the path of opening is below that of closing
       real(wp) :: friction = 0.0_wp
-      !> Share of the gap that opening does not follow; whether opening and closing have paths of their own
-      real(wp) :: seating = 0.0_wp
+      !> Whether opening and closing have paths of their own
       logical, private :: rubs = .false.
    contains
       procedure :: visit
@@ -108,15 +107,13 @@ contains
                  'share of the strength that a wide opening of the crack takes')
       call v%key('friction', self%friction, '', share_below_one, &
                  'share of the force that opening gives up at once after closing to d_peak or more')
-      call v%key('seating', self%seating, '', bound_type(0.0_wp, 1.0_wp, reason='(it is a share)'), &
-                 'share of the early touch that opening does not follow: what was pressed together fits')
    end subroutine visit
 
    subroutine prepare(self)
       class(concrete_rule), intent(inout) :: self
 
       self%initial_stiffness = self%k
-      self%rubs = self%friction > 0.0_wp .or. self%seating > 0.0_wp
+      self%rubs = self%friction > 0.0_wp
    end subroutine prepare
 
    subroutine check_relations(self, name, messages)
@@ -178,11 +175,7 @@ contains
             call unload()
          case (opening)
             call widen(c)
-            if (self%seating > 0.0_wp .and. c > now%c_p - now%gap) then
-               call rub(c, 0.0_wp)
-            else
-               call close_up(c)
-            end if
+            call close_up(c)
          case (releasing, parting)
             call rub(c, f)
          case (between)
@@ -313,10 +306,10 @@ contains
 
          upper = c
          lower = c
-         if (now%kind == releasing .or. now%kind == parting .or. now%kind == opening) then
-            upper = min(max(meeting(1.0_wp, now%c_p - now%gap, c, f), c), now%c_u)
+         if (now%kind == releasing .or. now%kind == parting) then
+            upper = min(max(meeting(1.0_wp, c, f), c), now%c_u)
          else
-            lower = min(meeting(1.0_wp - share_of_friction(), parting_end(), c, f), c)
+            lower = min(meeting(1.0_wp - share_of_friction(), c, f), c)
          end if
          now%kind = between
          branch = segment(d0=-c, f0=-f, k=self%k, lo=-upper, hi=-lower)
@@ -325,27 +318,13 @@ contains
       !> The share by which the path of opening is lower: none where the virgin spring is elastic.
       real(wp) function share_of_friction()
 
-         share_of_friction = self%friction*crushed()
+         share_of_friction = (now%c_u/self%d_peak - chord_ends(1))/(1.0_wp - chord_ends(1))
+         share_of_friction = self%friction*min(max(share_of_friction, 0.0_wp), 1.0_wp)
       end function share_of_friction
 
-      !> From 0, where the virgin spring is elastic, to 1 at the closing at the peak.
-      real(wp) function crushed()
-
-         crushed = (now%c_u/self%d_peak - chord_ends(1))/(1.0_wp - chord_ends(1))
-         crushed = min(max(crushed, 0.0_wp), 1.0_wp)
-      end function crushed
-
-      !> The closing at which the path of opening has no force any more [m].
-      real(wp) function parting_end()
-
-         parting_end = now%c_p - now%gap
-         if (self%seating > 0.0_wp) parting_end = now%c_p - (1.0_wp - self%seating*crushed())*now%gap
-      end function parting_end
-
-      !> Where the line of the initial stiffness through (c, f) meets a path: a share of that of closing above
-      !> full closing, and a line from there to no force at the closing `c_none` [m].
-      real(wp) function meeting(share, c_none, c, f)
-         real(wp), intent(in) :: share, c_none, c, f
+      !> Where the line of the initial stiffness through (c, f) meets a path: a share of that of closing.
+      real(wp) function meeting(share, c, f)
+         real(wp), intent(in) :: share, c, f
          real(wp) :: c_closed, f_closed, c_0, f_0, slope
 
          call full_closing(c_closed, f_closed)
@@ -357,7 +336,7 @@ contains
             if (.not. now%c_u > c_0) return
             slope = (share*now%strength*now%f_u - f_0)/(now%c_u - c_0)
          else
-            c_0 = c_none
+            c_0 = now%c_p - now%gap
             f_0 = 0.0_wp
             slope = 0.0_wp
             ! Before it the path has no force.
@@ -397,7 +376,7 @@ contains
 
          call full_closing(c_closed, f_closed)
          left = 1.0_wp - share_of_friction()
-         c_none = parting_end()
+         c_none = now%c_p - now%gap
          if (c > c_closed) then
             now%kind = releasing
             branch = chord(c_closed, left*f_closed, now%c_u, left*now%strength*now%f_u)
