@@ -50,6 +50,8 @@ _without: dict[str, np.ndarray] = {}
 
 def layered(specimen: peer.Specimen) -> rbsdem.Column:
     """Return the column of the model that has not seen the series of the test."""
+    if not _without:  # In a process of its own.
+        _begin(str(specimen.folder))
     return peer.column(specimen, model_parameters=fit_model.at(_without[specimen.series]))
 
 
