@@ -276,7 +276,7 @@ def bond_demand(section: Section, length: float) -> float:
     """
     stress = max(steel.fy for _, _, steel in section.bars) / _MPA
     root = math.sqrt(section.concrete.fc / _MPA)
-    return stress * section.bar_diameter / (10.0 * root * length)
+    return stress * (section.bar_diameter or 0.0) / (10.0 * root * length)
 
 
 def _crossing(falling: Callable[[float], float], most: float) -> float:
