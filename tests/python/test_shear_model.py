@@ -163,6 +163,21 @@ def test_a_squat_column_fails_in_shear():
     assert np.trapezoid(force, d) < 0.5 * np.trapezoid(strong, d)
 
 
+def test_a_column_that_failed_in_shear_loses_its_axial_load():
+    """At the drift of Elwood and Moehle, the sooner the larger the load; never before shear."""
+    lost = []
+    for load in (700e3, 1400e3):
+        column = peer.column(replace(SQUAT, axial_load=load))
+        states = rbsdem.cyclic(column, displacement=cycles(SQUAT, 0.01, 0.02, 0.04)).limit_states()
+        limit = axial_failure_drift(section(SQUAT), load)
+        assert states.drift("axial_failure") == pytest.approx(limit, rel=0.1)
+        assert states["axial_failure"].time > states["shear_yield"].time
+        lost.append(limit)
+    assert lost[1] < lost[0]
+    far = rbsdem.cyclic(peer.column(SLENDER), displacement=cycles(SLENDER, 0.01, 0.04))
+    assert "axial_failure" not in far.limit_states()
+
+
 # ---- where displacement and axial load act -------------------------------------------------------
 
 
