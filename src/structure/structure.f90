@@ -70,6 +70,8 @@ module rbs_structure_structure
       type(spring_record), allocatable :: spring(:)
       type(spring_rules) :: rules
       real(wp), allocatable :: initial_stiffness(:)
+      !> Largest stiffness of parts that have no spring [N/m]
+      real(wp) :: stiffest_part = 0.0_wp
       !> Displacement of the top per deformation, for small rotations: what static paths control (springs)
       real(wp), allocatable :: arm(:)
       !> The springs whose forces, times the factors beside them, add up to the base shear

@@ -97,7 +97,8 @@ class FrameMember:
                     f"FrameMember: flexure = {_arguments.shown(self.flexure)} must be a spring, "
                     "one for each end, or a mapping from places (0 to 1) to springs"
                 )
-        object.__setattr__(self, "flexure", springs)
+        ordered = springs and tuple(sorted(springs, key=lambda item: item[0]))
+        object.__setattr__(self, "flexure", ordered)
 
     @property
     def places(self) -> tuple[tuple[float, Spring], ...]:

@@ -18,6 +18,9 @@ module rbs_solve_begin_make_structure
 
    public :: make_structure
 
+   !> Lowest modes among which that of the lateral load is sought: the one that moves most mass along x.
+   integer, parameter :: modes_along = 10
+
 contains
 
    !> Validate the structure of a case and make it.
@@ -48,6 +51,7 @@ contains
       type(message_list) :: messages
       type(frame_parts) :: parts
       type(modes_type) :: modes
+      integer :: i, j
 
       call parts%find(case%frame, messages)
       call case%column%damping%check('damping', messages)
@@ -66,10 +70,12 @@ contains
       if (allocated(error)) return
       call put_dead_load(frame, before, error)
       if (allocated(error) .or. case%frame%pattern /= 'modal') return
-      call find_modes(frame, modes, error, 1)
+      call find_modes(frame, modes, error, modes_along)
       if (allocated(error)) return
       associate (push => frame%pattern(lateral)%force)
-         push = -frame%pattern(horizontal)%force*modes%shapes(:, 1)
+         ! Heavy beams may swing upward before the frame sways.
+         i = maxloc([(abs(frame%work_of(horizontal, modes%shapes(:, j))), j=1, size(modes%omega))], dim=1)
+         push = -frame%pattern(horizontal)%force*modes%shapes(:, i)
          push = push/sum(push)
       end associate
    end subroutine make_frame

@@ -60,7 +60,7 @@ contains
       class(structure_type), intent(in) :: structure
       type(matrices_type), intent(inout) :: matrices
       real(wp) :: band(structure%half_width + 1, structure%unknowns), axial(structure%axial_count)
-      real(wp) :: tangent(structure%tangent_numbers)
+      real(wp) :: tangent(structure%tangent_numbers), at_rest(signals)
       character(len=2), parameter :: along(3) = ['x_', 't_', 'y_']
       integer :: i, m, unstable
 
@@ -79,7 +79,8 @@ contains
       call fill(band, matrices%stiffness)
       if (structure%axially_loaded) then
          band = 0.0_wp
-         call structure%axial_forces([(0.0_wp, i=1, signals)], axial)
+         at_rest = 0.0_wp
+         call structure%axial_forces(at_rest, axial)
          call structure%add_geometric(axial, band)
          call fill(band, matrices%geometric)
       end if

@@ -68,7 +68,7 @@ contains
       if (found) then
          path%direction = direction
       else
-         call fatal_error(error, analysis_failed, 'the column snaps back at '//trim(state_of(path))// &
+         call fatal_error(error, analysis_failed, 'the structure snaps back at '//trim(state_of(path))// &
                           ': no combination of loading and unloading springs was found that lets its '// &
                           'top go on. A driven top cannot follow that; use a dynamic analysis')
       end if

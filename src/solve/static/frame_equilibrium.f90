@@ -66,6 +66,7 @@ contains
       real(wp), intent(inout), contiguous :: rate(:)
       logical, intent(out) :: found
       real(wp) :: y(2), missing
+      logical :: settled
 
       associate (frame => self%frame, always => corrects)
          call linearise(self, springs, found)
@@ -86,13 +87,21 @@ contains
             self%pushed = self%right(:, 1)
             self%right(:, 1) = 0.0_wp
             missing = displacement - sum(self%control*springs%d(frame%inside + 1:))
-            call self%matrix%solve_bordered(self%right, [1.0_wp, missing], self%change, y, found)
+            call self%matrix%solve_bordered(self%right(:, :1), [1.0_wp], self%change(:, :1), y(:1), found)
             self%right(:, 1) = self%pushed
+            if (.not. found) return
+            call self%matrix%solve_bordered(self%right(:, 2:), [missing], self%change(:, 2:), y(2:), settled)
+            ! Of a mechanism what corrects round-off is round-off itself; more than that is found by the row.
+            if (.not. settled) then
+               self%change(:, 2) = 0.0_wp
+               y(2) = 0.0_wp
+            end if
          end if
          if (.not. found) return
          self%force_rate = y(1)
          self%force_correction = y(2)
          call frame%rates_on_lines(self%tangent, self%change(:, 1), rate)
+         call frame%drop_round_off(self%tangent, self%change(:, 1), rate)
          call frame%rates_on_lines(self%tangent, self%change(:, 2), self%correction)
          rate = rate + y(1)*self%inner_load
          self%correction = self%correction + self%inner + y(2)*self%inner_load

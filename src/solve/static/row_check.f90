@@ -68,10 +68,23 @@ contains
          self%stiff_force = max(self%stiff_force, structure%initial_stiffness(i)*d*self%share(i))
          self%stiff_work = self%stiff_work + structure%initial_stiffness(i)*d**2
       end do
+      call see_parts(self, structure, no_way*structure%total_height)
       if (structure%kinematics /= finite) return
       self%place = of_place_on_curve
       self%work = of_work_on_curve
    end subroutine begin
+
+   !> Forces and work of parts without springs, if they took all of a displacement.
+   pure subroutine see_parts(self, structure, displacement)
+      type(row_check), intent(inout) :: self
+      class(structure_type), intent(in) :: structure
+      real(wp), intent(in) :: displacement
+
+      associate (force => structure%stiffest_part*abs(displacement))
+         self%stiff_force = max(self%stiff_force, force)
+         self%stiff_work = max(self%stiff_work, force*abs(displacement))
+      end associate
+   end subroutine see_parts
 
    !> Look at a point.
    subroutine look(self, structure, springs, displacement, force, unbalance, energy, on_ends, fault)
@@ -108,6 +121,7 @@ contains
             self%stiff_force = max(self%stiff_force, term*self%share(i))
             works = works + term*abs(springs%d(i))
          end do
+         call see_parts(self, structure, displacement)
          self%largest_place = max(self%largest_place, ways)
          self%stiff_work = max(self%stiff_work, works)
       end if

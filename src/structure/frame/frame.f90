@@ -29,6 +29,9 @@ module rbs_structure_frame_frame
       channel_type('axial_force', 'N'), channel_type('node_acceleration', 'm/s2'), &
       channel_type('ground_acceleration', 'm/s2')]
 
+   !> Share of the terms of a rate that it is round-off below.
+   real(wp), parameter :: round_off = 1.0e-12_wp
+
    type, extends(structure_type) :: frame_type
       type(frame_element), allocatable :: element(:)
       !> Names, floors of the grid (-1 for nodes that are none of it) and places [m] of the nodes (nodes), and
@@ -67,6 +70,7 @@ module rbs_structure_frame_frame
       procedure :: take_load_off
       procedure :: set_compression
       procedure :: basic
+      procedure :: drop_round_off
       procedure :: end_forces
       procedure :: add_element
       procedure :: spring_rates
@@ -392,6 +396,32 @@ contains
       end do
       dd(self%inside + 1:) = dx
    end subroutine rates_on_lines
+
+   !> Take rates that are round-off of larger ones for zero: a spring that stands still on a corner of its
+   !> curve, as in a mechanism beside it, must not be sent either way.
+   pure subroutine drop_round_off(self, tangent, dx, dd)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: tangent(:), dx(:)
+      real(wp), intent(inout), contiguous :: dd(:)
+      real(wp) :: size_of(3)
+      integer :: number(6), i, j, k, at
+
+      do i = 1, size(self%element)
+         associate (e => self%element(i))
+            size_of = 0.0_wp
+            number = reshape(self%number(:, e%node), [6])
+            do k = 1, 6
+               if (number(k) > 0) size_of = size_of + abs(e%to_basic(:, k)*dx(number(k)))
+            end do
+            do j = 1, e%bending + e%opening
+               at = e%at + 6 + 3*j
+               if (abs(dd(e%before + j)) < round_off*sum(abs(tangent(at:at + 2))*size_of)) then
+                  dd(e%before + j) = 0.0_wp
+               end if
+            end do
+         end associate
+      end do
+   end subroutine drop_round_off
 
    pure subroutine unknown_rates(self, dd, dx)
       class(frame_type), intent(in) :: self

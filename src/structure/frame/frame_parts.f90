@@ -155,7 +155,10 @@ contains
       most = -1.0_wp
       do i = 1, size(record%spring)
          associate (s => record%spring(i))
-            if (s%kind /= kind%name .or. s%group /= 'flexure') cycle
+            if (s%kind /= kind%name .or. s%group == 'axial_spring') cycle
+            ! A slip turns both ends alike, which no spring at an end does.
+            if (s%group == 'shear') most = most + 2.0_wp
+            if (s%group == 'shear') cycle
             if (.not. allocated(s%place)) then
                bending = bending + 2
                least = 0.0_wp

@@ -1,0 +1,280 @@
+"""Planar frames: closed forms, a column as a frame, what holds for any of them, and both doors."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from strategies import between, rules, spring
+
+import rbsdem
+from rbsdem.frames import Frame, FrameMember, FrameNode, Member
+from rbsdem.springs import Bilinear, Elastic, Takeda
+
+pytestmark = pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
+
+RULES = [rule for rule in rules("flexure") if rule not in ("layered", "compression")]
+E, A, INERTIA = 30e9, 0.16, 2.1e-3
+COLUMN = FrameMember(E, A, INERTIA, yield_moment=250e3, hardening=0.01)
+BEAM = FrameMember(E, 0.15, 2.0e-3, yield_moment=200e3, hardening=0.01)
+
+
+def three_storeys(**more) -> Frame:
+    given = {"columns": COLUMN, "beams": BEAM, "floor_mass": 80e3, "beam_load": 25e3}
+    return Frame.grid([3.2] * 3, [6.0] * 3, **given | {"kinematics": "pdelta"} | more)
+
+
+def random_kind(rng, names, moment) -> FrameMember:
+    stiffness = moment * between(rng, 60, 400)
+    given = {"modulus": E, "area": stiffness / E * 50, "inertia": stiffness / E}
+    if rng.random() < 0.4:
+        return FrameMember(**given, yield_moment=moment, hardening=float(rng.choice([0, 0.02])))
+    ends = [spring(rng, str(rng.choice(names)), moment, between(rng, 1e-3, 8e-3)) for _ in "ab"]
+    if rng.random() < 0.3:
+        inner = {0.0: ends[0], 0.5: ends[1], 1.0: ends[0]}
+        return FrameMember(**given, flexure=inner, between="rigid")
+    return FrameMember(**given, flexure=ends, panel=float(rng.choice([0.0, 0.2])))
+
+
+def random_frame(rng, names=RULES) -> Frame:
+    """Return a frame of 1 to 4 storeys and 1 to 3 bays of springs of any rule."""
+    while True:
+        try:
+            return Frame.grid(
+                [between(rng, 2.5, 4.5) for _ in range(rng.integers(1, 5))],
+                [between(rng, 3, 8) for _ in range(rng.integers(1, 4))],
+                columns=random_kind(rng, names, between(rng, 1e5, 6e5)),
+                beams=random_kind(rng, names, between(rng, 1e5, 5e5)),
+                floor_mass=between(rng, 1e4, 1e5),
+                beam_load=float(rng.choice([0.0, between(rng, 1e3, 2e4)])),
+                kinematics=str(rng.choice(["small", "pdelta"])),
+                base=str(rng.choice(["fixed", "pinned"])),
+                diaphragm=bool(rng.random() < 0.3),
+                pattern=str(rng.choice(["triangular", "uniform", "modal"])),
+            )
+        except (rbsdem.InputError, rbsdem.SolveError):
+            continue  # too weak for its load, or its modes buckle
+
+
+def followed(frame, path, **more):
+    """Return the path as far as it can be followed."""
+    try:
+        return rbsdem.cyclic(frame, displacement=path, **more)
+    except rbsdem.SolveError as error:
+        return error.result
+
+
+# ---- closed forms --------------------------------------------------------------------------------
+
+
+def test_a_portal_yields_where_its_mechanism_does():
+    """H h = 4 M_p of a portal whose beam is stronger; below it the stiffness method."""
+    plastic, h, span = 2e5, 3.0, 6.0
+    column = FrameMember(E, 1e3, INERTIA, yield_moment=plastic)
+    beam = FrameMember(E, 1e3, INERTIA)
+    portal = Frame.grid([h], [span], columns=column, beams=beam)
+    push = rbsdem.pushover(portal, drift=0.1)
+    assert push.base_shear.max() == pytest.approx(4 * plastic / h, rel=1e-12)
+    first = push.base_shear[1] / push.displacement[1]
+    ratio = h / span
+    exact = 24 * E * INERTIA / h**3 * (1 + 6 * ratio) / (4 + 6 * ratio)
+    assert first == pytest.approx(exact, rel=1e-6)  # columns and beam hardly get longer
+    # Feet before heads, each event exactly at its moment.
+    assert [event.end for event in push.events] == ["start", "start", "end", "end"]
+    rows = [int(np.flatnonzero(push.time == event.step)[0]) for event in push.events]
+    for row, event in zip(rows, push.events, strict=True):
+        moment = push.member(event.member).moment[row, event.end == "end"]
+        assert abs(moment) == pytest.approx(plastic, rel=1e-12)
+
+
+def test_dead_load_on_a_clamped_beam():
+    """w l^2/12 at the ends of one elastic member, and it only bends."""
+    w, span = 2e4, 6.0
+    nodes = [FrameNode("a", 0, 0, "fixed"), FrameNode("b", span, 0, "fixed")]
+    nodes += [FrameNode("c", 0, 3.0, push_x=1.0)]
+    kind = FrameMember(E, A, INERTIA)
+    members = [Member("beam", "a", "b", kind, load=w), Member("post", "a", "c", kind)]
+    frame = Frame(nodes=nodes, members=members, pattern="nodes")
+    still = rbsdem.cyclic(frame, displacement=[0.0])
+    assert still.member("beam").moment[0] == pytest.approx(
+        [-w * span**2 / 12, w * span**2 / 12], rel=1e-12
+    )
+    assert still.member("post").moment[0] == pytest.approx([0, 0], abs=1e-6)
+
+
+def test_a_frame_of_rigid_beams_is_the_shear_building():
+    """Two storeys on columns of 12 E I/h^3: the periods of two masses by hand, all mass in them."""
+    h, mass = 3.0, 4e4
+    column = FrameMember(E, 1e4, INERTIA)
+    beam = FrameMember(E, 1e6, 1e6)
+    frame = Frame.grid([h, h], [5.0], columns=column, beams=beam, floor_mass=mass, diaphragm=True)
+    k = 2 * 12 * E * INERTIA / h**3
+    exact = np.sqrt(np.linalg.eigvalsh(np.array([[2 * k, -k], [-k, k]]) / mass))
+    modes = rbsdem.modes(frame, 2)
+    assert modes.omega == pytest.approx(exact, rel=1e-6)
+    assert modes.participation.sum() == pytest.approx(1, abs=1e-6)
+    matrices = rbsdem.matrices(frame)
+    shape = np.linalg.solve(matrices.stiffness, matrices.mass @ np.ones(len(matrices.unknowns)))
+    quotient = (shape @ matrices.stiffness @ shape) / (shape @ matrices.mass @ shape)
+    assert exact[0] ** 2 <= quotient * (1 + 1e-6)
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_a_column_as_a_frame(rule):
+    """Bodies as members with a spring that turns and one that slips: the forces of `Column`."""
+    rng = np.random.default_rng(5)
+    n, length = 3, 1.0
+    turns = [spring(rng, rule, 2e5 * (1 - i / n) + 1e4, 4e-3, options=0) for i in range(n)]
+    slips = Takeda(k_c=5e8, d_c=1e-4, k_y=2e8, d_y=1e-3, k_u=1e7)
+    column = rbsdem.Column(n * length, 1.0, slips, turns, n=n)
+    nodes = [FrameNode("0", 0, 0, "fixed")]
+    nodes += [FrameNode(f"{i + 1}", 0, i + 1.0, push_x=float(i == n - 1)) for i in range(n)]
+    members = [
+        Member(
+            f"body {i + 1}", f"{i}", f"{i + 1}",
+            FrameMember(E, 1e3, INERTIA, flexure={0.0: turns[i]}, shear=slips, between="rigid"),
+        )
+        for i in range(n)
+    ]  # fmt: skip
+    frame = Frame(nodes=nodes, members=members, pattern="nodes")
+    path = [0.01, -0.02, 0.04, -0.03, 0.05, 0.0]
+    one, other = followed(column, path), followed(frame, path)
+    # Springs whose forces fall may have several answers, and end a path in either.
+    rows = min(other.time.size, one.time.size)
+    assert rows == len(path) or rule in ("peak_oriented", "pinching")
+    size = np.abs(one.force).max()
+    assert np.abs(other.force[:rows] - one.force[:rows]).max() < 1e-11 * size
+
+
+# ---- what holds for any frame --------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_paths_of_random_frames(seed):
+    """Energies balance, the base holds the load, more points and a cut change no bit."""
+    rng = np.random.default_rng(seed)
+    frame = random_frame(rng)
+    far = between(rng, 0.005, 0.04) * frame.height
+    path = far * np.array([1.0, -1.0, 1.5, -0.7, 2.0, 0.0])
+    whole = followed(frame, path)
+    rows = len(whole.force)
+    assert whole.summary["relative_energy_residual"] < 1e-9
+    size = abs(whole.summary["peak_force"])
+    assert np.abs(whole.base_shear - whole.force).max() < 1e-9 * size
+    fine = np.concatenate(
+        [np.linspace(a, b, 8)[1:] for a, b in zip([0.0, *path[:-1]], path, strict=True)]
+    )
+    parts = followed(frame, fine)
+    # Where two answers are possible the path ends, at the latest where the coarse one does.
+    assert (parts.force[6::7][: rows - 1] == whole.force[: rows - 1]).all()
+    if whole.summary["status"] != "completed":
+        return
+    first = rbsdem.cyclic(frame, displacement=path[:3])
+    second = rbsdem.cyclic(frame, displacement=path[3:], initial=first)
+    assert (np.append(first.force, second.force) == whole.force).all()
+
+
+def test_mirrored_loads_have_mirrored_answers():
+    """A symmetric frame pushed to the other side, and shaken with the sign turned."""
+    frame = three_storeys(beam_load=0.0, kinematics="small")
+    right, left = (rbsdem.pushover(frame, drift=side * 0.03) for side in (1, -1))
+    assert left.base_shear == pytest.approx(-right.base_shear, rel=1e-9)
+    t = np.arange(0, 4, 0.01)
+    shaken = [
+        rbsdem.time_history(
+            frame, t, ground_acceleration=side * 5 * np.sin(9 * t), method="newmark"
+        )
+        for side in (1, -1)
+    ]
+    assert shaken[1].storey_drift == pytest.approx(-shaken[0].storey_drift, rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize("method", ["newmark", "hht", "generalised_alpha"])
+def test_steps_in_time_converge_and_balance(method):
+    """The differences between steps halved fall; a run in two parts has the bits of one."""
+    frame = three_storeys(damping=rbsdem.Damping(mass=0.2, stiffness=1e-3))
+    t = np.linspace(0, 3, 31)
+    ground = 6 * np.sin(8 * t)
+    tops = []
+    for dt in (0.01, 0.005, 0.0025, 0.00125):
+        run = rbsdem.time_history(frame, t, ground_acceleration=ground, method=method, dt=dt)
+        tops.append(run.displacement)
+    steps = [np.abs(b - a).max() for a, b in itertools.pairwise(tops)]
+    assert steps[2] < 0.5 * steps[0] < 0.1 * np.abs(tops[0]).max()
+    assert run.summary["events"] > 20
+    assert run.summary["relative_energy_residual"] < 1e-2
+    half = t <= 1.5
+    first = rbsdem.time_history(frame, t[half], ground_acceleration=ground[half], method=method)
+    later = t >= 1.5
+    rest = rbsdem.time_history(
+        frame, t[later], ground_acceleration=ground[later], method=method, initial=first
+    )
+    once = rbsdem.time_history(frame, t, ground_acceleration=ground, method=method)
+    assert rest.displacement == pytest.approx(once.displacement[later], rel=1e-9, abs=1e-12)
+
+
+def test_an_ensemble_takes_frames():
+    """Measures are those of one run; a frame stands under its load at the start."""
+    frame = three_storeys()
+    (motion,) = rbsdem.motions.synthetic(1, seed=3)
+    runs = rbsdem.ensemble(
+        {"frame": frame}, {"m": motion}, scales=[1.0, 2.0], method="newmark",
+        measures=["peak_drift", "first_yield", "peak_base_shear"],
+    )  # fmt: skip
+    alone = rbsdem.time_history(frame, ground_acceleration=motion, method="newmark")
+    assert runs.status.tolist() == ["completed", "completed"]
+    assert runs.measures["peak_base_shear"][0] == abs(alone.summary["peak_base_shear"])
+    assert runs.measures["peak_drift"][0] == abs(alone.summary["peak_displacement"]) / frame.height
+    yields = [event.step for event in alone.events if event.what == "yield"]
+    assert runs.measures["first_yield"][0] == pytest.approx(min(yields), abs=2 * motion.dt)
+    drifts = rbsdem.ida(frame, [motion], levels=[1.0, 2.0], method="newmark")
+    assert len(drifts.runs) >= 2
+
+
+# ---- doors ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_both_doors(seed, tmp_path, run_cli):
+    """A random frame comes back from its text, and the executable gives the same bits."""
+    frame = random_frame(np.random.default_rng(100 + seed))
+    path = 0.01 * frame.height * np.array([1.0, -1.0, 0.5])
+    text = (
+        frame.to_namelist()
+        + f"&loading drive = 'displacement', values = {', '.join(map(repr, path.tolist()))} /\n"
+    )
+    (tmp_path / "case.nml").write_text(text)
+    case = rbsdem.read_case(tmp_path / "case.nml")
+    assert case.column == frame
+    done = run_cli(["run", "case.nml", "--quiet"], tmp_path)
+    rows = (tmp_path / "case.csv").read_text().splitlines()[3:]
+    names = rows[0].split(",")
+    table = np.array([list(map(float, row.split(","))) for row in rows[1:]])
+    own = followed(frame, path)
+    assert (done.returncode == 0) == (own.summary["status"] == "completed")
+    assert (table[:, names.index("force_N")] == own.force).all()
+    nodes = len(frame.parts.nodes)
+    at = names.index("x_1_m")
+    assert (table[:, at : at + nodes] == own.x).all()
+
+
+def test_springs_from_the_ground_and_members_by_name():
+    """A rocking base and a brace: what they carry is missing from the columns."""
+    free = three_storeys(
+        base="pinned",
+        nodes=[FrameNode(f"N-{i}-0", flexure=Bilinear(4e7, 2e-3, 4e5)) for i in range(1, 5)],
+    )
+    braced = three_storeys(nodes=[FrameNode("N-1-3", shear=Elastic(5e6))])
+    plain = rbsdem.cyclic(three_storeys(), displacement=[0.05])
+    soft, stiff = (rbsdem.cyclic(frame, displacement=[0.05]) for frame in (free, braced))
+    assert soft.force[0] < plain.force[0] < stiff.force[0]
+    assert stiff.force[0] == pytest.approx(stiff.base_shear[0], rel=1e-9)
+    member = plain.member("C-2-1")
+    assert member.force.shape == member.deformation.shape == (1, 3)
+    assert member.ductility.max() > 1
+    assert member.axial[0] == pytest.approx(free.parts.compression[1], rel=0.2)
+    with pytest.raises(rbsdem.InputError, match=r"member = 'C-9-1' .*did you mean 'C-"):
+        plain.member("C-9-1")
+    table = plain.to_frame()
+    assert table["moment_from_C-2-1_Nm"][0] == member.moment[0, 0]
