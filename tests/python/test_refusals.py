@@ -76,7 +76,6 @@ NAMES = {name: getattr(rbsdem, name) for name in rbsdem.__all__} | {
     "BLOCKS": Layered([(y, ConcreteSpring(2e9, 1e6, 8e-4, 1e8)) for y in (-0.2, 0.0, 0.2)]),
     "C30": C30,
     "CONTACTS": Layered([(-0.2, Compression(1e9)), (0.2, Compression(1e9))]),
-    "ConcreteSpring": ConcreteSpring,
     "E": Elastic(1e8),
     "COLUMN": COLUMN,
     "broken": broken,

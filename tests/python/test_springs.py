@@ -83,13 +83,6 @@ def test_takeda_s2_lines_between_the_points(inner: str) -> None:
 ROUND = {"k_c": 1.0, "d_c": 1.0, "k_y": 0.3, "d_y": 6.0, "k_u": 0.01}
 
 
-@pytest.mark.parametrize("inner", INNER)
-def test_takeda_rule_1_peak_of_the_own_side(inner: str) -> None:
-    force = response(Takeda(**COLUMN_1, inner=inner), [6 * DY, -2 * DY, -1.9 * DY])
-    two = FY + KU * DY
-    assert force[2] == pytest.approx(-two + K0 * (1 / 2) ** B0 * 0.1 * DY, rel=1e-9)
-
-
 def test_takeda_rule_2_secant_of_that_line_goes_to_the_zero_crossing() -> None:
     k_r = 0.5 * (6 / 24) ** 0.4
     crack, zero = 24 - (2.68 + 1) / k_r, 24 - 2.68 / k_r
@@ -130,30 +123,6 @@ def test_takeda_rule_3_redirects_to_the_yield_point_and_stays() -> None:
         response(spring, [3, -3, 20, 0, 20, 60, -4])[[4, 5, 6]],
         [2.64, 3.04, -2.5 / 6 * 4],
     )
-
-
-def test_takeda_rule_4_aims_at_the_peak_of_the_other_side() -> None:
-    """R(-) turns at -2 before any inner peak of side +: after zero force straight to (20, 2.64)."""
-    spring = Takeda(**ROUND, inner="one")
-    k_plus, k_minus = 0.5 * (6 / 20) ** 0.4, (1.6 + 1) / (3 + 1)
-    zero = 20 - 2.64 / k_plus
-    turn = -2.5 / (6 + zero) * (2 + zero)  # redirected by rule 3
-    crossing = -2 - turn / k_minus
-    force = response(spring, [3.0, -3.0, 20.0, -2.0, crossing, 10.0, 20.0, 21.0])
-    by_hand = [turn, 0, 2.64 / (20 - crossing) * (10 - crossing), 2.64, 2.65]
-    np.testing.assert_allclose(force[3:], by_hand, rtol=1e-12, atol=1e-12)
-
-
-def test_takeda_equality_at_cracking_and_at_yield() -> None:
-    """Arriving exactly at an end is to be beyond it: the next line starts there."""
-    spring = Takeda(**ROUND)
-    # to -D_c on O(+), cracked: turning there unloads C(-) with K_c, not O(+)
-    k_r = (1.6 + 1) / (3 + 1)
-    assert response(spring, [3, -1, -0.5])[2] == pytest.approx(-0.5, rel=1e-12)
-    assert response(spring, [3, -0.999, -0.5])[2] == pytest.approx(1.6 - 3.5 * k_r, rel=1e-12)
-    # the yield point set by rule 2, reached exactly: P(-), K_0
-    force = response(spring, [24, -6, -5.9])
-    assert force[2] == pytest.approx(-2.5 + 0.1 * 0.5, rel=1e-12)
 
 
 def test_takeda_zero_force_is_passed_only_beyond() -> None:
@@ -309,18 +278,6 @@ GOOD: dict[str, dict[str, Any]] = {
 @pytest.fixture(params=list(GOOD))
 def spring(request: pytest.FixtureRequest) -> Any:
     return getattr(rbsdem.springs, request.param)(**GOOD[request.param])
-
-
-@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
-@pytest.mark.parametrize("index", [0, 3, 5])
-def test_deformation_that_is_not_finite_is_refused_by_index(
-    spring: Any, bad: float, index: int
-) -> None:
-    path = np.linspace(0.0, 1.0, 6)
-    path[index] = bad
-    where = rf"\b(index {index}|value {index + 1} of 6)\b"
-    with pytest.raises(rbsdem.InputError, match=where):
-        spring.response(path)
 
 
 def test_shapes_of_the_deformation(spring: Any) -> None:
