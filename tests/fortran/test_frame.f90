@@ -138,7 +138,8 @@ contains
       type(end_state) :: state
       type(standing_type) :: standing
       type(spring_array) :: springs
-      real(wp) :: s(3), correction(16)
+      real(wp), allocatable :: correction(:)
+      real(wp) :: s(3)
       integer :: of, i
 
       node([1, 3])%held(1) = .true.
@@ -155,6 +156,7 @@ contains
          if (allocated(error)) return
          call check_close(error, springs%d(frame%inside + frame%number(2, 2)), -w*l**4/(384.0_wp*bending), &
                           1.0e-12_wp, 0.0_wp, 'sag')
+         correction = 0.0_wp*springs%d
          do i = 1, 2
             call frame%end_forces(i, frame%basic(i, springs%d(frame%inside + 1:)), springs%d, &
                                   springs%f0 + springs%k*(springs%d - springs%d0), 1.0_wp, &

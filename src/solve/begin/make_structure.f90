@@ -89,6 +89,7 @@ contains
       real(wp) :: tangent(frame%tangent_numbers), band(frame%half_width + 1, frame%unknowns)
       integer :: at(2), unstable
 
+      tangent = 0.0_wp
       call frame%linearise(frame%initial_stiffness, tangent, unstable)
       if (unstable > 0) then
          call fatal_error(error, bad_input, 'member '//trim(frame%member_name(unstable))//': its springs '// &

@@ -86,6 +86,7 @@ contains
       end if
       if (.not. structure%damped) return
       band = 0.0_wp
+      tangent = 0.0_wp
       call structure%linearise(structure%initial_stiffness, tangent, unstable)
       call structure%add_damping(1.0_wp, tangent, band)
       call fill(band, matrices%damping)

@@ -13,6 +13,9 @@ module rbs_solve_static_frame_equilibrium
 
    public :: frame_equilibrium
 
+   !> A way, or a rotation, per way of the top that no stable part of a frame has [-, 1/m].
+   real(wp), parameter :: without_end = 1.0e8_wp
+
    type, extends(equilibrium_type) :: frame_equilibrium
       !> Whether the dead load grows with the force, from 0 to 1, in place of the lateral one
       logical :: loads = .false.
@@ -89,6 +92,8 @@ contains
             missing = displacement - sum(self%control*springs%d(frame%inside + 1:))
             call self%matrix%solve_bordered(self%right(:, :1), [1.0_wp], self%change(:, :1), y(:1), found)
             self%right(:, 1) = self%pushed
+            ! A part that gives way beside the top moves without end while the top does not.
+            found = found .and. maxval(abs(self%change(:, 1))) < without_end
             if (.not. found) return
             call self%matrix%solve_bordered(self%right(:, 2:), [missing], self%change(:, 2:), y(2:), settled)
             ! Of a mechanism what corrects round-off is round-off itself; more than that is found by the row.

@@ -22,7 +22,7 @@ module rbs_structure_frame_element
    implicit none
    private
 
-   public :: frame_element, tangent_size, find_tangent
+   public :: frame_element, tangent_size, find_tangent, find_forces, find_rates
 
    !> Springs without stiffness share a motion as if each had this part of its initial one.
    real(wp), parameter :: shared = 1.0e-9_wp
@@ -30,6 +30,8 @@ module rbs_structure_frame_element
    type :: frame_element
       !> The nodes at its ends
       integer :: node(2) = 0
+      !> Numbers of their displacements among the unknowns, (x, y, theta) each; 0 where a support holds one
+      integer :: number(6) = 0
       !> Elongation and rotations against the chord from the displacements of the nodes, (x, y, theta) each
       real(wp) :: to_basic(3, 6) = 0.0_wp
       !> Springs of the frame before its first; how many bend or slip, and how many open behind these
@@ -46,12 +48,13 @@ module rbs_structure_frame_element
 
 contains
 
-   !> Numbers of a tangent: K (3, 3), dd/dq (3, springs), H of those that bend and of those that open.
+   !> Numbers of a tangent: K (3, 3), dd/dq (3, springs), H of those that bend and of those that open, and the
+   !> stiffness of the springs that it belongs to, each with its initial one.
    pure integer function tangent_size(element) result(numbers)
       type(frame_element), intent(in) :: element
 
       associate (m => element%bending, n => element%opening)
-         numbers = 9 + 3*(m + n) + m**2 + n**2
+         numbers = 9 + 4*(m + n) + m**2 + n**2
       end associate
    end function tangent_size
 
@@ -81,6 +84,43 @@ contains
       rate(1, m + 1:) = open_up
       stable = stable .and. stable_along
    end subroutine find_tangent
+
+   !> Forces of the ends that are in equilibrium with forces of the springs, and the corrections of their
+   !> deformations that this needs.
+   pure subroutine find_forces(m, n, stiffness, rate, bent, opened, gap, f, s, correction)
+      !> Numbers of springs that bend, and that open
+      integer, intent(in) :: m, n
+      !> Of `find_tangent`
+      real(wp), intent(in) :: stiffness(3, 3), rate(3, m + n), bent(m, m), opened(n, n)
+      !> What the deformations miss to add up to the motion of the ends, and forces without dead load
+      real(wp), intent(in) :: gap(3), f(m + n)
+      real(wp), intent(out) :: s(3), correction(m + n)
+      integer :: j
+
+      s = stiffness(:, 1)*gap(1) + stiffness(:, 2)*gap(2) + stiffness(:, 3)*gap(3)
+      do j = 1, m + n
+         s = s + rate(:, j)*f(j)
+         correction(j) = rate(1, j)*gap(1) + rate(2, j)*gap(2) + rate(3, j)*gap(3)
+      end do
+      do j = 1, m
+         correction(:m) = correction(:m) - bent(:, j)*f(j)
+      end do
+      do j = 1, n
+         correction(m + 1:) = correction(m + 1:) - opened(:, j)*f(m + j)
+      end do
+   end subroutine find_forces
+
+   !> Changes of the deformations with those of the ends.
+   pure subroutine find_rates(springs, rate, q, dd)
+      integer, intent(in) :: springs
+      real(wp), intent(in) :: rate(3, springs), q(3)
+      real(wp), intent(out) :: dd(springs)
+      integer :: j
+
+      do j = 1, springs
+         dd(j) = rate(1, j)*q(1) + rate(2, j)*q(2) + rate(3, j)*q(3)
+      end do
+   end subroutine find_rates
 
    pure function rest_of(element) result(rest)
       type(frame_element), intent(in) :: element

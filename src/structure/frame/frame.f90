@@ -8,7 +8,7 @@ module rbs_structure_frame_frame
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_channel, only: channel_type, response_type, row_contents
-   use rbs_structure_frame_element, only: frame_element, find_tangent
+   use rbs_structure_frame_element, only: frame_element, find_forces, find_rates, find_tangent
    use rbs_structure_frame_frame_record, only: name_length
    use rbs_structure_spring_place, only: shear
    use rbs_structure_structure, only: structure_type, motion_result, lateral, horizontal, signals, top_axial
@@ -70,6 +70,7 @@ module rbs_structure_frame_frame
       procedure :: take_load_off
       procedure :: set_compression
       procedure :: basic
+      procedure :: gather
       procedure :: drop_round_off
       procedure :: end_forces
       procedure :: add_element
@@ -98,7 +99,7 @@ contains
       class(frame_type), intent(in) :: self
       !> Stiffness of the springs (springs)
       real(wp), intent(in), contiguous :: k(:)
-      !> (tangent_numbers)
+      !> Zero or the last ones: elements whose springs have the same stiffness keep theirs (tangent_numbers)
       real(wp), intent(inout), contiguous :: tangent(:)
       !> An element that snaps back; 0: none
       integer, intent(out) :: unstable
@@ -112,7 +113,7 @@ contains
       real(wp), intent(in) :: k(springs + 1), k0(springs + 1)
       real(wp), intent(inout) :: tangent(frame%tangent_numbers)
       integer, intent(out) :: unstable
-      integer :: i, at, first
+      integer :: i, at, first, of
       logical :: stable
 
       unstable = 0
@@ -120,11 +121,32 @@ contains
          associate (e => frame%element(i), m => frame%element(i)%bending, n => frame%element(i)%opening)
             at = e%at + 9 + 3*(m + n)
             first = e%before + 1
+            of = at + m**2 + n**2
+            if (is_of(m + n, tangent(of), k(first), k0(first))) cycle
             call find_tangent(e, m, n, k(first), k0(first), tangent(e%at), tangent(e%at + 9), tangent(at), &
                               tangent(at + m**2), stable)
+            if (stable) call remember(m + n, tangent(of), k(first), k0(first))
          end associate
          if (.not. stable) unstable = i
       end do
+
+   contains
+
+      !> Whether a tangent belongs to a stiffness; with the initial one a new array belongs to none.
+      pure logical function is_of(springs, known, k, k0)
+         integer, intent(in) :: springs
+         real(wp), intent(in) :: known(springs), k(springs), k0(springs)
+
+         is_of = springs > 0 .and. .not. any(abs(known - (k + k0)) > 0.0_wp)
+      end function is_of
+
+      pure subroutine remember(springs, known, k, k0)
+         integer, intent(in) :: springs
+         real(wp), intent(out) :: known(springs)
+         real(wp), intent(in) :: k(springs), k0(springs)
+
+         known = k + k0
+      end subroutine remember
    end subroutine find_tangents
 
    !> Elongation and rotations of an element from the unknowns, or changes of them.
@@ -132,20 +154,30 @@ contains
       class(frame_type), intent(in) :: self
       integer, intent(in) :: element
       real(wp), intent(in) :: x(:)
-      real(wp) :: q(3)
-      integer :: i, j
+      real(wp) :: q(3), moved(6)
 
-      q = 0.0_wp
-      associate (e => self%element(element))
-         do j = 1, 2
-            do i = 1, 3
-               associate (at => self%number(i, e%node(j)))
-                  if (at > 0) q = q + e%to_basic(:, 3*j - 3 + i)*x(at)
-               end associate
-            end do
-         end do
+      call self%gather(element, x, moved)
+      associate (b => self%element(element)%to_basic)
+         q = b(:, 1)*moved(1) + b(:, 2)*moved(2) + b(:, 3)*moved(3) &
+             + b(:, 4)*moved(4) + b(:, 5)*moved(5) + b(:, 6)*moved(6)
       end associate
    end function basic
+
+   !> Displacements of the nodes at the ends of an element, zero where a support holds them.
+   pure subroutine gather(self, element, x, moved)
+      class(frame_type), intent(in) :: self
+      integer, intent(in) :: element
+      real(wp), intent(in) :: x(:)
+      real(wp), intent(out) :: moved(6)
+      integer :: k
+
+      associate (number => self%element(element)%number)
+         do k = 1, 6
+            moved(k) = 0.0_wp
+            if (number(k) > 0) moved(k) = x(number(k))
+         end do
+      end associate
+   end subroutine gather
 
    !> Add what axial force and moments of the ends of an element do on the unknowns.
    pure subroutine add_element(self, element, s, g)
@@ -153,15 +185,13 @@ contains
       integer, intent(in) :: element
       real(wp), intent(in) :: s(3)
       real(wp), intent(inout) :: g(:)
-      integer :: i, j
+      integer :: k
 
       associate (e => self%element(element))
-         do j = 1, 2
-            do i = 1, 3
-               associate (at => self%number(i, e%node(j)))
-                  if (at > 0) g(at) = g(at) + sum(s*e%to_basic(:, 3*j - 3 + i))
-               end associate
-            end do
+         do k = 1, 6
+            if (e%number(k) > 0) g(e%number(k)) = g(e%number(k)) + (s(1)*e%to_basic(1, k) &
+                                                                    + s(2)*e%to_basic(2, k) &
+                                                                    + s(3)*e%to_basic(3, k))
          end do
       end associate
    end subroutine add_element
@@ -170,15 +200,18 @@ contains
    pure function gap_of(frame, element, q, d, dead) result(gap)
       type(frame_type), intent(in) :: frame
       integer, intent(in) :: element
-      real(wp), intent(in) :: q(3), d(:), dead
+      real(wp), intent(in) :: q(3), dead
+      real(wp), intent(in), contiguous :: d(:)
       real(wp) :: gap(3)
       integer :: j
 
       gap = q
       associate (e => frame%element(element))
-         gap(2:) = gap(2:) - dead*frame%dead_rotation(:, element)
+         gap(2) = gap(2) - dead*frame%dead_rotation(1, element)
+         gap(3) = gap(3) - dead*frame%dead_rotation(2, element)
          do j = 1, e%bending
-            gap(2:) = gap(2:) - e%share(:, j)*d(e%before + j)
+            gap(2) = gap(2) - e%share(1, j)*d(e%before + j)
+            gap(3) = gap(3) - e%share(2, j)*d(e%before + j)
          end do
          do j = e%bending + 1, e%bending + e%opening
             gap(1) = gap(1) - d(e%before + j)
@@ -191,41 +224,35 @@ contains
       class(frame_type), intent(in) :: self
       integer, intent(in) :: element
       !> Elongation and rotations of the ends; deformations and forces of all springs
-      real(wp), intent(in) :: q(3), d(:), f(:)
+      real(wp), intent(in) :: q(3)
+      real(wp), intent(in), contiguous :: d(:), f(:)
       !> Share of the dead load that acts
       real(wp), intent(in) :: dead
       real(wp), intent(in), contiguous :: tangent(:)
       real(wp), intent(out) :: s(3)
       !> Of the deformations of all springs (springs)
-      real(wp), intent(inout) :: correction(:)
-      real(wp) :: gap(3), rest
-      integer :: i, j, h, m, n
+      real(wp), intent(inout), contiguous :: correction(:)
 
-      gap = gap_of(self, element, q, d, dead)
-      associate (e => self%element(element))
-         m = e%bending
-         n = e%opening
-         s = matmul(reshape(tangent(e%at:e%at + 8), [3, 3]), gap)
-         h = e%at + 9 + 3*(m + n)
-         do j = 1, m + n
-            rest = f(e%before + j) - dead*self%dead_force(e%before + j)
-            i = e%at + 6 + 3*j
-            s = s + tangent(i:i + 2)*rest
-            correction(e%before + j) = sum(tangent(i:i + 2)*gap)
-         end do
-         do j = 1, m
-            rest = f(e%before + j) - dead*self%dead_force(e%before + j)
-            i = h + (j - 1)*m
-            correction(e%before + 1:e%before + m) = correction(e%before + 1:e%before + m) &
-                                                    - tangent(i:i + m - 1)*rest
-         end do
-         do j = 1, n
-            i = h + m**2 + (j - 1)*n
-            correction(e%before + m + 1:e%before + m + n) = correction(e%before + m + 1:e%before + m + n) &
-                                                            - tangent(i:i + n - 1)*f(e%before + m + j)
-         end do
-      end associate
+      call balance_ends(self, self%element(element), size(d), self%tangent_numbers, &
+                        gap_of(self, element, q, d, dead), dead, f, tangent, s, correction)
    end subroutine end_forces
+
+   pure subroutine balance_ends(frame, e, springs, numbers, gap, dead, f, tangent, s, correction)
+      type(frame_type), intent(in) :: frame
+      type(frame_element), intent(in) :: e
+      integer, intent(in) :: springs, numbers
+      real(wp), intent(in) :: gap(3), dead, f(springs), tangent(numbers)
+      real(wp), intent(out) :: s(3)
+      real(wp), intent(inout) :: correction(springs)
+      integer :: at
+
+      associate (m => e%bending, n => e%opening, first => e%before + 1, &
+                 last => e%before + e%bending + e%opening)
+         at = e%at + 9 + 3*(m + n)
+         call find_forces(m, n, tangent(e%at), tangent(e%at + 9), tangent(at), tangent(at + m**2), gap, &
+                          f(first:last) - dead*frame%dead_force(first:last), s, correction(first:last))
+      end associate
+   end subroutine balance_ends
 
    pure logical function is_loaded(self)
       class(frame_type), intent(in) :: self
@@ -297,7 +324,7 @@ contains
 
       do i = 1, size(self%element)
          associate (at => self%element(i)%at)
-            call add_product(self, i, reshape(tangent(at:at + 8), [3, 3]), band)
+            call add_product(self, i, tangent(at:at + 8), band)
          end associate
       end do
       band(1, :) = band(1, :) + k(self%inside + 1:)
@@ -308,15 +335,15 @@ contains
       type(frame_type), intent(in) :: self
       integer, intent(in) :: element
       real(wp), intent(in) :: a(3, 3)
-      real(wp), intent(inout) :: band(:, :)
+      real(wp), intent(inout), contiguous :: band(:, :)
       real(wp) :: row(3)
       integer :: number(6), i, j
 
       associate (e => self%element(element))
-         number = reshape(self%number(:, e%node), [6])
+         number = e%number
          do j = 1, 6
             if (number(j) == 0) cycle
-            row = matmul(a, e%to_basic(:, j))
+            row = a(:, 1)*e%to_basic(1, j) + a(:, 2)*e%to_basic(2, j) + a(:, 3)*e%to_basic(3, j)
             do i = 1, 6
                if (number(i) < number(j)) cycle
                band(1 + number(i) - number(j), number(j)) = band(1 + number(i) - number(j), number(j)) &
@@ -331,12 +358,13 @@ contains
       class(frame_type), intent(in) :: self
       real(wp), intent(in), contiguous :: v(:), tangent(:)
       real(wp), intent(inout), contiguous :: g(:)
-      real(wp) :: a(3, 3)
+      real(wp) :: a(9), q(3)
       integer :: i
 
       do i = 1, size(self%element)
          call damping_of(self, i, tangent, a)
-         call self%add_element(i, -matmul(a, self%basic(i, v)), g)
+         q = self%basic(i, v)
+         call self%add_element(i, -(a(:3)*q(1) + a(4:6)*q(2) + a(7:)*q(3)), g)
       end do
    end subroutine damp
 
@@ -345,7 +373,7 @@ contains
       real(wp), intent(in) :: factor
       real(wp), intent(in), contiguous :: tangent(:)
       real(wp), intent(inout), contiguous :: band(:, :)
-      real(wp) :: a(3, 3)
+      real(wp) :: a(9)
       integer :: i
 
       do i = 1, size(self%element)
@@ -358,13 +386,13 @@ contains
       type(frame_type), intent(in) :: frame
       integer, intent(in) :: element
       real(wp), intent(in) :: tangent(:)
-      real(wp), intent(out) :: a(3, 3)
+      real(wp), intent(out) :: a(9)
 
       associate (at => frame%element(element)%at)
          if (frame%tangent_damping) then
-            a = frame%stiffness_damping*reshape(tangent(at:at + 8), [3, 3])
+            a = frame%stiffness_damping*tangent(at:at + 8)
          else
-            a = frame%stiffness_damping*reshape(frame%initial_tangent(at:at + 8), [3, 3])
+            a = frame%stiffness_damping*frame%initial_tangent(at:at + 8)
          end if
       end associate
    end subroutine damping_of
@@ -383,19 +411,24 @@ contains
       real(wp), intent(in), contiguous :: tangent(:), dx(:)
       real(wp), intent(out), contiguous :: dd(:)
       real(wp) :: q(3)
-      integer :: i, j, at
+      integer :: i
 
       do i = 1, size(self%element)
          q = self%basic(i, dx)
-         associate (e => self%element(i))
-            do j = 1, e%bending + e%opening
-               at = e%at + 6 + 3*j
-               dd(e%before + j) = sum(tangent(at:at + 2)*q)
-            end do
-         end associate
+         call turn_springs(self%element(i), size(dd), self%tangent_numbers, tangent, q, dd)
       end do
       dd(self%inside + 1:) = dx
    end subroutine rates_on_lines
+
+   pure subroutine turn_springs(e, springs, numbers, tangent, q, dd)
+      type(frame_element), intent(in) :: e
+      integer, intent(in) :: springs, numbers
+      real(wp), intent(in) :: tangent(numbers), q(3)
+      real(wp), intent(inout) :: dd(springs)
+
+      call find_rates(e%bending + e%opening, tangent(e%at + 9), q, &
+                      dd(e%before + 1:e%before + e%bending + e%opening))
+   end subroutine turn_springs
 
    !> Take rates that are round-off of larger ones for zero: a spring that stands still on a corner of its
    !> curve, as in a mechanism beside it, must not be sent either way.
@@ -409,7 +442,7 @@ contains
       do i = 1, size(self%element)
          associate (e => self%element(i))
             size_of = 0.0_wp
-            number = reshape(self%number(:, e%node), [6])
+            number = e%number
             do k = 1, 6
                if (number(k) > 0) size_of = size_of + abs(e%to_basic(:, k)*dx(number(k)))
             end do
@@ -489,7 +522,7 @@ contains
 
       call second_order_rows(self, element, row)
       press = self%compression(element)
-      number = reshape(self%number(:, self%element(element)%node), [6])
+      number = self%element(element)%number
       do i = 1, 3
          turn = 0.0_wp
          do j = 1, 6
@@ -530,6 +563,7 @@ contains
       real(wp) :: tangent(self%tangent_numbers)
       integer :: unstable
 
+      tangent = 0.0_wp
       call self%linearise(k, tangent, unstable)
       call self%add_on_lines(k, tangent, band)
    end subroutine add_stiffness
@@ -543,7 +577,7 @@ contains
 
       do e = 1, size(self%element)
          call second_order_rows(self, e, row)
-         number = reshape(self%number(:, self%element(e)%node), [6])
+         number = self%element(e)%number
          do l = 1, 3
             do j = 1, 6
                if (number(j) == 0) cycle
@@ -722,7 +756,7 @@ contains
       integer :: number(6), i
 
       call second_order_rows(frame, element, row)
-      number = reshape(frame%number(:, frame%element(element)%node), [6])
+      number = frame%element(element)%number
       moved = 0.0_wp
       do i = 1, 6
          if (number(i) > 0) moved(i) = x(number(i))

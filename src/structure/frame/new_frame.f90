@@ -94,7 +94,8 @@ contains
       call set_elements(frame, node, member)
       call make_rules(frame%spring, frame%rules)
       frame%initial_stiffness = frame%rules%initial_stiffness()
-      allocate (frame%initial_tangent(frame%tangent_numbers), frame%base_spring(0), frame%base_factor(0))
+      allocate (frame%initial_tangent(frame%tangent_numbers), source=0.0_wp)
+      allocate (frame%base_spring(0), frame%base_factor(0))
       call frame%linearise(frame%initial_stiffness, frame%initial_tangent, i)
       frame%stiffest_part = maxval(frame%initial_tangent(frame%element%at))
       frame%axially_loaded = kinematics == pdelta
@@ -204,6 +205,7 @@ contains
             across = [axis(2), -axis(1)]
             associate (clear => frame%lengths(3, i))
                e%node = m%node
+               e%number = reshape(frame%number(:, m%node), [6])
                e%to_basic(1, :) = [-axis, 0.0_wp, axis, 0.0_wp]
                ! The chord turns clockwise as its end moves across.
                chord = [-across, -m%rigid(1), across, -m%rigid(2)]/clear

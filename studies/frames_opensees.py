@@ -1,0 +1,181 @@
+"""Frames against OpenSees: the same sections, loads and records, and the times side by side.
+
+    python studies/frames_opensees.py            needs openseespy (pip install openseespy)
+
+Members are OpenSees' `forceBeamColumn` with three Gauss-Lobatto points and bilinear sections. It
+prints the differences on a static cyclic path without dead load, which are those of the increments;
+on a record of 20 s with steps halved, and with the second-order work of the dead load against
+`PDelta`; and the times of both in one process.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import numpy as np
+import openseespy.opensees as ops
+
+import rbsdem
+
+E, MASS, LOAD = 30e9, 20e3, 10e3
+COLUMN = {"area": 0.16, "inertia": 2.1e-3, "yield_moment": 250e3}
+BEAM = {"area": 0.15, "inertia": 2.0e-3, "yield_moment": 200e3}
+HARDENING, HEIGHT, BAY = 0.01, 3.2, 6.0
+DAMPING = rbsdem.Damping(mass=0.3, stiffness=1e-3)
+
+
+def frame(storeys: int, bays: int, **more: Any) -> rbsdem.Frame:
+    """Return the frame."""
+    kinds = [rbsdem.FrameMember(E, **kind, hardening=HARDENING) for kind in (COLUMN, BEAM)]
+    return rbsdem.Frame.grid(
+        [HEIGHT] * storeys, [BAY] * bays, columns=kinds[0], beams=kinds[1],
+        floor_mass=MASS * bays, damping=DAMPING, **more,
+    )  # fmt: skip
+
+
+def settle() -> None:
+    """Choose how OpenSees solves."""
+    ops.system("BandGeneral")
+    ops.numberer("RCM")
+    ops.constraints("Plain")
+    ops.test("NormUnbalance", 1e-6, 30)
+    ops.algorithm("Newton")
+
+
+def model(storeys: int, bays: int, kinematics: str, load: float) -> int:
+    """Make the same model in OpenSees, under its dead load; return the node of the roof."""
+    ops.wipe()
+    ops.model("basic", "-ndm", 2, "-ndf", 3)
+    lines = bays + 1
+    for i in range(storeys + 1):
+        for j in range(lines):
+            share = (0.5 if j in (0, bays) else 1.0) * MASS
+            ops.node(i * lines + j + 1, j * BAY, i * HEIGHT)
+            if i:
+                ops.mass(i * lines + j + 1, share, share, 0.0)
+            else:
+                ops.fix(j + 1, 1, 1, 1)
+    for tag, kind in ((1, COLUMN), (2, BEAM)):
+        ops.uniaxialMaterial("Elastic", 10 * tag, E * kind["area"])
+        stiffness = E * kind["inertia"]
+        ops.uniaxialMaterial("Steel01", 10 * tag + 1, kind["yield_moment"], stiffness, HARDENING)
+        ops.section("Aggregator", tag, 10 * tag, "P", 10 * tag + 1, "Mz")
+        ops.beamIntegration("Lobatto", tag, tag, 3)
+    ops.geomTransf("PDelta" if kinematics == "pdelta" else "Linear", 1)
+    ops.geomTransf("Linear", 2)
+    element, beams = 0, []
+    for i in range(storeys):
+        for j in range(lines):
+            element += 1
+            ends = i * lines + j + 1, (i + 1) * lines + j + 1
+            ops.element("forceBeamColumn", element, *ends, 1, 1)
+    for i in range(1, storeys + 1):
+        for j in range(bays):
+            element += 1
+            beams.append(element)
+            ends = i * lines + j + 1, i * lines + j + 2
+            ops.element("forceBeamColumn", element, *ends, 2, 2)
+    settle()
+    if load:
+        ops.timeSeries("Linear", 1)
+        ops.pattern("Plain", 1, 1)
+        ops.eleLoad("-ele", *beams, "-type", "-beamUniform", -load)
+        ops.integrator("LoadControl", 0.1)
+        ops.analysis("Static")
+        ops.analyze(10)
+        ops.loadConst("-time", 0.0)
+        ops.wipeAnalysis()
+        settle()
+    return storeys * lines + 1
+
+
+def pushed(storeys: int, bays: int, path: list[float], parts: int) -> list[float]:
+    """Return the forces of OpenSees on a cyclic path, in increments."""
+    roof = model(storeys, bays, "small", 0.0)
+    lines = bays + 1
+    ops.timeSeries("Linear", 2)
+    ops.pattern("Plain", 2, 2)
+    shares = {i * lines + j + 1: i * (0.5 if j in (0, bays) else 1.0)
+              for i in range(1, storeys + 1) for j in range(lines)}  # fmt: skip
+    for node, share in shares.items():
+        ops.load(node, share / sum(shares.values()), 0.0, 0.0)
+    found, at = [], 0.0
+    for target in path:
+        ops.integrator("DisplacementControl", roof, 1, (target - at) / parts)
+        ops.analysis("Static")
+        if ops.analyze(parts):
+            return found
+        found.append(ops.getTime())
+        at = target
+    return found
+
+
+def shaken(storeys: int, bays: int, kinematics: str, load: float, t: Any, a: Any, dt: float) -> Any:
+    """Return the displacement of the roof in OpenSees under a record."""
+    roof = model(storeys, bays, kinematics, load)
+    ops.timeSeries("Path", 3, "-time", *t.tolist(), "-values", *a.tolist())
+    ops.pattern("UniformExcitation", 3, 1, "-accel", 3)
+    ops.rayleigh(DAMPING.mass, 0.0, DAMPING.stiffness, 0.0)
+    ops.integrator("Newmark", 0.5, 0.25)
+    ops.analysis("Transient")
+    steps = round(t[-1] / dt)
+    found = np.zeros(steps + 1)
+    for i in range(steps):
+        if ops.analyze(1, dt):
+            return found[: i + 1]
+        found[i + 1] = ops.nodeDisp(roof, 1)
+    return found
+
+
+def told(what: str, own: float, who: str, theirs: float) -> None:
+    """Print two times and their ratio."""
+    print(f"{what}: {1e3 * own:.1f} ms, {who} {1e3 * theirs:.0f} ms: {theirs / own:.1f} times")
+
+
+def main() -> None:
+    """Print the comparisons."""
+    path = [0.05, -0.08, 0.12, -0.15, 0.2, 0.0]
+    own = rbsdem.cyclic(frame(3, 3), displacement=path).force
+    for parts in (100, 1000):
+        other = np.array(pushed(3, 3, path, parts))
+        print(
+            f"static cyclic, 3 x 3, {parts} increments a leg: {abs(other / own - 1)[:-1].max():.1e}"
+        )
+    t = np.arange(0, 20.0001, 0.01)
+    a = 4 * np.sin(2 * np.pi * t / 0.9) * np.exp(-(((t - 6) / 5) ** 2))
+    a += 1.5 * np.sin(2 * np.pi * t / 0.31) * np.exp(-(((t - 8) / 6) ** 2))
+    for kinematics, load in (("small", 0.0), ("pdelta", LOAD)):
+        for dt in (0.01, 0.005, 0.0025):
+            built = frame(3, 3, kinematics=kinematics, beam_load=load)
+            run = rbsdem.time_history(built, t, ground_acceleration=a, method="newmark", dt=dt)
+            other = shaken(3, 3, kinematics, load, t, a, dt)[:: round(0.01 / dt)]
+            largest = abs(run.displacement).max()
+            gap = abs(other - run.displacement[: len(other)]).max() / largest
+            print(f"record, {kinematics}, step {dt}: {gap:.1e} of {1e3 * largest:.0f} mm")
+    for storeys, bays in ((3, 3), (8, 8)):
+        built = frame(storeys, bays, kinematics="pdelta", beam_load=LOAD)
+        times = []
+        for _ in range(3):
+            begin = time.perf_counter()
+            rbsdem.time_history(
+                built, t, ground_acceleration=a, method="newmark", dt=0.005, every=4000
+            )
+            times.append(time.perf_counter() - begin)
+        begin = time.perf_counter()
+        shaken(storeys, bays, "pdelta", LOAD, t, a, 0.005)
+        theirs = time.perf_counter() - begin
+        told(f"{storeys} x {bays}, 4000 steps", min(times), "OpenSees", theirs)
+        times = []
+        for _ in range(5):
+            begin = time.perf_counter()
+            rbsdem.pushover(built, drift=0.03, points=1)
+            times.append(time.perf_counter() - begin)
+        begin = time.perf_counter()
+        pushed(storeys, bays, [0.03 * storeys * HEIGHT], 300)
+        theirs = time.perf_counter() - begin
+        told(f"{storeys} x {bays}, push-over", min(times), "OpenSees in 300 increments", theirs)
+
+
+if __name__ == "__main__":
+    main()
