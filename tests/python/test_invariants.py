@@ -815,6 +815,9 @@ def test_huge_axial_springs_change_nothing(rng: Rng) -> None:
 def test_a_huge_footing_changes_nothing(rng: Rng) -> None:
     """A footing that hardly moves is the ground: to the share of the stiffnesses, 1e-6."""
     column, loading = static_case(rng, footing=None, axial_height=None)
+    contacts = {s.rule for s in column.joints("axial_spring")} & {"compression", "concrete"}
+    if contacts and not column.axial_load > 0:
+        raise Discard  # a contact without load stands on the corner of its curve
     stiff = Elastic(1e8 * stiffest(column) * max(1.0, column.height) ** 2)
     beneath = rbsdem.Footing(
         stiff, stiff, stiff if column.opens else None, mass=1.0, inertia=1.0, height=0.0
