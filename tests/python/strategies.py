@@ -58,7 +58,7 @@ def _pinching(rng: Rng, force: float, way: float) -> dict[str, Any]:
 
 def _concrete(rng: Rng, force: float, way: float) -> dict[str, Any]:
     k = force / way
-    peak = way * max(1.1, between(rng, 1.1, 3))
+    peak = way * max(1 + 1e-15, between(rng, 1, 3))
     return {"k": k, "f_peak": force, "d_peak": peak, "k_soft": k * between(rng, 1e-3, 0.5)}
 
 

@@ -599,18 +599,19 @@ def figures(result: rbsdem.Result) -> dict[str, float]:
     told |= {"ductility": hinge.ductility, "yields at": hinge.yield_rotation[0]}
     told |= {"residual": result.residual_drift, "loss": result.strength_loss()}
     names = ("peak_force", "peak_base_shear", "peak_rotation", "peak_displacement", "input_energy")
-    return told | {name: result.summary[name] for name in names}
+    return told | {name: abs(result.summary[name]) for name in names}
 
 
-@relation(100, judged=0.3)
+@relation(150, judged=0.3)
 def test_figures_do_not_depend_on_the_rows(rng: Rng) -> None:
     """Points on the same lines, and rows that are not kept, change nothing that is measured.
 
     Where a plateau ends, or which of two peaks is the larger, is a question of the last digits.
+    With second-order moments the largest force may lie where the top passes zero.
     """
-    n = int(rng.integers(1, 4))
+    fixed = {"n": int(rng.integers(1, 4)), "kinematics": str(rng.choice(["small", "pdelta"]))}
     column, _ = static_case(
-        rng, varying=False, n=n, kinematics="small", footing=None, top="free", axial_spring=None
+        rng, varying=False, footing=None, top="free", axial_spring=None, **fixed
     )
     peaks = column.height * between(rng, 2e-3, 0.02) * np.cumsum(rng.uniform(0.2, 1.0, 5))
     loading = {"displacement": np.outer(peaks, [1, -rng.uniform(0.5, 1.2)]).ravel()}

@@ -299,6 +299,15 @@ def test_shapes_of_the_deformation(spring: Any) -> None:
     assert np.array_equal(spring.response(path), force)
 
 
+def test_concrete_is_straight_to_a_peak_that_is_all_but_elastic() -> None:
+    """Popovics' curve has no bend where f_peak is k d_peak but for round-off: its limit."""
+    k, d_peak, k_soft = 76608443.77002211, 0.0013053391385967734, 14043017.5
+    spring = ConcreteSpring(k=k, f_peak=1e5, d_peak=d_peak, k_soft=k_soft)
+    d = -d_peak * np.array([0.1, 0.6, 0.3, 0.9, 1.0])
+    assert response(spring, d) == pytest.approx(k * d, rel=1e-12)
+    assert response(spring, np.array([-2 * d_peak]))[0] == pytest.approx(k_soft * d_peak - 1e5)
+
+
 # ---- where a rule cracks, yields and caps --------------------------------------------------------
 
 #: A spring of each rule with every corner that it has; the sides of the capped ones differ.

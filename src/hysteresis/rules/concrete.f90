@@ -455,7 +455,7 @@ contains
       if (x > 2.0_wp) karsan_jirsa = 0.84_wp + 0.834_wp*(x - 2.0_wp)
    end function karsan_jirsa
 
-   !> Rising curve of Popovics (1973) [N].
+   !> Rising curve of Popovics (1973) [N]; straight up to its peak where the secant is as stiff as `k`.
    pure real(wp) function curve(self, c)
       type(concrete_rule), intent(in) :: self
       !> Closing, up to the one at the peak [m]
@@ -463,7 +463,8 @@ contains
       real(wp) :: x, r
 
       x = c/self%d_peak
-      r = self%k/(self%k - self%f_peak/self%d_peak)
+      ! But for round-off the two are apart.
+      r = self%k/max(self%k - self%f_peak/self%d_peak, epsilon(1.0_wp)*self%k)
       curve = self%f_peak*x*r/(r - 1.0_wp + x**r)
    end function curve
 

@@ -69,6 +69,7 @@ module rbs_solve_static_path
       procedure :: follow
       procedure :: look
       procedure :: see_corner
+      procedure :: see_crossing
       procedure :: energies
       procedure(serialize_interface), deferred :: serialize
       procedure(advance_interface), deferred :: advance
@@ -308,6 +309,18 @@ contains
       call see_peak(self)
       if (self%task%recorder%corners) call keep_row(self, self%number - 1 + share, error)
    end subroutine see_corner
+
+   !> The path goes straight from the present point to another one. Where it passes zero displacement, the
+   !> force in the direction of loading begins or ends, and may be the largest.
+   subroutine see_crossing(self, displacement, force)
+      class(static_path), intent(inout) :: self
+      !> Of the other point: of the top [m], lateral [N]
+      real(wp), intent(in) :: displacement, force
+
+      if (.not. displacement*self%displacement < 0.0_wp) return
+      call self%task%summary%see_peak(0.0_wp, (self%force*displacement - force*self%displacement)/ &
+                                              (displacement - self%displacement))
+   end subroutine see_crossing
 
    !> Tell the summary of the present rotations.
    subroutine see_turn(self)

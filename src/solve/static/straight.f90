@@ -167,6 +167,7 @@ contains
          self%work = self%work + 0.5_wp*(force + self%force)*(displacement - self%displacement &
                                                               + line%further_rate*(control - self%control))
       end associate
+      call self%see_crossing(displacement, force)
       self%force = force
       self%displacement = displacement
       self%control = control
