@@ -5,6 +5,10 @@ take SI and draw millimetres and kilonewtons. Without axes they make a figure in
 the dictionary `RC`; axes that are given keep the style of the caller.
 """
 
+from rbsdem.output.frames import frame as frame
+from rbsdem.output.frames import member_forces as member_forces
+from rbsdem.output.frames import pushover as pushover
+from rbsdem.output.frames import storey_drift as storey_drift
 from rbsdem.output.loops import Panel as Panel
 from rbsdem.output.loops import calibration as calibration
 from rbsdem.output.loops import code_comparison as code_comparison

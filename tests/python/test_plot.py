@@ -16,6 +16,7 @@ from samples import SECTION, printed
 import rbsdem
 from rbsdem import codes, fragility, plot
 from rbsdem.curves import Envelope
+from rbsdem.output import frames
 from rbsdem.section import shear
 from rbsdem.springs import Elastic
 
@@ -70,6 +71,10 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
     )
     x, y = 1e3 * D[peak], RESULT.force[peak] / 1e3
     end = history.time[-1]
+    member = rbsdem.FrameMember(30e9, 0.16, 2.1e-3, yield_moment=2e5, hardening=0.01)
+    bent = rbsdem.Frame.grid([3.2, 3.0], [6.0], columns=member, beams=member, beam_load=2e4)
+    pushed = rbsdem.pushover(bent, drift=0.03, points=20)
+    roof, shear_of = 1e3 * pushed.displacement[-1], 1e-3 * pushed.base_shear[-1]
     first_of = {of: 100 * of.runs.response("peak_drift")[0] for of in (stripes, cloud)}
     return {
         "loop": (plot.loop, (RESULT,), (x, y)),
@@ -112,6 +117,10 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
             (spectrum.period[9], spectrum.pseudo_acceleration[9]),
         ),
         "spread": (plot.spread, (band,), (0.0, band.force[0] / 1e3)),
+        "frame": (plot.frame, (pushed,), None),
+        "pushover": (plot.pushover, (pushed,), (roof, shear_of)),
+        "storey_drift": (plot.storey_drift, (pushed,), (100 * pushed.storey_drift[-1, 0], 3.2)),
+        "member_forces": (plot.member_forces, (pushed,), None),
     }
 
 
@@ -139,6 +148,10 @@ LABELS = {
     "motion": ("Time (s)", "Acceleration (m/s²)"),
     "spectrum": ("Period (s)", "Pseudo-acceleration (m/s²)"),
     "spread": ("Path of displacement (mm)", "Force (kN)"),
+    "frame": ("Distance (m)", "Height (m)"),
+    "pushover": ("Roof displacement (mm)", "Base shear (kN)"),
+    "storey_drift": ("Storey drift (%)", "Height (m)"),
+    "member_forces": ("Distance (m)", "Height (m)"),
 }
 
 
@@ -331,3 +344,30 @@ def test_records_as_tables():
             assert word in shown
     assert list(states.to_frame()["name"]) == states.names()
     assert list(values.to_frame()["name"]) == values.names()
+
+
+def test_shape_and_moments_of_a_frame(figures):
+    """Hinges by their state; rigid members stay straight; moments are those of the springs."""
+    (pushed,) = figures["pushover"][1]
+    shares = {line.get_label(): line for line in plot.frame(pushed).get_lines()}
+    yielded = {(one.member, one.end) for one in pushed.events}
+    assert len(shares["yielded"].get_xdata()) == len(yielded)
+    assert len(plot.frame(pushed, row=0).get_legend().get_texts()) == 1
+    labels = [text.get_text() for text in plot.pushover(pushed).get_legend().get_texts()]
+    first = pushed.events[0]
+    assert labels[0].startswith(f"{first.member}, {first.end}, yields, then")
+    (beam,) = [i for i, name in enumerate(pushed.frame.parts.members) if name == "B-1-1"]
+    member = frames._members(pushed.frame)[beam]
+    along = frames._forces(pushed, beam, member, "moment", -1)
+    assert along[[0, 10, 20]] == pytest.approx(-pushed.member("B-1-1").force[-1])
+    rigid = rbsdem.FrameMember(
+        30e9, 0.16, 2.1e-3, flexure=rbsdem.springs.Bilinear(5e7, 4e-3, 5e5), between="rigid"
+    )
+    bent = rbsdem.Frame.grid([3.0], [6.0], columns=rigid, beams=rigid, base="pinned")
+    swayed = rbsdem.pushover(bent, drift=0.03, points=3)
+    for member in frames._members(bent):
+        points = frames._deformed(swayed, member, -1, 1.0)
+        straight = points[0] + np.linspace(0, 1, len(points))[:, None] * (points[-1] - points[0])
+        assert points == pytest.approx(straight, abs=1e-9)
+    with pytest.raises(rbsdem.InputError, match="row = 99"):
+        plot.frame(swayed, row=99)

@@ -473,6 +473,16 @@ class Frame:
         ]
         return found[-1]
 
+    def load_of(self, member: str) -> float:
+        """Return the dead load on a member, downward, per length along x [N/m]."""
+        for own in self.members:
+            if own.name == member:
+                return own.load
+        if member.startswith("C"):
+            return 0.0
+        loads: Any = self.beam_load
+        return float(loads[min(int(member.split("-")[2]), len(loads)) - 1])
+
     def to_namelist(self) -> str:
         """Return the frame as groups of a case file, from which the same frame comes back."""
         return _core.evaluate("to_namelist", self._statement).text

@@ -241,7 +241,7 @@ class FrameResult:
         start, end = parts.ends[at]
         length = float(np.hypot(parts.x[end] - parts.x[start], parts.y[end] - parts.y[start]))
         moment = np.column_stack((self.moment_from[:, at], self.moment_to[:, at]))
-        clear = length - _rigid_lengths(self.frame, name)
+        clear = length - sum(rigid_lengths(self.frame, name))
         rows = (self.time.size, 0)
         return MemberHistory(
             name,
@@ -377,13 +377,14 @@ def landmarks_of(frame: Frame, spring: FrameSpring) -> list[Landmark]:
     return [] if other is None else list(other.landmarks())
 
 
-def _rigid_lengths(frame: Frame, member: str) -> float:
-    """Return the rigid lengths of a member [m]."""
+def rigid_lengths(frame: Frame, member: str) -> tuple[float, float]:
+    """Return the rigid lengths at the two ends of a member [m]."""
     for own in frame.members:
         if own.name == member:
-            return float(sum(own.panel))
-    both = member.startswith("B") or not member.endswith("-1")
-    return frame.kind_of(member).panel * (2 if both else 1)
+            return own.panel
+    panel = frame.kind_of(member).panel
+    at_base = member.startswith("C") and member.endswith("-1")
+    return 0.0 if at_base else panel, panel
 
 
 def _place(name: str, names: tuple[str, ...], what: str) -> int:

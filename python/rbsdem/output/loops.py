@@ -25,6 +25,7 @@ from rbsdem.output.style import (
     TEST_POINTS,
     ZERO_LINE,
     axes_or_new,
+    drift_axis,
     keep_letters,
     line_of,
     new_axes,
@@ -483,18 +484,4 @@ def _dress(ax: Axes, height: float | None) -> None:
         height = _arguments.number(height, "height")
         if not height > 0:
             raise InputError(f"height = {height} m; give a positive height for the drift ratios")
-        if any(child.get_gid() == "drift" for child in ax.child_axes):
-            return
-        share = 0.1 / height  # per cent of a height in m, of a displacement in mm
-
-        def drift_of(displacement: Any) -> Any:
-            return displacement * share
-
-        def displacement_of(drift: Any) -> Any:
-            return drift / share
-
-        top = ax.secondary_xaxis("top", functions=(drift_of, displacement_of), gid="drift")
-        top.xaxis.set_major_locator(MaxNLocator(nbins=9, symmetric=True, steps=[1, 2, 5, 10]))
-        # In the letters of the axes below, wherever those come from.
-        top.set_xlabel("Drift ratio (%)", fontproperties=ax.xaxis.label.get_fontproperties())
-        keep_letters(top.xaxis, ax.xaxis)
+        drift_axis(ax, height)

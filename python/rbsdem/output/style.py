@@ -187,3 +187,24 @@ def keep_letters(axis: Any, model: Any) -> None:
     axis.set_tick_params(**options)
     with suppress(ValueError):  # matplotlib 3.7 does not know it
         axis.set_tick_params(labelfontfamily=label.get_fontfamily())
+
+
+def drift_axis(ax: Axes, height: float) -> None:
+    """Put drift ratios above displacements in mm, in the letters of the axis below."""
+    from matplotlib.ticker import MaxNLocator  # noqa: PLC0415
+
+    if any(child.get_gid() == "drift" for child in ax.child_axes):
+        return
+    share = 0.1 / height  # per cent of a height in m, of a displacement in mm
+
+    def drift_of(displacement: Any) -> Any:
+        return displacement * share
+
+    def displacement_of(drift: Any) -> Any:
+        return drift / share
+
+    top = ax.secondary_xaxis("top", functions=(drift_of, displacement_of), gid="drift")
+    top.xaxis.set_major_locator(MaxNLocator(nbins=9, symmetric=True, steps=[1, 2, 5, 10]))
+    # In the letters of the axes below, wherever those come from.
+    top.set_xlabel("Drift ratio (%)", fontproperties=ax.xaxis.label.get_fontproperties())
+    keep_letters(top.xaxis, ax.xaxis)

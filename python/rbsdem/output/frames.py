@@ -1,0 +1,598 @@
+"""Figures of frames: shape and hinges, push-over, storey drifts, forces of the members."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+
+from rbsdem import _arguments
+from rbsdem._arguments import Array
+from rbsdem.errors import InputError
+from rbsdem.model.frame import Frame
+from rbsdem.model.frame_result import FrameResult, landmarks_of, rigid_lengths
+from rbsdem.output.style import (
+    MODEL_LINE,
+    TEST_LINE,
+    ZERO_LINE,
+    axes_or_new,
+    drift_axis,
+    line_of,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+#: Limit states of a hinge in their order, their names in a legend, and their fills.
+_STATES = {
+    "": ("not reached", "white"),
+    "cracking": ("cracked", "0.7"),
+    "yield": ("yielded", "black"),
+    "cap": ("beyond its cap", "#c0392b"),
+}
+_HINGE: dict[str, Any] = {
+    "linestyle": "none",
+    "marker": "o",
+    "markersize": 4.0,
+    "markeredgecolor": "black",
+    "markeredgewidth": 0.5,
+    "zorder": 5,
+}
+_UNDEFORMED: dict[str, Any] = {"color": "0.75", "linewidth": 0.6, "zorder": 1}
+_MEMBER: dict[str, Any] = {"color": "black", "linewidth": 1.1, "zorder": 3}
+_NODE: dict[str, Any] = {
+    "linestyle": "none",
+    "marker": "s",
+    "markersize": 2.6,
+    "color": "black",
+    "zorder": 4,
+}
+_SUPPORT: dict[str, Any] = {"color": "black", "linewidth": 0.7, "zorder": 2}
+
+#: Markers of the limit states on a path.
+_MARKS: dict[str, dict[str, Any]] = {
+    "cracking": {"marker": "v", "markerfacecolor": "white"},
+    "yield": {"marker": "o", "markerfacecolor": "white"},
+    "cap": {"marker": "D", "markerfacecolor": "#c0392b"},
+}
+_VERBS = {"cracking": "cracks", "yield": "yields", "cap": "reaches its cap"}
+
+#: Size of a support and place of a hinge beside its node, in shares of the larger dimension.
+_SYMBOL = 0.022
+_BESIDE = 0.016
+
+#: Most members whose names are drawn.
+_NAMED = 60
+
+
+class _Member(NamedTuple):
+    """A member between the rigid lengths at its nodes.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    start, end : int
+        Numbers of its nodes.
+    axis : ndarray, shape (2,)
+        Direction from its start to its end.
+    panel : tuple of float
+        Rigid lengths [m].
+    length : float
+        Clear length [m].
+    """
+
+    name: str
+    start: int
+    end: int
+    axis: Array
+    panel: tuple[float, float]
+    length: float
+
+    @property
+    def normal(self) -> Array:
+        """To the right of one who goes from its start to its end: a clockwise turn from `axis`."""
+        return np.array([self.axis[1], -self.axis[0]])
+
+
+def frame(
+    shown: Frame | FrameResult,
+    *,
+    row: int = -1,
+    scale: float | None = None,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw a frame with its supports; of a result its deformed shape and the state of its hinges.
+
+    Members bend as cubic lines between the displacements and rotations of their ends; rotations of
+    hinges at the ends are those beyond yield, or the whole of springs that were given one by one.
+    A hinge has the furthest limit state of those that it has reached up to the row.
+
+    Parameters
+    ----------
+    shown : Frame or FrameResult
+        The frame, or the result of an analysis.
+    row : int, optional
+        Row of the result, the last one by default.
+    scale : float, optional
+        Factor of the displacements; by default such that the largest is a tenth of the frame.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes, in m.
+
+    Raises
+    ------
+    InputError
+        If there is no such row.
+    """
+    if isinstance(shown, FrameResult):
+        result, structure = shown, shown.frame
+    else:
+        result, structure = None, _arguments.instance(shown, "plot.frame", Frame)
+    size = _size(structure)
+    if result is not None:
+        row = _row(result, row)
+        largest = float(np.hypot(result.x[row], result.y[row]).max())
+        if scale is None:
+            scale = _rounded(0.1 * size / largest) if largest > 0 else 1.0
+        scale = _arguments.number(scale, "plot.frame: scale")
+    with axes_or_new(ax, _figure_size(structure)) as drawn:
+        _draw_supports(drawn, structure, size)
+        moved = _undeformed(drawn, structure, result is None)
+        if result is not None:
+            assert scale is not None
+            moved = moved + scale * np.column_stack((result.x[row], result.y[row]))
+            for member in _members(structure):
+                bent = _deformed(result, member, row, scale)
+                drawn.plot(*bent.T, **_MEMBER)
+                for node, end in ((member.start, bent[0]), (member.end, bent[-1])):
+                    drawn.plot(*np.vstack((moved[node], end)).T, **_MEMBER)
+            drawn.set_title(_heading(result, row, f"Displacements × {scale:g}"))
+        drawn.plot(*moved.T, **_NODE)
+        _draw_hinges(drawn, structure, result, row, 0.0 if scale is None else scale)
+        if result is None and len(structure.parts.members) <= _NAMED:
+            _write_names(drawn, structure, size)
+        _dress(drawn, structure)
+    return drawn
+
+
+def pushover(result: FrameResult, *, ax: Axes | None = None, **line: Any) -> Axes:
+    """Draw base shear over the displacement of the roof, with the limit states of the hinges.
+
+    Parameters
+    ----------
+    result : FrameResult
+        What `rbsdem.pushover` returns; other results are drawn as loops.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+    **line
+        Properties of the line, as for ``Axes.plot``.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes. The legend names the first hinge of each limit state, and how many follow it.
+    """
+    _arguments.instance(result, "plot.pushover", FrameResult)
+    with axes_or_new(ax, (4.6, 3.2)) as drawn:
+        drawn.plot(1e3 * result.displacement, 1e-3 * result.base_shear, **line_of(MODEL_LINE, line))
+        for what, mark in _MARKS.items():
+            events = [event for event in result.events if event.what == what]
+            if not events:
+                continue
+            rows = np.searchsorted(result.time, [event.step for event in events])
+            first = events[0]
+            more = f", then {len(events) - 1} more" if len(events) > 1 else ""
+            drawn.plot(
+                1e3 * result.displacement[rows],
+                1e-3 * result.base_shear[rows],
+                **_HINGE | mark,
+                label=f"{first.member}, {first.end}, {_VERBS[what]}{more}",
+            )
+        if result.events:
+            drawn.legend(loc="best", handletextpad=0.2)
+        drawn.margins(x=0.03, y=0.06)
+        if all(
+            values.min() > -0.01 * values.max()
+            for values in (result.displacement, result.base_shear)
+        ):
+            drawn.set_xlim(left=0.0, auto=True)
+            drawn.set_ylim(bottom=0.0, auto=True)
+        else:
+            drawn.axhline(0.0, **ZERO_LINE)
+            drawn.axvline(0.0, **ZERO_LINE)
+        drawn.set(xlabel="Roof displacement (mm)", ylabel="Base shear (kN)")
+        drawn.tick_params(right=True)
+        drift_axis(drawn, result.frame.height)
+    return drawn
+
+
+def storey_drift(result: FrameResult, *, ax: Axes | None = None, **line: Any) -> Axes:
+    """Draw the largest drifts of the storeys to both sides over the height.
+
+    Parameters
+    ----------
+    result : FrameResult
+        Response of a frame with storeys. In time the drifts at the end are drawn dashed.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+    **line
+        Properties of the line, as for ``Axes.plot``.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+
+    Raises
+    ------
+    InputError
+        If the frame has no storeys.
+    """
+    _arguments.instance(result, "plot.storey_drift", FrameResult)
+    drifts = 100 * result.storey_drift
+    storeys: Any = result.frame.storeys
+    floors = float(result.frame.parts.y.min()) + np.concatenate(([0.0], np.cumsum(storeys)))
+
+    def steps(values: Array) -> tuple[Array, Array]:
+        return np.repeat(values, 2), np.column_stack((floors[:-1], floors[1:])).ravel()
+
+    with axes_or_new(ax, (2.8, 3.2)) as drawn:
+        for height in floors[1:-1]:
+            drawn.axhline(height, **ZERO_LINE)
+        for extreme in (drifts.max(axis=0), drifts.min(axis=0)):
+            # A side that is never reached has no line.
+            if np.any(extreme):
+                drawn.plot(*steps(extreme), **line_of({**MODEL_LINE, "label": "largest"}, line))
+        if result.dynamic:
+            drawn.plot(*steps(100 * result.residual_drift), **TEST_LINE, label="at the end")
+            handles, labels = drawn.get_legend_handles_labels()
+            named = dict(zip(labels, handles, strict=True))
+            drawn.legend(
+                named.values(),
+                named.keys(),
+                loc="lower center",
+                bbox_to_anchor=(0.5, 1.0),
+                ncols=2,
+                handlelength=2.2,
+                columnspacing=1.4,
+            )
+        drawn.axvline(0.0, **ZERO_LINE)
+        reach = 1.12 * float(np.abs(drifts).max()) or 1.0
+        both = drifts.min() < -0.02 * reach and drifts.max() > 0.02 * reach
+        low, high = (-reach, reach) if both else (min(0.0, drifts.min()), max(0.0, drifts.max()))
+        drawn.set_xlim(1.12 * low if not both else low, 1.12 * high if not both else high)
+        drawn.set_ylim(floors[0], floors[-1])
+        drawn.set_yticks(floors, [f"{height:.4g}" for height in floors])
+        drawn.set(xlabel="Storey drift (%)", ylabel="Height (m)")
+        drawn.tick_params(right=True, top=True)
+    return drawn
+
+
+def member_forces(
+    result: FrameResult,
+    force: Literal["moment", "axial"] = "moment",
+    *,
+    row: int = -1,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw moments or axial forces of the members along their axes.
+
+    Parameters
+    ----------
+    result : FrameResult
+        Response of a frame.
+    force : {"moment", "axial"}, optional
+        Moments stand on the side in tension; compression is filled, tension is not.
+    row : int, optional
+        Row of the result, the last one by default.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes, in m. The largest force of a beam and of a column is written beside it.
+
+    Raises
+    ------
+    InputError
+        If there is no such row.
+    """
+    _arguments.instance(result, "plot.member_forces", FrameResult)
+    _arguments.choice(force, "plot.member_forces: force", ("moment", "axial"))
+    row = _row(result, row)
+    structure = result.frame
+    members = _members(structure)
+    values = [_forces(result, i, members[i], force, row) for i in range(len(members))]
+    largest = max(float(np.abs(value).max()) for value in values) or 1.0
+    reach = 0.22 * float(np.median([member.length for member in members]))
+    unit = "kN m" if force == "moment" else "kN"
+    with axes_or_new(ax, _figure_size(structure)) as drawn:
+        _draw_supports(drawn, structure, _size(structure))
+        for member, value in zip(members, values, strict=True):
+            start = _start(structure, member)
+            axis = start + np.linspace(0, member.length, value.size)[:, None] * member.axis
+            off = axis + reach / largest * value[:, None] * member.normal
+            outline = np.vstack((axis[:1], off, axis[-1:]))
+            face = "white" if force == "axial" and value[0] < 0 else "0.85"
+            drawn.fill(*outline.T, facecolor=face, edgecolor="none", zorder=1.5)
+            drawn.plot(*outline.T, color="black", linewidth=0.5, zorder=2)
+        for upright in (True, False):
+            _write_largest(drawn, structure, members, values, upright)
+        _undeformed(drawn, structure, True)
+        name = {"moment": "Moments", "axial": "Axial forces"}[force]
+        drawn.set_title(_heading(result, row, f"{name} ({unit})"))
+        _dress(drawn, structure)
+    return drawn
+
+
+def _row(result: FrameResult, row: int) -> int:
+    """Return the number of a row, from 0."""
+    row, count = _arguments.integer(row, "row"), result.time.size
+    if not -count <= row < count:
+        raise InputError(f"row = {row}: the result has {count} rows; give {-count} to {count - 1}")
+    return row % count
+
+
+def _members(structure: Frame) -> list[_Member]:
+    parts = structure.parts
+    found = []
+    for name, (start, end) in zip(parts.members, parts.ends, strict=True):
+        between = np.array([parts.x[end] - parts.x[start], parts.y[end] - parts.y[start]])
+        length = float(np.hypot(*between))
+        panel = rigid_lengths(structure, name)
+        found.append(
+            _Member(name, int(start), int(end), between / length, panel, length - sum(panel))
+        )
+    return found
+
+
+def _start(structure: Frame, member: _Member) -> Array:
+    """Return where the clear length of a member begins [m]."""
+    parts = structure.parts
+    node = np.array([parts.x[member.start], parts.y[member.start]])
+    return np.asarray(node + member.panel[0] * member.axis)
+
+
+def _size(structure: Frame) -> float:
+    """Return the larger dimension of a frame [m]."""
+    return float(max(np.ptp(structure.parts.x), np.ptp(structure.parts.y)))
+
+
+def _figure_size(structure: Frame) -> tuple[float, float]:
+    """Return the size of a figure of a frame in its proportions [in]."""
+    wide, high = np.ptp(structure.parts.x), np.ptp(structure.parts.y)
+    width = float(np.clip(5.2 * wide / max(wide, 1.2 * high), 2.4, 5.2))
+    return width, float(np.clip(0.9 + 0.85 * width * high / max(wide, 0.3 * high), 1.8, 6.5))
+
+
+def _rounded(value: float) -> float:
+    """Return the nearest of 1, 2, 5, 10 and so on."""
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(min((1, 2, 5, 10), key=lambda one: abs(np.log(one * power / value))) * power)
+
+
+def _hinge_rotations(result: FrameResult, name: str, row: int) -> Array:
+    """Return the rotations of the hinges at the two ends of a member, clockwise on what follows.
+
+    Of sections that yield those beyond their elastic ones, which the bent member has; of springs
+    that were given one by one the whole.
+    """
+    turned = np.zeros(2)
+    if result.frame.kind_of(name).yield_moment is None and not result.frame.kind_of(name).flexure:
+        return turned
+    for i, spring in enumerate(result.frame.parts.springs_of("flexure")):
+        if spring.member == name and spring.place in (0.0, 1.0):
+            turn = float(result.springs["rotation"][row, i])
+            if result.frame.kind_of(name).yield_moment is not None:
+                turn -= float(result.springs["moment"][row, i]) / spring.stiffness
+            turned[int(spring.place)] = turn
+    return turned
+
+
+def _deformed(
+    result: FrameResult, member: _Member, row: int, scale: float, shares: Array | None = None
+) -> Array:
+    """Return points along a member with its displacements times a factor [m]."""
+    shares = np.linspace(0, 1, 25) if shares is None else shares
+    nodes = [member.start, member.end]
+    turn = result.turn[row, nodes]
+    moved = np.column_stack((result.x[row, nodes], result.y[row, nodes]))
+    # The rigid lengths turn with their nodes.
+    moved = moved + np.outer(turn * (member.panel[0], -member.panel[1]), member.normal)
+    along, across = moved @ member.axis, moved @ member.normal
+    hinges = _hinge_rotations(result, member.name, row)
+    slopes = member.length * (turn + hinges * (1, -1))
+    s = shares
+    bent = (
+        across[0] * (1 - 3 * s**2 + 2 * s**3)
+        + slopes[0] * (s - 2 * s**2 + s**3)
+        + across[1] * (3 * s**2 - 2 * s**3)
+        + slopes[1] * (s**3 - s**2)
+    )
+    drawn = np.outer(s * member.length + scale * (along[0] + s * np.diff(along)), member.axis)
+    return np.asarray(_start(result.frame, member) + drawn + scale * np.outer(bent, member.normal))
+
+
+def _draw_hinges(
+    ax: Axes, structure: Frame, result: FrameResult | None, row: int, scale: float
+) -> None:
+    """Draw springs that have limit states, filled by the furthest that they have reached."""
+    reached: dict[tuple[str, str, str], str] = {}
+    order = list(_STATES)
+    for event in () if result is None else result.events:
+        if event.step <= result.time[row]:  # type: ignore[union-attr]
+            key = event.member, event.group, event.end
+            reached[key] = max(reached.get(key, ""), event.what, key=order.index)
+    members = {member.name: member for member in _members(structure)}
+    beside = _BESIDE * _size(structure)
+    points: dict[str, list[Array]] = {state: [] for state in _STATES}
+    for spring in structure.parts.springs:
+        if not landmarks_of(structure, spring):
+            continue
+        member = members[spring.member]
+        end = {0.0: "start", 1.0: "end"}.get(spring.place, f"{spring.place:g}")
+        state = reached.get((spring.member, spring.group, end), "")
+        # Between the ends only what has been reached: sections there seldom are.
+        if not state and 0.0 < spring.place < 1.0 and spring.group == "flexure":
+            continue
+        aside = min(beside / member.length, 0.3)
+        share = np.array([np.clip(spring.place, aside, 1 - aside)])
+        if result is None:
+            at = _start(structure, member) + share * member.length * member.axis
+        else:
+            at = _deformed(result, member, row, scale, share)[0]
+        points[state].append(at)
+    for state, (label, fill) in _STATES.items():
+        if points[state]:
+            name = label if result is not None else "hinge"
+            ax.plot(*np.array(points[state]).T, **_HINGE, markerfacecolor=fill, label=name)
+    if any(points.values()):
+        ax.legend(
+            loc="upper center",
+            bbox_to_anchor=(0.5, -0.16 / max(_figure_size(structure)[1] / 3, 0.6)),
+            ncols=4,
+            handletextpad=0.0,
+            columnspacing=1.2,
+        )
+
+
+def _undeformed(ax: Axes, structure: Frame, strong: bool) -> Array:
+    """Draw the members where nothing acts on them; return the places of the nodes."""
+    parts = structure.parts
+    nodes = np.column_stack((parts.x, parts.y))
+    for ends in parts.ends:
+        ax.plot(*nodes[ends].T, **(_MEMBER if strong else _UNDEFORMED))
+    for member in _members(structure) if strong else ():
+        # Rigid lengths are thick.
+        for node, length in ((member.start, member.panel[0]), (member.end, -member.panel[1])):
+            if length:
+                away = nodes[node] + length * member.axis
+                ax.plot(*np.vstack((nodes[node], away)).T, **_MEMBER | {"linewidth": 2.6})
+    return nodes
+
+
+def _draw_supports(ax: Axes, structure: Frame, size: float) -> None:
+    """Draw what holds the nodes: a line, a triangle, one on wheels, a square for springs."""
+    parts = structure.parts
+    held = dict.fromkeys(np.array(parts.nodes)[parts.floor == 0].tolist(), structure.base)
+    own: set[str] = set()
+    for node in structure.nodes:
+        if node.support:
+            held[node.name] = node.support  # type: ignore[assignment]
+        if any((node.shear, node.axial_spring, node.flexure)):
+            own.add(node.name)
+    h = _SYMBOL * size
+    for name, x, y in zip(parts.nodes, parts.x, parts.y, strict=True):
+        support: str = held.get(name, "free")
+        ground = y
+        if support in ("pinned", "roller"):
+            ax.fill(
+                [x, x - 0.8 * h, x + 0.8 * h], [y, y - 1.3 * h, y - 1.3 * h],
+                facecolor="white", edgecolor="black", linewidth=0.7, zorder=2,
+            )  # fmt: skip
+            ground = y - 1.3 * h
+        elif name in own or (support == "free" and "base" in own and name in held):
+            ax.plot(x, y, linestyle="none", marker="s", markersize=7.0, markerfacecolor="white",
+                    markeredgecolor="black", markeredgewidth=0.6, zorder=2)  # fmt: skip
+            continue
+        elif support == "free":
+            continue
+        if support == "roller":
+            ax.plot([x - 1.2 * h, x + 1.2 * h], 2 * [ground - 0.45 * h], **_SUPPORT)
+            continue
+        ax.plot([x - 1.2 * h, x + 1.2 * h], [ground, ground], **_SUPPORT)
+        for at in np.linspace(-0.9, 1.2, 4) * h:
+            ax.plot([x + at, x + at - 0.6 * h], [ground, ground - 0.7 * h], **_SUPPORT)
+
+
+def _write_names(ax: Axes, structure: Frame, size: float) -> None:
+    for member in _members(structure):
+        at = _start(structure, member) + 0.5 * member.length * member.axis
+        upright = abs(member.axis[1]) > abs(member.axis[0])
+        side = np.array([-1.0, 0.0]) if upright else np.array([0.0, 1.0])
+        ax.annotate(
+            member.name,
+            tuple(at + 0.012 * size * side),
+            ha="center",
+            va="center" if upright else "bottom",
+            rotation=90.0 if upright else 0.0,
+            fontsize=6.5,
+            color="0.35",
+            xytext=(-3.0, 0.0) if upright else (0.0, 0.0),
+            textcoords="offset points",
+        )
+
+
+def _forces(result: FrameResult, i: int, member: _Member, force: str, row: int) -> Array:
+    """Return a force along a member: moments positive with tension on the side of `normal`."""
+    if force == "axial":
+        return np.repeat(result.member_axial[row, i], 2)
+    s = np.linspace(0, 1, 21)
+    along = abs(member.axis[0]) * member.axis[0]
+    load = result.frame.load_of(member.name) * along * member.length**2
+    start, end = result.moment_from[row, i], result.moment_to[row, i]
+    return np.asarray(start * (1 - s) - end * s + 0.5 * load * s * (1 - s))
+
+
+def _write_largest(
+    ax: Axes, structure: Frame, members: list[_Member], values: list[Array], upright: bool
+) -> None:
+    """Write the largest value among the columns, or the beams, beside it."""
+    own = [
+        i
+        for i, member in enumerate(members)
+        if (abs(member.axis[1]) > abs(member.axis[0])) == upright and np.any(values[i])
+    ]
+    if not own:
+        return
+    i = max(own, key=lambda i: float(np.abs(values[i]).max()))
+    at = int(np.abs(values[i]).argmax())
+    share = at / (values[i].size - 1)
+    member, value = members[i], float(values[i][at])
+    reach = 0.22 * float(np.median([one.length for one in members]))
+    largest = max(float(np.abs(one).max()) for one in values)
+    place = _start(structure, member) + share * member.length * member.axis
+    tip = place + reach * value / largest * member.normal
+    outward = np.sign(value) * member.normal
+    axial = values[i].size == 2
+    # Above and below a beam towards its middle, away from the column.
+    side = "left" if (outward[0] > 0.5 if upright else share <= 0.5) else "right"
+    ax.annotate(
+        f"{abs(1e-3 * value):.0f}{', tension' if axial and value < 0 else ''}",
+        tuple(tip),
+        xytext=4.0 * outward,
+        textcoords="offset points",
+        ha=side,
+        va="bottom" if outward[1] > 0.5 else "top" if outward[1] < -0.5 else "center",
+        fontsize=7.0,
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
+        zorder=6,
+    )
+
+
+def _heading(result: FrameResult, row: int, what: str) -> str:
+    drift = 100 * result.displacement[row] / result.frame.height
+    when = f"{result.time[row]:.4g} s, " if result.dynamic else ""
+    return f"{what}, {when}roof drift {drift:.2f} %"
+
+
+def _dress(ax: Axes, structure: Frame) -> None:
+    """Equal scales, ticks at the lines of columns and at the floors, no box."""
+    parts = structure.parts
+    for places, put in ((parts.x, ax.set_xticks), (parts.y, ax.set_yticks)):
+        ticks = np.unique(np.round(places, 6))
+        if ticks.size <= 15:
+            put(ticks, [f"{tick:.4g}" for tick in ticks])
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.margins(0.04)
+    for side in ("top", "right", "left", "bottom"):
+        ax.spines[side].set_visible(False)
+    ax.tick_params(length=0.0)
+    ax.set(xlabel="Distance (m)", ylabel="Height (m)")
