@@ -39,10 +39,8 @@ print("shares of the mass:", "  ".join(f"{share:.2f}" for share in modes.partici
 push = rbsdem.pushover(frame, drift=0.03)
 print(f"\nbase shear at the end {push.base_shear[-1] / 1e3:.0f} kN; hinges in their order:")
 for event in push.events:
-    print(
-        f"{event.member} {event.end:5s} {event.what:6s} at a roof drift of {100 * event.drift:.2f} %,"
-        f" {event.force / 1e3:.0f} kN"
-    )
+    where = f"{event.member} {event.end:5s} {event.what}"
+    print(f"{where} at a roof drift of {100 * event.drift:.2f} %, {event.force / 1e3:.0f} kN")
 
 # One record, half as strong again.
 motion = rbsdem.motions.synthetic(1)[0].scaled(1.5)
