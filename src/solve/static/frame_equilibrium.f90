@@ -16,6 +16,10 @@ module rbs_solve_static_frame_equilibrium
    !> A way, or a rotation, per way of the top that no stable part of a frame has [-, 1/m].
    real(wp), parameter :: without_end = 1.0e8_wp
 
+   !> Share of the height, or rotation, that no correction of round-off comes to unless a
+   !> part is free to move.
+   real(wp), parameter :: no_more = 1.0_wp
+
    type, extends(equilibrium_type) :: frame_equilibrium
       !> Whether the dead load grows with the force, from 0 to 1, in place of the lateral one
       logical :: loads = .false.
@@ -97,7 +101,7 @@ contains
             if (.not. found) return
             call self%matrix%solve_bordered(self%right(:, 2:), [missing], self%change(:, 2:), y(2:), settled)
             ! Of a mechanism what corrects round-off is round-off itself; more than that is found by the row.
-            if (.not. settled) then
+            if (.not. settled .or. maxval(abs(self%change(:, 2))) > no_more*frame%total_height) then
                self%change(:, 2) = 0.0_wp
                y(2) = 0.0_wp
             end if
