@@ -281,7 +281,7 @@ def test_springs_from_the_ground_and_members_by_name():
 
 
 def test_a_node_between_plastic_hinges_does_not_turn_away():
-    """Hinges without hardening on all sides of a node leave its rotation free: it stays where it is."""
+    """Hinges without hardening on all sides of a node leave its rotation free: it stays."""
     kind = FrameMember(E, A, INERTIA, yield_moment=250e3)
     push = rbsdem.pushover(Frame.grid([3.2, 3.2], [6], columns=kind, beams=kind), drift=0.02)
     assert np.abs(push.turn).max() < 0.1
