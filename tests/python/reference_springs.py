@@ -136,8 +136,6 @@ class Takeda:
         self.k_r: dict[int, float] = {}  # no entry: never unloaded from that backbone
         self.stack: list[InnerPeak] = []
 
-    # ---- what a test may ask ------------------------------------------------------------------
-
     @property
     def tangent(self) -> float:
         """Stiffness of the present branch."""
@@ -152,8 +150,6 @@ class Takeda:
         """Forces along a path that starts at zero in the virgin state."""
         self.start()
         return [self.move(float(d)) for d in deformations]
-
-    # ---- a move: turn if needed, then from end to end ------------------------------------------
 
     def move(self, d: float) -> float:
         """Move to ``d`` and return the force there."""
@@ -231,8 +227,6 @@ class Takeda:
         else:
             self._reach_target()
 
-    # ---- the backbone ---------------------------------------------------------------------------
-
     def _enter_backbone(self, side: int) -> None:
         """C up to and P from the yield point; the yield point itself belongs to P."""
         self.stack.clear()
@@ -293,8 +287,6 @@ class Takeda:
         to_yield = (side * self.f_y - self.f) / (side * self.d_y - self.d)
         if to_yield > to_peak:
             self.um[side] = Point(side * self.d_y, side * self.f_y)
-
-    # ---- reloading and inner unloading ----------------------------------------------------------
 
     def _latest_target(self, side: int) -> Point | InnerPeak:
         """Rule 4: the latest inner peak of ``side`` in the stack, else its backbone peak."""

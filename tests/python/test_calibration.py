@@ -51,9 +51,6 @@ def quiet(*args, **options) -> rbsdem.calibration.Calibration:
         return rbsdem.calibrate(*args, **options)
 
 
-# ---- the error is that of the comparison ---------------------------------------------------------
-
-
 @pytest.mark.parametrize("reached", [1.0, 0.6, 0.02])
 def test_error_is_the_nrmse_of_compare(reached):
     random = np.random.default_rng(3)
@@ -78,9 +75,6 @@ def test_half_cycles_of_a_protocol():
     assert turns == pytest.approx([0.01, -0.01, 0.01, -0.01, 0.02, -0.02, 0.02, -0.02])
     # Small turns do not count.
     assert np.all(half_cycle_numbers(np.array([0, 1, 0.99, 2, 1.97, 3.0])) == 0)
-
-
-# ---- known numbers come back ---------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("seed", [0, 1])
@@ -138,9 +132,6 @@ def test_balanced_loss_gives_better_ratios():
 
     assert off(balanced.after) < off(plain.after)
     assert balanced.nrmse > plain.nrmse
-
-
-# ---- closed forms: two elastic springs in series -------------------------------------------------
 
 
 def lateral(shear: float, flexure: float, height: float) -> float:
@@ -222,9 +213,6 @@ def _elastic_best(one: Misfit, number: Parameter) -> float:
     return min(max(1 / (1 / stiffness - 2.0**2 / 8e7), number.low), number.high)
 
 
-# ---- what a test cannot tell ---------------------------------------------------------------------
-
-
 def test_number_beyond_the_test_is_refused():
     start = COLUMNS["zahn_7"]
     small = path(start, [2e-4, 4e-4])
@@ -254,9 +242,6 @@ def test_bound_is_told():
         fit = rbsdem.calibrate(ELASTIC, test, ["shear.k"], {"shear.k": (2e7, 5e7)})
     assert fit.parameters[0].at_bound == "high"
     assert fit.values["shear.k"] == pytest.approx(5e7, rel=1e-3)
-
-
-# ---- names and bounds ----------------------------------------------------------------------------
 
 
 def joints(*d_y: float) -> Column:
@@ -403,9 +388,6 @@ def test_paths_that_break_off_count_as_errors_of_the_peak(monkeypatch):
     assert force == pytest.approx(test[1][: force.size])
 
 
-# ---- limits of the search ------------------------------------------------------------------------
-
-
 def test_differences_look_the_other_way_where_a_column_is_refused():
     def build(values):
         if values["shear.k"] > 3.01e7:
@@ -444,8 +426,6 @@ def test_warnings_of_columns_on_the_way_are_not_shown(recwarn):
     assert not recwarn.list
 
 
-# ---- wrong input ---------------------------------------------------------------------------------
-
 D, F = response(COLUMNS["zahn_7"], path(COLUMNS["zahn_7"]))
 
 
@@ -455,9 +435,6 @@ def test_zero_start_with_bounds():
     fit = quiet(zero, test, ["flexure.k_u"], {"flexure.k_u": (0, 5e7)})
     assert fit.values["flexure.k_u"] == pytest.approx(COLUMNS["zahn_7"].flexure.k_u, rel=1e-3)
     assert fit.parameters[0].unit == "N m/rad"
-
-
-# ---- report, table, figure -----------------------------------------------------------------------
 
 
 def test_report():
@@ -482,9 +459,6 @@ def test_progress_on_stderr(capsys, monkeypatch):
     printed = capsys.readouterr()
     assert printed.out == ""
     assert "analyses" in printed.err
-
-
-# ---- measured tests ------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("key", KEYS)

@@ -37,9 +37,6 @@ def random_column(rng: np.random.Generator, n: int, **options) -> rbsdem.Column:
     )
 
 
-# ---- matrices and modes --------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("n", [1, 2, 7, 20])
 def test_mass_matrix_in_both_forms_is_that_of_the_kinematics(n):
     """theta of the paper is the cumulative sum of phi."""
@@ -120,9 +117,6 @@ def test_extreme_but_valid_columns():
         np.testing.assert_allclose(rbsdem.modes(column).omega ** 2, expected, rtol=1e-12)
 
 
-# ---- stable step ---------------------------------------------------------------------------------
-
-
 def boundary(eigenvalues: np.ndarray) -> float:
     """First step of RK4 at which a mode grows, by scanning and halving."""
 
@@ -198,9 +192,6 @@ def test_stable_step_is_safe_for_springs_that_yield(n, ratio):
         assert step <= boundary_of(linear, softening) * (1 + 1e-6)
 
 
-# ---- critical load -------------------------------------------------------------------------------
-
-
 @pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
 @pytest.mark.parametrize(
     ("n", "k_v", "share"),
@@ -250,9 +241,6 @@ def test_weight_does_nothing_without_second_order_work():
     massless = rbsdem.Column(2.0, 5e4, *springs, self_weight=True, gravity=0.0, kinematics="pdelta")
     light = rbsdem.Column(2.0, 5e4, *springs)
     assert np.array_equal(rbsdem.modes(massless).omega, rbsdem.modes(light).omega)
-
-
-# ---- damping -------------------------------------------------------------------------------------
 
 
 def test_rayleigh_damping_has_its_ratio_at_both_frequencies():

@@ -80,9 +80,6 @@ def good(run_cli, folder) -> bytes:
     return rows
 
 
-# ---- arguments and what is printed ---------------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -238,8 +235,6 @@ def test_modes_and_matrices_equal_those_of_python_to_the_last_digit(run_cli, cas
         )
 
 
-# ---- the case file as text -----------------------------------------------------------------------
-
 LAYOUTS = {
     "windows": lambda t: t.replace("\n", "\r\n"),
     "old mac": lambda t: t.replace("\n", "\r"),
@@ -285,9 +280,6 @@ def test_quote_within_a_text_is_doubled_or_of_the_other_kind(run_cli, case_text,
         assert (tmp_path / "case.csv").read_text("utf-8").splitlines()[1] == "# case: it's /&= 1"
 
 
-# ---- which rows are kept -------------------------------------------------------------------------
-
-
 def rows_of(run_cli, read_csv, folder: Path, text: str) -> dict[str, np.ndarray]:
     write(folder, text)
     quick(run_cli, folder, "run", "case.nml")
@@ -329,9 +321,6 @@ def test_times_that_are_equal_but_for_round_off_make_no_extra_rows(
     ]  # fmt: skip
     rows = rows_of(run_cli, read_csv, tmp_path, dynamic_text(loading=loading))
     np.testing.assert_allclose(rows["time_s"], [float(t) for t in times], rtol=1e-12)
-
-
-# ---- where input and output are ------------------------------------------------------------------
 
 
 def test_relative_history_is_looked_up_beside_the_case(run_cli, case_text, tmp_path, read_csv):
@@ -536,9 +525,6 @@ def test_closed_standard_streams_do_no_harm_to_the_csv(run_cli, folder, good, cl
         assert (folder / "case.csv").read_bytes() == good
 
 
-# ---- limits, pipes -------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("points", [20, 20_000])
 def test_limit_of_file_sizes_is_told_and_the_old_output_stays(run_cli, case_text, folder, points):
     """Few rows fail when the file is closed, many on the way; as on a full disk."""
@@ -701,8 +687,6 @@ def test_reader_that_leaves_ends_the_program_quietly(executable, folder, restore
     assert process.communicate(timeout=PATIENCE)[1] == b""
     assert process.returncode == -signal.SIGPIPE
 
-
-# ---- long runs -----------------------------------------------------------------------------------
 
 ROWS = 4000
 

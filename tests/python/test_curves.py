@@ -65,9 +65,6 @@ def curves() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return d, elastoplastic(d, 3e7, 2e5) + noise, elastoplastic(d, 4e7, 2.4e5)
 
 
-# ---- one curve -----------------------------------------------------------------------------------
-
-
 def test_energy_is_the_area():
     d, f = rectangle(turns=3)
     assert comparison.energy(d, f) == 3 * 4.0 * 10.0
@@ -119,9 +116,6 @@ def test_resampling_is_even_along_the_path():
     # Of rows without a step only the first counts.
     _, f = comparison.resample([0.0, 1.0, 1.0, 2.0], [0.0, 1.0, 9.0, 2.0], n=5)
     np.testing.assert_allclose(f, [0.0, 0.5, 1.0, 1.5, 2.0], atol=1e-14)
-
-
-# ---- half-cycles ---------------------------------------------------------------------------------
 
 
 def test_turning_points_of_a_zigzag():
@@ -183,9 +177,6 @@ def test_test_and_model_share_their_tips(curves):
     assert half.row.max() < 200
 
 
-# ---- strength loss -------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     ("d", "f", "lost"),
     [
@@ -223,9 +214,6 @@ def test_drift_at_loss_of_test_and_model():
     assert c.test_drift_at_loss == pytest.approx(0.009)
     assert math.isnan(c.model_drift_at_loss)
     assert "0.0090, none" in str(c)
-
-
-# ---- scores --------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("factor", [1.0, 0.5, 2.0, -1.0])
@@ -316,9 +304,6 @@ def test_displacement_metrics_of_a_softer_model():
     assert astuple(same.test) == astuple(same.model)
 
 
-# ---- what belongs together -----------------------------------------------------------------------
-
-
 def column(**more) -> rbsdem.Column:
     return rbsdem.Column(1.6, 614.0, SHEAR, FLEXURE, **more)
 
@@ -359,8 +344,6 @@ def test_rows_that_do_not_belong_together_are_refused(curves, changed, words):
     with pytest.raises(InputError, match=words):
         rbsdem.compare(result, (d, f))
 
-
-# ---- envelopes -----------------------------------------------------------------------------------
 
 # A worked envelope: (0, 0) (5, 100) (10, 160) (20, 200) (40, 210) (60, 190), mm and kN.
 WORKED = Envelope(

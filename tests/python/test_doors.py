@@ -119,9 +119,6 @@ def both(run_cli, read_csv, folder: Path, case: Case) -> rbsdem.Result:
     return result
 
 
-# ---- random cases through both doors -------------------------------------------------------------
-
-
 @pytest.mark.parametrize("seed", range(10))
 def test_columns_come_back_from_text(tmp_path, seed):
     rng = np.random.default_rng(seed)
@@ -244,9 +241,6 @@ def test_random_cases_are_of_all_kinds():
         assert any(getattr(one, name) for one in damping), name
 
 
-# ---- drawings ------------------------------------------------------------------------------------
-
-
 def drawn_steel(rng: Rng) -> rbsdem.Steel:
     fy = near(rng, 4e8)
     return (
@@ -366,9 +360,6 @@ def test_a_case_under_another_load_keeps_its_springs(tmp_path):
         case = read_back(tmp_path, text.replace("axial_load = 744000", "axial_load = 700000", 1))
     assert type(case.column) is rbsdem.Column
     assert case.column.joints("shear") == read_back(tmp_path, text).column.joints("shear")
-
-
-# ---- cases that are written by hand --------------------------------------------------------------
 
 
 def test_case_is_that_of_its_keywords(case_text, tmp_path):

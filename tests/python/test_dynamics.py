@@ -56,9 +56,6 @@ def random_loads(seed: int, points: int) -> np.ndarray:
     return rng.uniform(-1, 1, (points, 2)) * [5e4, 8.0]
 
 
-# ---- balance laws --------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("kinematics", ["small", "pdelta"])
 @pytest.mark.parametrize(
     ("damping", "order"),
@@ -89,9 +86,6 @@ def test_energy_residual_falls_with_its_order(kinematics, damping, order):
         residuals.append(np.max(np.abs(energy["residual"])) / scale)
     assert residuals[0] < 1e-5
     assert np.all(np.abs(orders(residuals) - order) < 0.1), orders(residuals)
-
-
-# ---- nonlinear -----------------------------------------------------------------------------------
 
 
 def bilinear_reference(column, velocity, times):
@@ -169,9 +163,6 @@ def test_bilinear_column_converges_to_the_solution_with_located_events():
     assert slope > 1.8, (slope, residuals)
 
 
-# ---- steps and rows ------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("ratio", [0.02, 0.5, 0.75, 1.0, 2.0])
 def test_step_just_below_the_limit_stays_bounded_when_springs_yield(ratio):
     """Stiffness damping stays when a spring yields, `ratio` is that of the highest mode."""
@@ -240,9 +231,6 @@ def test_no_load_no_motion():
     assert run.summary["relative_energy_residual"] == 0.0
 
 
-# ---- initial state -------------------------------------------------------------------------------
-
-
 def test_initial_state_is_the_first_row():
     column = rbsdem.Column(HEIGHT, MASS, SHEAR, FLEXURE, n=2)
     slip, rotation = [3e-4, -5e-4], [4e-3, -1e-3]
@@ -276,9 +264,6 @@ def test_initial_velocity_is_kinetic_energy():
     assert one.rotation[0, 0] == 0.01
 
 
-# ---- bad input -----------------------------------------------------------------------------------
-
-
 def test_motion_that_loses_all_bounds_keeps_its_rows():
     """P-Delta beyond the stiffness after yield: the motion grows without end."""
     column = rbsdem.Column(
@@ -298,9 +283,6 @@ def test_motion_that_loses_all_bounds_keeps_its_rows():
     growth = np.sqrt(-np.min(squares))
     rates = np.diff(np.log(np.abs(kept.rotation[-20:, 0]))) / np.diff(kept.time[-20:])
     np.testing.assert_allclose(rates, growth, rtol=1e-4)
-
-
-# ---- the door to Fortran -------------------------------------------------------------------------
 
 
 def has_a_turn_meanwhile(run) -> bool:

@@ -142,8 +142,6 @@ def test_a_result_knows_how_it_was_called():
     assert pickle.loads(pickle.dumps(run)) == run
 
 
-# ---- long runs -----------------------------------------------------------------------------------
-
 LONG = """
 &column height = 1.6, mass = 1e-6, rotary_inertia = 1e-6, top_mass = 75e3, gravity = 0 /
 &shear rule = 'bilinear', k = 7.0387e8, d_y = 1.296e-4, k_post = 8.3185e6 /

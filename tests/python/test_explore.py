@@ -86,9 +86,6 @@ def post(send):
     return ask
 
 
-# ---- who is answered ----------------------------------------------------------------------------
-
-
 def test_the_page_and_its_parts(send):
     status, heads, raw = send("GET", "")
     assert status == 200
@@ -172,9 +169,6 @@ def test_the_newest_of_a_tab_wins(server, send):
 def test_a_port_that_is_taken(server, capsys):
     assert main(["explore", "--no-browser", "--port", str(server.port)]) == 2
     assert f"--port {server.port}: cannot be opened" in capsys.readouterr().err
-
-
-# ---- what is answered ---------------------------------------------------------------------------
 
 
 def test_loops_are_those_of_the_functions(post):
@@ -319,9 +313,6 @@ def test_other_shapes(post, shape):
     assert max(answer["force"]) > 50e3
 
 
-# ---- earthquakes --------------------------------------------------------------------------------
-
-
 def test_records_are_texts_and_scales_follow(post):
     motion = rbsdem.motions.synthetic(1)[0]
     text = "time_s,acceleration_m/s2\n" + "".join(
@@ -356,9 +347,6 @@ def test_long_responses_keep_their_extremes():
     assert rows[0] == 0
     assert rows[-1] == t.size - 1
     assert (d[rows].max(), f[rows].min()) == (d.max(), f.min())
-
-
-# ---- files --------------------------------------------------------------------------------------
 
 
 def test_a_namelist_comes_back_and_runs(post, tmp_path, run_cli):
@@ -435,9 +423,6 @@ def test_csv_is_that_of_the_program(post, tmp_path):
     assert "force_N" in rows[0]
     wrong = post("export", state=state(bars_number=11), form="csv")
     assert wrong["faults"][0]["field"] == "bars.number"
-
-
-# ---- reports and the page's files ---------------------------------------------------------------
 
 
 def test_a_report_of_a_file_knows_the_limit_states(post):

@@ -89,8 +89,6 @@ def decades(n: int, seed: int) -> rbsdem.Column:
     return chain(rng.uniform(0.5, 1.5, n), np.ones(n), *10 ** rng.uniform(0, 18, (2, n)))
 
 
-# ---- ratios and axial loads ----------------------------------------------------------------------
-
 STATIC = [(loaded(n, ratio), 1e-13) for n in (1, 2, 5, 12) for ratio in (1e-9, 1e-3, 1e3, 1e9)]
 STATIC += [(loaded(n, ratio, 0.5), 1e-12) for n in (2, 12) for ratio in (1e-9, 1.0, 1e9)]
 STATIC += [(decades(n, seed), 1e-13) for n in (2, 5, 12) for seed in range(5)]
@@ -182,8 +180,6 @@ def test_motion_in_the_lowest_mode(column, periods):
     assert energy < 1e-6 or column.axial_load
 
 
-# ---- number of bodies ----------------------------------------------------------------------------
-
 HEIGHT, BENDING, SHEAR = 2.0, 1.2e7, 2.5e8
 
 
@@ -233,9 +229,6 @@ def test_implicit_run_stays_in_equilibrium(n):
         )  # fmt: skip
         moved = np.max(np.abs(run.displacement - static.displacement[0]))
         assert moved < 1e-9 * abs(static.displacement[0]), method
-
-
-# ---- beyond the critical load --------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("share", [1.001, 2.0])

@@ -93,9 +93,6 @@ def test_numbers_at_the_edge_of_meaning_run():
             assert np.max(np.abs(run.rotation)) < 0.1
 
 
-# ---- threads -------------------------------------------------------------------------------------
-
-
 def jobs():
     """Every analysis and method, each with springs that remember."""
     shear = Bilinear(7.0387e8, 1.2960e-4, 8.3185e6)

@@ -29,9 +29,6 @@ def test_top_that_is_driven_farther_than_the_column_is_long_slides_at_the_foot(n
     np.testing.assert_allclose(run.top[:, 0], run.displacement, atol=1e-9)
 
 
-# ---- full turns ----------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("opens", [False, True], ids=["closed", "opening"])
 @pytest.mark.parametrize("n", [1, 2])
 def test_full_turns_against_hamiltons_equations(n, opens):
@@ -55,9 +52,6 @@ def test_full_turns_against_hamiltons_equations(n, opens):
         run = rbsdem.time_history(column, times, method=method, initial=initial, **options)
         assert np.max(np.abs(np.cumsum(run.rotation, axis=1))) > 2 * np.pi
         np.testing.assert_allclose(deformations(run), expected, atol=2e-5)
-
-
-# ---- where small rotations end -------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("level", ["small", "pdelta"])
@@ -85,9 +79,6 @@ def test_small_rotations_warn_above_a_tenth(level, turn):
             assert f"kinematics = '{level}'" in str(caught[0].message)
             told = "has no meaning" if turn > 1 else "errs by about"
             assert told in str(caught[0].message)
-
-
-# ---- contact -------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("stiffness", [1e6, 1e9])

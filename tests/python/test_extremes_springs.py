@@ -128,9 +128,6 @@ def test_denormal_deformations_are_moves_like_others(spring, value):
     )
 
 
-# ---- columns -------------------------------------------------------------------------------------
-
-
 @pytest.mark.filterwarnings("ignore:the (rotation of a body|top) goes beyond")
 @pytest.mark.parametrize("n", [1, 3])
 def test_column_from_1e_12_to_1e6_times_yield_has_its_springs_on_their_paths(n):

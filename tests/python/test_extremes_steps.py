@@ -49,9 +49,6 @@ def total_energy(run: rbsdem.Result) -> np.ndarray:
     return run.energy["kinetic"] + 0.5 * deformations(run) ** 2 @ k
 
 
-# ---- the limit of RK4 ----------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("share", [0.5, 0.99])
 @pytest.mark.parametrize(("n", "steps"), [(1, 100_000), (10, 20_000), (100, 2_000)])
 def test_below_the_limit_the_energy_falls_as_it_must(n, steps, share):
@@ -104,8 +101,6 @@ def test_average_acceleration_keeps_the_energy_at_any_step(n, steps, share):
     # Beyond 1e3 times the limit round-off shows: inertia is 1e-12 of the forces and less.
     assert np.max(np.abs(energy / energy[0] - 1)) < (1e-9 if share <= 1e3 else 1e-7)
 
-
-# ---- damping -------------------------------------------------------------------------------------
 
 DAMPING_LIMIT = 2.785293563405282  # real root of R(-x) = 1
 
@@ -168,9 +163,6 @@ def test_tangent_damping_of_a_perfectly_plastic_spring_vanishes(method):
     )
     expected = 0.6 * times - 0.5 * (1e6 * 1e-6 / 100.0) * times**2
     np.testing.assert_allclose(run.slip[:, 0], expected, atol=1e-4)
-
-
-# ---- without mass or inertia ---------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("lightness", [1e-6, 1e-12, 1e-30])

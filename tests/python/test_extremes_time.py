@@ -29,9 +29,6 @@ YIELDING = rbsdem.Column(
 )  # fmt: skip
 
 
-# ---- far from time zero --------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("begin", [2.0**20, 2.0**30, 2.0**40, -(2.0**30)])
 @pytest.mark.parametrize("method", METHODS)
 def test_clock_far_from_zero_changes_nothing(method, begin):
@@ -69,9 +66,6 @@ def test_clock_far_from_zero_with_loads(options):
     assert far.summary["steps"] < 1.5 * near.summary["steps"]
 
 
-# ---- memory --------------------------------------------------------------------------------------
-
-
 def resident() -> int:
     """Return the memory of this process in bytes."""
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
@@ -90,9 +84,6 @@ def test_memory_does_not_grow_from_run_to_run(method):
             initial={"slip_velocity": [1.0], "rotation_velocity": [0.3]},
         )  # fmt: skip
     assert resident() - begin < 2e6
-
-
-# ---- odd spacing, gaps, jumps --------------------------------------------------------------------
 
 
 @cache

@@ -26,9 +26,6 @@ def drawn(n: int, theta: float, beta: float, seed: int = 7) -> np.ndarray:
     return theta * np.exp(beta * np.random.default_rng(seed).standard_normal(n))
 
 
-# ---- fits ----------------------------------------------------------------------------------------
-
-
 def test_known_capacities_have_the_moments_of_their_logarithms():
     """Baker 2015, eqs 1 and 2; variances of a normal sample: beta^2/n and beta^2/(2 (n - 1))."""
     values = drawn(25, 3.0, 0.4)
@@ -220,9 +217,6 @@ def test_band_holds_the_curve():
 FOUND = Fragility("x", 3.0, 0.4, np.eye(2), Capacities(drawn(9, 3, 0.4), drawn(9, 3, 0.4)))
 
 
-# ---- hazard --------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("k", [0.5, 2.0, 3.5])
 def test_frequency_under_a_power_law(k):
     """Cornell et al. 2002: lambda(theta) exp(k^2 beta^2/2)."""
@@ -269,9 +263,6 @@ def test_a_hazard_that_ends_too_early_is_told():
         FOUND.mean_annual_frequency(hazard)
 
 
-# ---- regressions ---------------------------------------------------------------------------------
-
-
 def test_line_of_a_cloud():
     """Against scipy.stats.linregress: slope, intercept and their standard errors."""
     random = np.random.default_rng(3)
@@ -293,9 +284,6 @@ def test_logistic_curve_of_two_groups(low, high):
     found = fit_logistic(x, happened)
     wanted = [(k + 0.5) / (n + 1) for n, k in (low, high)]
     assert found.probability(np.array([0.5, 2.0])) == pytest.approx(wanted, rel=1e-8)
-
-
-# ---- uncertain columns ---------------------------------------------------------------------------
 
 
 def make(k: float, mass: float) -> Column:

@@ -65,9 +65,6 @@ def followed(frame, path, **more):
         return error.result
 
 
-# ---- closed forms --------------------------------------------------------------------------------
-
-
 def test_a_portal_yields_where_its_mechanism_does():
     """H h = 4 M_p of a portal whose beam is stronger; below it the stiffness method."""
     plastic, h, span = 2e5, 3.0, 6.0
@@ -145,9 +142,6 @@ def test_a_column_as_a_frame(rule):
     assert rows == len(path) or rule in ("peak_oriented", "pinching")
     size = np.abs(one.force).max()
     assert np.abs(other.force[:rows] - one.force[:rows]).max() < 1e-11 * size
-
-
-# ---- what holds for any frame --------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -230,9 +224,6 @@ def test_an_ensemble_takes_frames():
     assert runs.measures["first_yield"][0] == pytest.approx(min(yields), abs=2 * motion.dt)
     drifts = rbsdem.ida(frame, [motion], levels=[1.0, 2.0], method="newmark")
     assert len(drifts.runs) >= 2
-
-
-# ---- doors ---------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("seed", range(6))

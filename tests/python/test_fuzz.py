@@ -35,8 +35,6 @@ BAD_WORDS = re.compile(
     r"corrupt|Traceback|terminate called"
 )
 
-# ---- what is mutated -----------------------------------------------------------------------------
-
 SPRINGS = """&shear rule = 'bilinear', k = 7.0387e8, d_y = 1.296e-4, k_post = 8.3185e6 /
 &flexure rule = 'takeda', k_c = 2.5428e8, d_c = 3.1891e-4, k_y = 6.2937e7, d_y = 2.7183e-3,
          k_u = 7.5772e6, b0 = 0.4, b1 = 0.22, inner = 'kc' /
@@ -225,9 +223,6 @@ def mutants(bases: dict[str, str], seed: int) -> Iterable[tuple[int, str, bytes]
         yield i, name, text
 
 
-# ---- how it is judged ----------------------------------------------------------------------------
-
-
 def shows_progress(command: list[str | Path], cwd: Path, output: Path | None) -> bool:
     """Whether a long run shows on a terminal how far it is, or writes rows."""
     terminal, inner = pty.openpty()
@@ -314,9 +309,6 @@ def judge(jobs: Iterable, check: Callable[..., list[tuple[str, str]]]) -> None:
     with ThreadPoolExecutor(2) as pool:
         faults = [fault for found in pool.map(lambda job: check(*job), jobs) for fault in found]
     assert not faults, report(faults)
-
-
-# ---- the tests -----------------------------------------------------------------------------------
 
 
 @pytest.fixture

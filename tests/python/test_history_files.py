@@ -39,9 +39,6 @@ def through_executable(run_cli, case_text, tmp_path, read_csv):
     return read
 
 
-# ---- texts that hold the same --------------------------------------------------------------------
-
-
 def peer_text(name="Test", count="6", between="\t", tail="", end="\n", number="{}") -> str:
     """A file in the database's format; `tail` stands at the end of every line."""
     rows = (number.format(d) + between + number.format(f) for d, f in PAIRS)
@@ -221,9 +218,6 @@ def test_ground_motion_with_time_and_with_interval(run_cli, dynamic_text, tmp_pa
     assert np.max(np.abs(rows["displacement_m"])) > 1e-6
 
 
-# ---- paths, sizes --------------------------------------------------------------------------------
-
-
 def test_what_is_no_file_is_told_by_both_doors(run_cli, case_text, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("folder").mkdir()
@@ -291,9 +285,6 @@ def test_ten_thousand_random_numbers_to_the_last_bit(through_executable, tmp_pat
     chosen = [(word, word) for word, keep in zip(words, kept, strict=True) if keep]
     (tmp_path / "test.csv").write_text(csv_text("displacement,force", pairs=chosen))
     assert np.array_equal(through_executable("test.csv", "force"), values[kept])
-
-
-# ---- the database --------------------------------------------------------------------------------
 
 
 def numpy_reading(path: Path) -> tuple[np.ndarray, np.ndarray]:

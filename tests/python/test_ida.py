@@ -56,9 +56,6 @@ def softening() -> rbsdem.Column:
     )
 
 
-# ---- incremental dynamic analysis ----------------------------------------------------------------
-
-
 def test_an_elastic_column_collapses_at_the_same_intensity_under_all_records(hunted, omega):
     """Sa = w^2 Sd: at the limit d of the drift it is w^2 d h, whatever the record.
 
@@ -192,9 +189,6 @@ def test_a_hunt_goes_on_from_its_store(column, records, tmp_path, monkeypatch):
     assert np.array_equal(again.runs.measures["peak_drift"], first.runs.measures["peak_drift"])
 
 
-# ---- stripes -------------------------------------------------------------------------------------
-
-
 def test_stripes_of_an_elastic_column(column, records, omega):
     """All or none at each level: no spread is known, and the step lies between the levels."""
     limit = omega**2 * 0.03 * HEIGHT
@@ -230,9 +224,6 @@ def test_stripes_and_ida_tell_the_same_of_a_softening_column(records):
     found = rbsdem.fragility.stripes(softening(), records, levels, **settings)
     below = (hunted.collapse_intensity[0] < levels[:, None]).sum(axis=1)
     assert found.counts().failures.tolist() == below.tolist()
-
-
-# ---- clouds --------------------------------------------------------------------------------------
 
 
 def test_cloud_of_an_elastic_column(column, records, omega):
@@ -277,6 +268,3 @@ def test_cloud_counts_collapses(records):
     assert found.fragility("collapse").probability(x) == pytest.approx(collapse, rel=1e-12)
     low, high = curve.band(x, n=100)
     assert (low <= high).all()
-
-
-# ---- tables, files, figures ----------------------------------------------------------------------

@@ -97,9 +97,6 @@ def relation(cases: int, judged: float = 0.5) -> Callable[[Callable[[Rng], None]
     return make
 
 
-# ---- following and comparing ---------------------------------------------------------------------
-
-
 def follow(column: rbsdem.Column, loading: dict[str, Any], **more: Any) -> rbsdem.Result:
     """Follow a static path, or what there is of it."""
     return _ended(lambda: rbsdem.cyclic(column, **loading, **more))
@@ -144,9 +141,6 @@ def difference(name: str, one: np.ndarray, other: np.ndarray) -> str:
     return f"{name}: by {share.max():.1e} of {size:.3g} in row {row} of {len(one)}"
 
 
-# ---- springs -------------------------------------------------------------------------------------
-
-
 @relation(600, judged=0.9)
 def test_springs_alone(rng: Rng) -> None:
     """Waiting, a path cut short, other units, the other side: bits.
@@ -176,9 +170,6 @@ def test_springs_alone(rng: Rng) -> None:
     if rule not in ("compression", "concrete") and not getattr(one, "d_buckle", None):
         apart = np.abs(one.mirrored().response(-path) + force).max()
         assert apart <= (rule == "layered") * 1e-9 * largest, f"{rule}: mirror, {apart:.1e}"
-
-
-# ---- static paths --------------------------------------------------------------------------------
 
 
 def layered(column: rbsdem.Column) -> bool:
@@ -890,9 +881,6 @@ def test_double_curvature_is_two_cantilevers(rng: Rng) -> None:
     )
 
 
-# ---- motions -------------------------------------------------------------------------------------
-
-
 def motion_case(
     rng: Rng, *, settings: dict[str, Any] | None = None, **fixed: Any
 ) -> tuple[rbsdem.Column, dict[str, Any], dict[str, Any]]:
@@ -1181,9 +1169,6 @@ def test_methods_have_one_answer(rng: Rng) -> None:
     apart = error(move(column, loading, method=name, **fine))
     before = error(move(column, loading, method=name, **coarse))
     assert apart <= 2e-3 or apart < 0.4 * before, f"{name}: {before:.1e}, then {apart:.1e}"
-
-
-# ---- many runs -----------------------------------------------------------------------------------
 
 
 @relation(25, judged=0.3)

@@ -57,9 +57,6 @@ def agree(kind: type, keys: dict[str, Key], apart: set[str]) -> None:
         assert words(hints[name]) == set(keys[name].get("choices", ())), name
 
 
-# ---- Python ------------------------------------------------------------------------------------
-
-
 def test_every_rule_has_a_class():
     assert set(SPRINGS) == set(RULES)
 
@@ -132,9 +129,6 @@ def test_keywords_of_the_analyses_are_the_keys_of_their_groups():
 def test_drives_of_a_case_are_the_loads_of_python():
     drives = group("loading")["drive"]["choices"]
     assert set(drives) <= {field.name for field in fields(Case)}
-
-
-# ---- the executable, the documents ---------------------------------------------------------------
 
 
 def test_executable_prints_the_same_list(run_cli):
@@ -214,9 +208,6 @@ def test_tables_of_the_rules_name_every_key_and_default():
             else:
                 assert not any(known), row
         assert named == set(keys), title
-
-
-# ---- said once -----------------------------------------------------------------------------------
 
 
 def test_no_list_of_keys_stands_beside_the_keys():

@@ -118,9 +118,6 @@ def test_a_column_that_does_not_crack_is_elastic_above():
     assert all(isinstance(spring, Elastic) for spring in column.joints("flexure")[1:])
 
 
-# ---- from a section ------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("model", ["layered", "paper"])
 def test_a_section_makes_the_column_of_the_specimen(model):
     """What a section does not tell follows from it: restrained bars, mass."""
@@ -133,9 +130,6 @@ def test_a_section_makes_the_column_of_the_specimen(model):
     force = rbsdem.cyclic(column, displacement=LOOP).force
     expected = rbsdem.cyclic(drawn, displacement=LOOP).force
     assert force == pytest.approx(expected, rel=1e-9, abs=1e-9 * np.max(np.abs(expected)))
-
-
-# ---- versions of the parameters ------------------------------------------------------------------
 
 
 def test_parameters_of_another_fit_name_themselves():
@@ -189,8 +183,6 @@ def test_directions_are_factors_to_exponents():
     other = replace(column, shear=column.shear[1])
     assert "direction_1" not in other.parameters
 
-
-# ---- what a change of parameters keeps -----------------------------------------------------------
 
 LAYERED = rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6)
 KEPT = {
@@ -255,8 +247,6 @@ def test_a_layered_column_comes_back_from_pickle_and_copy():
         assert again == LAYERED
         assert again.with_parameters(wear=0.1) == LAYERED.with_parameters(wear=0.1)
 
-
-# ---- bounds end where the model does -------------------------------------------------------------
 
 STOCKY = rbsdem.section.column(SECTION, 0.7, axial_load=3.5e6)
 

@@ -67,8 +67,6 @@ def update(section: str, told: list[tuple[str, list[str]]]) -> None:
     FILE.write_text(head + mark + "\n".join(lines) + "\n" + "".join(tail), "utf-8")
 
 
-# ---- what is wrong, and where --------------------------------------------------------------------
-
 TAKEDA = springs.Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
 COLUMN = rbsdem.Column(1.6, 614.4, springs.Bilinear(7.0387e8, 1.296e-4, 8.3185e6), TAKEDA)
 STEEL = rbsdem.Steel(446e6)
@@ -157,9 +155,6 @@ def changes(given: str) -> dict[str, Any]:
 def plain(text: str) -> bytes:
     """Bytes of a file; \\n, \\t and the like stand for themselves."""
     return b"" if text == "(empty)" else text.encode().decode("unicode_escape").encode("latin-1")
-
-
-# ---- doors ---------------------------------------------------------------------------------------
 
 
 @pytest.fixture
@@ -347,8 +342,6 @@ for i in range(20):
     )
     assert done.stderr.count("AccuracyWarning") == 1
 
-
-# ---- every key of every group and rule -----------------------------------------------------------
 
 KEYS = _core.keys()
 SPRING_PAIR = {"shear": Elastic(1e8), "flexure": Elastic(1e8)}

@@ -41,9 +41,6 @@ def close(a, b, rel: float = 1e-13) -> bool:
     return bool(np.max(np.abs(np.asarray(a) - b)) <= rel * np.max(np.abs(b)))
 
 
-# ---- the mass matrix, from first principles and as printed ---------------------------------------
-
-
 def mass_of_virtual_work() -> np.ndarray:
     """Rows: moment and shear equilibrium of everything above a joint; columns (u, theta).
 
@@ -180,9 +177,6 @@ def test_e2_and_e3_printed_together_are_not_eqs_1_and_2():
     assert close(rbsdem.matrices(chain(), form="paper").mass, mass_of_eqs_1_and_2())
 
 
-# ---- E1 ------------------------------------------------------------------------------------------
-
-
 def test_e1_eq_3_has_second_derivatives():
     """A released column swings: it passes zero and comes back. Eq 3 as printed only creeps to zero.
 
@@ -212,9 +206,6 @@ def test_e1_eq_3_has_second_derivatives():
     )
     mode = np.hstack([run.slip, run.rotation]) @ mass @ shape
     assert np.max(np.abs(mode - np.cos(2 * np.pi * times / period))) < 1e-6
-
-
-# ---- E4 ------------------------------------------------------------------------------------------
 
 
 def square_frequencies(mass, length, k_v, k_m, power) -> np.ndarray:
@@ -254,9 +245,6 @@ def test_e4_rotary_inertia_is_that_of_a_slender_rod():
     assert abs(printed / about_the_joint - 1) > 0.1
 
 
-# ---- E5 ------------------------------------------------------------------------------------------
-
-
 def eq_6(factor: float) -> np.ndarray:
     """Both roots of eq 6 with the factor in front."""
     kappa = HEIGHT**2 * K_V / (3 * K_M)
@@ -280,8 +268,6 @@ def test_e5_eq_6_has_the_rotary_inertia_below():
     np.testing.assert_allclose(modes.omega**2, corrected, rtol=1e-12)
     np.testing.assert_allclose(modes.frequency, [95.585, 395.070], atol=5e-4)
 
-
-# ---- E6 ------------------------------------------------------------------------------------------
 
 E6_K_V, E6_K_M = 7e3, 2.5e3
 
@@ -357,9 +343,6 @@ def test_e6_eq_4_has_no_further_term_in_row_2():
     assert np.max(np.abs(np.ravel(run.rotation) - printed[:, 1])) > 0.05
 
 
-# ---- E7 ------------------------------------------------------------------------------------------
-
-
 def test_e7_moment_spring_sees_the_relative_rotation():
     """All bodies turned about the ground by 0.01: only joint 1 is deformed."""
     angle, k = 0.01, 2.0e6
@@ -387,9 +370,6 @@ def test_e7_stiff_upper_joints_make_one_body_of_the_column():
     printed = np.sum(LENGTHS * (force * above / stiffness))
     assert printed == pytest.approx(force * height * LENGTHS[0] / k, rel=1e-9)
     assert top == pytest.approx(force * height**2 / k, rel=1e-9)
-
-
-# ---- E8 ------------------------------------------------------------------------------------------
 
 
 def top_height(q: np.ndarray) -> float:

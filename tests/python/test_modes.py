@@ -88,9 +88,6 @@ def critical_load(build, sign=1.0) -> float:
     return float(found.group(1))
 
 
-# ---- all digits at the extremes ------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("ratio", [1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9])
 @pytest.mark.parametrize("n", [1, 2, 3, 5, 10])
 def test_frequencies_for_stiffness_ratios(n, ratio):
@@ -202,8 +199,6 @@ def test_matrices_satisfy_the_eigenproblem_of_the_modes(form, top):
     assert np.abs(found.geometric).max() > 0
 
 
-# ---- the beam ------------------------------------------------------------------------------------
-
 HEIGHT, MASS, BENDING, SHEAR, DEPTH = 2.0, 800.0, 1.2e7, 2.5e8, 0.5
 
 
@@ -266,8 +261,6 @@ def test_frequencies_of_a_chain_tend_to_those_of_the_beam(shear, depth, foot, or
     np.testing.assert_allclose(orders[-1], order, atol=0.05)
     assert np.all(np.abs(wrong[-1]) < (1e-4 if order == 2 else 1e-2))
 
-
-# ---- the critical load ---------------------------------------------------------------------------
 
 EULER = np.pi**2 * BENDING / (2 * HEIGHT) ** 2
 

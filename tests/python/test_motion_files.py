@@ -42,9 +42,6 @@ def file(tmp_path):
     return write
 
 
-# ---- AT2 -----------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     "text",
     [
@@ -109,9 +106,6 @@ def test_both_doors_read_the_same_at2(file, tmp_path, head):
     assert read.time == pytest.approx(motion.time, abs=1e-15)
 
 
-# ---- csv -----------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     ("text", "options"),
     [
@@ -151,9 +145,6 @@ def test_a_written_motion_comes_back(tmp_path):
     path = tmp_path / f"{motion.name}.csv"
     motion.to_csv(path)
     assert motions.read_motion(path) == motion
-
-
-# ---- folders -------------------------------------------------------------------------------------
 
 
 def test_a_folder_is_read_in_the_order_of_names(file, tmp_path):

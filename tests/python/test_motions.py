@@ -28,9 +28,6 @@ def rectangular(length: float) -> GroundMotion:
     return GroundMotion([1.0, 1.0], length, "pulse")
 
 
-# ---- intensities ---------------------------------------------------------------------------------
-
-
 def test_intensities_of_a_sine_over_whole_cycles():
     """Velocity (1 - cos wt)/w; integral of sin^2 is half the length; its 5 and 95 % by symmetry."""
     omega = 4.0
@@ -50,9 +47,6 @@ def test_velocity_and_displacement_are_exact_for_straight_lines():
     t = motion.time
     assert motion.velocity == pytest.approx(t**2 / 2, abs=1e-15)
     assert motion.displacement == pytest.approx(t**3 / 6, abs=1e-15)
-
-
-# ---- spectra -------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("damping", [0.02, 0.05, 0.2])
@@ -189,9 +183,6 @@ def test_spectrum_against_pyrotd():
         )
 
 
-# ---- scaled, corrected, resampled, joined --------------------------------------------------------
-
-
 def test_scaled_has_what_was_asked_for():
     motion = motions.synthetic(1)[0]
     assert motion.scaled(2.0).acceleration == pytest.approx(2 * motion.acceleration)
@@ -248,9 +239,6 @@ def test_sequence_joins_with_rest():
     assert np.array_equal(both.acceleration[m + 300 :], two.acceleration)
 
 
-# ---- synthetic motions ---------------------------------------------------------------------------
-
-
 def test_synthetic_motions_are_fixed_by_their_seed():
     many, few = motions.synthetic(5, seed=3), motions.synthetic(2, seed=3)
     assert many[:2] == few
@@ -273,9 +261,6 @@ def test_synthetic_motions_are_earthquakes():
     median = np.median(amplified, axis=0)
     assert 1.5 < median[1:3].max() < 3.5
     assert median[3] < 0.4 * median[1:3].max()
-
-
-# ---- an analysis takes a motion ------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
@@ -317,9 +302,6 @@ def test_trade_takes_a_motion(column):
         column, ground_acceleration=short, budget=0.5, methods=["newmark"]
     )
     assert found.rows
-
-
-# ---- records -------------------------------------------------------------------------------------
 
 
 def test_a_motion_is_a_record():

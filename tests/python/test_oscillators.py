@@ -103,8 +103,6 @@ def test_spectra_of_constant_ductility():
     assert found[0.01] == pytest.approx(1.0, abs=0.2)
 
 
-# ---- collapse ------------------------------------------------------------------------------------
-
 HINGE = {"k": 5e7, "d_y": 0.004, "k_post": 2e5}
 WEIGHT = 4.9e5
 TOP = 5e4

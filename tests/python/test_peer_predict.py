@@ -91,9 +91,6 @@ def record(row: peer.Prediction) -> str:
     return repr(peer.Predictions([row]).to_frame().iloc[0].to_dict())
 
 
-# ---- rows ----------------------------------------------------------------------------------------
-
-
 def test_scores_of_a_model_that_is_a_factor_off(table):
     found = peer.predict(table, good)
     assert [row.status for row in found] == 5 * ["completed"] + ["no history"]
@@ -215,9 +212,6 @@ def test_file_of_a_table_stays_in_its_folder(tmp_path, file):
     assert "no file below the folder" in row.error
 
 
-# ---- summaries and files -------------------------------------------------------------------------
-
-
 def test_summary_by_groups_and_files(table, tmp_path):
     found = peer.predict(table, good)
     groups = found.summary()
@@ -318,9 +312,6 @@ def test_loops_of_files_with_one_name_are_apart(tmp_path):
     }  # fmt: skip
     loop = np.loadtxt(loops / "sub" / "a.csv", delimiter=",", skiprows=1)
     np.testing.assert_allclose(loop[:, 1], found[1].comparison.test_force, rtol=1e-6)
-
-
-# ---- the store -----------------------------------------------------------------------------------
 
 
 def test_second_start_goes_on(table, tmp_path, monkeypatch):
@@ -433,9 +424,6 @@ def test_killed_batch_leaves_no_process_and_goes_on(table, tmp_path, number, job
     assert "1 of them are from an earlier run" in capsys.readouterr().out
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert names == {"results.csv", "summary.csv", "gallery.html", "loops.png"}
-
-
-# ---- the command ---------------------------------------------------------------------------------
 
 
 def test_command(table, tmp_path, capsys):

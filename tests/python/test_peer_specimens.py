@@ -34,9 +34,6 @@ def write(folder: Path, *rows: dict[str, str], history: str = "0,0\n10,100\n-10,
     return folder
 
 
-# ---- values --------------------------------------------------------------------------------------
-
-
 def test_a_row_in_si(tmp_path):
     (s,) = peer.read_specimens(write(tmp_path, {}))
     assert (s.peer_id, s.name, s.author, s.year) == (7, ROW["name"], "Somebody et al.", "1986")
@@ -81,9 +78,6 @@ def test_series_keeps_the_tests_of_a_laboratory_together(tmp_path):
     ):
         row = {"author": author, "year": year, "name": name}
         assert peer.read_specimens(write(tmp_path, row))[0].series == series
-
-
-# ---- the table -----------------------------------------------------------------------------------
 
 
 @pytest.fixture
@@ -157,9 +151,6 @@ def test_a_bad_value_is_named_with_its_line(tmp_path):
             peer.read_specimens(place)
 
 
-# ---- histories -----------------------------------------------------------------------------------
-
-
 def test_a_history_is_read_from_csv_or_the_original_text(tmp_path):
     table = peer.read_specimens(write(tmp_path, {}))
     assert table[0].history().force.tolist() == [0.0, 1e5, -1e5]
@@ -212,9 +203,6 @@ def test_code_2_gives_a_copy():
     net = peer.net_force([0.0, 1.0], force, code=2, axial_load=1.0, length=1.0)
     net[0] = 5.0
     assert force[0] == 0.0
-
-
-# ---- the database, where it is at hand -----------------------------------------------------------
 
 
 @pytest.fixture(scope="module")

@@ -40,9 +40,6 @@ def start(*, opens: bool, size: float = 0.4) -> tuple[np.ndarray, np.ndarray]:
     return q[: 9 if opens else 6], v[: 9 if opens else 6]
 
 
-# ---- exact rotations -----------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("follows", [False, True], ids=["dead", "follower"])
 @pytest.mark.parametrize("opens", [False, True], ids=["closed", "opening"])
 def test_finite_chain_against_hamiltons_equations(opens, follows):
@@ -114,9 +111,6 @@ def test_finite_tends_to_small_rotations_quadratically_for_three_bodies(opens, l
         np.testing.assert_allclose(np.log2(np.divide(opened[:-1], opened[1:])), 2.0, atol=0.1)
 
 
-# ---- rigid motions -------------------------------------------------------------------------------
-
-
 def floating(**options) -> rbsdem.Column:
     """Three bodies whose joint at the ground is nothing."""
     nothing = Elastic(1e-30)
@@ -160,9 +154,6 @@ def test_free_flight_of_a_tumbling_chain_keeps_momentum_spin_and_energy():
     assert np.ptp(spin) < 1e-8 * np.max(np.abs(spin))
     whole = run.energy["kinetic"] + run.energy["spring"]
     assert np.ptp(whole) < 1e-9 * whole[0]
-
-
-# ---- buckling ------------------------------------------------------------------------------------
 
 
 def random_chain(n: int, **options) -> rbsdem.Column:

@@ -40,9 +40,6 @@ def tied(**changes) -> RectangularSection:
     return RectangularSection(0.4, 0.4, Concrete(30e6), **(given | changes))
 
 
-# ---- another program -----------------------------------------------------------------------------
-
-
 def width(section: rbsdem.model.shape.Section, y: np.ndarray) -> np.ndarray:
     """Return the width of concrete at ordinates, all in mm."""
     half, void = 500 * section.depth, 500 * section.depth - 1e3 * (section.wall or np.inf)
@@ -141,9 +138,6 @@ def test_confinement_only_helps_past_the_peak():
     assert RectangularSection(0.4, 0.4, Concrete(30e6)).confinement is None
 
 
-# ---- bars ----------------------------------------------------------------------------------------
-
-
 def test_layouts():
     """section.md section 3: n/4 + 1 bars a face, y = h/2 - cover - d_t - d_b/2."""
     rows = [y for y, _, _ in Layout(12, 0.016, STEEL).rectangular(0.4, 0.013 + 0.007)]
@@ -204,8 +198,6 @@ def test_sections_turned(shape, seed):
     assert tied().mirrored is not turned
     assert tied().symmetric
 
-
-# ---- hollow sections -----------------------------------------------------------------------------
 
 HOOPS = {"diameter": 0.012, "spacing": 0.1, "steel": STEEL}
 BOX = RectangularSection(
@@ -292,9 +284,6 @@ def test_everything_that_a_hollow_section_can_be_asked(section):
         rbsdem.codes.code_values(section, 12.0, load)
 
 
-# ---- events --------------------------------------------------------------------------------------
-
-
 def test_events_of_a_diagram():
     section = tied()
     found = diagram(section, 6e5, ultimate="drop")
@@ -333,9 +322,6 @@ def test_rules_of_the_ultimate_point():
     assert steel.curvature * bar - steel.strain == pytest.approx(0.1, rel=1e-6)
     first = diagram(section, 2.5e6, yielding="first").events.yielding
     assert first.strain + 0.2 * first.curvature == pytest.approx(0.002, rel=1e-9)
-
-
-# ---- degenerate ----------------------------------------------------------------------------------
 
 
 def test_no_bars_no_load_no_tension():

@@ -36,8 +36,6 @@ def column(key: str) -> tuple[RectangularSection, float, float]:
     return PAPER[key].section, PAPER[key].length, PAPER[key].axial_load
 
 
-# ---- one layer -----------------------------------------------------------------------------------
-
 FC, FYT = 32.0, 325.0  # MPa
 
 
@@ -85,9 +83,6 @@ def test_layers_are_in_equilibrium_by_an_independent_solution(curvature: float) 
         np.testing.assert_allclose(stress[:, 0, 1], layers.tau[inside] / MPA, atol=1e-6)
 
 
-# ---- the four columns ----------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("key", KEYS)
 def test_shear_spring_agrees_with_the_reference(key: str) -> None:
     """So do its closed form, the strength, and the moment of the coupled analysis.
@@ -128,9 +123,6 @@ def test_springs_of_a_section_have_the_shear_spring() -> None:
     springs = rbsdem.section.springs(section, length, load)
     direct = fit_shear_spring(section, length, load, springs.events.ultimate.curvature)
     assert springs.shear == direct.spring
-
-
-# ---- properties of the diagram -------------------------------------------------------------------
 
 
 def circle(**changes) -> CircularSection:
@@ -203,9 +195,6 @@ def test_section_without_a_knee_has_one_line() -> None:
     assert "no knee" in found.notes[0]
     assert found.spring.k_post == 0.0
     assert found.spring.k * found.spring.d_y == pytest.approx(found.end.force)
-
-
-# ---- published strengths -------------------------------------------------------------------------
 
 
 def plain(**changes) -> RectangularSection:

@@ -50,9 +50,6 @@ def cycles(specimen: peer.Specimen, *drifts: float) -> np.ndarray:
     return specimen.length * np.concatenate([[0.0], *waves])
 
 
-# ---- the spring ----------------------------------------------------------------------------------
-
-
 def test_cracked_stiffness_by_hand():
     """Park and Paulay: rho/(1 + 4 n rho) E_s b d."""
     ratio = 3 * math.pi / 4 * 0.01**2 / (0.4 * 0.08)
@@ -131,9 +128,6 @@ def test_a_spring_comes_of_every_section(change, numbers):
     assert one.f_c / one.d_c > one.f_y / one.d_y
 
 
-# ---- the column ----------------------------------------------------------------------------------
-
-
 def test_a_slender_column_does_not_know_of_shear_failure():
     """Its shear spring stays on the lines before yield: what lies behind them has no say."""
     d = cycles(SLENDER, 0.005, 0.01, 0.02, 0.03)
@@ -176,9 +170,6 @@ def test_a_column_that_failed_in_shear_loses_its_axial_load():
     assert lost[1] < lost[0]
     far = rbsdem.cyclic(peer.column(SLENDER), displacement=cycles(SLENDER, 0.01, 0.04))
     assert "axial_failure" not in far.limit_states()
-
-
-# ---- where displacement and axial load act -------------------------------------------------------
 
 
 @pytest.mark.parametrize("model", ["paper", "layered"])

@@ -52,9 +52,6 @@ def response(spring: Any, path: ArrayLike) -> Array:
     return spring.response(np.asarray(path, dtype=float))
 
 
-# ---- takeda section 4: points between those of the sequences -------------------------------------
-
-
 @pytest.mark.parametrize("inner", INNER)
 def test_takeda_s2_lines_between_the_points(inner: str) -> None:
     first, second = FC + KY * (1e-3 - DC), FC + KY * (1.5e-3 - DC)
@@ -76,8 +73,6 @@ def test_takeda_s2_lines_between_the_points(inner: str) -> None:
     force = response(Takeda(**COLUMN_1, inner=inner), path)
     np.testing.assert_allclose(force, by_hand, rtol=1e-9, atol=1e-9 * FY)
 
-
-# ---- takeda section 2: single rules by hand ------------------------------------------------------
 
 # F_c = 1, F_y = 2.5, K_0 = 0.5
 ROUND = {"k_c": 1.0, "d_c": 1.0, "k_y": 0.3, "d_y": 6.0, "k_u": 0.01}
@@ -166,9 +161,6 @@ def test_takeda_section_2b_the_secant_wins_over_k_r() -> None:
     force = response(spring, [24, -3, 600, -3, -2.9])
     slope = 2.5 / 6
     np.testing.assert_allclose(force[2:], [61.9, -3 * slope, -2.9 * slope], rtol=1e-12)
-
-
-# ---- random springs and random histories ---------------------------------------------------------
 
 
 def random_parameters(rng: np.random.Generator, kind: str, extreme: bool) -> dict[str, Any]:
@@ -266,8 +258,6 @@ def test_waiting_and_cutting_short_at_exact_crossings(kind: str) -> None:
             assert np.array_equal(spring.response(path[:cut]), force[:cut])
 
 
-# ---- refusals and shapes -------------------------------------------------------------------------
-
 GOOD: dict[str, dict[str, Any]] = {
     "Elastic": {"k": 2.0},
     "Bilinear": {"k": 2.0, "d_y": 0.5, "k_post": 0.1},
@@ -307,8 +297,6 @@ def test_concrete_is_straight_to_a_peak_that_is_all_but_elastic() -> None:
     assert response(spring, d) == pytest.approx(k * d, rel=1e-12)
     assert response(spring, np.array([-2 * d_peak]))[0] == pytest.approx(k_soft * d_peak - 1e5)
 
-
-# ---- where a rule cracks, yields and caps --------------------------------------------------------
 
 #: A spring of each rule with every corner that it has; the sides of the capped ones differ.
 _CAPPED: dict[str, Any] = {

@@ -122,9 +122,6 @@ def refined(path: ArrayLike, n: int) -> Array:
     return np.array(points)
 
 
-# ---- the independent method ------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_reference_agrees(kind):
     rng = np.random.default_rng(70 + KINDS.index(kind))
@@ -139,9 +136,6 @@ def test_reference_agrees(kind):
         expected = reference(numbers).response(path)
         found = make(numbers).response(path)
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9 * scale(numbers))
-
-
-# ---- properties ------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -200,9 +194,6 @@ def test_property_11_partial_unloading_leaves_no_trace():
             longer = np.concatenate((path[: i + 1], inside, path[i:]))
             found = np.delete(spring.response(longer), slice(i + 1, i + 7))
             np.testing.assert_allclose(found, force, rtol=0, atol=1e-9 * scale(numbers))
-
-
-# ---- refusals --------------------------------------------------------------------------------
 
 
 def test_limits_of_the_numbers_are_allowed():

@@ -30,8 +30,6 @@ def assert_energy(run: rbsdem.Result, rel: float = 1e-12) -> None:
     assert not np.any(run.energy["damping"])
 
 
-# ---- limits --------------------------------------------------------------------------------------
-
 PLASTIC = Bilinear(1.0e8, 1.0e-3, 0.0)
 
 
@@ -137,9 +135,6 @@ def test_yielded_shear_unloads_where_the_force_begins_to_fall(sign):
     np.testing.assert_allclose(run.force, sign * force, rtol=1e-11)
     np.testing.assert_allclose(run.rotation[:, 0], sign * rotation, rtol=1e-11)
     assert_energy(run)
-
-
-# ---- degenerate input ----------------------------------------------------------------------------
 
 
 def test_small_steps_far_out_do_not_stop():

@@ -43,8 +43,6 @@ def oscillator(
     )
 
 
-# ---- Chopra, chapter 5: half-cycle sine pulse ----------------------------------------------------
-
 # m = 0.2533 kip s2/in, k = 10 kip/in, c = 0.1592 kip s/in (5 %);
 # p = 10 sin(pi t/0.6) kip up to 0.6 s.
 PULSE_MASS, PULSE_STIFFNESS = 0.2533, 10.0
@@ -88,9 +86,6 @@ def test_chopra_examples_5_5_and_5_6_elastoplastic():
     printed = [0.0437, 0.2326, 0.6121, 1.1143, 1.6214, 1.9891, 2.0951, 1.9240, 1.5602]
     got = respond(column, 0.1, 0.9, method="newmark", dt=0.1)
     np.testing.assert_allclose(got, printed, rtol=0, atol=1.1e-4)
-
-
-# ---- free vibration and pulses -------------------------------------------------------------------
 
 
 def released(column: rbsdem.Column, start: float, period: float, cycles: int) -> np.ndarray:
@@ -141,9 +136,6 @@ def test_chopra_example_4_1_rectangular_pulse():
     assert peak == pytest.approx(2.04, abs=5e-3)
 
 
-# ---- Bathe: two degrees of freedom ---------------------------------------------------------------
-
-
 def bathe(inertia: float) -> tuple[float, float, float]:
     """Mass and stiffnesses of a body of unit height for a rotary inertia about the centroid.
 
@@ -182,8 +174,6 @@ def test_bathe_two_degrees_of_freedom_by_the_trapezoidal_rule():
         1000 * exact.displacement[np.isin(exact.time, time)][1:], printed, rtol=0, atol=5.5e-3
     )
 
-
-# ---- beams: chains of many bodies ----------------------------------------------------------------
 
 LENGTH, BENDING, WEIGHT = 1.0, 1.0, 1.0
 

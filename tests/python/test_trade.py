@@ -55,9 +55,6 @@ def rows_of(found: MethodStudy, method: str, kinematics: str, events: str | None
     return [row for row in found.rows if row.setting.family[:3] == wanted]
 
 
-# ---- what is compared ----------------------------------------------------------------------------
-
-
 def answer(response, moment, taken) -> Answer:
     rows = np.arange(float(len(response)))
     return Answer(rows, *map(np.array, (response, moment, taken)), "completed")
@@ -96,9 +93,6 @@ def test_a_loading_of_few_times_is_the_same_at_more_of_them():
     assert {0.0, 1.0, 3.0} <= set(made.time)
     expected = np.interp(made.time, [0.0, 1.0, 3.0], [0.0, 2.0, -2.0])
     np.testing.assert_allclose(made.loads["force"], expected, atol=1e-15)
-
-
-# ---- reference, errors, front, choice ------------------------------------------------------------
 
 
 def test_reference_and_orders_of_free_vibration():
@@ -248,9 +242,6 @@ def test_collapse_ends_the_comparison():
     assert own[-1].error < 1e-3
 
 
-# ---- budget --------------------------------------------------------------------------------------
-
-
 def long_chain() -> rbsdem.Column:
     spring = Bilinear(2.0e10, 2e-5, 2.0e9)
     return rbsdem.Column(
@@ -273,9 +264,6 @@ def test_what_does_not_fit_into_the_budget_is_left_out_and_told():
 def test_no_time_at_all():
     with pytest.raises(rbsdem.InputError, match="budget is too small for any setting"):
         compare_methods(long_chain(), TIME, ground_acceleration=MOTION, budget=1e-6)
-
-
-# ---- static --------------------------------------------------------------------------------------
 
 
 @pytest.mark.filterwarnings("ignore:column. axial_load ")
@@ -309,9 +297,6 @@ def test_falling_force_cannot_be_driven_back():
     found = compare_methods(column, displacement=np.linspace(0.0, 0.02, 50))
     assert "increments are compared" in found.reference.note
     assert found.reference.digits > 10
-
-
-# ---- parts of the model --------------------------------------------------------------------------
 
 
 def effect_of(found: MethodStudy, part: str):
@@ -386,9 +371,6 @@ def test_what_no_setting_can_solve():
     column = dataclasses.replace(ELASTIC, kinematics="pdelta", axial_load=2 * BENDING / LENGTH)
     with pytest.raises(rbsdem.InputError, match="axial"):
         compare_methods(column, TIME, ground_acceleration=MOTION)
-
-
-# ---- tables, files, figure, command --------------------------------------------------------------
 
 
 def read(path: Path) -> list[dict[str, str]]:
