@@ -216,7 +216,7 @@ def test_an_ensemble_takes_frames():
         {"frame": frame}, {"m": motion}, scales=[1.0, 2.0], method="newmark",
         measures=["peak_drift", "first_yield", "peak_base_shear"],
     )  # fmt: skip
-    alone = rbsdem.time_history(frame, ground_acceleration=motion, method="newmark")
+    alone = rbsdem.time_history(frame, motion, method="newmark")
     assert runs.status.tolist() == ["completed", "completed"]
     assert runs.measures["peak_base_shear"][0] == abs(alone.summary["peak_base_shear"])
     assert runs.measures["peak_drift"][0] == abs(alone.summary["peak_displacement"]) / frame.height

@@ -272,7 +272,9 @@ def test_time_history_takes_a_motion_in_place_of_arrays(column):
     motion = motions.synthetic(1)[0]
     by_motion = rbsdem.time_history(column, ground_acceleration=motion)
     by_arrays = rbsdem.time_history(column, motion.time, ground_acceleration=motion.acceleration)
-    assert by_motion == by_arrays
+    assert by_motion == by_arrays == rbsdem.time_history(column, motion)
+    with pytest.raises(rbsdem.InputError, match="ground_acceleration is given too; give one"):
+        rbsdem.time_history(column, motion, ground_acceleration=motion)
 
 
 def test_a_column_that_is_an_oscillator_has_the_spectrum(column):

@@ -318,14 +318,17 @@ _OF_THE_GROUND = ("ground_acceleration", "vertical_acceleration")
 
 
 def acting(
-    time: ArrayLike | None, loads: Mapping[str, ArrayLike | GroundMotion | None], who: str
+    time: ArrayLike | GroundMotion | None,
+    loads: Mapping[str, ArrayLike | GroundMotion | None],
+    who: str,
 ) -> tuple[ArrayLike | None, dict[str, ArrayLike]]:
     """Return times and loads as arrays, where loads may be ground motions.
 
     Parameters
     ----------
-    time : array_like or None
-        Times of the loading [s]; None where a motion brings them.
+    time : array_like, GroundMotion or None
+        Times of the loading [s]; None where a motion brings them. A motion in their place is that
+        of the ground along x.
     loads : mapping
         Loads by name: arrays, ground motions, or None.
     who : str
@@ -341,6 +344,13 @@ def acting(
     InputError
         If the times are given twice, or two motions have different steps.
     """
+    if isinstance(time, GroundMotion):
+        if loads.get("ground_acceleration") is not None:
+            raise InputError(
+                f"{who}: a GroundMotion stands in the place of time, and ground_acceleration is "
+                "given too; give one of them"
+            )
+        time, loads = None, {**loads, "ground_acceleration": time}
     given: dict[str, ArrayLike] = {}
     motions: dict[str, GroundMotion] = {}
     for name, load in loads.items():

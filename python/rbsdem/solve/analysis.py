@@ -282,7 +282,7 @@ def cyclic(
 def time_history(
     watch: Watch,
     column: Structure,
-    time: ArrayLike | None = None,
+    time: ArrayLike | GroundMotion | None = None,
     *,
     force: ArrayLike | None = None,
     ground_acceleration: ArrayLike | GroundMotion | None = None,
@@ -301,9 +301,9 @@ def time_history(
     ----------
     column : Column or Frame
         The structure; a frame needs an implicit method ("newmark", "hht", "generalised_alpha").
-    time : array_like, shape (m,), optional
-        Times of the loading, ascending [s]; two are enough for a free vibration. A ground motion
-        that is a `GroundMotion` brings its own.
+    time : array_like of shape (m,), or GroundMotion, optional
+        Times of the loading, ascending [s]; two are enough for a free vibration. A `GroundMotion`
+        brings its own, and may stand here: ``time_history(column, motion)``.
     force : array_like, shape (m,), optional
         Lateral force at the top [N], linear between the times.
     ground_acceleration : array_like of shape (m,), or GroundMotion, optional
