@@ -31,6 +31,8 @@ module rbs_solve_time_implicit_finite
    real(wp), parameter :: most_turn = 1.0_wp
    !> Below this share of the forces a change of a spring's force is round-off.
    real(wp), parameter :: no_change = 1.0e-6_wp
+   !> Forces that residuals are compared with are no smaller, so that nothing overflows [N, N m].
+   real(wp), parameter :: least_scale = 1.0e-150_wp
    !> A change below this share of a deformation has few digits in it.
    real(wp), parameter :: no_digits = 1.0e-8_wp
 
@@ -290,8 +292,8 @@ contains
       end if
       self%scale(1) = max(self%scale(1), maxval(abs(self%mass(:2, :)*self%a1(:2, 1:))))
       self%scale(2) = max(self%scale(2), maxval(abs(self%mass(3, :)*self%a1(3, 1:))))
-      relative = max(maxval(abs(self%r(:2, :)))/max(self%scale(1), self%largest(1), tiny(1.0_wp)), &
-                     maxval(abs(self%r(3, :)))/max(self%scale(2), self%largest(2), tiny(1.0_wp)))
+      relative = max(maxval(abs(self%r(:2, :)))/max(self%scale(1), self%largest(1), least_scale), &
+                     maxval(abs(self%r(3, :)))/max(self%scale(2), self%largest(2), least_scale))
       if (.not. self%column%opens) relative = max(relative, maxval(abs(self%gap))/maxval(self%column%length))
    end subroutine find_residual
 

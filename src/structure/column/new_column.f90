@@ -218,8 +218,10 @@ contains
          column%inertias(2*n + i) = column%mass(i)
          column%part(2*n + i) = n + i
       end do
-      column%inverse_mass = 1.0_wp/column%mass
-      column%inverse_inertia = 1.0_wp/column%inertia
+      ! A column of static paths alone may have none.
+      allocate (column%inverse_mass(n), column%inverse_inertia(n), source=0.0_wp)
+      where (column%mass > 0.0_wp) column%inverse_mass = 1.0_wp/column%mass
+      where (column%inertia > 0.0_wp) column%inverse_inertia = 1.0_wp/column%inertia
       if (column%held) column%inverse_inertia(n) = 0.0_wp
       column%axial_count = 2*n
       column%work_size = 5*n

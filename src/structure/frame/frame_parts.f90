@@ -113,7 +113,7 @@ contains
                cycle
             else if (s%kind /= '') then
                name = name//"member_kind '"//trim(s%kind)//"'"
-               call check_reference(s%kind, record%kind%name, name, 'kind', messages)
+               call check_reference(s%kind, [record%kind%name], name, 'kind', messages)
             else
                name = name//"node '"//trim(s%node)//"'"
             end if
@@ -285,13 +285,13 @@ contains
       end do
       do i = 1, size(record%column_of)
          call check_storey('column_of', record%column_of(i)%storey)
-         call check_reference(record%column_of(i)%kind, record%kind%name, 'column_of', 'kind', messages)
+         call check_reference(record%column_of(i)%kind, [record%kind%name], 'column_of', 'kind', messages)
          if (record%column_of(i)%line > bays + 1) call refuse('column_of: line', record%column_of(i)%line, &
                                                               'lines of columns', bays + 1)
       end do
       do i = 1, size(record%beam_of)
          call check_storey('beam_of', record%beam_of(i)%storey)
-         call check_reference(record%beam_of(i)%kind, record%kind%name, 'beam_of', 'kind', messages)
+         call check_reference(record%beam_of(i)%kind, [record%kind%name], 'beam_of', 'kind', messages)
          if (record%beam_of(i)%line > bays) call refuse('beam_of: bay', record%beam_of(i)%line, 'bays', bays)
       end do
 
@@ -452,7 +452,7 @@ contains
       do i = 1, size(record%node)
          associate (given => record%node(i))
             if (given%moves_with == '') cycle
-            call check_reference(given%moves_with, self%node%name, "node '"//trim(given%name)// &
+            call check_reference(given%moves_with, [self%node%name], "node '"//trim(given%name)// &
                                  "': moves_with", 'node', messages)
             number = findloc(self%node%name == given%name, .true., dim=1)
             n = findloc(self%node%name == given%moves_with, .true., dim=1)
@@ -481,9 +481,9 @@ contains
             if (any(self%member%name == given%name)) then
                call messages%add(name//' is given twice; give each a name of its own')
             end if
-            call check_reference(given%from, self%node%name, name//': from', 'node', messages)
-            call check_reference(given%to, self%node%name, name//': to', 'node', messages)
-            call check_reference(given%kind, record%kind%name, name, 'kind', messages)
+            call check_reference(given%from, [self%node%name], name//': from', 'node', messages)
+            call check_reference(given%to, [self%node%name], name//': to', 'node', messages)
+            call check_reference(given%kind, [record%kind%name], name, 'kind', messages)
             member = frame_member()
             member%name = given%name
             member%node = [findloc(self%node%name == given%from, .true., dim=1), &
@@ -528,7 +528,7 @@ contains
                   node%ground(k) = s%spring
                end associate
             end do
-            if (.not. any_node) call check_reference(s%node, self%node%name, '&'//trim(s%group), 'node', &
+            if (.not. any_node) call check_reference(s%node, [self%node%name], '&'//trim(s%group), 'node', &
                                                      messages)
          end associate
       end do
@@ -701,7 +701,7 @@ contains
                                               '; free one, or give control')
          return
       end if
-      call check_reference(record%control_node, self%node%name, 'frame: control_node', 'node', messages)
+      call check_reference(record%control_node, [self%node%name], 'frame: control_node', 'node', messages)
       self%top = findloc(self%node%name == record%control_node, .true., dim=1)
       if (self%top == 0) return
       if (self%node(self%top)%held(direction)) then
