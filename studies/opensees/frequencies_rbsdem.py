@@ -16,8 +16,9 @@ def solve() -> dict[str, float]:
     # A joint has the flexibility of half a body on both sides; the one at the ground has one side.
     part = np.full(BODIES, HEIGHT / BODIES)
     part[0] /= 2
-    shear = [Elastic(k) for k in 5 / 6 * G * area / part]
     flexure = [Elastic(k) for k in E * inertia / part]
+    part[-1] *= 1.5  # the highest joint takes the shear of the half body at the top too
+    shear = [Elastic(k) for k in 5 / 6 * G * area / part]
     mass = DENSITY * area * HEIGHT
     column = rbsdem.Column(
         HEIGHT, mass, shear, flexure, n=BODIES, depth=DEPTH, top_mass=TOP_MASS, gravity=0.0

@@ -202,11 +202,14 @@ def test_matrices_satisfy_the_eigenproblem_of_the_modes(form, top):
 HEIGHT, MASS, BENDING, SHEAR, DEPTH = 2.0, 800.0, 1.2e7, 2.5e8, 0.5
 
 
-def beam_frequencies(number: int, shear: float = SHEAR, depth: float = DEPTH) -> np.ndarray:
+def beam_frequencies(
+    number: int, shear: float = SHEAR, depth: float = DEPTH, top_mass: float = 0.0
+) -> np.ndarray:
     """Circular frequencies of the Timoshenko cantilever with rotary inertia.
 
     State (x, th, M, V) along z: x' = th + V/kGA, th' = M/EI, M' = -V - rho I w^2 th,
-    V' = -rho A w^2 x. Frequency equation: the motion that leaves foot clamped and top free.
+    V' = -rho A w^2 x. Frequency equation: the motion that leaves foot clamped, and the top free
+    or with a mass, V = m w^2 x.
     """
     line = MASS / HEIGHT
 
@@ -218,6 +221,7 @@ def beam_frequencies(number: int, shear: float = SHEAR, depth: float = DEPTH) ->
         matrix[3, 0] = -line * omega**2
         scale = np.array([1.0, 1.0 / HEIGHT, BENDING / HEIGHT**2, BENDING / HEIGHT**3])
         carried = expm(matrix * scale / scale[:, None] * HEIGHT)
+        carried[3] -= top_mass * omega**2 / scale[3] * carried[0]
         return np.linalg.det(carried[2:, 2:])
 
     step = 0.05 * np.sqrt(BENDING / (line * HEIGHT**4))
@@ -260,6 +264,28 @@ def test_frequencies_of_a_chain_tend_to_those_of_the_beam(shear, depth, foot, or
     orders = np.log2(np.abs(wrong[:-1] / wrong[1:]))
     np.testing.assert_allclose(orders[-1], order, atol=0.05)
     assert np.all(np.abs(wrong[-1]) < (1e-4 if order == 2 else 1e-2))
+
+
+def test_chain_with_a_mass_at_the_top_tends_to_the_beam_with_order_2():
+    """The half body at the top belongs to no joint: the highest shear spring takes its part."""
+    top_mass, bodies = 5 * MASS, (25, 50, 100, 200)
+    exact = beam_frequencies(2, top_mass=top_mass)
+    soft = HEIGHT**3 / (3 * BENDING) + HEIGHT / SHEAR
+    wrong = []
+    for n in bodies:
+        part = np.full(n, HEIGHT / n)
+        part[0] /= 2
+        shear_part = part.copy()
+        shear_part[-1] *= 1.5
+        column = chain(
+            [HEIGHT / n] * n, [MASS / n] * n, SHEAR / shear_part, BENDING / part,
+            depth=DEPTH, top_mass=top_mass, gravity=0.0,
+        )  # fmt: skip
+        deflection = rbsdem.cyclic(column, force=[1.0]).displacement[0]
+        wrong.append([deflection / soft - 1, *(rbsdem.modes(column).omega[:2] / exact - 1)])
+    wrong = np.abs(wrong)
+    np.testing.assert_allclose(np.log2(wrong[:-1] / wrong[1:])[-1], 2.0, atol=0.05)
+    assert np.all(wrong[-1] < 1e-4)
 
 
 EULER = np.pi**2 * BENDING / (2 * HEIGHT) ** 2

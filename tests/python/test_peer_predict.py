@@ -431,14 +431,17 @@ def test_command(table, tmp_path, capsys):
     given = ("--jobs", "1", "--out", out, "--loops", "--failure", "flexure")
     assert run(tmp_path, *given) == 0
     text = capsys.readouterr().out
-    for words in ("Me 1991 No. 1", "Model layered 20", ": 3 tests in", "rectangular, Flexure"):
+    named = ("Me 1991 No. 1", "Model layered 20", ": 3 tests in", "rectangular, Flexure")
+    for words in (*named, "1 of the table have no history"):
         assert words in text
     names = {path.name for path in out.iterdir()}
     assert names == {"results.csv", "summary.csv", "gallery.html", "loops.png", "loops"}
     assert (out / "loops.png").read_bytes()[:4] == b"\x89PNG"
     # T6 is asked for by name and has no history.
     assert run(tmp_path, "--jobs", "1", "--only", "T1", "Me * No. 6") == 1
-    assert "no history" in capsys.readouterr().out
+    assert "1 of the table have no history in the folder, so no score: Me 1991 No. 6" in (
+        capsys.readouterr().out
+    )
     for arguments, words in (
         (["--only", "T17"], "no specimen 'T17'"),
         (["--failure", "Torsion"], "there are Flexure, Shear"),

@@ -82,15 +82,16 @@ def peer(
     test); with --check only check.csv (indicators and doubts).
     An interrupted batch leaves its finished tests in the folder unfinished; the same command with
     the same --out resumes there.
-    Exit codes: 0 every test was analysed to its end, 1 some were not, 2 the input is wrong,
-    130 interrupted by the keyboard (finished tests are reported).
+    Exit codes: 0 every test was analysed to its end, 1 some were not or have no history, 2 the input
+    is wrong, 130 interrupted by the keyboard (finished tests are reported).
     """
-    tests = chosen(read_specimens(folder), section, failure, only)
+    table = read_specimens(folder)
+    tests = chosen(table, section, failure, only)
     if check:
         return _check(tests, out)
     if mended:
         # Rules by series and twins look at all tests, not at the chosen ones alone.
-        tests = _mended(tests, check_tests(read_specimens(folder).with_history()))
+        tests = _mended(tests, check_tests(table.with_history()))
     if not hasattr(tests[0], by):
         raise InputError(f"--by {by} is no property, as failure_mode, section, series")
     model_name(model)
@@ -114,6 +115,11 @@ def peer(
         how = PredictionOptions(bands=bands, limit_states=limit_states)
         PredictionStore(store, tests, predictions.model, how.given({})).forget()
     _report(predictions, by, quiet)
+    left = [] if only else [row.name for row in table if row.path is None]
+    left += [row.specimen.name for row in predictions if row.status == "no history"]
+    if left:
+        names = ", ".join([*left[:3], *(["..."] if left[3:] else [])])
+        print(f"{len(left)} of the table have no history in the folder, so no score: {names}")
     for line in lines:
         print(line)
     if predictions.interrupted:

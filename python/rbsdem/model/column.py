@@ -233,8 +233,8 @@ class Column:
     gravity : float, optional
         Acceleration of gravity for the weight [m/s2].
     axial_spring : Spring or sequence of Spring, optional
-        Axial springs of the joints, opening and tension positive: `Elastic`, `Bilinear` or
-        `Compression`. Without them the joints do not open.
+        Axial springs of the joints, opening and tension positive: `Elastic`, `Bilinear`,
+        `Compression`, `ConcreteSpring` or `SteelSpring`. Without them the joints do not open.
     top_mass, top_inertia : float, optional
         Mass lumped at the top [kg] and its rotary inertia about the top [kg m2]. Its weight must be
         part of `axial_load`.

@@ -579,8 +579,9 @@ class SteelSpring(Spring):
     plateau : float, optional
         Length of the yield plateau over d_y; needs `f_u`.
     endurance : float, optional
-        Plastic deformation over d_y, added up while the reach does not grow, at which half of the
-        strength is left; 0: it stays. Not below the widest limit of an element, about 10.
+        Sum of plastic deformations over d_y, without those that set a new maximum or minimum, after
+        which the bar has half of its strength; 0: it stays. Not below the widest limit of an
+        element, about 10.
     d_buckle : float, optional
         Tensile deformation from which on the bar bows when it is compressed again [m].
     buckling : float, optional

@@ -209,7 +209,7 @@ def cyclic(
         Axial load at the top at each point [N], compression positive, in place of the constant one
         of the column; it changes in proportion on the way from point to point, and the path starts
         under its first value. With `Column(axial_force_ratio=r)` the load is this one plus r F.
-        For `kinematics` "small" (layered joints) and "pdelta".
+        With `kinematics` "small" it acts on layered joints alone.
     initial : Result or path, optional
         The result of this column in whose end the path begins, or a file that
         `Result.save_state` or the executable wrote. A static result that was driven by the same

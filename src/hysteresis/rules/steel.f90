@@ -116,7 +116,8 @@ contains
       call v%key('plateau', self%plateau, '', not_negative, &
                  'length of the yield plateau over the yield deformation; needs f_u')
       call v%key('endurance', self%endurance, '', not_negative, &
-                 'plastic deformation over d_y inside the reach that halves the strength; 0: none')
+                 'sum of plastic deformations over d_y, without new maxima, that halves the strength; '// &
+                 '0: none')
       call v%key('d_buckle', self%d_buckle, deformation, above_zero, &
                  'tensile deformation from which on bars bow when they are compressed again', optional=.true.)
       call v%key('buckling', self%buckling, '', not_negative, &
