@@ -1,9 +1,9 @@
 !> Exact rotations by an independent method: positions of the bodies' masses and of the lumped mass as in
 !> theory.md section 2, their derivatives by Taylor arithmetic, and the dense M = sum J' diag(m, m, I) J.
 module exact
-   use dense, only: solve_general
    use rbs_base_constants, only: pi
    use rbs_base_kinds, only: wp
+   use rbs_base_linalg, only: solve_dense
    use rbs_structure_column_column, only: column_type
    use rbs_structure_column_column_record, only: column_record
    use samples, only: chain, elastic, random_type
@@ -216,7 +216,7 @@ contains
       real(wp), intent(out) :: largest
       type(point) :: points(spec%n + 1)
       real(wp) :: jacobian(3, spec%n + 1, size(now%q)), mass(size(now%q), size(now%q))
-      real(wp) :: force(3), right(size(now%q), 1), axial, s, c, g
+      real(wp) :: force(3), right(size(now%q)), axial, s, c, g
       integer :: j, k, n
       logical :: regular
 
@@ -224,7 +224,7 @@ contains
       call find_jacobian(spec, now%q, jacobian)
       call dense_mass(spec, now%q, mass)
       call place(spec, now%q, now%v, 0.0_wp*now%v, points)
-      right(:, 1) = -now%f
+      right = -now%f
       do k = 1, n + 1
          g = spec%gravity
          if (k > n) g = 0.0_wp
@@ -249,12 +249,12 @@ contains
             end if
          end if
          do j = 1, size(a)
-            right(j, 1) = right(j, 1) + sum(force*jacobian(:, k, j))
+            right(j) = right(j) + sum(force*jacobian(:, k, j))
          end do
       end do
-      call solve_general(mass, right, regular)
+      call solve_dense(mass, right, regular)
       if (.not. regular) error stop 'test_finite: singular mass matrix'
-      a = right(:, 1)
+      a = right
       largest = maxval(abs(a))
    end subroutine dense_acceleration
 

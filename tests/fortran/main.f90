@@ -3,7 +3,6 @@ program unit_tests
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use check, only: unit_test, run_suite
    use test_band, only: collect_band
-   use test_bilinear, only: collect_bilinear
    use test_capped, only: collect_capped
    use test_chain, only: collect_chain
    use test_concrete, only: collect_concrete
@@ -21,7 +20,6 @@ program unit_tests
    use test_rules, only: collect_rules
    use test_run, only: collect_run
    use test_section, only: collect_section
-   use test_segment, only: collect_segment
    use test_shear, only: collect_shear
    use test_signal, only: collect_signal
    use test_units, only: collect_units
@@ -49,14 +47,13 @@ program unit_tests
       procedure(collect_interface), pointer, nopass :: collect => null()
    end type suite_type
 
-   type(suite_type) :: suites(31)
+   type(suite_type) :: suites(29)
    character(len=80) :: wanted, pattern
    integer :: i, run, failed, found
 
    suites = [suite_type('text', collect_text), suite_type('section', collect_section), &
               suite_type('linalg', collect_linalg), &
-             suite_type('units', collect_units), suite_type('segment', collect_segment), &
-             suite_type('bilinear', collect_bilinear), suite_type('takeda', collect_takeda), &
+             suite_type('units', collect_units), suite_type('takeda', collect_takeda), &
              suite_type('capped', collect_capped), &
              suite_type('peak_oriented', collect_peak_oriented), &
              suite_type('concrete', collect_concrete), &

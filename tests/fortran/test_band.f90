@@ -1,15 +1,12 @@
-!> The chain in centroid coordinates against the dense matrices in slips and rotations, and the critical
-!> load against the dense eigenproblem.
+!> The chain in centroid coordinates against the dense matrices in slips and rotations.
 module test_band
    use check, only: unit_test, check_close
-   use dense, only: solve_eigen
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_structure_column_sturm, only: critical_factor
    use rbs_structure_column_column, only: column_type
    use rbs_structure_column_chain_matrices, only: symmetric_mass, geometric_stiffness
    use rbs_structure_column_column_record, only: column_record
-   use samples, only: set_value, chain, elastic, made, random_type
+   use samples, only: chain, elastic, made
    implicit none
    private
 
@@ -24,8 +21,7 @@ contains
                unit_test('the mass is diagonal at the centroids', mass_diagonal), &
                unit_test('band of the springs is B''k B', springs), &
                unit_test('band of the axial forces is B''K_G B', geometric), &
-               unit_test('openings are not coupled to slips and rotations', openings), &
-               unit_test('critical load against the dense eigenproblem', critical)]
+               unit_test('openings are not coupled to slips and rotations', openings)]
    end subroutine collect_band
 
    !> A chain with openings, a mass on top, weight and axial load.
@@ -175,38 +171,5 @@ contains
       call check_close(error, maxval(abs(b(:2*n, 2*n + 1:))), 0.0_wp, 0.0_wp, 0.0_wp, 'not coupled')
       call check_close(error, maxval(abs(b(2*n + 1:, :2*n))), 0.0_wp, 0.0_wp, 0.0_wp, 'not coupled')
    end subroutine openings
-
-   !> The largest w of -K_G x = w diag(k) x is the inverse of the critical factor.
-   subroutine critical(error)
-      type(error_type), allocatable, intent(inout) :: error
-      integer, parameter :: n = 5
-      type(column_record) :: spec
-      class(column_type), allocatable :: column
-      type(random_type) :: random
-      real(wp) :: factor, softening(2*n, 2*n), stiffness(2*n, 2*n), w(2*n)
-      integer :: i, trial
-
-      do trial = 1, 40
-         spec = chain(n, 'pdelta')
-         do i = 1, n
-            call set_value(spec%shear(i), 'k', 10.0_wp**random%uniform(4.0_wp, 9.0_wp))
-            call set_value(spec%flexure(i), 'k', 10.0_wp**random%uniform(5.0_wp, 8.0_wp))
-         end do
-         ! Compression and tension, weight against tension too
-         spec%axial_load = random%uniform(-1.0e5_wp, 1.0e5_wp)
-         spec%self_weight = mod(trial, 3) == 0
-         spec%gravity = 1.0e2_wp
-         column = made(spec)
-         call geometric_stiffness(column, softening)
-         softening = -softening
-         stiffness = 0.0_wp
-         do i = 1, 2*n
-            stiffness(i, i) = column%initial_stiffness(i)
-         end do
-         call solve_eigen(softening, stiffness, w)
-         call critical_factor(column, factor)
-         call check_close(error, factor*w(2*n), 1.0_wp, 1.0e-10_wp, 0.0_wp, 'critical factor')
-      end do
-   end subroutine critical
 
 end module test_band

@@ -1,13 +1,11 @@
-!> The implicit steppers: the scalar theory step by step, orders, damping of high frequencies, energy, stiff
+!> The implicit steppers: orders, damping of high frequencies, energy, stiff
 !> chains, contact, and the recovery from a step that fails.
 module test_implicit
    use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_same, check_true
-   use rbs_base_constants, only: pi
    use rbs_base_error, only: error_type, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_structure_column_column, only: column_type
-   use rbs_solve_modal_modes, only: frequency_bounds
    use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha
    use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, top_axial
    use rbs_solve_time_state, only: state_type
@@ -29,12 +27,10 @@ contains
    subroutine collect_implicit(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('one mass: the steps of the scalar theory', scalar_theory), &
-               unit_test('infinite frequency: the spectral radius of the input', high_frequency), &
+      tests = [unit_test('infinite frequency: the spectral radius of the input', high_frequency), &
                unit_test('order 2 through yielding and unloading', yielding_order), &
                unit_test('average acceleration keeps the energy of elastic chains', elastic_energy), &
                unit_test('axial load and vertical motion in time, against rk45', axial_history), &
-               unit_test('a step much longer than all periods stays bounded', long_step), &
                unit_test('stiff chains that yield', stiff_yielding), &
                unit_test('a chain of contacts falls onto its base', impact), &
                unit_test('a step that fails names spring and time, and has no effect', no_trace), &
@@ -55,70 +51,6 @@ contains
          stepper = new_generalised_alpha(radius(number))
       end select
    end function method
-
-   !> One mass, openings only: m w'' + c w' + k w = -P(t). The generalised-alpha method in its textbook form
-   !> (Chung and Hulbert 1993, eqs 1 to 4), with the parameters of the method (eq 25; HHT: their eq 29).
-   subroutine scalar_theory(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(column_record) :: spec
-      class(column_type), allocatable :: column
-      type(loads_type) :: loads
-      type(state_type) :: state
-      type(implicit_stepper) :: stepper
-      real(wp), parameter :: mass = 2.0_wp, k = 800.0_wp
-      real(wp), parameter :: ratio(5) = [0.05_wp, 0.7_wp, 3.0_wp, 50.0_wp, 1.0e3_wp]
-      real(wp) :: am, af, b, g, h, w, v, a, next, predictor, speed, p0, p1, c, rho
-      integer :: number, i, step
-
-      spec = chain(1, 'small')
-      spec%masses = [mass]
-      allocate (spec%axial_spring(1))
-      spec%axial_spring(1) = elastic(k)
-      spec%damping%mass = 2.0_wp
-      spec%damping%stiffness = 1.0e-3_wp
-      column = made(spec)
-      c = 2.0_wp*mass + 1.0e-3_wp*k
-      loads%signal(top_axial) = signal_of([0.0_wp, 1.0e6_wp], [30.0_wp, 30.0_wp + 1.0e6_wp])
-      do number = 1, methods
-         rho = radius(number)
-         am = 0.0_wp
-         af = 0.0_wp
-         if (number == 2 .or. number == 3) af = (1.0_wp - rho)/(1.0_wp + rho)
-         if (number > 3) then
-            am = (2.0_wp*rho - 1.0_wp)/(rho + 1.0_wp)
-            af = rho/(rho + 1.0_wp)
-         end if
-         g = 0.5_wp - am + af
-         b = 0.25_wp*(1.0_wp - am + af)**2
-         do i = 1, 5
-            h = ratio(i)*sqrt(mass/k)
-            w = 0.1_wp
-            v = 1.0_wp
-            a = (-30.0_wp - c*v - k*w)/mass
-            call new_state(state, column, loads, [0.0_wp, 0.0_wp, w], [0.0_wp, 0.0_wp, v])
-            stepper = method(number)
-            do step = 1, 30
-               p0 = -30.0_wp - (step - 1)*h
-               p1 = -30.0_wp - step*h
-               predictor = w + h*v + h**2*(0.5_wp - b)*a
-               speed = v + h*(1.0_wp - g)*a
-               next = (1.0_wp - af)*(p1 - c*speed - k*predictor) + af*(p0 - c*v - k*w) - am*mass*a
-               next = next/((1.0_wp - am)*mass + (1.0_wp - af)*(c*g*h + k*b*h**2))
-               w = predictor + h**2*b*next
-               v = speed + h*g*next
-               a = next
-               call stepper%advance(state, h, outcome)
-               call check_passed(error, outcome, 'step')
-               call check_close(error, [state%q(3), state%v(3)], [w, v], 0.0_wp, &
-                                1.0e-9_wp*(abs(w) + abs(v)*h), 'method '//to_text(number)// &
-                                ', h omega = '//to_text(ratio(i)))
-               if (allocated(error)) return
-            end do
-            call check_equal(error, stepper%cut_steps, 0, 'no step is cut')
-         end do
-      end do
-   end subroutine scalar_theory
 
    !> At h omega -> infinity all three roots of generalised-alpha are -rho, those of HHT -rho twice and
    !> -alpha_f/(1 - alpha_f): w_{i+3} + c2 w_{i+2} + c1 w_{i+1} + c0 w_i = 0 with these roots.
@@ -282,35 +214,6 @@ contains
          end do
       end do
    end subroutine axial_history
-
-   !> Ten longest periods in one step.
-   subroutine long_step(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(scene_type) :: scene
-      type(state_type) :: state
-      type(implicit_stepper) :: stepper
-      character(len=:), allocatable :: place
-      real(wp) :: h, lowest, highest
-      integer :: number, scene_number, step
-
-      do scene_number = 1, 5
-         call new_scene(scene, scene_number)
-         call frequency_bounds(scene%column, lowest, highest, outcome)
-         h = 20.0_wp*pi/lowest
-         do number = 1, methods
-            place = 'scene '//to_text(scene_number)//', method '//to_text(number)
-            call new_state(state, scene%column, loads_type(), scene%q, 5.0_wp*scene%v)
-            stepper = method(number)
-            do step = 1, 200
-               call stepper%advance(state, h, outcome)
-               call check_passed(error, outcome, place)
-               call check_true(error, all(abs(state%q) < 1.0_wp), place//': it grows')
-               if (allocated(error)) return
-            end do
-         end do
-      end do
-   end subroutine long_step
 
    !> Many springs change their lines in one step: it is not cut, and the energy has the order of the step.
    subroutine stiff_yielding(error)

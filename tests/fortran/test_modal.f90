@@ -1,6 +1,6 @@
 !> Natural frequencies, shapes and the stable step of RK4.
 module test_modal
-   use check, only: unit_test, check_close, check_contains, check_passed, check_true
+   use check, only: unit_test, check_close, check_passed, check_true
    use rbs_base_constants, only: pi
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
@@ -9,8 +9,7 @@ module test_modal
    use rbs_structure_column_chain_matrices, only: symmetric_mass
    use rbs_solve_modal_modes, only: modes_type, find_modes, frequency_bounds, stability_limit
    use rbs_structure_column_column_record, only: column_record
-   use samples, only: set_value, value_of, bilinear, chain, column_1, elastic, made, random_type, k_c, &
-                      height_1
+   use samples, only: set_value, value_of, bilinear, chain, column_1, elastic, made, random_type
    implicit none
    private
 
@@ -26,8 +25,7 @@ contains
                unit_test('lowest and highest frequency of 10000 bodies', bounds_long), &
                unit_test('modes between two others have no shorter limit', unimodal), &
                unit_test('modal damping: exact for elastic springs, safe for others', modal_step), &
-               unit_test('damping from present stiffness ends with that stiffness', tangent_step), &
-               unit_test('near the critical load the modes come with a warning', near_critical)]
+               unit_test('damping from present stiffness ends with that stiffness', tangent_step)]
    end subroutine collect_modal
 
    !> Growth of RK4 for one mode.
@@ -257,24 +255,5 @@ contains
       call check_close(error, modes%stable_step, edge(modes%omega(2), c), 1.0e-6_wp, 0.0_wp, 'tangent')
       call check_true(error, modes%stable_step*c > 2.79_wp, 'tangent is longer')
    end subroutine tangent_step
-
-   subroutine near_critical(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(column_record) :: spec
-      type(modes_type) :: modes
-
-      spec = column_1('pdelta')
-      spec%axial_load = 0.5_wp*k_c/height_1
-      call find_modes(made(spec), modes, outcome)
-      call check_passed(error, outcome, 'find_modes')
-      call check_close(error, modes%condition, 3.0_wp, 1.0e-12_wp, 0.0_wp, 'condition at half of the load')
-      call check_true(error, modes%warning == '', 'no warning')
-      spec%axial_load = (1.0_wp - 1.0e-5_wp)*k_c/height_1
-      call find_modes(made(spec), modes, outcome)
-      call check_passed(error, outcome, 'find_modes')
-      call check_close(error, modes%condition, 2.0e5_wp, 1.0e-4_wp, 0.0_wp, 'condition')
-      call check_contains(error, modes%warning, 'of the critical one', 'warning')
-   end subroutine near_critical
 
 end module test_modal

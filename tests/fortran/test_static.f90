@@ -1,11 +1,9 @@
-!> The static path, event to event: closed forms, and bands against full matrices. What a user sees of it is
+!> The static path, event to event: closed forms. What a user sees of it is
 !> proved in tests/python/test_static.py and test_invariants.py.
 module test_static
-   use dense, only: is_positive, solve_general
    use check, only: unit_test, check_close, check_failed, check_passed, check_true
    use rbs_base_error, only: error_type, analysis_failed
    use rbs_base_kinds, only: wp
-   use rbs_structure_column_chain_matrices, only: geometric_stiffness
    use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_summary, only: summary_type
@@ -26,7 +24,6 @@ contains
 
       tests = [unit_test('pdelta: elastic column below and beyond its critical load', pdelta_elastic), &
                unit_test('a mechanism of joints shares the motion by their stiffness', mechanism), &
-               unit_test('bands and full matrices give the same line', bands), &
                unit_test('rates that are updated are those that are solved for', updated_rates), &
                unit_test('a mechanism in a band', band_mechanism), &
                unit_test('height of the top, largest rotation', height_of_top), &
@@ -138,108 +135,6 @@ contains
       end do
       call check_true(error, updates > 100, 'many updates')
    end subroutine updated_rates
-
-   !> Random stiffness on both sides of the loss of stability, residuals, gap; few bodies.
-   subroutine bands(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(chain_equilibrium) :: band
-      type(random_type) :: random
-      type(spring_array) :: springs
-      class(column_type), allocatable :: column
-      type(column_record) :: spec
-      real(wp), allocatable, dimension(:) :: k, r, rate, correction, rate_band
-      real(wp) :: gap, force(2), largest(2)
-      logical :: regular, regular_band
-      integer :: stable, unstable, i, j, n
-
-      stable = 0
-      unstable = 0
-      do n = 1, 12
-         spec = chain(n, 'pdelta')
-         spec%self_weight = .true.
-         do j = 1, 20
-            spec%axial_load = random%uniform(-4.0e7_wp, 4.0e7_wp)/n
-            column = made(spec)
-            call band%create(column)
-            k = column%initial_stiffness*[(10.0_wp**random%uniform(-3.0_wp, 0.0_wp), i=1, 2*n)]
-            r = [(random%uniform(-1.0_wp, 1.0_wp), i=1, 2*n)]
-            gap = random%uniform(-1.0e-6_wp, 1.0e-6_wp)
-            allocate (rate(2*n), correction(2*n), rate_band(2*n))
-            ! Without deformations the residual is what the springs have of forces.
-            call put_on_lines(column, k, -r, springs)
-            call follow_displacement()
-            call band%follow(springs, .false., .true., gap, 0.0_wp, rate_band, regular_band)
-            call check_true(error, regular .and. regular_band, 'both have an answer')
-            call compare('displacement')
-            call check_close(error, band%force_rate, force(1), 1.0e-8_wp, 1.0e-12_wp*s_k, 'rate of the force')
-            call follow_force()
-            call band%follow(springs, .true., .true., 0.0_wp, 0.0_wp, rate_band, regular_band)
-            call check_true(error, regular_band .eqv. regular, 'both are stable, or none')
-            if (regular) call compare('force')
-            if (regular) stable = stable + 1
-            if (.not. regular) unstable = unstable + 1
-            deallocate (rate, correction, rate_band)
-         end do
-      end do
-      call check_true(error, stable > 40 .and. unstable > 40, 'stable and unstable columns')
-
-   contains
-
-      !> The tangent as a full matrix.
-      subroutine fill(a)
-         real(wp), intent(out) :: a(2*n, 2*n)
-
-         call geometric_stiffness(column, a)
-         do i = 1, 2*n
-            a(i, i) = a(i, i) + k(i)
-         end do
-      end subroutine fill
-
-      subroutine follow_displacement()
-         real(wp) :: a(2*n + 1, 2*n + 1), b(2*n + 1, 2)
-
-         a = 0.0_wp
-         call fill(a(:2*n, :2*n))
-         a(:2*n, 2*n + 1) = -column%arm
-         a(2*n + 1, :2*n) = column%arm
-         b(:, 1) = 0.0_wp
-         b(:2*n, 2) = r
-         b(2*n + 1, :) = [1.0_wp, gap]
-         call solve_general(a, b, regular)
-         rate = b(:2*n, 1)
-         correction = b(:2*n, 2)
-         force = b(2*n + 1, :)
-      end subroutine follow_displacement
-
-      subroutine follow_force()
-         real(wp) :: a(2*n, 2*n), b(2*n, 2)
-
-         call fill(a)
-         regular = is_positive(a)
-         if (.not. regular) return
-         b(:, 1) = column%arm
-         b(:, 2) = r
-         call solve_general(a, b, regular)
-         rate = b(:, 1)
-         correction = b(:, 2)
-      end subroutine follow_force
-
-      !> Slips and rotations relative to the largest, as the residual has entries of different size.
-      subroutine compare(drive)
-         character(len=*), intent(in) :: drive
-
-         do i = 1, 2
-            associate (first => (i - 1)*n + 1, last => i*n)
-               largest = [maxval(abs(rate(first:last))), maxval(abs(correction(first:last)))]
-               call check_close(error, rate_band(first:last), rate(first:last), 0.0_wp, &
-                                1.0e-10_wp*largest(1), 'rates by '//drive)
-               call check_close(error, band%correction(first:last), correction(first:last), 0.0_wp, &
-                                1.0e-10_wp*largest(2), 'corrections by '//drive)
-            end associate
-         end do
-      end subroutine compare
-
-   end subroutine bands
 
    !> The spring stands on the end of its line, so that the joints move the top a little farther.
    subroutine nearly_yield(error)

@@ -13,7 +13,6 @@ import time as clock
 import numpy as np
 import pytest
 from reference_chain import Linear, as_initial
-from scipy.integrate import solve_ivp
 
 import rbsdem
 from rbsdem import _core
@@ -88,81 +87,6 @@ def test_energy_residual_falls_with_its_order(kinematics, damping, order):
     assert np.all(np.abs(orders(residuals) - order) < 0.1), orders(residuals)
 
 
-def bilinear_reference(column, velocity, times):
-    """One body, two bilinear springs: solved from event to event with located events.
-
-    Spring force k_post d + (k - k_post)(d - s), |d - s| <= d_y; s stays (elastic) or comes along
-    (yielding) until the velocity turns.
-    """
-    springs = (column.shear, column.flexure)
-    mass, length = column.mass, column.height
-    matrix = np.array([[mass, mass * length / 2], [mass * length / 2, mass * length**2 / 3]])
-    inverse = np.linalg.inv(matrix)
-    plastic, way = np.zeros(2), np.zeros(2)
-
-    def rates(t, y):
-        force = np.empty(2)
-        for i, s in enumerate(springs):
-            stretch = way[i] * s.d_y if way[i] else y[i] - plastic[i]
-            force[i] = s.k_post * y[i] + (s.k - s.k_post) * stretch
-        return np.concatenate([y[2:], -inverse @ force])
-
-    def event(i):
-        def reached(t, y):
-            if way[i]:
-                return way[i] * y[2 + i]
-            return springs[i].d_y - abs(y[i] - plastic[i])
-
-        reached.terminal, reached.direction = True, -1
-        return reached
-
-    events = [event(0), event(1)]
-    now, state = 0.0, np.concatenate([np.zeros(2), velocity])
-    rows, count = [], 0
-    while now < times[-1]:
-        part = solve_ivp(
-            rates, (now, times[-1]), state, "DOP853", dense_output=True, events=events,
-            rtol=1e-12, atol=1e-15,
-        )  # fmt: skip
-        inside = times[(times >= now) & (times < part.t[-1])]
-        rows.extend(part.sol(t)[:2] for t in inside)
-        now, state = part.t[-1], part.y[:, -1]
-        for i, found in enumerate(part.t_events):
-            if len(found) == 0:
-                continue
-            count += 1
-            if way[i]:
-                plastic[i] = state[i] - way[i] * springs[i].d_y
-                way[i] = 0.0
-            else:
-                way[i] = np.sign(state[i] - plastic[i])
-    rows.append(state[:2])
-    return np.array(rows), count
-
-
-def test_bilinear_column_converges_to_the_solution_with_located_events():
-    """Springs change their line at the end of a step: order 2, not 4; no two steps are alike."""
-    column = rbsdem.Column(2.0, 500.0, Bilinear(4e6, 2e-3, 4e5), Bilinear(9e6, 3e-3, 1e6))
-    times = np.linspace(0, 0.4, 21)
-    velocity = [0.3, 0.4]
-    expected, events = bilinear_reference(column, velocity, times)
-    assert len(expected) == len(times)
-    assert events > 10
-    start = {"slip_velocity": velocity[:1], "rotation_velocity": velocity[1:]}
-    steps = 0.02 / 2 ** np.arange(5, 13)
-    errors, residuals = [], []
-    for dt in steps:
-        run = rbsdem.time_history(column, times, dt=dt, initial=start, method="rk4")
-        got = np.hstack([run.slip, run.rotation])
-        errors.append(np.max(np.abs(got - expected)) / np.max(np.abs(expected)))
-        residuals.append(run.summary["relative_energy_residual"])
-    slope = np.polyfit(np.log(steps), np.log(errors), 1)[0]
-    assert slope > 1.8, (slope, errors)
-    assert errors[-1] < 1e-7
-    slope = np.polyfit(np.log(steps), np.log(residuals), 1)[0]
-    assert slope > 1.8, (slope, residuals)
-
-
 @pytest.mark.parametrize("ratio", [0.02, 0.5, 0.75, 1.0, 2.0])
 def test_step_just_below_the_limit_stays_bounded_when_springs_yield(ratio):
     """Stiffness damping stays when a spring yields, `ratio` is that of the highest mode."""
@@ -195,33 +119,6 @@ def test_no_step_given(factor):
     parts = np.ceil(np.diff(times) / (limit / 5) * (1 - 1e-6))
     assert run.summary["steps"] == parts.sum()
     assert 0 < run.summary["time_step"] <= limit / 5 * (1 + 1e-9)
-
-
-def test_step_that_divides_keeps_rows_at_the_times():
-    column = linear_column(1)
-    times = np.array([1.0, 1.25, 1.5, 2.5]) * 0.01
-    run = rbsdem.time_history(column, times, force=[0, 1e3, 0, 0], dt=0.01 / 64, method="rk4")
-    assert np.array_equal(run.time, times)
-    assert run.summary["steps"] == 96
-    again = rbsdem.time_history(
-        column, times, force=[0, 1e3, 0, 0], dt=0.01 / 64 * (1 + 1e-12), method="rk4"
-    )
-    assert np.array_equal(again.time, times)
-
-
-def test_step_that_does_not_divide_keeps_a_row_after_each():
-    column = linear_column(1)
-    times = np.array([0.5, 0.6, 0.63])
-    dt = 0.0007
-    run = rbsdem.time_history(column, times, force=[0, 1e3, 0], dt=dt, method="rk4")
-    assert run.summary["steps"] == 186
-    np.testing.assert_allclose(run.time[:-1], 0.5 + dt * np.arange(186), rtol=1e-14)
-    assert run.time[-1] == 0.63
-    np.testing.assert_allclose(run.force, np.interp(run.time, times, [0, 1e3, 0]), atol=1e-9)
-    long = rbsdem.time_history(
-        column, [0.0, 1e-4, 2e-4, 1e-3], force=[0, 1, 2, 3], dt=4e-4, method="rk4"
-    )
-    np.testing.assert_allclose(long.time, [0, 4e-4, 8e-4, 1e-3], rtol=1e-14)
 
 
 def test_no_load_no_motion():

@@ -55,7 +55,10 @@ def test_double_curvature_is_two_cantilevers(kinematics, flexure):
     Slips of the joints at both ends are along what the column stands on and hangs from.
     """
     shear = [Elastic(2e7), RIGID, RIGID]
-    half = cantilever(flexure, kinematics=kinematics, n=3, shear=shear)
+    half = cantilever(
+        flexure, kinematics=kinematics, n=3, shear=shear, lengths=[0.7, 0.5, 0.4],
+        masses=[300.0, 100.0, 200.0],
+    )  # fmt: skip
     whole = half.double_curvature()
     assert (whole.n, whole.height) == (5, 3.2)
     assert list(whole.joint_numbers) == [1, 2, 3, 4, 5, 6]

@@ -851,36 +851,6 @@ def test_driven_by_its_own_force(rng: Rng) -> None:
     )
 
 
-@relation(150, judged=0.5)
-def test_double_curvature_is_two_cantilevers(rng: Rng) -> None:
-    """Two halves that do the same are one: round-off.
-
-    Softening chooses a half. With second-order moments a joint that slips is not its own mirror:
-    the axial load stands on the body above.
-    """
-    column, loading = static_case(
-        rng, varying=False, kinematics="small", top="free", footing=None, top_mass=None,
-        self_weight=None, axial_spring=None, shear=None, flexure=None,
-    )  # fmt: skip
-    if "force" in loading:
-        raise Discard
-    try:
-        both = column.double_curvature()
-    except rbsdem.InputError:
-        raise Discard from None
-    n = column.n
-
-    def half() -> rbsdem.Result:
-        run = follow(both, {"displacement": 2 * loading["displacement"]})
-        names = ("slip", "rotation", "shear", "moment")
-        lower = {name: getattr(run, name)[:, :n] for name in names}
-        return replace(run, displacement=run.displacement / 2, **lower)
-
-    same_but_round_off(
-        lambda: follow(column, loading), half, lambda: follow(column, changed(loading))
-    )
-
-
 def motion_case(
     rng: Rng, *, settings: dict[str, Any] | None = None, **fixed: Any
 ) -> tuple[rbsdem.Column, dict[str, Any], dict[str, Any]]:

@@ -1,6 +1,6 @@
 """The Takeda and bilinear rules by hand and against an independent method; input of all springs.
 
-Further sequences by hand are in the Fortran suites `takeda` and `bilinear`. What holds for every
+Further sequences by hand are in the Fortran suite `takeda`. What holds for every
 rule to the last bit is in `test_invariants.py`. ``reference_springs`` is a second implementation
 written from the same rules.
 """
