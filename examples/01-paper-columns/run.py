@@ -272,7 +272,8 @@ def test_label(runs: dict[str, Run]) -> str:
 
 def one_part(runs: dict[str, Run]) -> Figure:
     """Draw the four panels of one model and drive."""
-    return plot.four_panels([panel(run) for run in runs.values()], test_label=test_label(runs))
+    panels = plot.four_panels([panel(run) for run in runs.values()], test_label=test_label(runs))
+    return panels[0].figure
 
 
 def both_models(drawn: dict[str, Run], paper: dict[str, Run]) -> Figure:

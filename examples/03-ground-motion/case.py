@@ -41,5 +41,5 @@ if "--no-plot" not in sys.argv:
     plot.loop(result.rotation[:, 0], result.moment[:, 0], ax=lower)
     # The loop is that of the hinge: rotations in mrad, moments in kN m.
     lower.set(xlabel="Rotation of the hinge (mrad)", ylabel="Base moment (kN m)")
-    plot.save(upper.figure, "ground_motion.png")
+    plot.save(upper, "ground_motion.png")
     print("wrote ground_motion.png")

@@ -50,7 +50,7 @@ moment = rbsdem.section.moment_curvature(pier, 2.5e6, curvature, confined=True)
 print("pier, kN m at 0, 10, ... 50 mrad/m:", *(f"{value / 1e3:.0f}" for value in moment))
 
 if "--no-plot" not in sys.argv:
-    rbsdem.plot.save(rbsdem.plot.section(section).figure, "section.png")
+    rbsdem.plot.save(rbsdem.plot.section(section), "section.png")
     rbsdem.plot.save(rbsdem.plot.section_springs(springs), "springs.png")
-    rbsdem.plot.save(rbsdem.plot.moment_curvature(confined).figure, "confined.png")
+    rbsdem.plot.save(rbsdem.plot.moment_curvature(confined), "confined.png")
     print("wrote section.png, springs.png, confined.png")

@@ -34,5 +34,5 @@ print(f"\nyield moment {spring.k_c * spring.d_c + spring.k_y * (spring.d_y - spr
 
 if "--no-plot" not in sys.argv:
     axes = rbsdem.plot.calibration(fit)
-    rbsdem.plot.save(axes[0].figure, "calibrate.png")
+    rbsdem.plot.save(axes, "calibrate.png")
     print("wrote calibrate.png")

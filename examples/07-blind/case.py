@@ -68,5 +68,5 @@ if "--no-plot" not in sys.argv:
         height=specimen.length,
         test_points=history is None,
     )
-    rbsdem.plot.save(ax.figure, "blind.png")
+    rbsdem.plot.save(ax, "blind.png")
     print("wrote blind.png")

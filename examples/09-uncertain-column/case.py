@@ -77,5 +77,5 @@ if "--no-plot" not in sys.argv:
     with plot.style():
         ax.legend(loc="lower right")
         ax.set_title("")
-    plot.save(ax.figure, "uncertain.png")
+    plot.save(ax, "uncertain.png")
     print("wrote uncertain.png")

@@ -50,11 +50,11 @@ print(
 if "--no-plot" not in sys.argv:
     row = int(np.argmax(result.displacement))
     figures = {
-        "states": plot.limit_states(states).figure,
-        "section_state": plot.section_state(result, float(result.time[row]))[0].figure,
-        "codes": plot.code_comparison(beside).figure,
-        "interaction": plot.interaction(strength, demand=[(LOAD, demand)]).figure,
-        "envelope": plot.envelope(result.envelope(), method="asce_41").figure,
+        "states": plot.limit_states(states),
+        "section_state": plot.section_state(result, float(result.time[row])),
+        "codes": plot.code_comparison(beside),
+        "interaction": plot.interaction(strength, demand=[(LOAD, demand)]),
+        "envelope": plot.envelope(result.envelope(), method="asce_41"),
     }
     for name, figure in figures.items():
         for path in plot.save(figure, f"{name}.png"):

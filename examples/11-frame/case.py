@@ -63,5 +63,5 @@ if "--no-plot" not in sys.argv:
         "drifts": plot.storey_drift(quake),
     }
     for name, axes in figures.items():
-        for path in plot.save(axes.figure, f"{name}.png"):
+        for path in plot.save(axes, f"{name}.png"):
             print(f"wrote {path}")

@@ -12,10 +12,15 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from itertools import count
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
 
 from rbsdem import _arguments
 from rbsdem.errors import InputError
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 #: Bytes of a name that go into the temporary name, so that this does not become too long.
 _LONGEST = 180
@@ -95,12 +100,77 @@ def write_csv(path: str | os.PathLike[str], rows: Iterable[Sequence[object]]) ->
         file.write(text.getvalue().encode())
 
 
+class Tabular:
+    """A record with a table: `to_pandas` makes it, all other forms follow from that one.
+
+    As text it is one line: its numbers, and the range of each array.
+    """
+
+    __slots__ = ()
+
+    #: The attributes with their units, as "force N", of a table that is no more than those.
+    _columns: ClassVar[tuple[str, ...]] = ()
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the table as a DataFrame in SI, with units in the names of its columns."""
+        return data_frame(
+            {name.replace(" ", "_"): getattr(self, name.split()[0]) for name in self._columns}
+        )
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write the table as csv with six digits, whole or not at all.
+
+        Parameters
+        ----------
+        path : path
+            File to write.
+        """
+        save_frame(self.to_pandas(), path)
+
+    def __repr__(self) -> str:
+        names = getattr(self, "__dataclass_fields__", {})
+        units = dict(name.partition(" ")[::2] for name in self._columns)
+        parts = [_part(name, getattr(self, name), units.get(name, "")) for name in names]
+        return f"{type(self).__name__}({', '.join(filter(None, parts))})"
+
+
+def _part(name: str, value: Any, unit: str) -> str:
+    """Return a number, a word or the range of an array with its name; "" for what is long."""
+    if isinstance(value, np.ndarray) and value.size and value.dtype.kind in "fi":
+        return f"{name} {np.nanmin(value):.4g} to {np.nanmax(value):.4g} {unit}".rstrip()
+    if isinstance(value, float):
+        return f"{name} {value:.4g}"
+    return f"{name} {value}" if isinstance(value, (str, int)) else ""
+
+
+def data_frame(data: Any, columns: Sequence[str] | None = None) -> pd.DataFrame:
+    """Return a DataFrame of columns by their names, or of rows."""
+    import pandas  # noqa: PLC0415
+
+    return pandas.DataFrame(data, columns=columns)
+
+
+def save_frame(frame: pd.DataFrame, path: str | os.PathLike[str]) -> None:
+    """Write a DataFrame as csv with six digits, whole or not at all.
+
+    Parameters
+    ----------
+    frame : DataFrame
+        The table; its index is left out unless it has a name.
+    path : path
+        File to write, as by `write_csv`.
+    """
+    if frame.index.name is not None:
+        frame = frame.reset_index()
+    write_csv(path, [list(frame.columns), *frame.itertuples(index=False, name=None)])
+
+
 def write_figure(drawn: Any, path: str | os.PathLike[str], **options: Any) -> None:
     """Write a figure of matplotlib, whole or not at all.
 
     Parameters
     ----------
-    drawn : matplotlib Figure or Axes
+    drawn : matplotlib Figure or Axes, or array of Axes
         The figure, or axes of it.
     path : path
         File to write; its ending says in which format.
@@ -109,7 +179,7 @@ def write_figure(drawn: Any, path: str | os.PathLike[str], **options: Any) -> No
     """
     ending = Path(path).suffix.lower().lstrip(".")
     with atomic_write(path) as file:
-        drawn.figure.savefig(file, format=ending or "png", **options)
+        np.ravel(drawn)[0].figure.savefig(file, format=ending or "png", **options)
 
 
 def escape_formula(text: str) -> str:

@@ -104,6 +104,6 @@ def read_rows(path: Path) -> list[dict[str, str]]:
 def printed(thing: Any) -> str:
     """Return a record as the terminal shows its table."""
     text = io.StringIO()
-    shown = plot.table(thing) if hasattr(thing, "to_frame") else thing
+    shown = plot.table(thing) if hasattr(thing, "to_pandas") else thing
     Console(file=text, width=200).print(shown)
     return text.getvalue()

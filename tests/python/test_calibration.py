@@ -448,7 +448,7 @@ def test_report():
     assert f"{fit.evaluations} analyses" in text
     assert f"{fit.values['flexure.k_y']:.4g}" in text
     assert max(map(len, text.splitlines())) <= 110
-    frame = fit.to_frame()
+    frame = fit.to_pandas()
     assert list(frame["name"]) == list(fit.values)
     assert list(frame["value"]) == list(fit.values.values())
 

@@ -265,7 +265,7 @@ def test_a_response_beside_the_codes():
     # Without second-order effects the yield force is M_y/L.
     assert found["largest_force"]["ASCE 41"] == pytest.approx(625.599e3 / 1.5, rel=1e-5)
     assert found["bar_buckling"]["Berry"] == values["berry.buckling"]
-    table = found.to_frame()
+    table = found.to_pandas()
     assert table.loc["strength_loss", "test"] == pytest.approx(0.055)
 
 

@@ -197,7 +197,7 @@ def test_measures_of_functions() -> None:
 def test_table() -> None:
     pytest.importorskip("pandas")
     found = rbsdem.ensemble({"a": column()}, motion(1), scales=[1.0, 2.0], method="newmark")
-    table = found.to_frame()
+    table = found.to_pandas()
     assert list(table.columns) == ["column", "motion", "scale", "status", *MEASURES, "error"]
     assert list(table["column"]) == ["a", "a"]
     assert table["steps"].dtype.kind == "i"

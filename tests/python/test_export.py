@@ -91,7 +91,7 @@ def test_layers_and_a_case_come_back_too(tmp_path):
 def test_frame_has_the_columns_of_the_csv(tmp_path, name):
     pytest.importorskip("pandas")
     result = RESULTS[name]
-    frame = result.to_frame()
+    frame = result.to_pandas()
     result.to_csv(tmp_path / "a.csv")
     names = (tmp_path / "a.csv").read_text().splitlines()[3].split(",")
     assert list(frame.columns) == names
@@ -182,5 +182,5 @@ def test_residual_drift_in_time_is_that_of_an_ensemble():
     motion = np.where(time < 1.0, 4.0 * np.sin(9 * time), 0.0)
     shaken = rbsdem.time_history(column, time, ground_acceleration=motion)
     runs = rbsdem.ensemble(column, [(time, motion)])
-    assert abs(shaken.residual_drift) == runs.to_frame()["residual_drift"][0] > 1e-4
+    assert abs(shaken.residual_drift) == runs.to_pandas()["residual_drift"][0] > 1e-4
     assert shaken.drift == pytest.approx(shaken.displacement / 2.0)

@@ -267,7 +267,7 @@ def test_springs_from_the_ground_and_members_by_name():
     assert member.axial[0] == pytest.approx(free.parts.compression[1], rel=0.2)
     with pytest.raises(rbsdem.InputError, match=r"member = 'C-9-1' .*did you mean 'C-"):
         plain.member("C-9-1")
-    table = plain.to_frame()
+    table = plain.to_pandas()
     assert table["moment_from_C-2-1_Nm"][0] == member.moment[0, 0]
 
 

@@ -282,6 +282,6 @@ def test_the_motion_of_the_top_in_tables_files_and_summary(tmp_path):
     assert moved.summary["peak_floor_acceleration"] == peak
     moved.save(tmp_path / "moved.npz")
     assert rbsdem.read_result(tmp_path / "moved.npz") == moved
-    frame = moved.to_frame()
+    frame = moved.to_pandas()
     assert np.array_equal(frame["velocity_m/s"], moved.velocity)
     assert np.array_equal(frame["acceleration_m/s2"], moved.acceleration)

@@ -12,10 +12,10 @@ from samples import read_rows, write_history, write_table
 
 import rbsdem
 from rbsdem import peer, plot
+from rbsdem._files import save_frame
 from rbsdem.cli import main
 from rbsdem.errors import AccuracyWarning
 from rbsdem.output import measured
-from rbsdem.output.tables import write_csv
 
 DRIFTS = (0.005, 0.015)
 PATH = 1.6 * rbsdem.protocol(DRIFTS, cycles=1)
@@ -54,7 +54,7 @@ def test_one_test(table: peer.Specimens) -> None:
     assert row.comparison.peak_ratio == pytest.approx(1 / 1.05)
     # 5 % are within the band of nominally equal specimens.
     assert row.points_within == 1.0
-    assert len(plot.prediction(row).axes) == 2
+    assert len(plot.prediction(row)) == 2
     assert measured.numbers_table(row).row_count >= 8
 
 
@@ -64,7 +64,7 @@ def test_a_column_that_nobody_tested(table: peer.Specimens, folder: Path) -> Non
     assert (row.status, row.comparison) == ("completed", None)
     assert math.isnan(row.points_within)
     assert row.nearest[0].specimen.name == "T4"
-    assert len(plot.prediction(row).axes) == 2
+    assert len(plot.prediction(row)) == 2
     high = replace(mine, concrete_strength=140e6)
     with pytest.warns(AccuracyWarning, match="concrete strength = 140 MPa is outside"):
         assert peer.predict(high, displacement=PATH).remarks
@@ -104,7 +104,7 @@ def test_folder_goes_on_with_the_same_bits(folder: Path, tmp_path: Path) -> None
     # Another number of samples is another prediction.
     assert peer.predict(tests[:1], bands=True, samples=9, store=store).resumed == 0
     for number, found in enumerate((whole, rest)):
-        write_csv(found.bands(), tmp_path / f"{number}.csv")
+        save_frame(found.bands(), tmp_path / f"{number}.csv")
         found.paths_to_csv(tmp_path / f"bands{number}")
     assert (tmp_path / "0.csv").read_text() == (tmp_path / "1.csv").read_text()
     assert (tmp_path / "bands0/T3.csv").read_text() == (tmp_path / "bands1/T3.csv").read_text()

@@ -20,12 +20,12 @@ from samples import printed, read_rows, write_history, write_table
 
 import rbsdem
 from rbsdem import peer
+from rbsdem._files import save_frame
 from rbsdem.cli import main
 from rbsdem.errors import InputError
 from rbsdem.measured import predict, predictions
 from rbsdem.measured.predictions import PredictionStore
 from rbsdem.output import measured
-from rbsdem.output.tables import write_csv
 from rbsdem.springs import Bilinear, Takeda
 
 PATIENCE = 60.0
@@ -88,7 +88,7 @@ def run(*arguments: object) -> int:
 
 
 def record(row: peer.Prediction) -> str:
-    return repr(peer.Predictions([row]).to_frame().iloc[0].to_dict())
+    return repr(peer.Predictions([row]).to_pandas().iloc[0].to_dict())
 
 
 def test_scores_of_a_model_that_is_a_factor_off(table):
@@ -222,8 +222,8 @@ def test_summary_by_groups_and_files(table, tmp_path):
     assert list(found.summary("series").index) == ["Me 1991", "Me 1990", "all"]
     with pytest.raises(InputError, match="by = 'colour'"):
         found.summary("colour")
-    write_csv(found.to_frame(), tmp_path / "results.csv")
-    write_csv(groups.reset_index(), tmp_path / "summary.csv")
+    found.to_csv(tmp_path / "results.csv")
+    save_frame(groups.reset_index(), tmp_path / "summary.csv")
     found.loops_to_csv(tmp_path / "loops")
     rows = read_rows(tmp_path / "results.csv")
     assert [row["status"] for row in rows] == [row.status for row in found]
@@ -335,10 +335,10 @@ def test_second_start_goes_on(table, tmp_path, monkeypatch):
         states = {state.name: abs(state.drift) for state in result.limit_states()}
         assert row.limit_states == states
         assert {"cracking", "first_yield"} <= states.keys()
-    cells = whole.to_frame().iloc[1]
+    cells = whole.to_pandas().iloc[1]
     assert cells["drift_first_yield"] == first[0].limit_states["first_yield"]
     assert math.isnan(cells["drift_axial_failure"])
-    assert "drift_first_yield" not in peer.predict(table[:1]).to_frame()
+    assert "drift_first_yield" not in peer.predict(table[:1]).to_pandas()
 
 
 def test_what_has_changed_is_done_again(table, tmp_path):

@@ -9,12 +9,14 @@ from typing import Any
 import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
+import pandas as pd
 import pytest
 from matplotlib.patches import Circle
-from samples import SECTION, printed
+from samples import EIGHT_BARS, SECTION, printed
 
 import rbsdem
 from rbsdem import codes, fragility, plot
+from rbsdem._files import Tabular
 from rbsdem.curves import Envelope
 from rbsdem.output import frames
 from rbsdem.section import shear
@@ -231,8 +233,9 @@ def test_four_panels_are_lettered_symmetric_and_written(tmp_path):
         half = (0.5 * points.displacement, points.force)
         panels.append(plot.Panel(section.specimen, half, points, section.length, True))
     before = dict(mpl.rcParams)
-    figure = plot.four_panels(panels)
-    for letter, ax, panel in zip("abcd", figure.axes, panels, strict=True):
+    grid = plot.four_panels(panels)
+    figure = grid[0].figure
+    for letter, ax, panel in zip("abcd", grid, panels, strict=True):
         assert ax.texts[0].get_text() == f"({letter}) {panel.title}"
         for low, high in (ax.get_xlim(), ax.get_ylim()):
             assert low == -high
@@ -245,6 +248,27 @@ def test_four_panels_are_lettered_symmetric_and_written(tmp_path):
     assert [file.name for file in files] == ["figure.png", "figure.pdf"]
     assert [file.read_bytes()[:4] for file in files] == [b"\x89PNG", b"%PDF"]
     assert dict(mpl.rcParams) == before
+
+
+def test_records_print_as_one_line_and_write_what_they_hold(figures, tmp_path):
+    """A line of numbers, no arrays; a table as text is that of rich; the csv is the DataFrame."""
+    assert str(SECTION) == (
+        "rectangle 400 x 400 mm, f'c 40 MPa, 8 bars of 20 mm (1.57 %, 450 MPa), "
+        "ties 10 mm at 80 mm, 400 MPa, cover 20 mm"
+    )
+    assert "8 bars of 25 mm" in str(EIGHT_BARS)
+    tables = [record for _, given, _ in figures.values() for record in given[:1]]
+    tables = [record for record in tables if isinstance(record, Tabular)] + [BENT.half_cycles()]
+    assert len(tables) > 10
+    for record in tables:
+        assert "\n" not in repr(record)
+        assert "array" not in repr(record)
+        assert str(plot.table(record)) == printed(record).rstrip("\n")
+        record.to_csv(tmp_path / "table.csv")
+        frame, read = record.to_pandas(), pd.read_csv(tmp_path / "table.csv")
+        assert len(read) == len(frame) > 0
+        for name in frame.select_dtypes("number"):
+            assert np.allclose(read[name], frame[name].replace(np.inf, np.nan), 1e-5, 0, True)
 
 
 def test_drawing_of_a_section():
@@ -279,7 +303,7 @@ def test_what_is_written_and_marked(figures):
     ax = plot.spread(band, test=band)
     assert (len(ax.lines), len(ax.collections)) == (3, 1)
     springs = rbsdem.section.springs(PAPER.section, 1.6, PAPER.axial_load)
-    assert len(plot.section_springs(springs).axes) == 2
+    assert len(plot.section_springs(springs)) == 2
     diagram = rbsdem.section.interaction(SECTION, "ec2")
     nominal, design, demand = plot.interaction(diagram, demand=[(1e6, -2e5)]).get_lines()[:3]
     assert nominal.get_ydata()[-1] == pytest.approx(1e-3 * diagram.axial_load[-1])
@@ -342,8 +366,8 @@ def test_records_as_tables():
         shown = printed(record)
         for word in words:
             assert word in shown
-    assert list(states.to_frame()["name"]) == states.names()
-    assert list(values.to_frame()["name"]) == values.names()
+    assert list(states.to_pandas()["name"]) == states.names()
+    assert list(values.to_pandas()["name"]) == values.names()
 
 
 def test_shape_and_moments_of_a_frame(figures):

@@ -24,7 +24,6 @@ from rbsdem.methods.physics import split_bodies
 from rbsdem.methods.scene import make_scene
 from rbsdem.methods.study import MethodStudy
 from rbsdem.output.methods import report
-from rbsdem.output.tables import write_csv
 from rbsdem.results.accuracy import Answer, at_times, common_interval, errors_of
 from rbsdem.springs import Bilinear, Compression, Elastic
 
@@ -379,7 +378,7 @@ def read(path: Path) -> list[dict[str, str]]:
 
 
 def test_csv_holds_the_table(shaken, tmp_path):
-    write_csv(shaken.to_frame(), tmp_path / "trade.csv")
+    shaken.to_csv(tmp_path / "trade.csv")
     rows = read(tmp_path / "trade.csv")
     assert len(rows) == len(shaken.rows)
     for written, row in zip(rows, shaken.rows, strict=True):
@@ -389,7 +388,7 @@ def test_csv_holds_the_table(shaken, tmp_path):
         if row.status == "completed":
             assert float(written["error"]) == pytest.approx(row.error, rel=1e-5)
             assert float(written["wall_time_s"]) == pytest.approx(row.seconds, rel=1e-5)
-    write_csv(shaken.physics.to_frame(), tmp_path / "physics.csv")
+    shaken.physics.to_csv(tmp_path / "physics.csv")
     rows = read(tmp_path / "physics.csv")
     assert [row["part"] for row in rows] == [effect.part for effect in shaken.physics.effects]
     assert not list(tmp_path.glob("*.partial"))

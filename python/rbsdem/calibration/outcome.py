@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rbsdem._arguments import Array
+from rbsdem._files import Tabular, data_frame
 from rbsdem.curves.scores import Comparison
 from rbsdem.model.column import Column
 
@@ -54,8 +55,8 @@ class Fitted:
     at_bound: str
 
 
-@dataclass(frozen=True, eq=False)
-class Calibration:
+@dataclass(frozen=True, repr=False, eq=False)
+class Calibration(Tabular):
     """A column fitted to a test.
 
     Attributes
@@ -139,11 +140,9 @@ class Calibration:
             lines += ["", *(f"Warning: {line}" for line in self.warnings)]
         return "\n".join(lines)
 
-    def to_frame(self) -> pd.DataFrame:
+    def to_pandas(self) -> pd.DataFrame:
         """Return a DataFrame with a row for each parameter: the attributes of `Fitted`."""
-        import pandas  # noqa: PLC0415
-
-        frame = pandas.DataFrame([asdict(fitted) for fitted in self.parameters])
+        frame = data_frame([asdict(fitted) for fitted in self.parameters])
         return frame.rename(columns={"unit": "unit_of_values"})
 
     def _correlations(self) -> list[str]:

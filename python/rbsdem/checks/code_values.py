@@ -12,6 +12,7 @@ import numpy as np
 
 from rbsdem import _arguments, _package
 from rbsdem._arguments import Array
+from rbsdem._files import Tabular, data_frame
 from rbsdem.checks import formulas
 from rbsdem.checks.formulas import Quantities, quantities
 from rbsdem.checks.limit_states import limit_states
@@ -61,7 +62,7 @@ class CodeValue:
     confirmed: bool = True
 
 
-class CodeValues:
+class CodeValues(Tabular):
     """The values of a column, by name and in the order of their sources.
 
     Parameters
@@ -94,11 +95,9 @@ class CodeValues:
         """Return the names."""
         return list(self._values)
 
-    def to_frame(self) -> pd.DataFrame:
+    def to_pandas(self) -> pd.DataFrame:
         """Return a DataFrame, a row for each value with its unit, meaning and source."""
-        import pandas  # noqa: PLC0415
-
-        return pandas.DataFrame([asdict(value) for value in self])
+        return data_frame([asdict(value) for value in self])
 
     def __repr__(self) -> str:
         return f"CodeValues({len(self)} values: {', '.join(self._values)})"
@@ -389,7 +388,7 @@ class Quantity:
     values: dict[str, float]
 
 
-class CodeComparison:
+class CodeComparison(Tabular):
     """A response, perhaps a test, and what codes and regressions say of the same column.
 
     Parameters
@@ -426,13 +425,11 @@ class CodeComparison:
     def __iter__(self) -> Iterator[Quantity]:
         return iter(self._rows.values())
 
-    def to_frame(self) -> pd.DataFrame:
+    def to_pandas(self) -> pd.DataFrame:
         """Return a DataFrame in SI: a row a quantity, a column a source that says anything."""
-        import pandas  # noqa: PLC0415
-
         rows = [{"quantity": row.name, "unit": row.unit} | row.values for row in self]
         sources = [source for source in SOURCES if any(source in row.values for row in self)]
-        frame = pandas.DataFrame(rows, columns=["quantity", "unit", *sources])
+        frame = data_frame(rows, columns=["quantity", "unit", *sources])
         return frame.set_index("quantity")
 
     def __repr__(self) -> str:

@@ -14,6 +14,7 @@ import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
+from rbsdem._files import Tabular, data_frame
 from rbsdem.checks.criteria import Criterion, criteria
 from rbsdem.curves.envelope import strength_loss_point
 from rbsdem.errors import InputError
@@ -60,7 +61,7 @@ class LimitState:
     source: str
 
 
-class LimitStates:
+class LimitStates(Tabular):
     """The limit states of a result in the order in which they are reached.
 
     Parameters
@@ -100,12 +101,10 @@ class LimitStates:
         """Return the drift, in size, at which a state is reached; NaN if it is not."""
         return abs(self[name].drift) if name in self else float("nan")
 
-    def to_frame(self) -> pd.DataFrame:
+    def to_pandas(self) -> pd.DataFrame:
         """Return a DataFrame, a row for each state: the attributes of `LimitState`."""
-        import pandas  # noqa: PLC0415
-
         names = list(LimitState.__dataclass_fields__)
-        frame = pandas.DataFrame([asdict(state) for state in self], columns=names)
+        frame = data_frame([asdict(state) for state in self], columns=names)
         units = {"time": "time_s", "displacement": "displacement_m", "force": "force_N"}
         return frame.rename(columns=units)
 

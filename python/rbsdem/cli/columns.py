@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, cast
 import click
 import numpy as np
 
-from rbsdem._files import write_figure
+from rbsdem._files import save_frame, write_figure
 from rbsdem._package import extra
 from rbsdem._tables import read_table
 from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
@@ -95,9 +95,9 @@ def trade(
     folder = output or case.with_name(f"{case.stem}-trade")
     folder.mkdir(parents=True, exist_ok=True)
     written = [folder / "trade.csv", folder / "physics.csv"]
-    tables.write_csv(study.to_frame(), written[0])
+    study.to_csv(written[0])
     physics = study.physics or Physics((), "", math.nan, math.nan)
-    tables.write_csv(physics.to_frame(), written[1])
+    physics.to_csv(written[1])
     figure = methods_output.save(study, folder / "trade.png", model.title)
     if figure is not None:
         written.append(figure)
@@ -204,7 +204,7 @@ def ensemble(
         allow_partial=True,
     )
     if "" not in runs.status:
-        tables.write_csv(runs.to_frame(), out / "runs.csv")
+        runs.to_csv(out / "runs.csv")
     if not quiet:
         counts = ", ".join(f"{number} {status}" for status, number in runs.counts.items())
         resumed = f", {runs.resumed} of them from the store" if runs.resumed else ""
@@ -435,15 +435,15 @@ def _write(
     import pandas as pd  # noqa: PLC0415
 
     written = [folder / "ida.csv", folder / "fractiles.csv", folder / "fragility.csv"]
-    tables.write_csv(analysis.runs.to_frame(), written[0])
+    analysis.runs.to_csv(written[0])
     level, fractiles = analysis.fractiles()
     names = [f"peak_drift_{share}" for share in (16, 50, 84)]
     values = {"intensity_m/s2": level, **dict(zip(names, fractiles, strict=True))}
-    tables.write_csv(pd.DataFrame(values), written[1])
-    tables.write_csv(frame, written[2])
+    save_frame(pd.DataFrame(values), written[1])
+    save_frame(frame, written[2])
     if parquet:
         written.append(folder / "ida.parquet")
-        tables.write_parquet(analysis.runs.to_frame(), written[-1])
+        tables.write_parquet(analysis.runs.to_pandas(), written[-1])
     figures = {
         "ida.png": ensemble_figures.ida(analysis),
         "fragility.png": ensemble_figures.fragilities(dict(curves)),

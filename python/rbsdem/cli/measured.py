@@ -13,7 +13,7 @@ import click
 import numpy as np
 
 from rbsdem._arguments import Array
-from rbsdem._files import write_figure
+from rbsdem._files import save_frame, write_figure
 from rbsdem.cli import FILE, FOLDER, INTERRUPTED, Command, Values, quiet, tell
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.measured.doubts import Checked
@@ -140,7 +140,7 @@ def _check(tests: Specimens, folder: Path | None) -> int:
     )
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
-        tables.write_csv(checked.by_test(), folder / "check.csv")
+        save_frame(checked.by_test(), folder / "check.csv")
         print(f"wrote {folder / 'check.csv'}")
     return 0
 
@@ -210,13 +210,13 @@ def _report(found: Predictions, by: str, quiet: bool) -> None:
 def written(found: Predictions, folder: Path, by: str, loops: bool) -> list[str]:
     """Write the files; return lines that say which."""
     files = [folder / "results.csv", folder / "summary.csv", folder / "gallery.html"]
-    tables.write_csv(found.to_frame(), files[0])
-    tables.write_csv(found.summary(by).reset_index(), files[1])
+    found.to_csv(files[0])
+    save_frame(found.summary(by).reset_index(), files[1])
     gallery(found, files[2])
     banded = any(row.band is not None for row in found)
     if banded:
         files.append(folder / "bands.csv")
-        tables.write_csv(found.bands(), files[-1])
+        save_frame(found.bands(), files[-1])
     files.append(contact_sheet(found, folder / "loops.png"))
     if banded:
         files.append(band_sheet(found, folder / "bands.png"))
@@ -313,7 +313,7 @@ def _write_columns(rows: Predictions, folder: Path) -> list[str]:
     """Write the files; return lines that say which."""
     folder.mkdir(parents=True, exist_ok=True)
     files = [folder / "numbers.csv"]
-    tables.write_csv(rows.bands(), files[0])
+    save_frame(rows.bands(), files[0])
     for row, name in zip(rows, loop_names([row.specimen.name for row in rows]), strict=True):
         target = folder / name.name
         if row.band is not None:

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
+from rbsdem._files import Tabular
 from rbsdem.curves.metrics import columns, work
 from rbsdem.errors import InputError
 
@@ -24,8 +25,8 @@ TURN = 0.02
 """Share of its largest absolute value by which a displacement turns back at a turning point."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class HalfCycles:
+@dataclass(frozen=True, repr=False, slots=True, eq=False)
+class HalfCycles(Tabular):
     """The half-cycles of one curve, in their order.
 
     Attributes
@@ -48,6 +49,16 @@ class HalfCycles:
         Equivalent viscous damping ratio E/(pi F d), with the energy E of the half-cycle and the
         force and displacement of its tip; NaN as for the stiffness.
     """
+
+    _columns = (
+        "row",
+        "displacement m",
+        "force N",
+        "peak_force N",
+        "energy J",
+        "stiffness N/m",
+        "damping",
+    )
 
     row: np.ndarray
     displacement: Array

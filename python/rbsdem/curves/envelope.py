@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
+from rbsdem._files import Tabular
 from rbsdem.curves.cycles import turning_points
 from rbsdem.curves.metrics import Curve, columns, loop_pair
 from rbsdem.errors import InputError
@@ -289,8 +290,8 @@ class Idealisation:
         return np.interp(displacement, x, (0.0, self.yield_force, self.end_force))
 
 
-@dataclass(frozen=True, eq=False)
-class Envelope:
+@dataclass(frozen=True, repr=False, eq=False)
+class Envelope(Tabular):
     """The envelope of a curve to one side, from zero; displacements and forces are unsigned.
 
     Attributes
@@ -302,6 +303,8 @@ class Envelope:
     force : ndarray, shape (k,)
         Forces there [N].
     """
+
+    _columns = ("displacement m", "force N")
 
     side: int
     displacement: Array

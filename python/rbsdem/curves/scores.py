@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
+from rbsdem._files import Tabular, data_frame
 from rbsdem.curves.cycles import HalfCycles, half_cycles, tip_rows
 from rbsdem.curves.envelope import strength_loss
 from rbsdem.curves.metrics import Curve, Loop, PathPoints, columns, loop_of, pair, ratio, rms
@@ -86,8 +87,8 @@ class _Ratios:
         return ratio(self.model.peak_displacement, self.test.peak_displacement)
 
 
-@dataclass(frozen=True, eq=False)
-class Comparison(_Ratios):
+@dataclass(frozen=True, repr=False, eq=False)
+class Comparison(_Ratios, Tabular):
     """A model that was driven through the displacements of a test, against the force of the test.
 
     Attributes
@@ -173,13 +174,11 @@ class Comparison(_Ratios):
     def _tips(self) -> np.ndarray:
         return tip_rows(self.displacement, self.test_force)
 
-    def to_frame(self) -> pd.DataFrame:
+    def to_pandas(self) -> pd.DataFrame:
         """Return a DataFrame with a row for each half-cycle, test and model side by side.
 
         What the model did not reach is NaN.
         """
-        import pandas  # noqa: PLC0415
-
         test, model = self.test_cycles, self.model_cycles
         columns: dict[str, Any] = {
             "cycle": [f"{1 + i // 2}{'ab'[i % 2]}" for i in range(len(test))],
@@ -191,9 +190,9 @@ class Comparison(_Ratios):
             reached[: len(model)] = getattr(model, name)[: len(test)]
             columns[f"test_{name}{unit}"] = getattr(test, name)
             columns[f"model_{name}{unit}"] = reached
-        return pandas.DataFrame(columns)
+        return data_frame(columns)
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         parts = [f"{name} {value:.3f}" for name, value in self.scores.items()]
         drifts = (self.test_drift_at_loss, self.model_drift_at_loss)
         lost = ", ".join("none" if math.isnan(drift) else f"{drift:.4f}" for drift in drifts)

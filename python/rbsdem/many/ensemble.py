@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
+from rbsdem._files import Tabular, data_frame
 from rbsdem.batch.work import (
     Cluster,
     EndRequest,
@@ -59,7 +60,7 @@ _LANES = 64
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Ensemble:
+class Ensemble(Tabular):
     """The runs of an ensemble, columns x motions x scales, the scales running fastest.
 
     Attributes
@@ -122,7 +123,7 @@ class Ensemble:
         found = {status: int((self.status == status).sum()) for status in STATUSES}
         return {status or "not started": number for status, number in found.items() if number}
 
-    def to_frame(self) -> pd.DataFrame:
+    def to_pandas(self) -> pd.DataFrame:
         """Return a DataFrame, a row for each run: what it is, its measures, its error."""
         import pandas  # noqa: PLC0415
 
@@ -138,7 +139,7 @@ class Ensemble:
         errors = pandas.Series("", index=range(len(self)), dtype=object)
         for run, text in self.errors.items():
             errors[run] = text
-        return pandas.DataFrame(values | {"error": errors})
+        return data_frame(values | {"error": errors})
 
     def history(self, run: int) -> Result:
         """Solve one run again, with its history; the bits are those of the run.
@@ -146,7 +147,7 @@ class Ensemble:
         Parameters
         ----------
         run : int
-            Its number, that of its row in `to_frame`, from 0.
+            Its number, that of its row in `to_pandas`, from 0.
 
         Returns
         -------
@@ -239,7 +240,7 @@ def ensemble(
     Returns
     -------
     Ensemble
-        Its `to_frame` has a row for each run.
+        Its `to_pandas` has a row for each run.
 
     Raises
     ------

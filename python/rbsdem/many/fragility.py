@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
+from rbsdem._files import Tabular
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.many.inputs import limit_states
 from rbsdem.many.lognormal import Bounds, bounds_of_counts, fit_bounds, fit_points
@@ -496,7 +497,7 @@ def _undetermined(bounds: Bounds) -> str:
 Curve = TypeVar("Curve", bound=Fragility)
 
 
-class Fragile(ABC, Generic[Curve]):
+class Fragile(Tabular, ABC, Generic[Curve]):
     """Runs that fragility curves can be fitted to, each in its own way."""
 
     runs: Runs
@@ -540,6 +541,6 @@ class Fragile(ABC, Generic[Curve]):
             )
         return {name: self._fit(name, *state, stated.get(name)) for name, state in states.items()}
 
-    def to_frame(self) -> pd.DataFrame:
+    def to_pandas(self) -> pd.DataFrame:
         """Return a DataFrame, a row for each run."""
-        return self.runs.to_frame()
+        return self.runs.to_pandas()

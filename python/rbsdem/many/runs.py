@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
+from rbsdem._files import Tabular, data_frame
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.many.ensemble import ensemble
@@ -168,8 +169,8 @@ class RunOptions(Solver, total=False):
     store: str | os.PathLike[str] | None
 
 
-@dataclass(frozen=True, eq=False)
-class Runs:
+@dataclass(frozen=True, repr=False, eq=False)
+class Runs(Tabular):
     """Runs with their intensities.
 
     Attributes
@@ -235,11 +236,9 @@ class Runs:
             values = np.isfinite(values).astype(float)
         return np.where(self.collapsed, np.inf, np.abs(values))
 
-    def to_frame(self) -> pd.DataFrame:
+    def to_pandas(self) -> pd.DataFrame:
         """Return a DataFrame, a row for each run; the intensity in the unit of its measure."""
-        import pandas  # noqa: PLC0415
-
-        return pandas.DataFrame(
+        return data_frame(
             {
                 "column": np.array(list(map(str, self.columns)), dtype=object)[self.column],
                 "motion": np.array(list(self.motions), dtype=object)[self.motion],

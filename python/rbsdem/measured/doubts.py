@@ -43,6 +43,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rbsdem._arguments import Array
+from rbsdem._files import Tabular, data_frame
 from rbsdem.errors import AccuracyWarning, RbsdemError
 from rbsdem.measured.drawing import checked_specimen, draw
 from rbsdem.measured.measured import MeasuredTest
@@ -272,8 +273,8 @@ class Doubt:
     code: int | None = None
 
 
-@dataclass(frozen=True)
-class Checked:
+@dataclass(frozen=True, repr=False)
+class Checked(Tabular):
     """Tests with their indicators and doubts.
 
     Attributes
@@ -308,10 +309,8 @@ class Checked:
             kept.append(replace(one.specimen, pdelta_code=codes[0]) if codes else one.specimen)
         return Specimens(kept)
 
-    def to_frame(self) -> pd.DataFrame:
+    def to_pandas(self) -> pd.DataFrame:
         """Return a DataFrame, a row for each doubt, the sure ones first."""
-        import pandas  # noqa: PLC0415
-
         rows = [
             {
                 "test": doubt.specimen.name,
@@ -323,12 +322,10 @@ class Checked:
             for doubt in sorted(self.doubts, key=lambda doubt: not doubt.sure)
         ]
         columns = ["test", "about", "certainty", "why", "for_the_second_score"]
-        return pandas.DataFrame(rows, columns=columns)
+        return data_frame(rows, columns=columns)
 
     def by_test(self) -> pd.DataFrame:
         """Return a DataFrame, a row for each test: its indicators and its doubts."""
-        import pandas  # noqa: PLC0415
-
         rows = []
         for one in self.indicators:
             s, doubts = one.specimen, self.of(one.specimen)
@@ -344,7 +341,7 @@ class Checked:
                     "code_instead": next((d.code for d in doubts if d.sure and d.code), None),
                 }
             )
-        return pandas.DataFrame(rows)
+        return data_frame(rows)
 
 
 def _remedy(doubt: Doubt) -> str:

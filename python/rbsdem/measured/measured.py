@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments, _core, _package
 from rbsdem._arguments import Array
+from rbsdem._files import Tabular
 from rbsdem.curves.metrics import Loop
 from rbsdem.errors import InputError
 
@@ -28,8 +29,8 @@ PDELTA_CODES = {
 """What the force column of a test means, by the P-Delta code of the database (manual, 3.3)."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class MeasuredTest:
+@dataclass(frozen=True, repr=False, slots=True, eq=False)
+class MeasuredTest(Tabular):
     """A measured history with its net horizontal force.
 
     Attributes
@@ -53,6 +54,8 @@ class MeasuredTest:
         Height at which the axial load acts, at the hinge of its ram [m].
     """
 
+    _columns = ("displacement m", "force N")
+
     name: str
     displacement: Array
     force: Array
@@ -62,6 +65,14 @@ class MeasuredTest:
     axial_load: float
     pdelta_code: int | None
     axial_height: float
+
+    def __repr__(self) -> str:
+        d, f = 1e3 * self.displacement, self.force / 1e3
+        return (
+            f"MeasuredTest({self.name}: {d.size} rows, {d.min():.4g} to {d.max():.4g} mm, "
+            f"{f.min():.4g} to {f.max():.4g} kN; length {self.length:.4g} m, "
+            f"N {self.axial_load / 1e3:.4g} kN)"
+        )
 
     @property
     def height(self) -> float:
@@ -189,8 +200,8 @@ def net_force(
     raise InputError(f"P-Delta code {code!r} is not known; there are {known}, and None")
 
 
-@dataclass(frozen=True)
-class PeerTest:
+@dataclass(frozen=True, repr=False)
+class PeerTest(Tabular):
     """A measured force-displacement history.
 
     Attributes
@@ -202,6 +213,8 @@ class PeerTest:
     force : ndarray, shape (m,)
         Force column of the file [N]; the P-Delta code of the test says what it means.
     """
+
+    _columns = ("displacement m", "force N")
 
     name: str
     displacement: Array

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from rbsdem._arguments import Array
-from rbsdem._files import atomic_write
+from rbsdem._files import Tabular, atomic_write, data_frame
 from rbsdem._package import code_digest
 from rbsdem.batch.store import JSON_LINES, Store, digest
 from rbsdem.checks.criteria import WATCHED
@@ -229,7 +229,7 @@ class Prediction:
         return self.band.holds(self.comparison.test_force)
 
 
-class Predictions(Sequence[Prediction]):
+class Predictions(Tabular, Sequence[Prediction]):
     """Predictions in the order of the tests.
 
     A sequence of `Prediction`: ``predictions[0]``, ``for row in predictions``; a text finds one as
@@ -330,8 +330,6 @@ class Predictions(Sequence[Prediction]):
         InputError
             If specimens have no such attribute.
         """
-        import pandas as pd  # noqa: PLC0415
-
         parts: dict[str, list[Prediction]] = {}
         for row in self._rows:
             try:
@@ -343,24 +341,20 @@ class Predictions(Sequence[Prediction]):
             parts.setdefault("not known" if value is None else str(value), []).append(row)
         groups = [{by: name} | _statistics(rows) for name, rows in parts.items()]
         groups.sort(key=lambda group: -group["tests"])
-        return pd.DataFrame([*groups, {by: "all"} | _statistics(self._rows)]).set_index(by)
+        return data_frame([*groups, {by: "all"} | _statistics(self._rows)]).set_index(by)
 
-    def to_frame(self) -> pd.DataFrame:
+    def to_pandas(self) -> pd.DataFrame:
         """Return a row for each test: properties that group tests, scores, times.
 
         If limit states were asked for, "drift_first_yield", "drift_spalling", ... are the drifts at
         which they are reached; NaN where they are not.
         """
-        import pandas as pd  # noqa: PLC0415
-
         states = any(row.limit_states is not None for row in self._rows)
-        return pd.DataFrame([_scores(row, states) for row in self._rows])
+        return data_frame([_scores(row, states) for row in self._rows])
 
     def bands(self) -> pd.DataFrame:
         """Return a row for each test that has a band: intervals, and what its test was."""
-        import pandas as pd  # noqa: PLC0415
-
-        return pd.DataFrame([band_record(row) for row in self._rows if row.band is not None])
+        return data_frame([band_record(row) for row in self._rows if row.band is not None])
 
     def paths_to_csv(self, folder: str | os.PathLike[str]) -> None:
         """Write the bands along the paths, a file for each test that has one.

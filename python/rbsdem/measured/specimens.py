@@ -14,6 +14,7 @@ from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, overload
 
 from rbsdem import _arguments
+from rbsdem._files import Tabular, data_frame
 from rbsdem.errors import InputError
 from rbsdem.measured.measured import MeasuredTest, PeerTest, net_force, read_peer, top_displacement
 from rbsdem.section.columns import CONCRETE_DENSITY
@@ -398,7 +399,7 @@ TABLE = "specimens.csv"
 """Name of the table in its folder."""
 
 
-class Specimens(Sequence[Specimen]):
+class Specimens(Tabular, Sequence[Specimen]):
     """Tested columns in the order of their table.
 
     A sequence of `Specimen`: ``table[0]``, ``for specimen in table``, ``table[:5]``. A text finds
@@ -486,12 +487,10 @@ class Specimens(Sequence[Specimen]):
             parts.setdefault(row.series, []).append(row)
         return {key: Specimens(rows) for key, rows in parts.items()}
 
-    def to_frame(self) -> pd.DataFrame:
+    def to_pandas(self) -> pd.DataFrame:
         """Return a row for each test."""
-        import pandas as pd  # noqa: PLC0415
-
         rows = [asdict(row) for row in self._rows]
-        return pd.DataFrame([{**row, **row.pop("observed")} for row in rows])
+        return data_frame([{**row, **row.pop("observed")} for row in rows])
 
     def _named(self, key: str) -> Specimen:
         for row in self._rows:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from rbsdem._files import Tabular, data_frame
 from rbsdem.errors import InputError
 from rbsdem.methods.ladder import LEVELS, Trials, too_expensive
 from rbsdem.methods.reference import Reference
@@ -92,8 +93,8 @@ class Effect:
         return max(abs(self.peak), abs(self.residual), abs(self.moment), abs(self.energy))
 
 
-@dataclass(frozen=True)
-class Physics:
+@dataclass(frozen=True, repr=False)
+class Physics(Tabular):
     """All effects, and the setting they were computed with.
 
     Attributes
@@ -113,10 +114,8 @@ class Physics:
     resolution: float
     tolerance: float
 
-    def to_frame(self) -> pd.DataFrame:
+    def to_pandas(self) -> pd.DataFrame:
         """Return a DataFrame with a row for each part of the model."""
-        import pandas  # noqa: PLC0415
-
         rows = [
             [
                 *(getattr(effect, name) for name in _COLUMNS.values()),
@@ -126,7 +125,7 @@ class Physics:
             ]
             for effect in self.effects
         ]
-        return pandas.DataFrame(rows, columns=[*_COLUMNS, "matters", "status", "reason"])
+        return data_frame(rows, columns=[*_COLUMNS, "matters", "status", "reason"])
 
 
 class Variant(NamedTuple):

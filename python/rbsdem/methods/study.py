@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
+from rbsdem._files import Tabular, data_frame
 from rbsdem.batch.work import progress_bar
 from rbsdem.errors import InputError, SolveError
 from rbsdem.methods.ladder import Budget, Trials, checked_methods, ladders, own_setting, probe
@@ -176,8 +177,8 @@ def choose(rows: Sequence[Row], runs: Sequence[Attempt], tolerance: float) -> Ch
     return Choice(tolerance, row, rows[runs.index(finer)], errors_of(run.answer, finer.answer))
 
 
-@dataclass(frozen=True)
-class MethodStudy:
+@dataclass(frozen=True, repr=False)
+class MethodStudy(Tabular):
     """Wall time against accuracy in one case.
 
     Attributes
@@ -215,10 +216,8 @@ class MethodStudy:
         """
         return cheapest(self.rows, tolerance)
 
-    def to_frame(self) -> pd.DataFrame:
+    def to_pandas(self) -> pd.DataFrame:
         """Return a DataFrame with a row for each setting: its cost, its errors, the front."""
-        import pandas  # noqa: PLC0415
-
         rows = [
             {
                 "method": row.setting.method,
@@ -242,7 +241,7 @@ class MethodStudy:
             }
             for row in self.rows
         ]
-        return pandas.DataFrame(rows).astype({"parts": "Int64"})
+        return data_frame(rows).astype({"parts": "Int64"})
 
 
 def compare_methods(

@@ -295,7 +295,7 @@ class FrameResult:
                 )
         return tuple(sorted(found, key=lambda event: event.step))
 
-    def to_frame(self) -> pd.DataFrame:
+    def to_pandas(self) -> pd.DataFrame:
         """Return a DataFrame, a row for each of the result, nodes and members by their names."""
         import pandas  # noqa: PLC0415
 
@@ -330,7 +330,7 @@ class FrameResult:
         """Write the rows as csv, whole or not at all."""
         from rbsdem._files import atomic_write  # noqa: PLC0415
 
-        text = self.to_frame().to_csv(index=False)
+        text = self.to_pandas().to_csv(index=False)
         with atomic_write(path) as file:
             file.write(f"# rbsdem {_core.version()}\n# {self.honesty}\n{text}".encode())
 

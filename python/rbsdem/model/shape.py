@@ -117,6 +117,27 @@ class Section(_Parts, ABC):
         """Name of the shape."""
         return f"hollow_{self.solid}" if self.hollow else self.solid
 
+    def __str__(self) -> str:
+        """One line: shape, sizes in mm, strengths in MPa, bars, transverse bars, cover."""
+        size = " x ".join(f"{1e3 * each:g}" for each in dict.fromkeys((self.width, self.depth)))
+        if self.solid != "circle" and self.width == self.depth:
+            size = f"{size} x {size}"
+        steels = sorted({steel.fy / 1e6 for _, _, steel in self.bars})
+        single = self.single_bars
+        sizes = " and ".join(sorted({f"{1e3 * diameter:.3g}" for _, diameter in single}))
+        hoops = "no ties"
+        if self.ties is not None:
+            hoops = (
+                f"{type(self.ties).__name__.lower()} {1e3 * self.ties.diameter:.3g} mm at "
+                f"{1e3 * self.ties.spacing:.3g} mm, {self.ties.steel.fy / 1e6:.4g} MPa"
+            )
+        return (
+            f"{self.shape.replace('_', ' ')} {size} mm, f'c {self.concrete.fc / 1e6:.4g} MPa, "
+            f"{len(single)} bars of {sizes} mm ({100 * self.steel_ratio:.2f} %, "
+            f"{' and '.join(f'{fy:.4g}' for fy in steels)} MPa), {hoops}, "
+            f"cover {1e3 * self.cover:.3g} mm"
+        )
+
     def _lay_out(self, layout: Layout, inset: float) -> list[Bar]:
         """Return the bars of the layouts; `inset` is from the face to the edge of the bars [m]."""
         bars, inner = layout.bars(self.solid, self.depth, inset), self.inner_layout
@@ -313,6 +334,16 @@ class Section(_Parts, ABC):
     def steel_area(self) -> float:
         """Area of all longitudinal bars [m2]."""
         return sum(area for _, area, _ in self.bars)
+
+    @property
+    def single_bars(self) -> list[tuple[float, float]]:
+        """The y and the diameter of every bar [m]; an entry of `bars` may be a row of several."""
+        bars = []
+        for y, area, _ in self.bars:
+            single = 0.25 * math.pi * (self.bar_diameter or 0.0) ** 2
+            count = max(1, round(area / single)) if single > 0.0 else 1
+            bars += [(y, 2.0 * math.sqrt(area / count / math.pi))] * count
+        return bars
 
     @property
     def steel_ratio(self) -> float:

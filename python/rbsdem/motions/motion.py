@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
-from rbsdem._files import atomic_write
+from rbsdem._files import Tabular, atomic_write
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem.errors import InputError
 
@@ -21,8 +21,8 @@ _SHORTEST = 1e-4
 _LONGEST = 1e4
 
 
-@dataclass(frozen=True, eq=False)
-class Spectrum:
+@dataclass(frozen=True, repr=False, eq=False)
+class Spectrum(Tabular):
     """Peaks of elastic oscillators under a ground motion.
 
     Attributes
@@ -36,6 +36,14 @@ class Spectrum:
     acceleration : ndarray, shape (n,)
         Largest absolute acceleration [m/s2].
     """
+
+    _columns = (
+        "period s",
+        "displacement m",
+        "velocity m/s",
+        "acceleration m/s2",
+        "pseudo_acceleration m/s2",
+    )
 
     period: Array
     damping: float

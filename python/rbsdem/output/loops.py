@@ -24,6 +24,7 @@ from rbsdem.output.style import (
     TEST_LINE,
     TEST_POINTS,
     ZERO_LINE,
+    AxesArray,
     axes_or_new,
     drift_axis,
     keep_letters,
@@ -34,7 +35,6 @@ from rbsdem.output.style import (
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 
 FIGURE_SIZE = (6.9, 6.0)
@@ -195,7 +195,7 @@ def loops_over_test(
 
 def four_panels(
     panels: Sequence[Panel], *, test_label: str = "Test", model_label: str = "Model"
-) -> Figure:
+) -> AxesArray:
     """Draw up to four loops over their tests, (a) to (d), in one figure.
 
     Parameters
@@ -207,8 +207,8 @@ def four_panels(
 
     Returns
     -------
-    matplotlib.figure.Figure
-        The figure, 175 mm wide; `save` writes it.
+    ndarray of matplotlib.axes.Axes
+        The panels, in a figure 175 mm wide; `save` writes it.
 
     Raises
     ------
@@ -252,7 +252,7 @@ def four_panels(
         )
         # Ticks and layout take their style when they are first drawn.
         figure.draw_without_rendering()
-    return figure
+    return grid[: len(panels)]
 
 
 def envelope(envelope: Envelope, *, method: Method | None = None, ax: Axes | None = None) -> Axes:
@@ -345,8 +345,8 @@ def _over_test(scores: Comparison, title: str, ax: Axes | None, line: dict[str, 
 
 
 def calibration(
-    fit: Calibration, *, axes: Sequence[Axes] | None = None, **line: Any
-) -> Sequence[Axes]:
+    fit: Calibration, *, axes: Sequence[Axes] | AxesArray | None = None, **line: Any
+) -> AxesArray:
     """Draw the loops before and after a calibration over the test, to the same scale.
 
     Parameters
@@ -360,7 +360,7 @@ def calibration(
 
     Returns
     -------
-    sequence of matplotlib.axes.Axes
+    ndarray of matplotlib.axes.Axes
         Before and after.
     """
     if axes is None:
@@ -373,7 +373,7 @@ def calibration(
     highest = max(ax.get_ylim()[1] for ax in axes)
     for ax in axes:
         ax.set_ylim(-highest, highest)
-    return axes
+    return np.asarray(axes)
 
 
 def code_comparison(found: CodeComparison, *, ax: Axes | None = None) -> Axes:

@@ -18,8 +18,10 @@ from rbsdem.output.style import (
     MODEL_LINE,
     TEST_LINE,
     ZERO_LINE,
+    AxesArray,
     axes_or_new,
     line_of,
+    new_axes,
     style,
 )
 from rbsdem.output.tables import table
@@ -27,7 +29,6 @@ from rbsdem.section.spread import Spread
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
     from rich.table import Table
 
 
@@ -80,7 +81,7 @@ def spread(found: Spread, *, test: Any = None, ax: Axes | None = None, **line: A
         return drawn
 
 
-def prediction(row: Prediction) -> Figure:
+def prediction(row: Prediction) -> AxesArray:
     """Draw loop and band of a prediction, and the test if there is one.
 
     Parameters
@@ -90,14 +91,11 @@ def prediction(row: Prediction) -> Figure:
 
     Returns
     -------
-    matplotlib.figure.Figure
+    ndarray of matplotlib.axes.Axes
         The loop, and the band along the path.
     """
-    from matplotlib.figure import Figure  # noqa: PLC0415
-
     with style():
-        figure = Figure(figsize=(8.6, 3.4), layout="constrained")
-        left, right = figure.subplots(1, 2, width_ratios=(1.0, 1.7))
+        left, right = axes = new_axes(1, 2, (8.6, 3.4), width_ratios=(1.0, 1.7))
         test = row.comparison
         if row.band is not None:
             d, force = row.band.displacement, row.band.force
@@ -117,13 +115,13 @@ def prediction(row: Prediction) -> Figure:
         else:
             right.set_axis_off()
         s = row.specimen
-        figure.suptitle(
+        left.figure.suptitle(
             f"{s.name}: axial load ratio {s.axial_load_ratio:.2f}, "
             f"span over depth {s.span_depth_ratio:.2f}, "
             f"concrete {1e-6 * s.concrete_strength:.0f} MPa",
             fontsize="medium",
         )
-    return figure
+    return axes
 
 
 def band_sheet(predictions: Predictions, path: str | os.PathLike[str]) -> Path:

@@ -202,7 +202,7 @@ def report(study: MethodStudy, title: str) -> None:
     if study.physics is not None:
         physics = study.physics
         say("\nWhat each part of the model changes, the others as given:\n")
-        out.print(table(physics.to_frame().drop(columns=["response_rms", "status", "reason"])))
+        out.print(table(physics.to_pandas().drop(columns=["response_rms", "status", "reason"])))
         say(f"\nSolved by {physics.setting}, error {physics.resolution:.1e}. What changes peak,")
         say(f"base moment, energy or residual by more than {physics.tolerance:g} matters.")
         for effect in physics.effects:

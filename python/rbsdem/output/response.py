@@ -13,7 +13,15 @@ from rbsdem._arguments import Array
 from rbsdem.errors import InputError
 from rbsdem.model.column import bodies
 from rbsdem.model.response import ENERGIES, Response
-from rbsdem.output.style import MODEL_LINE, ZERO_LINE, axes_or_new, line_of, new_axes, style_of
+from rbsdem.output.style import (
+    MODEL_LINE,
+    ZERO_LINE,
+    AxesArray,
+    axes_or_new,
+    line_of,
+    new_axes,
+    style_of,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -120,8 +128,11 @@ def energy(result: Response, *, ax: Axes | None = None) -> Axes:
 
 
 def profile(
-    result: Response, time: ArrayLike | None = None, *, axes: Sequence[Axes] | None = None
-) -> list[Axes]:
+    result: Response,
+    time: ArrayLike | None = None,
+    *,
+    axes: Sequence[Axes] | AxesArray | None = None,
+) -> AxesArray:
     """Draw drift, shear and moment over the height at chosen moments.
 
     The displacement of a body is straight between its ends, with a step where a joint slips. Shears
@@ -140,7 +151,7 @@ def profile(
 
     Returns
     -------
-    list of matplotlib.axes.Axes
+    ndarray of matplotlib.axes.Axes
         For the drift, the shear and the moment.
 
     Raises
@@ -176,7 +187,7 @@ def profile(
             ax.tick_params(right=True, top=True)
         axes[0].set_ylabel("Height (m)")
         axes[0].legend(loc="best", handlelength=2.0)
-    return list(axes)
+    return np.asarray(axes)
 
 
 def _lengths(result: Response) -> Array:

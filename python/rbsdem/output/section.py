@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, get_args
 
@@ -20,6 +19,7 @@ from rbsdem.output.style import (
     TEST_LINE,
     TEST_POINTS,
     ZERO_LINE,
+    AxesArray,
     axes_or_new,
     line_of,
     new_axes,
@@ -35,7 +35,6 @@ from rbsdem.section.shear import ShearDiagram, ShearSpring
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 
 EVENT_MARKS: dict[str, dict[str, Any]] = {
@@ -124,7 +123,7 @@ def _dress(ax: Axes) -> None:
     ax.legend(loc="lower right", handletextpad=0.3)
 
 
-def section_springs(springs: SectionSprings) -> Figure:
+def section_springs(springs: SectionSprings) -> Axes | AxesArray:
     """Draw the diagrams of a section and the lines of the springs (figure 2 of the paper).
 
     Parameters
@@ -134,17 +133,14 @@ def section_springs(springs: SectionSprings) -> Figure:
 
     Returns
     -------
-    matplotlib.figure.Figure
+    matplotlib.axes.Axes or ndarray of them
         Shear force against shear strain, where there is a shear diagram, and moment against
-        curvature; `rbsdem.plot.save` writes it.
+        curvature.
     """
-    from matplotlib.figure import Figure  # noqa: PLC0415
-
     drawing, events = springs.section, springs.events
     with style():
         panels = 1 if springs.shear_fit is None else 2
-        figure = Figure(figsize=(3.5 * panels, 2.9), layout="constrained")
-        axes = figure.subplots(1, panels, squeeze=False)[0]
+        axes = new_axes(1, panels, (3.5 * panels, 2.9))
         assert events.ultimate is not None
         if springs.shear_fit is not None:
             found = shear.shear_diagram(
@@ -174,7 +170,7 @@ def section_springs(springs: SectionSprings) -> Figure:
             ax.plot(1e3 * curvature, moments / 1e3, **look, label=label)
         _draw_events(events, last, ax, ("cracking", "yielding", "ultimate"))
         _dress(ax)
-    return figure
+    return axes if panels > 1 else ax
 
 
 def section(section: Section, *, ax: Axes | None = None) -> Axes:
@@ -205,7 +201,7 @@ def section(section: Section, *, ax: Axes | None = None) -> Axes:
         if section.hollow:
             empty = {**_OUTLINE, "facecolor": "white"}
             drawn.add_patch(Polygon(1e3 * section.void(), zorder=2.4, **empty))
-        for x, y, diameter in section.place_bars(_single_bars(section)):
+        for x, y, diameter in section.place_bars(section.single_bars):
             drawn.add_patch(Circle((1e3 * x, -1e3 * y), 0.5e3 * diameter, zorder=3, **_BAR))
         reach_x, reach_y = 0.54 * w, 0.54 * h
         drawn.set(xlim=(-reach_x, reach_x), ylim=(-reach_y, reach_y))
@@ -229,16 +225,6 @@ def hoop_lines(section: Section) -> list[Array]:
     if section.hollow:
         lines += [section.void(section.cover + inset) for inset in (thickness, 0.0)]
     return lines
-
-
-def _single_bars(section: Section) -> list[tuple[float, float]]:
-    """Return y and diameter of every bar [m]; an entry of `bars` may be a row of several."""
-    bars = []
-    for y, area, _ in section.bars:
-        single = 0.25 * math.pi * (section.bar_diameter or 0.0) ** 2
-        count = max(1, round(area / single)) if single > 0.0 else 1
-        bars += [(y, 2.0 * math.sqrt(area / count / math.pi))] * count
-    return bars
 
 
 def shear_diagram(
@@ -344,8 +330,8 @@ def interaction(
 
 
 def section_state(
-    result: Response, time: float, *, axes: Sequence[Axes] | None = None
-) -> list[Axes]:
+    result: Response, time: float, *, axes: Sequence[Axes] | AxesArray | None = None
+) -> AxesArray:
     """Draw the hinge's section with its layers by state, and the strains over its depth.
 
     Parameters
@@ -359,7 +345,7 @@ def section_state(
 
     Returns
     -------
-    list of matplotlib.axes.Axes
+    ndarray of matplotlib.axes.Axes
         For the section and the strains.
 
     Raises
@@ -406,7 +392,7 @@ def section_state(
         axes[1].tick_params(right=True, top=True)
         drift = 100 * result.displacement[row] / column.height
         axes[0].set_title(f"drift {drift:.2f} %", fontsize=8)
-    return list(axes)
+    return np.asarray(axes)
 
 
 def _draw_layers(

@@ -13,6 +13,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from weakref import WeakSet
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rbsdem import _arguments
 from rbsdem._files import write_figure
 from rbsdem.errors import InputError
@@ -21,6 +24,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+#: What functions with several axes return: an array of them, as ``pyplot.subplots`` does.
+AxesArray = NDArray[np.object_]
 
 RC: dict[Any, Any] = {
     "font.family": "STIXGeneral",
@@ -82,7 +87,7 @@ def style() -> Iterator[None]:
         yield
 
 
-def new_axes(rows: int, columns: int, size: tuple[float, float]) -> list[Axes]:
+def new_axes(rows: int, columns: int, size: tuple[float, float], **grid: Any) -> AxesArray:
     """Make a figure of pyplot in the house style.
 
     Parameters
@@ -91,20 +96,23 @@ def new_axes(rows: int, columns: int, size: tuple[float, float]) -> list[Axes]:
         Axes below and beside each other.
     size : tuple of float
         Width and height [in].
+    **grid
+        As for ``pyplot.subplots``.
 
     Returns
     -------
-    list of matplotlib Axes
+    ndarray of matplotlib Axes
         Row by row. What is drawn on them later has the house style, too.
     """
     import matplotlib.pyplot as plt  # noqa: PLC0415
 
     with style():
-        figure, grid = plt.subplots(
-            rows, columns, figsize=size, layout="constrained", squeeze=False
+        figure, axes = plt.subplots(
+            rows, columns, figsize=size, layout="constrained", squeeze=False, **grid
         )
     _HOUSE.add(figure)
-    return list(grid.ravel())
+    drawn: AxesArray = axes.ravel()
+    return drawn
 
 
 @contextmanager
@@ -144,12 +152,14 @@ def axes_or_new(ax: Axes | None, size: tuple[float, float] = (3.5, 3.0)) -> Iter
         yield new_axes(1, 1, size)[0]
 
 
-def save(figure: Figure, path: str | os.PathLike[str], *, pdf: bool = False) -> list[Path]:
+def save(
+    figure: Figure | Axes | AxesArray, path: str | os.PathLike[str], *, pdf: bool = False
+) -> list[Path]:
     """Write a figure as PNG at 300 dpi, and as PDF beside it if asked for.
 
     Parameters
     ----------
-    figure : matplotlib Figure
+    figure : matplotlib Figure or Axes, or array of Axes
         What to write.
     path : path
         File to write; the ending .png is added if it is missing, and the folder is created.

@@ -1,6 +1,6 @@
 """Tables: a frame as csv, as Parquet, and on the terminal in the units of paper.
 
-Every record of many rows has a `to_frame`, in SI; what is written or printed of it comes from that
+Every record of many rows has a `to_pandas`, in SI; what is written or printed of it comes from that
 frame, here.
 """
 
@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
-from rbsdem import _files
+from rbsdem._files import Tabular, atomic_write
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,29 +33,10 @@ _PAPER = {
     "drift": (1e2, "%"),
 }
 
+#: Letters of a line where standard output is no terminal.
+_WIDE = 200
 #: Widest column of text; what is longer is cut off.
 _WIDEST = 60
-
-
-class HasFrame(Protocol):
-    """A record with a table."""
-
-    def to_frame(self) -> pd.DataFrame:
-        """Return a DataFrame in SI."""
-
-
-def write_csv(frame: pd.DataFrame, path: str | os.PathLike[str]) -> None:
-    """Write a frame as csv with six digits, whole or not at all.
-
-    Parameters
-    ----------
-    frame : DataFrame
-        The table; its index is left out.
-    path : path
-        File to write. Texts that a spreadsheet would take for a formula get an apostrophe in front;
-        numbers that are not finite are blanks.
-    """
-    _files.write_csv(path, [list(frame.columns), *frame.itertuples(index=False, name=None)])
 
 
 def write_parquet(frame: pd.DataFrame, path: str | os.PathLike[str]) -> None:
@@ -68,12 +49,12 @@ def write_parquet(frame: pd.DataFrame, path: str | os.PathLike[str]) -> None:
     path : path
         File to write.
     """
-    with _files.atomic_write(path) as file:
+    with atomic_write(path) as file:
         frame.to_parquet(file, index=False)
 
 
 def table(
-    record: HasFrame | pd.DataFrame,
+    record: Tabular | pd.DataFrame,
     *,
     styles: Sequence[str | None] | None = None,
     caption: str | None = None,
@@ -85,7 +66,7 @@ def table(
 
     Parameters
     ----------
-    record : record with ``to_frame``, or DataFrame
+    record : a record with ``to_pandas``, or DataFrame
         What to print. An index that has a name becomes the first column.
     styles : sequence of str or None, optional
         Style of each row, as `rich` names them.
@@ -95,18 +76,29 @@ def table(
     Returns
     -------
     rich.table.Table
-        For ``rich.print``.
+        ``print`` shows it, in colours ``rich.print`` does.
     """
     import rich.box  # noqa: PLC0415
     from pandas import DataFrame  # noqa: PLC0415
     from pandas.api.types import is_numeric_dtype  # noqa: PLC0415
     from rich.table import Table  # noqa: PLC0415
 
-    frame = record if isinstance(record, DataFrame) else record.to_frame()
+    class Printed(Table):
+        """A table that is its own text."""
+
+        def __str__(self) -> str:
+            out = console(_WIDE)
+            with out.capture() as text:
+                out.print(self)
+            return text.get().rstrip("\n")
+
+        __repr__ = __str__
+
+    frame = record if isinstance(record, DataFrame) else record.to_pandas()
     if frame.index.name is not None:
         frame = frame.reset_index()
     units = [str(unit) for unit in frame["unit"]] if "unit" in frame else None
-    made = Table(box=rich.box.SIMPLE_HEAD, padding=(0, 1), show_edge=False, caption=caption)
+    made = Printed(box=rich.box.SIMPLE_HEAD, padding=(0, 1), show_edge=False, caption=caption)
     cells: list[list[Text]] = []
     for name in frame.columns:
         heading, factor = _heading(str(name))

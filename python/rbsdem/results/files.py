@@ -47,7 +47,7 @@ def columns(result: Response) -> dict[str, Array]:
     return found
 
 
-def to_frame(result: Response) -> pd.DataFrame:
+def to_pandas(result: Response) -> pd.DataFrame:
     """Return a DataFrame with the columns of the csv."""
     import pandas  # noqa: PLC0415
 

@@ -157,12 +157,12 @@ class Result(Response):
         """
         return hinge_of(self, joint, length)
 
-    def to_frame(self) -> pd.DataFrame:
+    def to_pandas(self) -> pd.DataFrame:
         """Return a DataFrame, a row for each of the result, with units in the names.
 
         The names are those of the columns of the executable's csv.
         """
-        return files.to_frame(self)
+        return files.to_pandas(self)
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Write the rows as csv with all digits, whole or not at all, as the executable does.

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
+from rbsdem._files import Tabular
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Spiral, Steel
 from rbsdem.model.shape import Section, checked_section
@@ -33,8 +34,8 @@ Code = Literal["aci318", "ec2"]
 _MPA = 1.0e6
 
 
-@dataclass(frozen=True, eq=False)
-class InteractionDiagram:
+@dataclass(frozen=True, repr=False, eq=False)
+class InteractionDiagram(Tabular):
     """Axial loads that a section carries with their moments, from tension to compression.
 
     Attributes
@@ -53,6 +54,8 @@ class InteractionDiagram:
     tension_strain : ndarray, shape (k,)
         Strain of the outermost bar in tension, elongation positive; NaN likewise.
     """
+
+    _columns = ("axial_load N", "moment Nm", "neutral_axis m", "tension_strain")
 
     code: Code | Literal["joint"] | None
     axial_load: Array
@@ -116,8 +119,9 @@ class InteractionDiagram:
 
     def __repr__(self) -> str:
         return (
-            f"InteractionDiagram({self.code or 'own laws'}, N from {self.axial_load[0]:.4g} to "
-            f"{self.axial_load[-1]:.4g} N, largest moment {self.moment.max():.4g} N m)"
+            f"InteractionDiagram({self.code or 'own laws'}, N {self.axial_load[0] / 1e3:.4g} "
+            f"to {self.axial_load[-1] / 1e3:.4g} kN, "
+            f"largest moment {self.moment.max() / 1e3:.4g} kN m)"
         )
 
 

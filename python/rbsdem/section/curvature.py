@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
+from rbsdem._files import Tabular, data_frame
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Tension
 from rbsdem.model.shape import Section
 from rbsdem.section.ranges import checked_load, is_confined
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 #: Points of a diagram at the most.
 _MOST_POINTS = 100_000
@@ -60,8 +64,8 @@ class Events:
     ultimate: Point | None
 
 
-@dataclass(frozen=True, eq=False)
-class Diagram:
+@dataclass(frozen=True, repr=False, eq=False)
+class Diagram(Tabular):
     """Moment against curvature under a constant axial load.
 
     Attributes
@@ -96,6 +100,23 @@ class Diagram:
     events: Events
     end: Point
     lost: bool
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return a DataFrame, a row for each point; "event" names those that are events."""
+        frame = data_frame(
+            {"curvature_1/m": self.curvature, "moment_Nm": self.moment, "strain": self.strain}
+        )
+        named = {point.curvature: name for name, point in _named(self.events).items()}
+        frame["event"] = [named.get(value, "") for value in self.curvature.tolist()]
+        return frame
+
+    def __repr__(self) -> str:
+        points = ", ".join(
+            f"{name} {point.moment / 1e3:.4g} kN m at {1e3 * point.curvature:.3g} mrad/m"
+            for name, point in _named(self.events).items()
+        )
+        core = "confined" if self.confined else "not confined"
+        return f"Diagram(N {self.axial_load / 1e3:.4g} kN, {core}: {points})"
 
 
 def make_point(row: Array) -> Point | None:
@@ -270,7 +291,9 @@ def diagram(
         if not 0.0 < furthest * section.depth <= 1.0:
             raise InputError(f"furthest = {furthest} 1/m must be above zero and below 1/depth")
     points = _arguments.integer(points, "points", least=2, most=_MOST_POINTS)
-    named = [point.curvature for point in (*_points(events), end) if point.curvature <= furthest]
+    named = [
+        point.curvature for point in (*_named(events).values(), end) if point.curvature <= furthest
+    ]
     # Closer together where the diagram turns, at small curvatures.
     curvature = np.unique(np.concatenate([furthest * np.linspace(0.0, 1.0, points) ** 2, named]))
     moment, strain = _moments(section, load, curvature, tension, confined)
@@ -301,6 +324,7 @@ def _find(section: Section, settings: dict[str, Any]) -> tuple[Events, Point, bo
     return Events(*named), end, bool(answer.values[0])
 
 
-def _points(events: Events) -> list[Point]:
-    found = (events.cracking, events.yielding, events.peak, events.ultimate)
-    return [point for point in found if point is not None]
+def _named(events: Events) -> dict[str, Point]:
+    """Return the points that were found by their names."""
+    found = {field.name: getattr(events, field.name) for field in fields(Events)}
+    return {name: point for name, point in found.items() if point is not None}

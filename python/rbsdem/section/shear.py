@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
+from rbsdem._files import Tabular
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.materials import Tension
 from rbsdem.model.shape import Section, checked_section
@@ -99,8 +100,8 @@ class ShearLayers:
     eps_z: Array
 
 
-@dataclass(frozen=True, eq=False)
-class ShearDiagram:
+@dataclass(frozen=True, repr=False, eq=False)
+class ShearDiagram(Tabular):
     """Shear force against mean shear strain under a constant axial load.
 
     Attributes
@@ -124,6 +125,8 @@ class ShearDiagram:
     layers : ShearLayers
         The layers at the last point.
     """
+
+    _columns = ("strain", "force N", "curvature 1/m", "moment Nm")
 
     section: Section
     length: float

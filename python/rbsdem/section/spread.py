@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -26,7 +25,7 @@ from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _package
 from rbsdem._arguments import Array
-from rbsdem._files import write_csv
+from rbsdem._files import Tabular
 from rbsdem.curves.envelope import strength_loss
 from rbsdem.curves.metrics import PathPoints, work
 from rbsdem.errors import AccuracyWarning, InputError, SolveError
@@ -189,8 +188,8 @@ class Interval:
         return self.lower <= value <= self.upper
 
 
-@dataclass(frozen=True, eq=False)
-class Spread:
+@dataclass(frozen=True, repr=False, eq=False)
+class Spread(Tabular):
     """A prediction along a path with its 80 % band.
 
     Attributes
@@ -215,6 +214,8 @@ class Spread:
     remarks : tuple of str
         Where the column is outside the range of the tests that the parameters were fitted to.
     """
+
+    _columns = ("displacement m", "force N", "median N", "lower N", "upper N")
 
     displacement: Array
     force: Array
@@ -275,18 +276,6 @@ class Spread:
                 "predict the displacements of the test"
             )
         return force
-
-    def to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write displacement, prediction, median and band as csv, whole or not at all.
-
-        Parameters
-        ----------
-        path : path
-            File to write.
-        """
-        header = ("displacement_m", "force_N", "median_N", "lower_N", "upper_N")
-        rows = np.column_stack((self.displacement, self.force, self.median, self.lower, self.upper))
-        write_csv(path, [header, *rows.tolist()])
 
 
 def likeness(section: Section, height: float, axial_load: float) -> dict[str, float]:
