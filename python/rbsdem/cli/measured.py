@@ -82,8 +82,8 @@ def peer(
     test); with --check only check.csv (indicators and doubts).
     An interrupted batch leaves its finished tests in the folder unfinished; the same command with
     the same --out resumes there.
-    Exit codes: 0 every test was analysed to its end, 1 some were not or have no history, 2 the input
-    is wrong, 130 interrupted by the keyboard (finished tests are reported).
+    Exit codes: 0 every test was analysed to its end, 1 some were not or have no history, 2 the
+    input is wrong, 130 interrupted by the keyboard (finished tests are reported).
     """
     table = read_specimens(folder)
     tests = chosen(table, section, failure, only)
