@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import warnings
 
 import numpy as np
 import pytest
@@ -276,3 +277,38 @@ def test_a_node_between_plastic_hinges_does_not_turn_away():
     kind = FrameMember(E, A, INERTIA, yield_moment=250e3)
     push = rbsdem.pushover(Frame.grid([3.2, 3.2], [6], columns=kind, beams=kind), drift=0.02)
     assert np.abs(push.turn).max() < 0.1
+
+
+def test_a_result_in_a_file(tmp_path):
+    """It comes back bit for bit and without a warning, and goes on with the bits of one path."""
+    frame = three_storeys(beam_load=0.0)
+    path = frame.height * np.array([0.01, -0.02, 0.03, 0.0])
+    whole = rbsdem.cyclic(frame, displacement=path)
+    first = rbsdem.cyclic(frame, displacement=path[:2])
+    for name in ("first.npz", "first.nc"):
+        first.save(tmp_path / name)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            back = rbsdem.read_result(tmp_path / name)
+        assert back == first
+        assert back != whole
+        rest = rbsdem.cyclic(frame, displacement=path[2:], initial=back)
+        assert (np.append(back.force, rest.force) == whole.force).all()
+    first.save_state(tmp_path / "first.state")
+    rest = rbsdem.cyclic(frame, displacement=path[2:], initial=tmp_path / "first.state")
+    assert (rest.force == whole.force[2:]).all()
+
+    (motion,) = rbsdem.motions.synthetic(1, seed=3)
+    quake = rbsdem.time_history(frame, motion, method="newmark", motion=True)
+    quake.save(tmp_path / "quake.npz")
+    back = rbsdem.read_result(tmp_path / "quake.npz")
+    assert back == quake
+    assert (back.floor_acceleration == quake.floor_acceleration).all()
+    table = back.to_xarray()
+    assert dict(table.sizes) == {
+        "time": quake.time.size, "node": 16, "member": 21, "flexure": 63, "storey": 3,
+    }  # fmt: skip
+    moment = table.moment.sel(flexure="C-2-1 0")
+    assert (moment == quake.member("C-2-1").force[:, 0]).all()
+    assert moment.units == "N m"
+    assert (table.storey_drift == quake.storey_drift).all()

@@ -173,7 +173,7 @@ Kinematics = Literal["small", "pdelta", "finite"]
 Top = Literal["free", "fixed"]
 
 #: Whether notes on new columns are told. A context variable, as columns are made in threads too.
-_TELLING: ContextVar[bool] = ContextVar("_TELLING", default=True)
+TELLING: ContextVar[bool] = ContextVar("TELLING", default=True)
 
 #: Bodies of a column at the most.
 MOST_BODIES: int = next(
@@ -187,11 +187,11 @@ _LISTS = ("lengths", "masses", "rotary_inertia")
 @contextmanager
 def without_notes() -> Iterator[None]:
     """Make columns without a word on what does nothing in them, where that is known and meant."""
-    token = _TELLING.set(False)
+    token = TELLING.set(False)
     try:
         yield
     finally:
-        _TELLING.reset(token)
+        TELLING.reset(token)
 
 
 @dataclass(frozen=True, repr=False)
@@ -319,7 +319,7 @@ class Column:
         # Once for all analyses, as a frozen column does not change.
         put("_statement", self._state())
         notes = _core.evaluate("check_structure", self._statement).text.splitlines()
-        for note in notes if _TELLING.get() else ():
+        for note in notes if TELLING.get() else ():
             warnings.warn(note, AccuracyWarning, stacklevel=4)
 
     def __repr__(self) -> str:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
 from rbsdem.errors import AccuracyWarning, InputError
-from rbsdem.model.column import Column, checked_column
+from rbsdem.model.column import TELLING, Column, checked_column
 from rbsdem.model.damping import Damping
 from rbsdem.model.springs import Spring
 
@@ -388,7 +388,8 @@ class Frame:
                 _arguments.instance(item, f"frame: {name}", kind)
             put(name, items)
         put("_statement", self._state())
-        for note in _core.evaluate("check_structure", self._statement).text.splitlines():
+        notes = _core.evaluate("check_structure", self._statement).text.splitlines()
+        for note in notes if TELLING.get() else ():
             warnings.warn(note, AccuracyWarning, stacklevel=4)
 
     @classmethod

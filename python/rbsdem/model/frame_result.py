@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -10,9 +11,11 @@ import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
+from rbsdem._package import extra
 from rbsdem.errors import InputError
+from rbsdem.model import files
 from rbsdem.model.frame import HONESTY, Frame, FrameSpring
-from rbsdem.model.response import ENERGIES
+from rbsdem.model.response import ENERGIES, same
 from rbsdem.model.springs import Landmark
 
 if TYPE_CHECKING:
@@ -334,6 +337,52 @@ class FrameResult:
         with atomic_write(path) as file:
             file.write(f"# rbsdem {_core.version()}\n# {self.honesty}\n{text}".encode())
 
+    def to_xarray(self) -> Any:
+        """Return a Dataset: rows along time (or step), nodes, members and springs by their names.
+
+        The springs of a group stand along its name, as "C-1-1 0": member and place. Needs xarray.
+        """
+        parts, along = self.frame.parts, "time" if self.dynamic else "step"
+        arrays: dict[str, tuple[Any, Array]] = {
+            name: ((along,), getattr(self, name)) for name in ("displacement", "force")
+        }
+        arrays |= {name: ((along,), values) for name, values in self.energy.items()}
+        arrays["base_shear"] = (along,), self.base_shear
+        owners: dict[str, Any] = {"node": list(parts.nodes), "member": list(parts.members)}
+        arrays |= {name: ((along, "node"), getattr(self, name)) for name in ("x", "y", "turn")}
+        for name in ("member_axial", "moment_from", "moment_to"):
+            arrays[name] = (along, "member"), getattr(self, name)
+        for group, channels in _CHANNELS.items():
+            springs = parts.springs_of(group)
+            if springs:
+                owners[group] = [f"{spring.member} {spring.place:g}" for spring in springs]
+                arrays |= {name: ((along, group), self.springs[name]) for name in channels}
+        if self.frame.storeys:
+            owners["storey"] = np.arange(1, len(self._storeys()) + 1)
+            arrays["storey_drift"] = (along, "storey"), self.storey_drift
+        units = _core.units()
+        return extra("xarray").Dataset(
+            {
+                name: (axes, values, {"units": units[name]} if units.get(name) else {})
+                for name, (axes, values) in arrays.items()
+            },
+            {along: (along, self.time, {"units": units[along]} if units[along] else {}), **owners},
+            {"program": "rbsdem", "version": _core.version(), "honesty": self.honesty}
+            | {"frame": self.frame.to_namelist()}
+            | {name: value for name, value in self.summary.items() if not isinstance(value, dict)},
+        )
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the whole result into one file, which `rbsdem.read_result` reads bit for bit.
+
+        As `Result.save`: ``.npz``, or ``.nc`` with the extra "netcdf".
+        """
+        files.save(self, path)
+
+    def save_state(self, path: str | os.PathLike[str]) -> None:
+        """Write the state at the end as text, for ``initial=path`` and the executable."""
+        files.save_state(self, path)
+
     def __repr__(self) -> str:
         about = self.summary
         return (
@@ -346,17 +395,9 @@ class FrameResult:
         """Return whether another result has the same frame, rows and summary, bit for bit."""
         if not isinstance(other, FrameResult):
             return NotImplemented
-        return self.frame == other.frame and all(
-            np.array_equal(one, two, equal_nan=True)
-            for one, two in zip(self._arrays(), other._arrays(), strict=True)
-        )
+        return all(same(getattr(self, one.name), getattr(other, one.name)) for one in fields(self))
 
     __hash__ = None  # type: ignore[assignment]
-
-    def _arrays(self) -> list[Array]:
-        own = [getattr(self, one.name) for one in fields(self)]
-        mappings = [*self.energy.values(), *self.springs.values()]
-        return [value for value in own if isinstance(value, np.ndarray)] + mappings
 
 
 def landmarks_of(frame: Frame, spring: FrameSpring) -> list[Landmark]:

@@ -18,10 +18,10 @@ from rbsdem._package import extra
 from rbsdem.errors import InputError, SolveError
 from rbsdem.model.column import Column, Footing, without_notes
 from rbsdem.model.damping import Damping
+from rbsdem.model.files import FORMAT, FORMAT_VERSION, ending_of
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.springs import SPRINGS, Spring
-from rbsdem.results.files import FORMAT, FORMAT_VERSION, ending_of
 from rbsdem.results.frame_case import frame_of
 from rbsdem.results.result import Result, cyclic, time_history
 from rbsdem.section.drawing import Groups, layered_column, recipe_of
@@ -293,8 +293,8 @@ def _spring(given: dict[str, Any], layers: list[tuple[float, Spring]] | None = N
 _LOADING = "&loading drive = 'force', values = 0, 0 /\n"
 
 
-def read_result(path: str | os.PathLike[str]) -> Result:
-    """Read a result that `Result.save` wrote.
+def read_result(path: str | os.PathLike[str]) -> Result | FrameResult:
+    """Read a result that `Result.save` or `FrameResult.save` wrote.
 
     Parameters
     ----------
@@ -303,7 +303,7 @@ def read_result(path: str | os.PathLike[str]) -> Result:
 
     Returns
     -------
-    Result
+    Result or FrameResult
         Equal to the one that was saved, bit for bit.
 
     Raises
@@ -361,23 +361,15 @@ def _read_netcdf(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str
     return about, arrays
 
 
-def _result(about: dict[str, Any], arrays: dict[str, Any]) -> Result:
-    energy = {
-        name.partition("/")[2]: values
-        for name, values in arrays.items()
-        if name.startswith("energy/")
-    }
-    own = {field.name: arrays[field.name] for field in fields(Result) if field.name in arrays}
+def _result(about: dict[str, Any], arrays: dict[str, Any]) -> Result | FrameResult:
     with without_notes():
-        column = case_of_text(about["column"] + _LOADING).plain_column("a saved result")
+        structure = case_of_text(about["column"] + _LOADING).column
         case = None if about["case"] is None else case_of_text(about["case"])
-    absent = dict.fromkeys(("axial_force", "rest", "state", "motion", "reached"))
-    return Result(
-        **{**absent, **own},
-        energy=energy,
-        summary=about["summary"],
-        column=column,
-        call=_together(about["call"], arrays),
-        channels=tuple(about["channels"]),
-        case=case,
-    )
+    own: dict[str, Any] = {
+        name: arrays[name] if there else None for name, there in about["arrays"].items()
+    }
+    own |= {name: _together(about[name], arrays) for name in ("energy", "call")}
+    own["summary"] = about["summary"]
+    if isinstance(structure, Frame):
+        return FrameResult(**own, springs=_together(about["springs"], arrays), frame=structure)
+    return Result(**own, column=structure, channels=tuple(about["channels"]), case=case)

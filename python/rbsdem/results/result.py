@@ -23,11 +23,11 @@ from rbsdem.curves.envelope import Envelope, Idealisation, Method, strength_loss
 from rbsdem.curves.envelope import envelope as curve_envelope
 from rbsdem.curves.metrics import loop_pair
 from rbsdem.errors import InputError, SolveError
+from rbsdem.model import files
 from rbsdem.model.column import Column
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.response import Response
-from rbsdem.results import files
 from rbsdem.results.accuracy import Errors, refined_error
 from rbsdem.solve import analysis
 from rbsdem.solve.solver import METHODS

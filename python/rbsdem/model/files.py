@@ -15,7 +15,7 @@ from rbsdem._arguments import Array
 from rbsdem._files import atomic_write
 from rbsdem._package import extra
 from rbsdem.errors import InputError
-from rbsdem.model.response import STATE_HEAD, Response, last_state
+from rbsdem.model.response import STATE_HEAD, Ended, Response, last_state
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -94,7 +94,7 @@ def to_csv(result: Response, path: str | os.PathLike[str]) -> None:
         np.savetxt(file, np.column_stack(list(table.values())), fmt="%.17g", delimiter=",")
 
 
-def save_state(result: Response, path: str | os.PathLike[str]) -> None:
+def save_state(result: Ended, path: str | os.PathLike[str]) -> None:
     """Write a state as text: a head, then one number a line, whole or not at all."""
     state = last_state(result)
     head = f"{STATE_HEAD}\n# version: {_core.version()}\n{state.size}\n"
@@ -108,7 +108,7 @@ def _text(number: float) -> str:
     return f"{digits}E{int(exponent):+04d}"
 
 
-def save(result: Response, path: str | os.PathLike[str]) -> None:
+def save(result: Any, path: str | os.PathLike[str]) -> None:
     """Write a result as npz or netCDF, whole or not at all."""
     kind = ending_of(path)
     about, arrays = _parts(result)
@@ -143,26 +143,28 @@ def ending_of(path: str | os.PathLike[str]) -> str:
     return kind
 
 
-def _parts(result: Response) -> tuple[dict[str, Any], dict[str, Any]]:
+def _parts(result: Any) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return what is written as text, and the arrays by name."""
     arrays: dict[str, Any] = {}
-    call = _apart("call", result.call, arrays)
-    for field in fields(result):
-        value = getattr(result, field.name)
-        if isinstance(value, np.ndarray):
-            arrays[field.name] = value
-    arrays |= {f"energy/{name}": value for name, value in result.energy.items()}
-    about = {
+    about: dict[str, Any] = {
         "format": FORMAT,
         "format_version": FORMAT_VERSION,
         "version": _core.version(),
         "units": _core.units(),
-        "channels": result.channels,
         "column": result.column.to_namelist(),
-        "case": None if result.case is None else result.case.to_namelist(),
         "summary": result.summary,
-        "call": call,
+        "arrays": {},
+        "case": None,
     }
+    for field in fields(result):
+        value = getattr(result, field.name)
+        if isinstance(value, np.ndarray) or (value is None and field.name != "case"):
+            about["arrays"][field.name] = value is not None
+            arrays |= {} if value is None else {field.name: value}
+        elif field.name in ("energy", "springs", "call", "channels"):
+            about[field.name] = _apart(field.name, value, arrays)
+        elif field.name == "case" and value is not None:
+            about["case"] = value.to_namelist()
     return about, arrays
 
 
