@@ -175,6 +175,7 @@ contains
       type(answer_type), intent(inout) :: answer
       character(len=1), parameter :: tab = achar(9), line = new_line('a')
       character(len=12), parameter :: kinds(3) = ['shear       ', 'flexure     ', 'axial_spring']
+      character(len=12) :: group
       type(text_buffer) :: text
       integer :: i
 
@@ -182,17 +183,19 @@ contains
          call text%append(trim(frame%node_name(i))//tab)
       end do
       call text%append(line)
-      do i = 1, size(frame%element)
+      do i = 1, frame%members
          call text%append(trim(frame%member_name(i))//tab)
       end do
       call text%append(line)
       do i = 1, frame%inside
-         call text%append(trim(frame%place(i)%owner)//' '//trim(kinds(frame%place(i)%kind))//' '// &
-                          trim(frame%spring(i)%rule)//tab)
+         group = kinds(frame%place(i)%kind)
+         if (i > frame%inside - count(frame%beam_rotation > 0)) group = 'panel'
+         call text%append(trim(frame%place(i)%owner)//' '//trim(group)//' '//trim(frame%spring(i)%rule)//tab)
       end do
       answer%text = text%text(:text%length)
       answer%value = [frame%x, frame%y, real(frame%storey, c_double), &
-                      (real(frame%element(i)%node, c_double), i=1, size(frame%element)), frame%compression, &
+                      (real(frame%element(i)%node, c_double), i=1, frame%members), &
+                      frame%compression(:frame%members), &
                       frame%spring_place, frame%initial_stiffness(:frame%inside), &
                       -sum(frame%pattern(horizontal)%force)]
    end subroutine tell_parts

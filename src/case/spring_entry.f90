@@ -35,9 +35,9 @@ module rbs_case_spring_entry
       character(len=80) :: where = ''
       !> Joints that have the spring; not allocated: all joints that no other group names
       integer, allocatable :: joint(:)
-      !> In a frame: the kind of members that has the spring, at places in shares of their length, or the node
-      !> that it holds to the ground
-      character(len=name_length) :: kind = '', node = ''
+      !> In a frame: the kind of members that has the spring, at places in shares of their length, the node that
+      !> it holds to the ground, or the node in whose panel it is
+      character(len=name_length) :: kind = '', node = '', panel = ''
       real(wp), allocatable :: place(:)
       !> Number by which layers refer to the spring
       integer :: id = unset_integer
@@ -110,6 +110,8 @@ contains
          call v%key('place', self%place, '', not_negative, 'frame: where in a member, in shares of its '// &
                     'clear length; without it flexure at both ends', most_places)
          call v%word('node', self%node, "frame: node that it holds to the ground, or 'base'")
+         call v%word('panel', self%panel, 'frame, flexure: node whose columns it connects with its '// &
+                     "beams, or 'all' where both meet")
       end if
       if (self%group == 'layers') then
          call v%key('y', self%y, 'm', any_number, 'distances from the middle of the section, '// &
@@ -153,6 +155,7 @@ contains
             spring(i)%group = entry%group
             spring(i)%kind = entry%kind
             spring(i)%node = entry%node
+            spring(i)%panel = entry%panel
             spring(i)%spring = entry%spring
             if (allocated(entry%place)) spring(i)%place = entry%place
          end associate
@@ -294,9 +297,10 @@ contains
 
       do i = 1, list%count
          associate (entry => list%entry(i))
-            if (entry%kind == '' .and. entry%node == '' .and. .not. allocated(entry%place)) cycle
-            call messages%add_at(entry%where, '&'//trim(entry%group)//': kind, place and node belong to '// &
-                                 'springs of a frame; give joint, or a group &frame')
+            if (entry%kind == '' .and. entry%node == '' .and. entry%panel == '' .and. &
+                .not. allocated(entry%place)) cycle
+            call messages%add_at(entry%where, '&'//trim(entry%group)//': kind, place, node and panel belong '// &
+                                 'to springs of a frame; give joint, or a group &frame')
          end associate
       end do
    end subroutine refuse_frame

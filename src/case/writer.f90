@@ -75,6 +75,7 @@ contains
             entry = spring_entry(group=given%group, spring=given%spring)
             entry%kind = given%kind
             entry%node = given%node
+            entry%panel = given%panel
             if (allocated(given%place)) entry%place = given%place
             call write_spring(entry, text)
          end associate

@@ -12,7 +12,8 @@ module rbs_structure_spring_place
    type :: spring_place
       !> `shear`, `flexure` or `axial`
       integer :: kind = 0
-      !> Member, 1 for a column, and joint of it from the bottom up; joint 0 is that of a footing
+      !> Member, 1 for a column, 0 for the panel of a node, and joint of it from the bottom up; joint 0 is that
+      !> of a footing
       integer :: member = 1, joint = 0
       !> The spring whose work this one may ask for; 0: none
       integer :: heard = 0
@@ -36,6 +37,8 @@ contains
       if (place%owner == '') return
       if (place%joint == 0) then
          name = 'the '//trim(kinds(place%kind))//' spring from the ground to '//place%owner
+      else if (place%member == 0) then
+         name = 'the spring of the panel of node '//place%owner
       else
          name = 'the '//trim(kinds(place%kind))//' spring '//trim(joint)//' of member '//place%owner
       end if

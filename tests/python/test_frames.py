@@ -11,7 +11,7 @@ from strategies import between, rules, spring
 
 import rbsdem
 from rbsdem.frames import Frame, FrameMember, FrameNode, Member
-from rbsdem.springs import Bilinear, Elastic, Takeda
+from rbsdem.springs import Bilinear, Elastic, PeakOriented, Spring, Takeda
 
 pytestmark = pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
 
@@ -38,6 +38,12 @@ def random_kind(rng, names, moment) -> FrameMember:
     return FrameMember(**given, flexure=ends, panel=float(rng.choice([0.0, 0.2])))
 
 
+def random_panel(rng, names) -> Spring | None:
+    if rng.random() < 0.5:
+        return None
+    return spring(rng, str(rng.choice(names)), between(rng, 1e5, 5e5), between(rng, 1e-3, 8e-3))
+
+
 def random_frame(rng, names=RULES) -> Frame:
     """Return a frame of 1 to 4 storeys and 1 to 3 bays of springs of any rule."""
     while True:
@@ -53,6 +59,7 @@ def random_frame(rng, names=RULES) -> Frame:
                 base=str(rng.choice(["fixed", "pinned"])),
                 diaphragm=bool(rng.random() < 0.3),
                 pattern=str(rng.choice(["triangular", "uniform", "modal"])),
+                panel=random_panel(rng, names),
             )
         except (rbsdem.InputError, rbsdem.SolveError):
             continue  # too weak for its load, or its modes buckle
@@ -116,6 +123,65 @@ def test_a_frame_of_rigid_beams_is_the_shear_building():
     shape = np.linalg.solve(matrices.stiffness, matrices.mass @ np.ones(len(matrices.unknowns)))
     quotient = (shape @ matrices.stiffness @ shape) / (shape @ matrices.mass @ shape)
     assert exact[0] ** 2 <= quotient * (1 + 1e-6)
+
+
+@pytest.mark.parametrize("ends", [0.0, 0.3])
+def test_a_panel_between_columns_and_beams(ends):
+    """A cruciform: the panel carries V H, adds V H^2/k to the displacement, and ends at its strength.
+
+    It cracks, reaches its strength and loses it: each is an event of the node.
+    """
+    half, span, k, strength = 1.5, 3.0, 4e7, 1.2e5
+    names = ["foot", "head", "left", "right"]
+    places = [(0.0, -half), (0.0, half), (-span, 0.0), (span, 0.0)]
+    nodes = [
+        FrameNode(name, *place, support, push_x=float(name == "head"))
+        for name, place, support in zip(
+            names, places, ["pinned", "free", "roller", "roller"], strict=True
+        )
+    ]
+    spring = PeakOriented(
+        d_c=1e-3, f_c=k * 1e-3, d_y=6e-3, f_y=strength, d_cap=0.02, f_cap=strength, d_pc=0.2
+    )
+    members = [
+        Member(name, "node", name, FrameMember(E, 1.0, INERTIA), panel=(ends, 0.0))
+        for name in names
+    ]
+
+    def cruciform(panel):
+        middle = FrameNode("node", 0.0, 0.0, panel=panel)
+        return Frame(nodes=[*nodes, middle], members=members, pattern="nodes", control_node="head")
+
+    rigid, soft = (rbsdem.pushover(cruciform(one), drift=1e-4) for one in (None, spring))
+    flexible, stiff = (one.displacement[-1] / one.force[-1] for one in (soft, rigid))
+    assert flexible - stiff == pytest.approx((2 * half) ** 2 / k, rel=1e-9)
+    push = rbsdem.pushover(cruciform(spring), drift=0.2)
+    turn = push.springs["rotation"][:, 0]
+    assert push.displacement == pytest.approx(push.force * stiff + turn * 2 * half, rel=1e-9)
+    assert push.force.max() == pytest.approx(strength / (2 * half), rel=1e-12)
+    left = strength * (1 - (turn[-1] - 0.02) / 0.2) / (2 * half)
+    assert push.force[-1] == pytest.approx(left, rel=1e-9)
+    events = push.events
+    assert [event.what for event in events] == ["cracking", "yield", "cap"]
+    assert {(event.member, event.group, event.end) for event in events} == {("node", "panel", "")}
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_a_panel_of_one_beam_is_a_spring_at_its_end(rule):
+    rng = np.random.default_rng(3)
+    knee = spring(rng, rule, 1.5e5, 3e-3, options=0)
+    column = FrameMember(E, A, INERTIA, yield_moment=250e3, hardening=0.02)
+    beam = {"modulus": E, "area": A, "inertia": INERTIA}
+    bays = {"storeys": [3.0, 3.0], "bays": [5.0], "columns": column, "kinematics": "pdelta"}
+    bays |= {"floor_mass": 3e4, "beam_load": 1e4}
+    panels = Frame.grid(**bays, beams=FrameMember(**beam), panel=knee)
+    hinges = Frame.grid(**bays, beams=FrameMember(**beam, flexure=[knee, knee.mirrored()]))
+    path = [0.05, -0.08, 0.12, 0.0]
+    one, other = followed(panels, path), followed(hinges, path)
+    size = np.abs(other.force).max()
+    rows = min(len(one.force), len(other.force))
+    assert rows == len(path) or rule in ("peak_oriented", "pinching", "compression")
+    assert np.abs(one.force[:rows] - other.force[:rows]).max() < 1e-9 * size
 
 
 @pytest.mark.parametrize("rule", RULES)

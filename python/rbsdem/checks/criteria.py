@@ -112,6 +112,8 @@ def _criteria(column: Structure, names: Collection[str]) -> list[Criterion]:
         for group, states, what in (("flexure", _TURNS, "rotation"), ("shear", _SLIPS, "slip")):
             for number, own in enumerate(column.parts.springs_of(group), 1):
                 where = f"the {group} spring of {own.member} at {own.place:g} of its length"
+                if own.group == "panel":
+                    where = f"the panel of node {own.member}"
                 marks = landmarks_of(column, own)
                 found += _of_landmarks(number, marks, where, states, what)
         return [criterion for criterion in found if criterion.name in names]

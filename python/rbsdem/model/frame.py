@@ -154,6 +154,10 @@ class FrameNode:
         A node whose displacement along x it shares.
     shear, axial_spring, flexure : Spring, optional
         Springs from the ground: along x, upward, and against rotation (soil, braces, bearings).
+    panel : Spring, optional
+        Rotational spring between the columns and the beams that meet in the node, as
+        `rbsdem.frames.Panel.spring` has it; without it they turn as one. It is positive where the
+        columns turn clockwise against the beams. Rotations of the node are those of its columns.
     """
 
     name: str
@@ -171,6 +175,7 @@ class FrameNode:
     shear: Spring | None = None
     axial_spring: Spring | None = None
     flexure: Spring | None = None
+    panel: Spring | None = None
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "FrameNode")
@@ -181,7 +186,7 @@ class FrameNode:
         values = {
             own.name: getattr(self, own.name) or None
             for own in fields(self)
-            if own.name not in (*_PLACES, "x", "y")
+            if own.name not in (*_PLACES, "panel", "x", "y")
         }
         for name in ("name", "moves_with"):
             if values[name]:
@@ -191,6 +196,8 @@ class FrameNode:
             spring = getattr(self, group)
             if spring is not None:
                 yield spring.statement(group, node=_core.Text(self.name))
+        if self.panel is not None:
+            yield self.panel.statement("flexure", panel=_core.Text(self.name))
 
 
 @dataclass(frozen=True)
@@ -233,14 +240,15 @@ class Member:
 
 
 class FrameSpring(NamedTuple):
-    """A spring in a member: its number among those of its group, in the order of the members.
+    """A spring in a member or in the panel of a node.
 
     Attributes
     ----------
     member, group, rule : str
-        Name of the member; "flexure", "shear" or "axial_spring"; name of its rule.
+        Name of the member, or of the node; "flexure", "shear" or "axial_spring", or "panel"; name
+        of its rule.
     place : float
-        In shares of the clear length of the member.
+        In shares of the clear length of the member; 0 in a panel.
     stiffness : float
         The initial one [N m/rad or N/m].
     """
@@ -269,7 +277,7 @@ class FrameParts:
     compression : ndarray, shape (members,)
         Axial force under the dead load, compression positive [N].
     springs : tuple of FrameSpring
-        Springs of the members.
+        Springs of the members, in their order, then those of panels.
     mass : float
         Mass that moves along x [kg].
     """
@@ -285,8 +293,12 @@ class FrameParts:
     mass: float
 
     def springs_of(self, group: str) -> list[FrameSpring]:
-        """Return the springs of a group, as the columns of a result hold them."""
-        return [spring for spring in self.springs if spring.group == group]
+        """Return the springs of a group, as the columns of a result hold them.
+
+        Panels rotate: they follow those of "flexure".
+        """
+        groups = (group, "panel") if group == "flexure" else (group,)
+        return [spring for spring in self.springs if spring.group in groups]
 
 
 @dataclass(frozen=True, repr=False)
@@ -328,6 +340,9 @@ class Frame:
         Members between nodes.
     damping : Damping, optional
         In proportion to mass and to the stiffness of the members.
+    panel : Spring, optional
+        Rotational spring in every node where columns and beams meet, between them; nodes may have
+        one of their own.
 
     Raises
     ------
@@ -355,6 +370,7 @@ class Frame:
     nodes: Sequence[FrameNode] = ()
     members: Sequence[Member] = ()
     damping: Damping | None = None
+    panel: Spring | None = None
 
     if TYPE_CHECKING:
         #: Its keys, as the groups of a case file.
@@ -474,6 +490,13 @@ class Frame:
         ]
         return found[-1]
 
+    def panel_of(self, node: str) -> Spring | None:
+        """Return the spring in the panel of a node by the name of the node."""
+        springs = self.parts.springs
+        if not any(own.group == "panel" and own.member == node for own in springs):
+            return None
+        return next((own.panel for own in self.nodes if own.name == node and own.panel), self.panel)
+
     def load_of(self, member: str) -> float:
         """Return the dead load on a member, downward, per length along x [N/m]."""
         for own in self.members:
@@ -534,6 +557,8 @@ class Frame:
         for node in self.nodes:
             parts += node._groups()
         parts += [member._group(names[with_panel(member.kind, 0.0)]) for member in self.members]
+        if self.panel is not None:
+            parts.append(self.panel.statement("flexure", panel=_core.Text("all")))
         if self.damping is not None:
             parts.append(self.damping.statement())
         numbers = [number for part in parts for number in part.numbers]

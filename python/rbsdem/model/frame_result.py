@@ -33,16 +33,17 @@ _REACHED = 1.0 - 1e-9
 
 
 class FrameEvent(NamedTuple):
-    """A limit state of a spring in a member, where it is reached first.
+    """A limit state of a spring, where it is reached first.
 
     Attributes
     ----------
     step : float
         Time [s], or number of the point of a static path with the share of the way.
     member, group : str
-        Name of the member, and which of its springs: "flexure", "shear" or "axial_spring".
+        Name of the member, and which of its springs: "flexure", "shear" or "axial_spring"; or name
+        of the node, and "panel".
     end : str
-        "start", "end", or the place between them in shares of the clear length.
+        "start", "end", or the place between them in shares of the clear length; "" in a panel.
     what : str
         "cracking", "yield" or "cap".
     side : int
@@ -231,7 +232,7 @@ class FrameResult:
         at = _place(name, parts.members, "member")
         springs, deformation, force, ductility = [], [], [], []
         for spring, values, forces in self._springs():
-            if spring.member != name:
+            if spring.member != name or spring.group == "panel":
                 continue
             springs.append(spring)
             deformation.append(values)
@@ -269,7 +270,7 @@ class FrameResult:
 
     @cached_property
     def events(self) -> tuple[FrameEvent, ...]:
-        """Limit states of the springs in members, in the order in which they are reached first.
+        """Limit states of the springs, in the order in which they are reached first.
 
         Cracking, yield and cap of each side. On a path of `pushover` each is a row of its own and
         exact; else they are those of the rows that were kept.
@@ -283,6 +284,7 @@ class FrameResult:
                     continue
                 row = int(reached[0])
                 end = {0.0: "start", 1.0: "end"}.get(spring.place, f"{spring.place:g}")
+                end = "" if spring.group == "panel" else end
                 found.append(
                     FrameEvent(
                         float(self.time[row]),
@@ -402,6 +404,9 @@ class FrameResult:
 
 def landmarks_of(frame: Frame, spring: FrameSpring) -> list[Landmark]:
     """Return where a spring of a member cracks, yields and caps, first time on the virgin curve."""
+    if spring.group == "panel":
+        panel = frame.panel_of(spring.member)
+        return [] if panel is None else panel.landmarks()
     kind = frame.kind_of(spring.member)
     if kind.yield_moment is not None:
         if spring.group != "flexure":

@@ -396,13 +396,26 @@ def _hinge_rotations(result: FrameResult, name: str, row: int) -> Array:
     return turned
 
 
+def _panel_rotations(result: FrameResult, member: _Member, row: int) -> Array:
+    """Return the rotations of the columns against a beam in the nodes that it ends in."""
+    turned = np.zeros(2)
+    if abs(member.axis[0]) <= abs(member.axis[1]):
+        return turned
+    parts = result.frame.parts
+    ends = [parts.nodes[node] for node in (member.start, member.end)]
+    for i, spring in enumerate(parts.springs_of("flexure")):
+        if spring.group == "panel" and spring.member in ends:
+            turned[ends.index(spring.member)] = result.springs["rotation"][row, i]
+    return turned
+
+
 def _deformed(
     result: FrameResult, member: _Member, row: int, scale: float, shares: Array | None = None
 ) -> Array:
     """Return points along a member with its displacements times a factor [m]."""
     shares = np.linspace(0, 1, 25) if shares is None else shares
     nodes = [member.start, member.end]
-    turn = result.turn[row, nodes]
+    turn = result.turn[row, nodes] - _panel_rotations(result, member, row)
     moved = np.column_stack((result.x[row, nodes], result.y[row, nodes]))
     # The rigid lengths turn with their nodes.
     moved = moved + np.outer(turn * (member.panel[0], -member.panel[1]), member.normal)
@@ -435,6 +448,13 @@ def _draw_hinges(
     points: dict[str, list[Array]] = {state: [] for state in _STATES}
     for spring in structure.parts.springs:
         if not landmarks_of(structure, spring):
+            continue
+        if spring.group == "panel":
+            node = structure.parts.nodes.index(spring.member)
+            here = np.array([structure.parts.x[node], structure.parts.y[node]])
+            if result is not None:
+                here = here + scale * np.array([result.x[row, node], result.y[row, node]])
+            points[reached.get((spring.member, "panel", ""), "")].append(here)
             continue
         member = members[spring.member]
         end = {0.0: "start", 1.0: "end"}.get(spring.place, f"{spring.place:g}")

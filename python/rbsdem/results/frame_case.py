@@ -22,6 +22,7 @@ def frame_of(groups: Groups) -> Frame:
     frame = _core.typed("frame", groups["frame"][-1])
     storeys = max(len(frame.get("storeys", ())), 1)
     damping = groups.get("damping")
+    panels = [own for own in groups.get("flexure", []) if "panel" in own]
     return Frame(
         **frame,
         columns=_cells("column_of", "line", groups, kinds),
@@ -41,6 +42,7 @@ def frame_of(groups: Groups) -> Frame:
             for given in groups.get("member", [])
         ],
         damping=Damping(**_core.typed("damping", damping[-1])) if damping else None,
+        panel=next((_spring(own) for own in panels if own["panel"] == "all"), None),
     )
 
 
@@ -91,9 +93,13 @@ def _nodes(groups: Groups, lines: int) -> list[FrameNode]:
             base = [f"N-{line}-0" for line in range(1, lines + 1)]
             for one in base if name == "base" else [name] if name else []:
                 nodes.setdefault(one, {"name": one})[group] = _spring(spring)
+    for spring in groups.get("flexure", []):
+        name = spring.get("panel", "all")
+        if name != "all":
+            nodes.setdefault(name, {"name": name})["panel"] = _spring(spring)
     return [FrameNode(**node) for node in nodes.values()]
 
 
 def _spring(given: Mapping[str, Any]) -> Spring:
-    places = ("rule", "kind", "node", "place")
+    places = ("rule", "kind", "node", "panel", "place")
     return SPRINGS[given["rule"]](**{k: v for k, v in given.items() if k not in places})

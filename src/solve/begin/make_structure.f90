@@ -102,7 +102,11 @@ contains
       matrix%band(:frame%half_width + 1, :) = band
       call matrix%factor()
       if (matrix%positive) return
-      at = findloc(frame%number, maxloc(abs(matrix%triangle(1, :)), dim=1))
+      associate (free => maxloc(abs(matrix%triangle(1, :)), dim=1))
+         at = findloc(frame%number, free)
+         ! The beams of a node behind a panel
+         if (at(2) == 0) at = [3, frame%part(free)]
+      end associate
       call fatal_error(error, bad_input, 'frame: it is a mechanism, '// &
                        'node '//trim(frame%node_name(at(2)))// &
                        ' can '//trim(motion(at(1)))//' without any force; give it a support, a spring or '// &

@@ -43,6 +43,10 @@ module rbs_structure_frame_frame
       real(wp), allocatable :: spring_place(:)
       !> Number of the unknown of each displacement, 0 where a support holds it (3, nodes)
       integer, allocatable :: number(:, :)
+      !> The same of the rotation of its beams, where a panel lets them turn against its columns; else 0 (nodes)
+      integer, allocatable :: beam_rotation(:)
+      !> Number of members; elements behind them are panels of nodes
+      integer :: members = 0
       !> Number of springs in elements
       integer :: inside = 0
       !> Dead loads on the unknowns (unknowns), and on the springs of elements whose ends do not move (inside)
@@ -123,6 +127,11 @@ contains
             first = e%before + 1
             of = at + m**2 + n**2
             if (is_of(m + n, tangent(of), k(first), k0(first))) cycle
+            if (i > frame%members) then
+               call find_panel(k(first), tangent(e%at), tangent(e%at + 9), tangent(at))
+               call remember(1, tangent(of), k(first), k0(first))
+               cycle
+            end if
             call find_tangent(e, m, n, k(first), k0(first), tangent(e%at), tangent(e%at + 9), tangent(at), &
                               tangent(at + m**2), stable)
             if (stable) call remember(m + n, tangent(of), k(first), k0(first))
@@ -147,6 +156,17 @@ contains
 
          known = k + k0
       end subroutine remember
+
+      !> The spring of a panel does what the nodes do.
+      pure subroutine find_panel(k, stiffness, rate, opened)
+         real(wp), intent(in) :: k
+         real(wp), intent(out) :: stiffness(9), rate(3), opened
+
+         stiffness = 0.0_wp
+         stiffness(1) = k
+         rate = [1.0_wp, 0.0_wp, 0.0_wp]
+         opened = 0.0_wp
+      end subroutine find_panel
    end subroutine find_tangents
 
    !> Elongation and rotations of an element from the unknowns, or changes of them.
@@ -280,6 +300,7 @@ contains
       do i = 1, size(self%element)
          call self%end_forces(i, self%basic(i, d(self%inside + 1:)), d, f, 1.0_wp, self%initial_tangent, s, &
                               correction)
+         if (i > self%members) exit
          self%compression(i) = -s(1)
          associate (e => self%element(i))
             self%spring(e%before + 1:e%before + e%bending + e%opening)%axial_load = -s(1)
@@ -655,7 +676,7 @@ contains
       held(14:15) = contents%motion
       channel = frame_channel
       channel(2:4)%count = self%n
-      channel(5:7)%count = size(self%element)
+      channel(5:7)%count = self%members
       do kind = 1, 3
          held(6 + 2*kind:7 + 2*kind) = self%springs_of(kind) > 0
          channel(6 + 2*kind:7 + 2*kind)%count = self%springs_of(kind)
@@ -692,7 +713,7 @@ contains
          end do
       end do
       at = 1 + 3*self%n
-      m = size(self%element)
+      m = self%members
       do i = 1, m
          call self%end_forces(i, self%basic(i, d(self%inside + 1:)), d, f, 1.0_wp, self%initial_tangent, s, &
                               correction)

@@ -9,7 +9,7 @@ module rbs_structure_frame_frame_parts
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_structure_frame_frame_record, only: frame_record, frame_spring, kind_record, cell_record, &
                                                name_length
-   use rbs_structure_frame_new_frame, only: frame_node, frame_member
+   use rbs_structure_frame_new_frame, only: frame_node, frame_member, is_beam
    use rbs_structure_spring_place, only: shear, flexure, axial
    implicit none
    private
@@ -57,7 +57,7 @@ contains
                            '&node and &member')
       end if
       if (messages%count > known) return
-      call put_ground_springs(self, record, messages)
+      call put_node_springs(self, record, messages)
       call put_kinds(self, record, messages)
       call check_geometry(self, messages)
       if (messages%count > known) return
@@ -107,15 +107,19 @@ contains
             call s%spring%place(from)
             kind = findloc(group_of == s%group, .true., dim=1)
             name = from//trim(place_of(kind))//' spring of '
-            if ((s%kind == '') .eqv. (s%node == '')) then
+            if (count([s%kind, s%node, s%panel] /= '') /= 1) then
                call messages%add(from//'&'//trim(s%group)//': a spring of a frame belongs to a kind of '// &
-                                 'members or stands between a node and the ground; give kind or node')
+                                 'members, stands between a node and the ground, or is in the panel of a '// &
+                                 'node; give kind, node or panel')
                cycle
             else if (s%kind /= '') then
                name = name//"member_kind '"//trim(s%kind)//"'"
                call check_reference(s%kind, [record%kind%name], name, 'kind', messages)
             else
-               name = name//"node '"//trim(s%node)//"'"
+               name = name//"node '"//trim(s%node)//trim(s%panel)//"'"
+            end if
+            if (s%panel /= '' .and. s%group /= 'flexure') then
+               call messages%add(name//': a panel has one spring, which turns; give it as &flexure')
             end if
             call s%spring%validate(name, messages)
             if (s%spring%rule == 'layered') then
@@ -127,7 +131,7 @@ contains
                call messages%add(name//" cannot be of the rule '"//trim(s%spring%rule)//"'; it is one of "// &
                                  list_of(pack(rule_names, suits(rule_names, place_of(kind)))))
             end if
-            if (s%node /= '' .and. allocated(s%place)) then
+            if (s%kind == '' .and. allocated(s%place)) then
                call messages%add(name//': place is for springs of members; remove it')
             else if (allocated(s%place)) then
                if (any(s%place < 0.0_wp) .or. any(s%place > 1.0_wp)) then
@@ -496,8 +500,8 @@ contains
       end do
    end subroutine put_members
 
-   !> Springs between nodes and the ground; 'base' means all nodes of floor 0.
-   subroutine put_ground_springs(self, record, messages)
+   !> Springs between nodes and the ground, where 'base' means all nodes of floor 0, and in panels.
+   subroutine put_node_springs(self, record, messages)
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
       type(message_list), intent(inout) :: messages
@@ -507,6 +511,7 @@ contains
 
       do i = 1, size(record%spring)
          associate (s => record%spring(i))
+            if (s%panel /= '' .and. s%panel /= 'all') call put_panel(self, s, messages)
             if (s%node == '') cycle
             k = direction(findloc(group_of == s%group, .true., dim=1))
             any_node = .false.
@@ -532,7 +537,64 @@ contains
                                                      messages)
          end associate
       end do
-   end subroutine put_ground_springs
+      ! Nodes that have one of their own keep it.
+      do i = 1, size(record%spring)
+         if (record%spring(i)%panel == 'all') call put_panel(self, record%spring(i), messages)
+      end do
+   end subroutine put_node_springs
+
+   !> A spring between the columns and the beams of a node; 'all' means all nodes where both meet.
+   subroutine put_panel(self, given, messages)
+      type(frame_parts), intent(inout) :: self
+      type(frame_spring), intent(in) :: given
+      type(message_list), intent(inout) :: messages
+      logical :: any_node
+      integer :: i
+
+      any_node = .false.
+      do i = 1, size(self%node)
+         associate (node => self%node(i))
+            if (given%panel == 'all') then
+               if (.not. (has_member(self, i, .true.) .and. has_member(self, i, .false.))) cycle
+            else if (node%name /= given%panel) then
+               cycle
+            else if (.not. has_member(self, i, .true.)) then
+               call messages%add("the panel of node '"//trim(node%name)//"' does nothing, as no beam ends "// &
+                                 'there; remove it')
+            else if (.not. (has_member(self, i, .false.) .or. node%held(3) .or. &
+                            node%ground(3)%rule /= '')) then
+               call messages%add("the panel of node '"//trim(node%name)//"' does nothing, as no column ends "// &
+                                 'there; remove it')
+            else if (node%panel%rule /= '') then
+               call messages%add("node '"//trim(node%name)//"' has two panels; remove one")
+            end if
+            any_node = .true.
+            if (given%panel /= 'all' .or. node%panel%rule == '') node%panel = given%spring
+         end associate
+      end do
+      if (any_node) return
+      if (given%panel == 'all') then
+         call messages%add("&flexure: panel = 'all' finds no node where a column and a beam meet; remove it")
+      else
+         call check_reference(given%panel, self%node%name, '&flexure: panel', 'node', messages)
+      end if
+   end subroutine put_panel
+
+   !> Whether a beam ends in a node, or a column.
+   pure logical function has_member(self, node, beam)
+      type(frame_parts), intent(in) :: self
+      integer, intent(in) :: node
+      logical, intent(in) :: beam
+      integer :: i
+
+      has_member = .false.
+      do i = 1, size(self%member)
+         associate (m => self%member(i))
+            if (all(m%node /= node) .or. any(m%node == 0)) cycle
+            has_member = has_member .or. (is_beam(self%node(m%node(1)), self%node(m%node(2))) .eqv. beam)
+         end associate
+      end do
+   end function has_member
 
    !> What members are of, where their lengths are known.
    subroutine put_kinds(self, record, messages)

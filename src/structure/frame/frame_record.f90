@@ -74,11 +74,12 @@ module rbs_structure_frame_frame_record
       procedure :: visit => visit_member
    end type member_record
 
-   !> A spring of a kind of members, at places in shares of the clear length, or from the ground to a node.
+   !> A spring of a kind of members, at places in shares of the clear length, from the ground to a node, or in the
+   !> panel of a node, between its columns and its beams.
    type :: frame_spring
       !> Group that it stands in: 'shear', 'flexure' or 'axial_spring'
       character(len=16) :: group = ''
-      character(len=name_length) :: kind = '', node = ''
+      character(len=name_length) :: kind = '', node = '', panel = ''
       real(wp), allocatable :: place(:)
       type(spring_record) :: spring
    end type frame_spring

@@ -12,7 +12,7 @@ module rbs_structure_frame_new_frame
    implicit none
    private
 
-   public :: frame_node, frame_member, new_frame
+   public :: frame_node, frame_member, new_frame, is_beam
 
    !> Stiffness of a spring of no account [N/m, N m].
    real(wp), parameter :: of_no_account = 1.0e-30_wp
@@ -29,6 +29,8 @@ module rbs_structure_frame_new_frame
       real(wp) :: push(2) = 0.0_wp
       !> Springs to the ground along x, upward and in rotation; without a rule: none
       type(spring_record) :: ground(3)
+      !> Between the rotations of its columns and its beams; without a rule they are one
+      type(spring_record) :: panel
       !> The node whose displacement along x this one shares, as along a floor; 0: none
       integer :: like = 0
    end type frame_node
@@ -78,7 +80,8 @@ contains
       ! A beam alone has none.
       if (.not. frame%height > 0.0_wp) frame%height = maxval(node%x) - minval(node%x)
       frame%total_height = frame%height
-      frame%inside = 0
+      frame%members = size(member)
+      frame%inside = count(node%panel%rule /= '')
       do i = 1, size(member)
          frame%inside = frame%inside + size(member(i)%kind)
       end do
@@ -92,6 +95,7 @@ contains
       frame%arm(frame%inside + frame%number(direction, top)) = 1.0_wp
       call set_ground(frame, node)
       call set_elements(frame, node, member)
+      call set_panels(frame, node)
       call make_rules(frame%spring, frame%rules)
       frame%initial_stiffness = frame%rules%initial_stiffness()
       allocate (frame%initial_tangent(frame%tangent_numbers), source=0.0_wp)
@@ -99,7 +103,7 @@ contains
       call frame%linearise(frame%initial_stiffness, frame%initial_tangent, i)
       frame%stiffest_part = maxval(frame%initial_tangent(frame%element%at))
       frame%axially_loaded = kinematics == pdelta
-      frame%axial_count = merge(size(member), 0, frame%axially_loaded)
+      frame%axial_count = merge(size(frame%element), 0, frame%axially_loaded)
       frame%group = [unknown_group(1, frame%unknowns, 1, 1, frame%inside, 1.0_wp)]
    end subroutine new_frame
 
@@ -119,7 +123,7 @@ contains
          pair(:, size(member) + i) = [i, leader(i)]
       end do
       call order_nodes(size(node), pair, order)
-      allocate (frame%number(3, size(node)), source=0)
+      allocate (frame%number(3, size(node)), frame%beam_rotation(size(node)), source=0)
       do i = 1, size(node)
          do j = 1, 3
             associate (of => merge(leader(order(i)), order(i), j == 1))
@@ -131,13 +135,38 @@ contains
                frame%number(j, order(i)) = frame%number(j, of)
             end associate
          end do
+         if (node(order(i))%panel%rule == '') cycle
+         frame%unknowns = frame%unknowns + 1
+         frame%beam_rotation(order(i)) = frame%unknowns
       end do
       do i = 1, size(member)
-         number = reshape(frame%number(:, member(i)%node), [6])
+         number = numbers_of(frame, node, member(i))
          if (any(number > 0)) frame%half_width = max(frame%half_width, maxval(number) &
                                                      - minval(number, mask=number > 0))
       end do
+      if (any(frame%beam_rotation > 0)) frame%half_width = max(frame%half_width, 1)
    end subroutine number_unknowns
+
+   !> Numbers of the displacements of the ends of a member: beams turn with the other side of a panel.
+   pure function numbers_of(frame, node, member) result(number)
+      type(frame_type), intent(in) :: frame
+      type(frame_node), intent(in) :: node(:)
+      type(frame_member), intent(in) :: member
+      integer :: number(6), i
+
+      number = reshape(frame%number(:, member%node), [6])
+      if (.not. is_beam(node(member%node(1)), node(member%node(2)))) return
+      do i = 1, 2
+         if (frame%beam_rotation(member%node(i)) > 0) number(3*i) = frame%beam_rotation(member%node(i))
+      end do
+   end function numbers_of
+
+   !> A member between two nodes is a beam, if it is flatter than steep.
+   pure logical function is_beam(a, b)
+      type(frame_node), intent(in) :: a, b
+
+      is_beam = abs(b%x - a%x) > abs(b%y - a%y)
+   end function is_beam
 
    !> Masses and loads of the nodes, and the springs from the ground.
    subroutine set_ground(frame, node)
@@ -177,6 +206,14 @@ contains
                if (j == 2) frame%pattern(vertical)%force(at) = -frame%inertias(at)
             end associate
          end do
+         associate (at => frame%beam_rotation(i))
+            if (at == 0) cycle
+            frame%part(at) = i
+            frame%reach(at) = frame%total_height
+            frame%place(frame%inside + at) = spring_place(flexure, 0, 0, index=i, owner='node '//node(i)%name)
+            frame%spring(frame%inside + at)%rule = 'elastic'
+            frame%spring(frame%inside + at)%value(1) = of_no_account
+         end associate
       end do
       frame%pattern%last = frame%unknowns
    end subroutine set_ground
@@ -189,9 +226,11 @@ contains
       real(wp) :: axis(2), across(2), chord(6)
       integer :: i, j, before, at
 
-      allocate (frame%element(size(member)))
-      allocate (frame%dead_force(frame%inside), frame%compression(size(member)), &
-                frame%dead_rotation(2, size(member)), frame%lengths(3, size(member)), source=0.0_wp)
+      associate (elements => size(member) + count(frame%beam_rotation > 0))
+         allocate (frame%element(elements))
+         allocate (frame%dead_force(frame%inside), frame%compression(elements), &
+                   frame%dead_rotation(2, elements), frame%lengths(3, elements), source=0.0_wp)
+      end associate
       before = 0
       at = 1
       do i = 1, size(member)
@@ -205,7 +244,7 @@ contains
             across = [axis(2), -axis(1)]
             associate (clear => frame%lengths(3, i))
                e%node = m%node
-               e%number = reshape(frame%number(:, m%node), [6])
+               e%number = numbers_of(frame, node, m)
                e%to_basic(1, :) = [-axis, 0.0_wp, axis, 0.0_wp]
                ! The chord turns clockwise as its end moves across.
                chord = [-across, -m%rigid(1), across, -m%rigid(2)]/clear
@@ -232,6 +271,34 @@ contains
       end do
       frame%tangent_numbers = at
    end subroutine set_elements
+
+   !> A panel is an element of one spring, which "opens" by the rotation of the columns against the beams.
+   subroutine set_panels(frame, node)
+      type(frame_type), intent(inout) :: frame
+      type(frame_node), intent(in) :: node(:)
+      integer :: i, element, spring
+
+      element = frame%members
+      spring = frame%inside - count(frame%beam_rotation > 0)
+      do i = 1, size(node)
+         if (frame%beam_rotation(i) == 0) cycle
+         element = element + 1
+         spring = spring + 1
+         associate (e => frame%element(element))
+            e%node = i
+            e%number = [0, 0, frame%number(3, i), 0, 0, frame%beam_rotation(i)]
+            e%to_basic(1, :) = [0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, -1.0_wp]
+            e%before = spring - 1
+            e%opening = 1
+            allocate (e%share(2, 0))
+            e%at = frame%tangent_numbers
+            frame%tangent_numbers = frame%tangent_numbers + tangent_size(e)
+         end associate
+         frame%spring(spring) = node(i)%panel
+         frame%spring_place(spring) = 0.0_wp
+         frame%place(spring) = spring_place(flexure, 0, 1, index=i, owner=node(i)%name)
+      end do
+   end subroutine set_panels
 
    !> The elastic rest bends as a beam that is supported at its ends: alike or against each other.
    subroutine set_rest(e, m, clear)
@@ -275,7 +342,7 @@ contains
       do k = 1, 2
          at = frame%number(2, m%node(k))
          if (at > 0) frame%dead(at) = frame%dead(at) - all/2.0_wp
-         at = frame%number(3, m%node(k))
+         at = frame%element(i)%number(3*k)
          lever = merge(1.0_wp, -1.0_wp, k == 1)*m%rigid(k)*axis(1)
          if (at > 0) frame%dead(at) = frame%dead(at) + lever*all/2.0_wp
       end do
