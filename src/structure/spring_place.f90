@@ -12,8 +12,8 @@ module rbs_structure_spring_place
    type :: spring_place
       !> `shear`, `flexure` or `axial`
       integer :: kind = 0
-      !> Member, 1 for a column, 0 for the panel of a node, and joint of it from the bottom up; joint 0 is that
-      !> of a footing
+      !> Member, 1 for a column, 0 for the panel of a node, and joint of it from the bottom up;
+      !> joint 0 is that of a footing
       integer :: member = 1, joint = 0
       !> The spring whose work this one may ask for; 0: none
       integer :: heard = 0

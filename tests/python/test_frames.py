@@ -127,7 +127,7 @@ def test_a_frame_of_rigid_beams_is_the_shear_building():
 
 @pytest.mark.parametrize("ends", [0.0, 0.3])
 def test_a_panel_between_columns_and_beams(ends):
-    """A cruciform: the panel carries V H, adds V H^2/k to the displacement, and ends at its strength.
+    """A cruciform: the panel carries V H, and adds its rotation times H to the displacement.
 
     It cracks, reaches its strength and loses it: each is an event of the node.
     """
