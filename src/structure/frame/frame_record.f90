@@ -74,8 +74,8 @@ module rbs_structure_frame_frame_record
       procedure :: visit => visit_member
    end type member_record
 
-   !> A spring of a kind of members, at places in shares of the clear length, from the ground to a node, or in the
-   !> panel of a node, between its columns and its beams.
+   !> A spring of a kind of members, at places in shares of the clear length, from the ground to a node, or
+   !> in the panel of a node, between its columns and its beams.
    type :: frame_spring
       !> Group that it stands in: 'shear', 'flexure' or 'axial_spring'
       character(len=16) :: group = ''
