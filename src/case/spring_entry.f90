@@ -35,8 +35,8 @@ module rbs_case_spring_entry
       character(len=80) :: where = ''
       !> Joints that have the spring; not allocated: all joints that no other group names
       integer, allocatable :: joint(:)
-      !> In a frame: the kind of members that has the spring, at places in shares of their length, the node that
-      !> it holds to the ground, or the node in whose panel it is
+      !> In a frame: the kind of members that has the spring, at places in shares of their length, the node
+      !> that it holds to the ground, or the node in whose panel it is
       character(len=name_length) :: kind = '', node = '', panel = ''
       real(wp), allocatable :: place(:)
       !> Number by which layers refer to the spring
@@ -299,8 +299,8 @@ contains
          associate (entry => list%entry(i))
             if (entry%kind == '' .and. entry%node == '' .and. entry%panel == '' .and. &
                 .not. allocated(entry%place)) cycle
-            call messages%add_at(entry%where, '&'//trim(entry%group)//': kind, place, node and panel belong '// &
-                                 'to springs of a frame; give joint, or a group &frame')
+            call messages%add_at(entry%where, '&'//trim(entry%group)//': kind, place, node and panel '// &
+                                 'belong to springs of a frame; give joint, or a group &frame')
          end associate
       end do
    end subroutine refuse_frame

@@ -43,7 +43,7 @@ module rbs_structure_frame_frame
       real(wp), allocatable :: spring_place(:)
       !> Number of the unknown of each displacement, 0 where a support holds it (3, nodes)
       integer, allocatable :: number(:, :)
-      !> The same of the rotation of its beams, where a panel lets them turn against its columns; else 0 (nodes)
+      !> The same of the rotation of the beams, where a panel lets them turn against columns; else 0 (nodes)
       integer, allocatable :: beam_rotation(:)
       !> Number of members; elements behind them are panels of nodes
       integer :: members = 0

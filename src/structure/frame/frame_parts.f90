@@ -559,12 +559,12 @@ contains
             else if (node%name /= given%panel) then
                cycle
             else if (.not. has_member(self, i, .true.)) then
-               call messages%add("the panel of node '"//trim(node%name)//"' does nothing, as no beam ends "// &
-                                 'there; remove it')
+               call messages%add("the panel of node '"//trim(node%name)//"' does nothing, as no beam "// &
+                                 'ends there; remove it')
             else if (.not. (has_member(self, i, .false.) .or. node%held(3) .or. &
                             node%ground(3)%rule /= '')) then
-               call messages%add("the panel of node '"//trim(node%name)//"' does nothing, as no column ends "// &
-                                 'there; remove it')
+               call messages%add("the panel of node '"//trim(node%name)//"' does nothing, as no column "// &
+                                 'ends there; remove it')
             else if (node%panel%rule /= '') then
                call messages%add("node '"//trim(node%name)//"' has two panels; remove one")
             end if
