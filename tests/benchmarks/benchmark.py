@@ -15,20 +15,17 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
-import importlib.util
 import os
 import subprocess
-import sys
 import tempfile
 import time
 import warnings
 from collections.abc import Callable
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
-from compare import against_rows, yardstick_rows
+from compare import INSIDE, against_rows, yardstick_rows
 from rows import ROOT, Row, newest, show
 
 import rbsdem
@@ -157,28 +154,6 @@ def crossing(repeats: int) -> list[Row]:
     return rows
 
 
-def whole_folder(quick: bool) -> list[Row]:
-    """Time the predictions of all tests of the folder, without pictures, in two processes.
-
-    Wall time, so other work of the machine counts; the note says what one process computes.
-    """
-    row = Row("predictions of the whole folder", "s", 1.5)
-    folder = Path(os.environ.get("RBSDEM_PEER_DIR") or ROOT.parent / "shared" / "peer")
-    if not folder.is_dir():
-        row.note = "RBSDEM_PEER_DIR is not set"
-        return [row]
-    tests = peer.read_specimens(folder)
-    for _ in range(1 if quick else 3):
-        start = time.perf_counter()
-        found = peer.predict(tests, jobs=2, progress=False)
-        row.values.append(time.perf_counter() - start)
-    start = time.process_time()
-    peer.predict(tests, jobs=1, progress=False)
-    alone = time.process_time() - start
-    row.note = f"{len(found)} columns, {alone:.2g} s of the processor in one process"
-    return [row]
-
-
 def each_prediction(quick: bool) -> list[Row]:
     """Time the prediction of each test of the folder: its column, then the path of the test.
 
@@ -223,26 +198,11 @@ def each_prediction(quick: bool) -> list[Row]:
     return rows
 
 
-INSIDE = (
-    ("joint_event", "joint of 30 layers, an event", "ns", 300),
-    ("joint_step", "joint of 30 layers, a step without event", "ns", 60),
-    ("static", "static, N = 1", "ns/increment", None),
-    ("rk4_small", "RK4, N = 1, small", "ns/step", 250),
-    ("rk4_pdelta", "RK4, N = 1, pdelta", "ns/step", 250),
-    ("rk4_finite", "RK4, N = 1, finite (eq 4)", "ns/step", 250),
-    ("rk4_n10", "RK4, N = 10", "ns/body-step", None),
-    ("rk4_n50", "RK4, N = 50", "ns/body-step", None),
-    ("rk4_n200", "RK4, N = 200", "ns/body-step", None),
-    ("spring_smooth", "Takeda spring, smooth path", "ns/point", None),
-    ("spring_random", "Takeda spring, a turn at each point", "ns/point", None),
-)
-
-
 def inside_fortran(driver: Path | None, repeats: int, divisor: int) -> list[Row]:
     """Time the solver without Python and without files."""
     if driver is None:
         note = "time_solver is not built, see --help"
-        return [Row(what, unit, goal, [], note) for _, what, unit, goal in INSIDE]
+        return [Row(what, unit, goal, [], note) for what, unit, goal in INSIDE.values()]
     command = [driver, str(repeats), str(divisor)]
     lines = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split("\n")
     values: dict[str, list[float]] = {}
@@ -250,47 +210,12 @@ def inside_fortran(driver: Path | None, repeats: int, divisor: int) -> list[Row]
         name, value = line.split()
         values.setdefault(name, []).append(float(value))
     rows = []
-    for name, what, unit, goal in INSIDE:
+    for name, (what, unit, goal) in INSIDE.items():
         note = ""
         if f"{name}_lines" in values:
             note = f"{values[f'{name}_lines'][0]:.0f} line changes in 1000 steps"
         rows.append(Row(what, unit, goal, values[name], note))
     return rows
-
-
-def main_job() -> ModuleType:
-    """Return the example that runs the four columns, as a module."""
-    path = ROOT / "examples" / "01-paper-columns" / "run.py"
-    spec = importlib.util.spec_from_file_location("main_job", path)
-    if spec is None or spec.loader is None:
-        raise ImportError(path)
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["main_job"] = module  # its dataclasses ask for it
-    spec.loader.exec_module(module)
-    return module
-
-
-def four_columns(repeats: int) -> list[Row]:
-    """Time what the main job computes: two drives of four columns, without reading and plotting."""
-    row = Row("four-column main job, computing", "s", 0.2)
-    try:
-        job = main_job()
-    except (ImportError, SystemExit) as error:
-        row.note = str(error)
-        return [row]
-    columns = rbsdem.peer.paper_columns()
-    drives = {key: job.read(key, None) for key in columns}
-    for repeat in range(repeats + 1):
-        total = 0.0
-        for key, column in columns.items():
-            total += job.by_force(drives[key], column, job.ROW_TIME)[1]
-            total += job.by_displacement(drives[key], column)[1]
-        if repeat > 0:
-            row.values.append(total)
-    points = sum(len(drive.force) for drive in drives.values())
-    full = all(drive.full for drive in drives.values())
-    row.note = f"{points} rows of {'full histories' if full else 'reversal points'}"
-    return [row]
 
 
 PARTS = ("python", "fortran", "yardstick")
@@ -328,8 +253,6 @@ def main() -> None:
             *predicted_column(repeats),
             *crossing(repeats),
             *each_prediction(given.quick),
-            *whole_folder(given.quick),
-            *four_columns(repeats),
         ]
     if "fortran" in parts:
         driver = newest("time_solver", given.build)

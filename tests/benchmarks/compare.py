@@ -167,17 +167,19 @@ def memory(cases: dict[int, Case]) -> Row:
     return row
 
 
-# Names that `time_solver` has told since the first version, with the goal for the ratio.
-OLD_NAMES = {
-    "static": ("static, N = 1", 1.05),
-    "rk4_small": ("RK4, N = 1, small", 1.05),
-    "rk4_pdelta": ("RK4, N = 1, pdelta", 1.05),
-    "rk4_finite": ("RK4, N = 1, finite", 1.05),
-    "rk4_n10": ("RK4, N = 10", None),
-    "rk4_n50": ("RK4, N = 50", None),
-    "rk4_n200": ("RK4, N = 200", None),
-    "spring_smooth": ("Takeda spring, smooth path", None),
-    "spring_random": ("Takeda spring, a turn at each point", None),
+# What `time_solver` tells, with unit and goal; the goal for the ratio to another build is 1.05.
+INSIDE = {
+    "joint_event": ("joint of 30 layers, an event", "ns", 300),
+    "joint_step": ("joint of 30 layers, a step without event", "ns", 60),
+    "static": ("static, N = 1", "ns/increment", None),
+    "rk4_small": ("RK4, N = 1, small", "ns/step", 250),
+    "rk4_pdelta": ("RK4, N = 1, pdelta", "ns/step", 250),
+    "rk4_finite": ("RK4, N = 1, finite (eq 4)", "ns/step", 250),
+    "rk4_n10": ("RK4, N = 10", "ns/body-step", None),
+    "rk4_n50": ("RK4, N = 50", "ns/body-step", None),
+    "rk4_n200": ("RK4, N = 200", "ns/body-step", None),
+    "spring_smooth": ("Takeda spring, smooth path", "ns/point", None),
+    "spring_random": ("Takeda spring, a turn at each point", "ns/point", None),
 }
 
 
@@ -194,15 +196,10 @@ def against_rows(build: Path | None, other: Path, repeats: int, divisor: int) ->
     for place, driver in drivers.items():
         if driver is None:
             return [Row("against another build", "", note=f"no time_solver in {place}")]
-    ratios: dict[str, list[float]] = {name: [] for name in OLD_NAMES}
+    ratios: dict[str, list[float]] = {name: [] for name in INSIDE}
     for _ in range(repeats):
         now, before = (all_times(driver, divisor) for driver in drivers.values() if driver)
-        for name in OLD_NAMES:
+        for name in INSIDE:
             if name in now and name in before:
                 ratios[name].append(now[name] / before[name])
-    return [Row(*_cells(name), values) for name, values in ratios.items()]
-
-
-def _cells(name: str) -> tuple[str, str, float | None]:
-    what, goal = OLD_NAMES[name]
-    return what, "x before", goal
+    return [Row(INSIDE[name][0], "x before", 1.05, values) for name, values in ratios.items()]

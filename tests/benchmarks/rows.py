@@ -7,12 +7,9 @@ import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
-try:
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-except ImportError:
-    Console = None  # type: ignore[assignment,misc]
+from rich import box
+from rich.console import Console
+from rich.table import Table
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -68,14 +65,7 @@ HEADINGS = ("What", "Unit", "Goal", "Median", "Fastest - slowest", "")
 
 
 def show(rows: dict[str, list[Row]]) -> None:
-    """Print the table; with rich if it is there."""
-    if Console is None:
-        for title, part in rows.items():
-            print(f"\n{title}")
-            for row in part:
-                what, unit, goal, median, spread, note = row.texts()
-                print(f"  {what:<38}{goal:>10}{median:>8} {unit:<13}{spread:<18}{note}")
-        return
+    """Print the table."""
     table = Table(box=box.SIMPLE_HEAD)
     for place, heading in enumerate(HEADINGS):
         table.add_column(heading, justify="right" if place in (2, 3) else "left", no_wrap=place < 5)

@@ -21,6 +21,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import REPOSITORY
 
 import rbsdem
 
@@ -40,22 +41,12 @@ SPRINGS = """&shear rule = 'bilinear', k = 7.0387e8, d_y = 1.296e-4, k_post = 8.
          k_u = 7.5772e6, b0 = 0.4, b1 = 0.22, inner = 'kc' /
 """
 
+#: The cases of tests/regression but the long one, and forms that they do not have.
 NAMELISTS = {
-    "displacement": """&case title = 'driven by displacement' /
-&column n = 1, height = 1.6, mass = 614.4, kinematics = 'small' /
-"""
-    + SPRINGS
-    + """&loading drive = 'displacement', source = 'protocol', amplitudes = 0.005, 0.01, 0.02,
-         cycles = 1, 2, 1, repeats = 1, points = 2, unit = 'drift', scale = 1.0 /
-&analysis method = 'static' /
-&output every = 1 /
-""",
-    "force": """! driven by a measured force
-&column height = 1.6 mass = 614.4 /
-"""
-    + SPRINGS
-    + """&loading drive = 'force', file = 'test.txt', format = 'peer', scale = 0.5 /
-""",
+    path.stem: path.read_text("utf-8")
+    for path in sorted((REPOSITORY / "tests" / "regression").glob("*.nml"))
+    if "slow" not in path.stem
+} | {
     "joints": """&case title = "three joints, don't mind" /
 &column n = 3, height = 1.6, lengths = 0.4, 0.5, 0.7, masses = 3*200., kinematics = 'pdelta',
          axial_load = 744e3, self_weight = .true., gravity = 9.81 /
@@ -68,17 +59,7 @@ NAMELISTS = {
 &flexure joint = 3, rule = 'bilinear', k = 2.5d8, d_y = 1e-3, k_post = 1e7 /
 &loading drive = 'displacement', amplitudes(1) = 10, amplitudes(2) = 20, unit = 'mm', points = 2 /
 """,
-    "ground": """&case title = 'shaken' /
-&column n = 2, height = 1.6, mass = 614.4 /
-&damping mass = 30.0, stiffness = 1.0e-5 /
-"""
-    + SPRINGS
-    + """&loading drive = 'ground_acceleration', file = 'motion.csv', column = 'acceleration_g',
-         time_column = 'time_s' /
-&analysis method = 'rk4', dt = 2.0e-5, duration = 0.01 /
-&output every = 10 /
-""",
-    "both": """&column height = 1.6, mass = 614.4, kinematics = 'finite', axial_load = 1.0e5,
+    "both": """&column height = 1.6 mass = 614.4, kinematics = 'finite', axial_load = 1.0e5,
          self_weight = T /
 """
     + SPRINGS
@@ -315,6 +296,8 @@ def judge(jobs: Iterable, check: Callable[..., list[tuple[str, str]]]) -> None:
 def folder(tmp_path: Path) -> Path:
     for name, text in HISTORIES.items():
         (tmp_path / name).write_bytes(text.encode())
+    for path in (REPOSITORY / "tests" / "regression").glob("*.txt"):
+        (tmp_path / path.name).write_bytes(path.read_bytes())
     (tmp_path / "motion.csv").write_text(GROUND)
     (tmp_path / "still.csv").write_text("acceleration\n0\n0.1\n0\n")
     return tmp_path

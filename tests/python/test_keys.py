@@ -208,19 +208,3 @@ def test_tables_of_the_rules_name_every_key_and_default():
             else:
                 assert not any(known), row
         assert named == set(keys), title
-
-
-def test_no_list_of_keys_stands_beside_the_keys():
-    """The seam between Python and Fortran passes names on; it knows no parameter of a rule."""
-    seam = [REPOSITORY / "python" / "rbsdem" / "_core.py"]
-    seam += sorted((REPOSITORY / "src" / "bindings").glob("*.f90"))
-    parameters = {key["name"] for rule in RULES.values() for key in rule["keys"]}
-    others = {
-        key["name"] for name in ("column", "damping", "analysis") for key in KEYS["groups"][name]
-    }
-    for path in seam:
-        if path.stem in ("section_arrays", "shear_arrays"):
-            continue  # arrays of sections, no keys
-        quoted = set(re.findall(r"""["'](\w+)["']""", path.read_text("utf-8")))
-        assert not quoted & (parameters - {"c", "k"}), path.name
-        assert len(quoted & others) < 3, path.name

@@ -1,6 +1,6 @@
 """Whether two builds give the same answers: random cases through both executables, row by row.
 
-    python studies/same_answers.py OTHER [cases] [--own EXECUTABLE]
+    python scripts/same_answers.py OTHER [cases] [--own EXECUTABLE]
 
 OTHER is the executable of another version (build/.../src/app/rbsdem of an older commit). The cases
 are columns of all rules, kinematics, methods and ends of `tests/python/strategies.py`, static paths
