@@ -680,18 +680,6 @@ def test_collapse_that_was_asked_for_is_no_warning(side):
         rbsdem.cyclic(column, displacement=[0.0, 0.4 * side])
 
 
-def test_note_of_large_rotations_is_right_about_the_error():
-    """One body turned by 0.3 rad: the top of the exact one is at l sin(0.3)."""
-    spring = Elastic(1e9), Elastic(1e4)
-    error = 1 - np.sin(0.3) / 0.3
-    column = rbsdem.Column(2.0, 100.0, *spring)
-    with pytest.warns(rbsdem.errors.AccuracyWarning, match=r"about th\^2/6 of it") as caught:
-        run = rbsdem.time_history(column, [0.0, 1e-4], initial={"rotation": [0.3]}, method="rk4")
-    assert run.summary["peak_rotation"] ** 2 / 6 == pytest.approx(error, rel=0.02)
-    # The warning stands at the caller's line, for filters by module.
-    assert caught[0].filename == __file__
-
-
 def test_finite_rotations_need_no_note():
     column = rbsdem.Column(2.0, 100.0, Elastic(1e9), Elastic(1e4), kinematics="finite")
     with warnings.catch_warnings():

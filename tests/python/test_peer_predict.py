@@ -439,7 +439,7 @@ def test_command(table, tmp_path, capsys):
     assert (out / "loops.png").read_bytes()[:4] == b"\x89PNG"
     # T6 is asked for by name and has no history.
     assert run(tmp_path, "--jobs", "1", "--only", "T1", "Me * No. 6") == 1
-    assert "1 of the table have no history in the folder, so no score: Me 1991 No. 6" in (
+    assert "1 of the table have no history in the folder, so no score: Me 1990 No. 6" in (
         capsys.readouterr().out
     )
     for arguments, words in (
