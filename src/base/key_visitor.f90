@@ -51,9 +51,9 @@ module rbs_base_key_visitor
       !> Whether all numbers passed the last check
       logical :: sound = .true.
       integer, private :: mode = collecting
-      !> The value to put, or the values to take, and how many have been taken
+      !> The value to put, or the values to take, which stay where they are; how many have been taken
       character(len=key_length), private :: wanted = ''
-      real(wp), allocatable, private :: number(:)
+      real(wp), pointer, contiguous, private :: number(:) => null()
       integer, private :: taken = 0
       character(len=:), allocatable, private :: text
       type(message_list), private :: messages
@@ -119,22 +119,22 @@ contains
    subroutine put(self, name, number, text)
       class(key_visitor), intent(inout) :: self
       character(len=*), intent(in) :: name
-      real(wp), intent(in), optional :: number(:)
+      real(wp), intent(in), contiguous, target, optional :: number(:)
       character(len=*), intent(in), optional :: text
 
       self%mode = putting
       self%wanted = name
-      if (present(number)) self%number = number
+      if (present(number)) self%number => number
       if (present(text)) self%text = text
    end subroutine put
 
    !> The next visit sets the numbers of a record in their order.
    subroutine take(self, number)
       class(key_visitor), intent(inout) :: self
-      real(wp), intent(in) :: number(:)
+      real(wp), intent(in), contiguous, target :: number(:)
 
       self%mode = taking
-      self%number = number
+      self%number => number
       self%taken = 0
    end subroutine take
 

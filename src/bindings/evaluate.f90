@@ -190,7 +190,8 @@ contains
       do i = 1, frame%inside
          group = kinds(frame%place(i)%kind)
          if (i > frame%inside - count(frame%beam_rotation > 0)) group = 'panel'
-         call text%append(trim(frame%place(i)%owner)//' '//trim(group)//' '//trim(frame%spring(i)%rule)//tab)
+         call text%append(trim(frame%place(i)%owner)//' '//trim(group)//' '// &
+                          trim(frame%rules%name(frame%rules%of(i)))//tab)
       end do
       answer%text = text%text(:text%length)
       answer%value = [frame%x, frame%y, real(frame%storey, c_double), &

@@ -190,15 +190,16 @@ contains
       class(group_reader), intent(inout) :: self
       !> From `find`
       integer, intent(in) :: place
-      real(wp), intent(in) :: number(:)
+      real(wp), intent(in), contiguous, target :: number(:)
+      real(wp), allocatable, target :: si(:)
 
       if (place == ignored) return
       associate (key => self%keys(place))
          if (self%units%is_si()) then
             call self%visitor%put(key%name, number=number)
          else
-            call self%visitor%put(key%name, number=self%units%into_si(number, &
-                                                                       unit_in_group(key%unit, self%group)))
+            si = self%units%into_si(number, unit_in_group(key%unit, self%group))
+            call self%visitor%put(key%name, number=si)
          end if
       end associate
       call self%visit_open()

@@ -58,6 +58,8 @@ module rbs_hysteresis_rule
    !> The rules of many springs, made once: equal neighbours share one.
    type :: spring_rules
       type(rule_slot), allocatable :: list(:)
+      !> Their names
+      character(len=rule_length), allocatable :: name(:)
       !> The rule of each spring (springs)
       integer, allocatable :: of(:)
    contains
@@ -134,7 +136,7 @@ contains
    !> Take the parameters in the order of their keys; one that is not given has its default.
    subroutine take(self, value)
       class(rule_type), intent(inout) :: self
-      real(wp), intent(in) :: value(:)
+      real(wp), intent(in), contiguous, target :: value(:)
       type(key_visitor) :: v
 
       call v%take(value)

@@ -10,11 +10,11 @@ module rbs_hysteresis_spring_record
    use rbs_base_text, only: to_text, list_of
    use rbs_hysteresis_layered_layered_joint, only: layered_rule
    use rbs_hysteresis_registry, only: rule_names, new_rule, suits
-   use rbs_hysteresis_rule, only: rule_type, spring_rules, rule_length, most_parameters, in_layer
+   use rbs_hysteresis_rule, only: rule_type, rule_slot, spring_rules, rule_length, most_parameters, in_layer
    implicit none
    private
 
-   public :: spring_record, make_rules
+   public :: spring_record, add_rules
 
    !> The place of a rule among `rule_names`, stored for layers.
    integer, parameter :: no_rule = 0
@@ -266,29 +266,39 @@ contains
       initial_stiffness = rule%initial_stiffness
    end function initial_stiffness
 
-   !> The rules of springs; neighbours that are equal share one.
-   subroutine make_rules(spring, rules)
-      !> Validated
+   !> Add the rules of springs; neighbours that are equal share one.
+   subroutine add_rules(rules, spring, count)
+      type(spring_rules), intent(inout) :: rules
+      !> Validated: one for all, or one for each
       type(spring_record), intent(in) :: spring(:)
-      type(spring_rules), intent(out) :: rules
-      integer :: first(size(spring))
-      integer :: i, n
+      integer, intent(in) :: count
+      type(rule_slot), allocatable :: list(:)
+      integer :: first(count), of(count)
+      integer :: before, i, j, n
 
-      allocate (rules%of(size(spring)))
+      if (.not. allocated(rules%list)) allocate (rules%list(0), rules%name(0), rules%of(0))
+      before = size(rules%list)
       n = 0
-      do i = 1, size(spring)
+      do i = 1, count
+         j = min(i, size(spring))
          if (n > 0) then
-            rules%of(i) = n
-            if (spring(i)%same_as(spring(first(n)))) cycle
+            of(i) = before + n
+            if (spring(j)%same_as(spring(first(n)))) cycle
          end if
          n = n + 1
-         first(n) = i
-         rules%of(i) = n
+         first(n) = j
+         of(i) = before + n
       end do
-      allocate (rules%list(n))
+      allocate (list(before + n))
+      do i = 1, before
+         call move_alloc(rules%list(i)%rule, list(i)%rule)
+      end do
       do i = 1, n
-         call spring(first(i))%make(rules%list(i)%rule)
+         call spring(first(i))%make(list(before + i)%rule)
       end do
-   end subroutine make_rules
+      call move_alloc(list, rules%list)
+      rules%name = [rules%name, spring(first(:n))%rule]
+      rules%of = [rules%of, of]
+   end subroutine add_rules
 
 end module rbs_hysteresis_spring_record

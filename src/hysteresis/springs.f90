@@ -11,7 +11,7 @@ module rbs_hysteresis_springs
    use rbs_hysteresis_layered_layered_joint, only: start_under
    use rbs_hysteresis_rule, only: memory_slot, spring_rules
    use rbs_hysteresis_segment, only: segment, first_on, last_on, upper_end, lower_end
-   use rbs_hysteresis_spring_record, only: spring_record, make_rules
+   use rbs_hysteresis_spring_record, only: spring_record, add_rules
    implicit none
    private
 
@@ -49,8 +49,8 @@ module rbs_hysteresis_springs
       integer :: version = 0
       !> Whether a rule has exceeded `most_lines`; the state must not be used then
       logical :: stuck = .false.
-      !> Rules, which equal springs share; memories (count), and what `mark` has saved
-      type(spring_rules) :: rules
+      !> Rules, which equal springs share, of the structure; memories (count), and what `mark` has saved
+      type(spring_rules), pointer :: rules => null()
       type(memory_slot), allocatable :: slot(:)
       type(journal_type) :: journal
       !> Layered joints among the springs, and whether their axial loads vary along the path: then they follow
@@ -64,8 +64,7 @@ module rbs_hysteresis_springs
       !> [N], and its centre of stiffness e = -dM/dN [m]
       real(wp), allocatable :: press_to(:), press_at(:), centre(:)
    contains
-      procedure, private :: create_from_rules, create_from_records
-      generic :: create => create_from_rules, create_from_records
+      procedure :: create
       procedure :: restart
       procedure :: next_branch
       procedure :: force
@@ -93,9 +92,10 @@ module rbs_hysteresis_springs
 contains
 
    !> Virgin springs with rules that have been made.
-   subroutine create_from_rules(self, rules, told, axial_load)
+   subroutine create(self, rules, told, axial_load)
       class(spring_array), intent(out) :: self
-      type(spring_rules), intent(in) :: rules
+      !> They stay where they are, and must be there as long as the springs
+      type(spring_rules), intent(in), target :: rules
       !> The flexural spring whose work each spring may decay with, 0: none (count)
       integer, intent(in) :: told(:)
       !> Axial load that the layers of each spring begin under, compression positive (count) [N]
@@ -105,7 +105,7 @@ contains
 
       n = size(rules%of)
       self%count = n
-      self%rules = rules
+      self%rules => rules
       allocate (self%slot(n), self%unload_on_reversal(n), self%includes_lower_end(n), &
                 self%includes_upper_end(n))
       allocate (self%d(n), self%work(n), self%work_before(n), source=0.0_wp)
@@ -130,7 +130,7 @@ contains
             self%layered = [self%layered, i]
          end select
       end do
-   end subroutine create_from_rules
+   end subroutine create
 
    !> The same springs, virgin once more; their axial loads do not vary.
    subroutine restart(self, axial_load)
@@ -150,23 +150,6 @@ contains
          call put_line(self, i, line)
       end do
    end subroutine restart
-
-   !> Virgin springs of their records.
-   subroutine create_from_records(self, specs, told)
-      class(spring_array), intent(out) :: self
-      !> Validated parameters of each spring
-      type(spring_record), intent(in) :: specs(:)
-      integer, intent(in), optional :: told(:)
-      type(spring_rules) :: rules
-      integer :: heard(size(specs))
-      real(wp) :: axial_load(size(specs))
-
-      heard = 0
-      if (present(told)) heard = told
-      axial_load = specs%axial_load
-      call make_rules(specs, rules)
-      call self%create(rules, heard, axial_load)
-   end subroutine create_from_records
 
    !> The branch that follows from the rule of a spring, see `rule_type`.
    subroutine next_branch(self, i, branch, direction, flexural_work)
@@ -682,9 +665,11 @@ contains
       !> Forces there (m) [N or N m]; not a number where a layered joint has lost its axial load
       real(wp), intent(out) :: f(:)
       type(spring_array) :: spring
+      type(spring_rules), target :: rules
       integer :: j
 
-      call spring%create([spec])
+      call add_rules(rules, [spec], 1)
+      call spring%create(rules, [0], [spec%axial_load])
       do j = 1, size(d)
          call spring%advance_to(1, d(j))
          f(j) = spring%force(1)

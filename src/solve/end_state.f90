@@ -6,14 +6,13 @@
 module rbs_solve_end_state
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_fortran_env, only: int64
-   use rbs_base_check, only: is_given_number => is_given
    use rbs_base_error, only: error_type, fatal_error, bad_input
-   use rbs_base_keys, only: key_type
+   use rbs_base_key_visitor, only: key_visitor
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_hysteresis_registry, only: keys_of, rule_names
-   use rbs_hysteresis_spring_record, only: spring_record
+   use rbs_hysteresis_layered_layered_joint, only: layered_rule
+   use rbs_hysteresis_rule, only: rule_type
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_structure, only: structure_type
    implicit none
@@ -202,61 +201,55 @@ contains
       class(structure_type), intent(in) :: structure
       real(wp), intent(out) :: stamp(2)
       integer(int64) :: hash
-      integer :: i
+      integer :: i, seen
 
       hash = 88172645463325252_int64
+      seen = 0
       do i = 1, size(structure%length)
          call mix(hash, structure%length(i))
       end do
-      do i = 1, size(structure%spring)
-         if (i > 1) then
-            if (structure%spring(i)%same_as(structure%spring(i - 1))) then
-               call mix(hash, 1.0_wp)
-               cycle
-            end if
-         end if
-         call mix_spring(hash, structure%spring(i))
+      do i = 1, size(structure%rules%of)
+         associate (of => structure%rules%of(i))
+            call mix(hash, real(of, wp))
+            if (of == seen) cycle
+            seen = of
+            call mix_rule(hash, structure%rules%name(of), structure%rules%list(of)%rule)
+         end associate
       end do
       call split(hash, stamp)
    end subroutine find_stamp
 
-   subroutine mix_spring(hash, spring)
+   !> The name of a rule and its parameters, those of layers too.
+   recursive subroutine mix_rule(hash, name, rule)
       integer(int64), intent(inout) :: hash
-      type(spring_record), intent(in) :: spring
-      type(key_type), allocatable :: keys(:)
-      integer :: i, before
-
-      do i = 1, len_trim(spring%rule)
-         call mix(hash, real(iachar(spring%rule(i:i)), wp))
-      end do
-      call keys_of(spring%rule, keys)
-      call mix_values(hash, keys, spring%value)
-      if (.not. allocated(spring%y)) return
-      before = 0
-      do i = 1, size(spring%y)
-         call mix(hash, spring%y(i))
-         call mix(hash, real(spring%layer_rule(i), wp))
-         if (spring%layer_rule(i) /= before) call keys_of(rule_names(spring%layer_rule(i)), keys)
-         before = spring%layer_rule(i)
-         call mix_values(hash, keys, spring%layer_value(:, i))
-      end do
-   end subroutine mix_spring
-
-   !> Parameters; one that was not given counts as its default, as one door may give it and the other not.
-   pure subroutine mix_values(hash, keys, value)
-      integer(int64), intent(inout) :: hash
-      type(key_type), intent(in) :: keys(:)
-      real(wp), intent(in), contiguous :: value(:)
+      character(len=*), intent(in) :: name
+      class(rule_type), intent(in) :: rule
+      class(rule_type), allocatable :: visited
+      type(key_visitor) :: parameters
       integer :: i
 
-      do i = 1, size(keys)
-         if (is_given_number(value(i))) then
-            call mix(hash, value(i))
-         else
-            call mix(hash, keys(i)%default)
-         end if
+      do i = 1, len_trim(name)
+         call mix(hash, real(iachar(name(i:i)), wp))
       end do
-   end subroutine mix_values
+      ! What a visit collects as defaults are the parameters, given or not.
+      allocate (visited, source=rule)
+      call parameters%collect(name)
+      call visited%visit(parameters)
+      do i = 1, parameters%count
+         call mix(hash, parameters%keys(i)%default)
+      end do
+      select type (rule)
+      type is (layered_rule)
+         do i = 1, size(rule%y)
+            call mix(hash, rule%y(i))
+            call mix(hash, rule%weight(i))
+            call mix(hash, real(rule%rule_of(i), wp))
+         end do
+         do i = 1, size(rule%rule)
+            call mix_rule(hash, '', rule%rule(i)%rule)
+         end do
+      end select
+   end subroutine mix_rule
 
    !> Two numbers that follow from all numbers of a list.
    pure subroutine find_sum(value, total)

@@ -10,7 +10,6 @@ module rbs_structure_structure
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_hysteresis_rule, only: spring_rules
-   use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_channel, only: channel_type, response_type, row_contents
    use rbs_structure_spring_place, only: spring_place
@@ -65,11 +64,11 @@ module rbs_structure_structure
       !> The body, or the part of it that is coupled, that an unknown belongs to (unknowns)
       integer, allocatable :: part(:)
       type(unknown_group), allocatable :: group(:)
-      !> Where the springs are, their parameters, rules and initial stiffness (springs)
+      !> Where the springs are, their rules and initial stiffness, and the constant axial force at each,
+      !> compression positive [N] (springs)
       type(spring_place), allocatable :: place(:)
-      type(spring_record), allocatable :: spring(:)
       type(spring_rules) :: rules
-      real(wp), allocatable :: initial_stiffness(:)
+      real(wp), allocatable :: initial_stiffness(:), constant_axial(:)
       !> Largest stiffness of parts that have no spring [N/m]
       real(wp) :: stiffest_part = 0.0_wp
       !> Displacement of the top per deformation, for small rotations: what static paths control (springs)
@@ -140,6 +139,7 @@ module rbs_structure_structure
       procedure :: damp
       procedure :: add_damping
       procedure :: spring_of
+      procedure :: create_springs
       procedure :: add_ground
       procedure :: base_force
       procedure :: work_of
@@ -393,7 +393,7 @@ contains
       integer, intent(in) :: spring
       real(wp), intent(in) :: load(:)
 
-      axial_force = self%spring(spring)%axial_load + self%axial_rate(spring, load)
+      axial_force = self%constant_axial(spring) + self%axial_rate(spring, load)
    end function axial_force
 
    !> Refuse loads in time that do nothing.
@@ -507,6 +507,18 @@ contains
       end do
       i = 0
    end function spring_of
+
+   !> The springs without deformation, layered joints under given axial forces.
+   subroutine create_springs(self, springs, axial_force)
+      class(structure_type), intent(in), target :: self
+      type(spring_array), intent(out) :: springs
+      !> Compression positive (springs) [N]
+      real(wp), intent(in), contiguous :: axial_force(:)
+      integer :: heard(size(axial_force))
+
+      heard = self%place%heard
+      call springs%create(self%rules, heard, axial_force)
+   end subroutine create_springs
 
    !> Add the inertia of the moving ground.
    pure subroutine add_ground(self, load, g)

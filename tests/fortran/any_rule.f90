@@ -15,7 +15,7 @@ module any_rule
    use rbs_hysteresis_layered_layered_joint, only: carries_axial_load
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: spring_array
-   use samples, only: random_type
+   use samples, only: make_springs, random_type
    implicit none
    private
 
@@ -296,7 +296,7 @@ contains
       do history = 1, histories
          if (mod(history - 1, histories_each) == 0) then
             call random_spring(random, rule, spec)
-            call virgin%create([spec])
+            call make_springs(virgin, [spec])
             yield = yield_of(spec)
          end if
          turns = int(random%uniform(3.0_wp, 15.0_wp))
@@ -351,7 +351,7 @@ contains
             call random_spring(random, rule, spec)
             ! An axial load does work too, which is not that of the spring.
             spec%axial_load = 0.0_wp
-            call virgin%create([spec])
+            call make_springs(virgin, [spec])
             k = spec%initial_stiffness()
             yield = yield_of(spec)
          end if

@@ -147,8 +147,6 @@ contains
       type(loads_type), intent(in) :: loads
       real(wp), intent(in) :: q(:), v(:)
       type(error_type), allocatable :: outcome
-      integer :: heard(size(structure%place))
-      real(wp) :: axial_load(size(structure%place))
       ! A state refers to its structure, which a test may give up before it.
       class(structure_type), pointer :: kept
 
@@ -157,9 +155,7 @@ contains
       call state%loads%find_acting()
       call state%motion%create(kept, state%loads%acts, outcome)
       if (allocated(outcome)) error stop 'runs: a structure without motion'
-      heard = structure%place%heard
-      axial_load = structure%spring%axial_load
-      call state%springs%create(structure%rules, heard, axial_load)
+      call kept%create_springs(state%springs, kept%constant_axial)
       call state%loads%at_time(0.0_wp, state%load)
       state%q = q
       state%v = v

@@ -10,11 +10,13 @@ module samples
    use rbs_solve_begin_make_column, only: make_column
    use rbs_structure_column_column_record, only: column_record
    use rbs_hysteresis_registry, only: keys_of
-   use rbs_hysteresis_spring_record, only: spring_record
+   use rbs_hysteresis_rule, only: spring_rules
+   use rbs_hysteresis_spring_record, only: spring_record, add_rules
+   use rbs_hysteresis_springs, only: spring_array
    implicit none
    private
 
-   public :: elastic, bilinear, compression, takeda, bilinear_1, takeda_1, column_1, chain, rich_column, made
+   public :: make_springs, elastic, bilinear, compression, takeda, bilinear_1, takeda_1, column_1, chain, rich_column, made
    public :: concrete_1, steel_1, capped, random_type, set_value, value_of
 
    !> Soesianawati & Park No 1, table 3 of the paper: flexure [N m, rad] ...
@@ -37,6 +39,24 @@ module samples
    end type random_type
 
 contains
+
+   !> Virgin springs; they refer to their rules, which stay.
+   subroutine make_springs(springs, specs, told)
+      type(spring_array), intent(out) :: springs
+      type(spring_record), intent(in) :: specs(:)
+      !> As in `create`; without it none is told
+      integer, intent(in), optional :: told(:)
+      type(spring_rules), pointer :: rules
+      integer :: heard(size(specs))
+      real(wp) :: axial_load(size(specs))
+
+      heard = 0
+      if (present(told)) heard = told
+      axial_load = specs%axial_load
+      allocate (rules)
+      call add_rules(rules, specs, size(specs))
+      call springs%create(rules, heard, axial_load)
+   end subroutine make_springs
 
    !> The next number between two bounds.
    real(wp) function uniform(self, low, high) result(x)

@@ -9,7 +9,7 @@ module test_capped
    use rbs_hysteresis_springs, only: spring_array
    use rbs_hysteresis_rules_backbone_parameters, only: backbone_parameters
    use rbs_hysteresis_spring_record, only: spring_record
-   use samples, only: capped, set_value, value_of
+   use samples, only: make_springs, capped, set_value, value_of
    implicit none
    private
 
@@ -163,7 +163,7 @@ contains
       spec = capped('peak_oriented')
       call set_value(spec, 'f_res', 0.0_wp)
       call set_value(spec, 'lambda_s', 1.8_wp)
-      call spring%create([spec])
+      call make_springs(spring, [spec])
       call spring%advance_to(1, 4.0_wp)
       call check_close(error, spring%force(1), 110.0_wp, 1.0e-14_wp, 0.0_wp, 'at 4')
       do i = 1, 50

@@ -191,14 +191,10 @@ contains
    end subroutine make_beam
 
    subroutine stand(frame, springs)
-      type(frame_type), intent(in) :: frame
+      type(frame_type), intent(in), target :: frame
       type(spring_array), intent(out) :: springs
-      integer :: heard(size(frame%place))
-      real(wp) :: axial_load(size(frame%place))
 
-      heard = frame%place%heard
-      axial_load = frame%spring%axial_load
-      call springs%create(frame%rules, heard, axial_load)
+      call frame%create_springs(springs, frame%constant_axial)
    end subroutine stand
 
    !> A portal with fixed feet, pushed at its left corner and v times as much down in the middle of its beam.

@@ -5,7 +5,7 @@ module test_peak_oriented
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: follow_path, spring_array
-   use samples, only: capped, set_value, random_type
+   use samples, only: make_springs, capped, set_value, random_type
    implicit none
    private
 
@@ -236,7 +236,7 @@ contains
       spec = capped('peak_oriented')
       call set_value(spec, 'lambda_h', 2.0_wp)
       call set_value(spec, 's_min', 0.2_wp)
-      call springs%create([spec, hinge()], told=[2, 0])
+      call make_springs(springs, [spec, hinge()], told=[2, 0])
       call springs%advance_to(2, 5.0_wp)
       call springs%advance_to(1, 2.0_wp)
       call check_same(error, springs%force(1), 110.0_wp, 'not yet')
@@ -278,7 +278,7 @@ contains
             if (random%uniform(0.0_wp, 1.0_wp) < 0.3_wp) d(:, step) = 0.01_wp*d(:, step)
          end do
          do i = 1, 2
-            call springs(i)%create([spec, hinge()], told=[2, 0])
+            call make_springs(springs(i), [spec, hinge()], told=[2, 0])
          end do
          do step = 1, size(d, 2)
             do i = 1, 2

@@ -10,7 +10,7 @@ module test_rules
    use rbs_hysteresis_registry, only: rule_names
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: follow_path, spring_array
-   use samples, only: random_type
+   use samples, only: make_springs, random_type
    implicit none
    private
 
@@ -73,7 +73,7 @@ contains
       do rule = 1, size(rule_names)
          do history = 1, merge(10, 300, rule_names(rule) == 'layered')
             call random_history(trim(rule_names(rule)), history, spec, d)
-            call spring%create([spec])
+            call make_springs(spring, [spec])
             k = spec%initial_stiffness()
             do j = 1, size(d)
                s = merge(1, -1, d(j) > spring%d(1))
@@ -116,7 +116,7 @@ contains
             call random_history(trim(rule_names(rule)), history, spec, d)
             call follow_path(spec, d, f)
             parts = merge(1000, 7, mod(history, 20) == 0)
-            call spring%create([spec])
+            call make_springs(spring, [spec])
             whole = spring
             begin = 0.0_wp
             do j = 1, size(d)
@@ -151,7 +151,7 @@ contains
             call random_history(trim(rule_names(rule)), history, spec, d)
             reach = maxval(abs(d))
             call follow_path(spec, d, f)
-            call spring%create([spec])
+            call make_springs(spring, [spec])
             do j = 1, size(d)
                if (ieee_is_nan(f(j))) exit
                copy = spring
@@ -212,7 +212,7 @@ contains
          call random_path(random, yield_of(spec(i)), d(:, i))
       end do
       cut = 1 + int(random%uniform(0.0_wp, 23.0_wp))
-      call whole%create(spec)
+      call make_springs(whole, spec)
       do j = 1, size(d, 1)
          call whole%move_all(d(j, :))
          if (j == cut) then
@@ -222,7 +222,7 @@ contains
          f(j, :) = [whole%force(1), whole%force(2)]
          w(j, :) = whole%work
       end do
-      call part%create(spec)
+      call make_springs(part, spec)
       call stream%restore()
       call part%serialize(stream)
       call check_true(error, stream%at == stream%count .and. .not. stream%broken, rule//': all is read')

@@ -6,7 +6,7 @@ module test_springs
    use rbs_base_text, only: to_text
    use rbs_hysteresis_springs, only: spring_array
    use rbs_hysteresis_spring_record, only: spring_record
-   use samples, only: bilinear, bilinear_1, compression, elastic, random_type, takeda_1, d_c, d_y, f_c, f_y, &
+   use samples, only: make_springs, bilinear, bilinear_1, compression, elastic, random_type, takeda_1, d_c, d_y, f_c, f_y, &
                       k_c, k_y, k_u, s_d, s_k
    implicit none
    private
@@ -46,7 +46,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(spring_array) :: springs
 
-      call springs%create([takeda_1('kc')])
+      call make_springs(springs, [takeda_1('kc')])
       call springs%arrive(1, 1)
       call check_same(error, [springs%d(1), springs%force(1), springs%k(1)], [d_c, f_c, k_y], 'cracked')
       call springs%arrive(1, 1)
@@ -59,7 +59,7 @@ contains
       type(spring_array) :: springs
       real(wp) :: slope
 
-      call springs%create([takeda_1('kc')])
+      call make_springs(springs, [takeda_1('kc')])
       call springs%advance_to(1, -4.0_wp*d_y)
       call springs%advance_to(1, 4.0_wp*d_y)
       call springs%advance_to(1, 3.9_wp*d_y)
@@ -77,7 +77,7 @@ contains
       type(spring_array) :: springs
       real(wp) :: force
 
-      call springs%create([takeda_1('kc')])
+      call make_springs(springs, [takeda_1('kc')])
       call springs%advance_to(1, 2.0_wp*d_y)
       force = springs%force(1)
       call check_equal(error, springs%unload_on_reversal(1), 1, 'one-way upward')
@@ -93,9 +93,9 @@ contains
       type(spring_record) :: specs(5)
 
       call every_kind(specs)
-      call springs%create(specs)
+      call make_springs(springs, specs)
       call springs%move_all([1.0_wp, 1.0_wp, 1.0_wp, 1.0_wp, 1.0_wp])
-      call springs%create(specs(2:3))
+      call make_springs(springs, specs(2:3))
       call check_equal(error, springs%count, 2, 'count')
       call check_equal(error, springs%events, 0, 'events')
       call check_same(error, springs%work, [0.0_wp, 0.0_wp], 'work')
@@ -165,8 +165,8 @@ contains
       integer :: round, trial, j, i
 
       call all_kinds(specs)
-      call springs%create(specs)
-      call undisturbed%create(specs)
+      call make_springs(springs, specs)
+      call make_springs(undisturbed, specs)
       do round = 1, 60
          call springs%mark()
          do trial = 1, 4
@@ -211,7 +211,7 @@ contains
       integer :: i, j, kind
 
       do kind = 1, 3
-         call springs%create([takeda_1(trim(inner(kind)))])
+         call make_springs(springs, [takeda_1(trim(inner(kind)))])
          d = 4.0_wp*d_y
          do j = 1, depth
             call springs%advance_to(1, d)
@@ -240,7 +240,7 @@ contains
       type(spring_array) :: springs
       integer :: before
 
-      call springs%create([bilinear_1(), elastic(2.0_wp)])
+      call make_springs(springs, [bilinear_1(), elastic(2.0_wp)])
       before = springs%version
       call springs%move_all([0.5_wp*s_d, 100.0_wp])
       call springs%move_all([-0.9_wp*s_d, -100.0_wp])
@@ -267,7 +267,7 @@ contains
       integer :: j, within
 
       call all_kinds(specs)
-      call springs%create(specs)
+      call make_springs(springs, specs)
       within = 0
       do j = 1, 3000
          call random_move(random, point)
@@ -296,7 +296,7 @@ contains
       real(wp) :: d
       integer :: j
 
-      call springs%create([compression(3.0_wp)])
+      call make_springs(springs, [compression(3.0_wp)])
       call check_same(error, [springs%d(1), springs%force(1)], [0.0_wp, 0.0_wp], 'closed, without force')
       do j = 1, 1000
          d = random%uniform(-1.0_wp, 1.0_wp)
@@ -317,7 +317,7 @@ contains
       logical :: found
       integer :: i
 
-      call springs%create([takeda_1('kc'), bilinear(10.0_wp, 0.1_wp, 1.0_wp), compression(4.0_wp), &
+      call make_springs(springs, [takeda_1('kc'), bilinear(10.0_wp, 0.1_wp, 1.0_wp), compression(4.0_wp), &
                            elastic(2.0_wp)])
       moved = springs
       do i = 1, size(force)
@@ -356,7 +356,7 @@ contains
       type(spring_array) :: springs
       logical :: found
 
-      call springs%create([compression(4.0_wp), bilinear(10.0_wp, 0.1_wp, 0.0_wp)])
+      call make_springs(springs, [compression(4.0_wp), bilinear(10.0_wp, 0.1_wp, 0.0_wp)])
       call springs%load_to(1, 1.0_wp, found)
       call check_true(error, .not. found, 'a contact does not pull')
       call springs%load_to(2, 1.0_wp, found)

@@ -8,7 +8,7 @@ module test_steel
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_hysteresis_spring_record, only: spring_record
-   use samples, only: set_value, random_type
+   use samples, only: make_springs, set_value, random_type
    implicit none
    private
 
@@ -107,7 +107,7 @@ contains
       type(spring_array) :: spring
       integer :: i
 
-      call spring%create([bank(0.0_wp)])
+      call make_springs(spring, [bank(0.0_wp)])
       call spring%advance_to(1, 4.2_wp)
       call spring%leave(1, -1)
       do i = 1, 6
@@ -187,7 +187,7 @@ contains
 
       spec = bank(0.01_wp)
       call set_value(spec, 'endurance', 50.0_wp)
-      call spring%create([spec])
+      call make_springs(spring, [spec])
       do i = 1, 40
          call spring%advance_to(1, 4.0_wp*(-1)**i)
       end do
@@ -259,7 +259,7 @@ contains
       integer :: i, j, before
 
       do i = 1, size(amplitudes)
-         call spring%create([bank(0.01_wp)])
+         call make_springs(spring, [bank(0.01_wp)])
          do j = 1, 6
             if (j == 5) before = spring%events
             call spring%advance_to(1, amplitudes(i)*(-1)**(j + 1))

@@ -5,7 +5,7 @@ module test_takeda
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_hysteresis_spring_record, only: spring_record
-   use samples, only: value_of, takeda, takeda_1, k_c, d_c, k_y, d_y, k_u, b0, b1, f_c, f_y, k_0, random_type
+   use samples, only: make_springs, value_of, takeda, takeda_1, k_c, d_c, k_y, d_y, k_u, b0, b1, f_c, f_y, k_0, random_type
    implicit none
    private
 
@@ -51,7 +51,7 @@ contains
          call check_close(error, f, [f_c + k_y*(1.0e-3_wp - d_c), -(f_c + k_y*(1.5e-3_wp - d_c)), f_2, -f_2, &
                                      f_2, -f_2, -zero*f_2/(2.0e-3_wp - zero)], 1.0e-9_wp, 0.0_wp, &
                           inner(i)//' by hand')
-         call spring%create([takeda_1(inner(i))])
+         call make_springs(spring, [takeda_1(inner(i))])
          do j = 1, 6
             call spring%advance_to(1, d(j))
             if (j == 4) before = spring%work(1)
@@ -80,7 +80,7 @@ contains
       integer :: i, j
 
       do i = 1, 3
-         call spring%create([takeda_1(inner(i))])
+         call make_springs(spring, [takeda_1(inner(i))])
          do j = 1, 9
             call spring%advance_to(1, d(j))
             f(j) = spring%force(1)
@@ -191,7 +191,7 @@ contains
       do path = 1, 400
          call random_spring(random, spec)
          call random_path(random, value_of(spec, 'd_y'), d)
-         call spring%create([spec])
+         call make_springs(spring, [spec])
          do j = 1, size(d)
             call spring%advance_to(1, d(j))
             if (.not. (spring%includes_lower_end(1) .or. spring%includes_upper_end(1))) cycle
@@ -262,7 +262,7 @@ contains
       real(wp) :: f(n), d_before, f_before
       integer :: j
 
-      call spring%create([takeda_1('kc')])
+      call make_springs(spring, [takeda_1('kc')])
       call spring%advance_to(1, 4.0_wp*d_y)
       call spring%advance_to(1, -4.0_wp*d_y)
       do j = 1, n
@@ -294,7 +294,7 @@ contains
       integer :: j
 
       call follow_path(takeda_1('kc'), [nest, 2.5_wp*d_y, 3.5_wp*d_y], f)
-      call spring%create([takeda_1('kc')])
+      call make_springs(spring, [takeda_1('kc')])
       do j = 1, size(nest)
          call spring%advance_to(1, nest(j))
       end do

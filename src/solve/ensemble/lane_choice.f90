@@ -29,7 +29,7 @@ contains
       select type (column => of_runs%structure)
       class is (column_type)
          if (column%opens .or. column%held .or. column%kinematics == finite) return
-         if (any(column%spring%rule == 'layered')) return
+         if (any(column%rules%name == 'layered')) return
       class default
          return
       end select

@@ -348,7 +348,7 @@ contains
       real(wp) :: omega, c, remaining
       logical :: elastic, apart
 
-      elastic = all(structure%spring%rule == 'elastic')
+      elastic = all(structure%rules%name == 'elastic')
       omega = max(plain, loaded)
       c = structure%mass_damping + structure%stiffness_damping*plain**2
       ! Stiffness damping has no axial forces in it.

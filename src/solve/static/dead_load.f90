@@ -44,8 +44,6 @@ contains
       type(task_type), target :: task
       type(standing_type) :: standing
       type(spring_array) :: springs
-      integer :: heard(size(frame%place))
-      real(wp) :: axial_load(size(frame%place))
 
       call equilibrium%create(frame, .true.)
       unloaded = frame
@@ -54,9 +52,7 @@ contains
       task%keeps_end = .true.
       call trace_straight(unloaded, equilibrium, .true., [1.0_wp], task, error)
       if (allocated(error)) return
-      heard = frame%place%heard
-      axial_load = frame%spring%axial_load
-      call springs%create(frame%rules, heard, axial_load)
+      call frame%create_springs(springs, frame%constant_axial)
       call task%after%take_up(frame, standing, springs, error)
       if (allocated(error)) return
       call frame%set_compression(springs%d, springs%f0 + springs%k*(springs%d - springs%d0))

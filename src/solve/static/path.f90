@@ -146,16 +146,12 @@ contains
       logical, intent(in) :: by_force
       !> Number of springs that can move
       integer, intent(in) :: moving
-      integer :: heard(size(self%structure%place))
-      real(wp) :: axial_load(size(self%structure%place))
 
       self%by_force = by_force
       self%moving = moving
-      heard = self%structure%place%heard
-      axial_load = self%structure%spring%axial_load
-      call self%springs%create(self%structure%rules, heard, axial_load)
-      allocate (self%rate(size(heard)), source=0.0_wp)
-      allocate (self%changed(size(heard)), source=0)
+      call self%structure%create_springs(self%springs, self%structure%constant_axial)
+      allocate (self%rate(self%springs%count), source=0.0_wp)
+      allocate (self%changed(self%springs%count), source=0)
       allocate (self%rotation(self%structure%n))
    end subroutine prepare
 
@@ -186,11 +182,11 @@ contains
 
       do i = 1, self%springs%count
          if (self%structure%place(i)%kind /= axial) cycle
-         tension = -self%structure%spring(i)%axial_load
+         tension = -self%structure%constant_axial(i)
          call self%springs%load_to(i, tension, found)
          if (found .or. abs(tension - self%springs%force(i)) <= no_force*abs(tension)) cycle
          call fatal_error(error, analysis_failed, trim(spring_name(self%structure%place(i)))//" (rule '"// &
-                          trim(self%structure%spring(i)%rule)//"') cannot carry the "// &
+                          trim(self%springs%rules%name(self%springs%rules%of(i)))//"') cannot carry the "// &
                           trim(merge('compression', 'tension    ', tension < 0.0_wp))//' of '// &
                           to_text(abs(tension))//' N from axial load and weight: it has no stiffness '// &
                           'left. Change axial_load, or give the joint a spring that holds')

@@ -64,7 +64,7 @@ contains
       call before%take_up(path%structure, standing, path%springs, error)
       if (allocated(error)) return
       if (varies) call vary_axial_loads(path%springs)
-      press = path%structure%spring%axial_load
+      press = path%structure%constant_axial
       if (varies) press = standing%press
       goes_on = standing%kind == static_state .and. all(abs(press - standing%press) <= 0.0_wp)
       call go_under(path%springs, press, standing%pressed)
@@ -210,10 +210,10 @@ contains
       standing%displacement = path%displacement
       standing%force = path%force
       standing%axial_load = path%load_now
-      standing%press = path%structure%spring%axial_load
+      standing%press = path%structure%constant_axial
       if (varies) then
          standing%press = path%load_now + path%structure%axial_force_ratio*path%force &
-                          + (path%structure%spring%axial_load - path%structure%axial_load)
+                          + (path%structure%constant_axial - path%structure%axial_load)
          if (path%springs%pressed) then
             do i = 1, size(path%springs%layered)
                associate (place => path%springs%layered(i))

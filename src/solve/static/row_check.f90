@@ -59,7 +59,7 @@ contains
 
       self%at_begin = missing_work
       self%largest_place = no_digits*structure%total_height
-      self%largest_force = no_digits*maxval(abs(structure%spring%axial_load))
+      self%largest_force = no_digits*maxval(abs(structure%constant_axial))
       allocate (self%share(size(structure%place)))
       do i = 1, size(self%share)
          self%share(i) = merge(1.0_wp/structure%total_height, 1.0_wp, structure%place(i)%kind == flexure)

@@ -147,7 +147,7 @@ contains
       end if
       call check_values(axial_load, 'axial_load', error)
       if (allocated(error) .or. column%kinematics /= small .or. column%opens .or. &
-          any(column%spring%rule == 'layered')) return
+          any(column%rules%name == 'layered')) return
       call fatal_error(error, bad_input, "axial_load: with kinematics = 'small', no layered joint and no "// &
                        "axial spring a history of it does nothing; use 'pdelta', or give such springs")
    end subroutine check_axial_load

@@ -168,7 +168,7 @@ contains
          plan%reason = 'finite rotations: the steps follow from a tolerance'
       else
          plan%method = explicit_choice%name
-         plan%located = any(structure%spring%rule /= 'elastic')
+         plan%located = any(structure%rules%name /= 'elastic')
          plan%reason = to_text(anint(explicit_steps))//' steps take little time'
          if (plan%located) plan%reason = trim(plan%reason)//'; events located'
       end if

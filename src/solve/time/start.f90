@@ -178,7 +178,7 @@ contains
       state%of_loads = 0.0_wp
       state%of_damping = 0.0_wp
       state%lost = .false.
-      call state%springs%restart(state%motion%structure%spring%axial_load)
+      call state%springs%restart(state%motion%structure%constant_axial)
       call state%loads%at_time(state%time, state%load)
    end subroutine restart_state
 
@@ -220,16 +220,15 @@ contains
       type(state_type), intent(inout) :: state
       class(structure_type), intent(in) :: structure
       real(wp) :: axial_load(size(structure%place))
-      integer :: heard(size(structure%place)), i
+      integer :: i
 
-      heard = structure%place%heard
-      axial_load = structure%spring%axial_load
+      axial_load = structure%constant_axial
       if (state%motion%varies) then
          do i = 1, size(axial_load)
             axial_load(i) = structure%axial_force(i, state%load)
          end do
       end if
-      call state%springs%create(structure%rules, heard, axial_load)
+      call structure%create_springs(state%springs, axial_load)
       if (.not. state%motion%varies) return
       call vary_axial_loads(state%springs)
       call state%motion%press(state%springs, state%load)

@@ -135,7 +135,7 @@ contains
       self%axially_loaded = self%kinematics /= small .and. (abs(dead) > 0.0_wp .or. self%gravity > 0.0_wp)
       ! Layered joints and axial springs carry the axial load of load and weight above them.
       do i = self%n + 1, self%unknowns
-         self%spring(i)%axial_load = self%compression(self%place(i)%index)
+         self%constant_axial(i) = self%compression(self%place(i)%index)
       end do
    end subroutine put_under
 
@@ -493,7 +493,7 @@ contains
                           'give the axial load as a history, axial_load')
          return
       end if
-      if (self%kinematics /= small .or. self%opens .or. any(self%spring%rule == 'layered')) return
+      if (self%kinematics /= small .or. self%opens .or. any(self%rules%name == 'layered')) return
       if (acts(vertical)) then
          call fatal_error(error, bad_input, "vertical_acceleration: with kinematics = 'small' and joints "// &
                           "that do not open it does nothing; use 'pdelta' or 'finite', or give axial "// &

@@ -5,7 +5,7 @@ module rbs_structure_column_new_column
    use rbs_structure_column_column, only: column_type, small, pdelta, finite
    use rbs_structure_column_column_record, only: column_record
    use rbs_structure_column_finite, only: finite_chain_type
-   use rbs_hysteresis_spring_record, only: make_rules
+   use rbs_hysteresis_spring_record, only: add_rules
    use rbs_structure_spring_place, only: spring_place, shear, flexure, axial
    use rbs_structure_structure, only: unknown_group, lateral, horizontal, vertical, top_axial
    implicit none
@@ -83,7 +83,6 @@ contains
       column%axial_force_ratio = spec%axial_force_ratio
       if (is_given(spec%axial_height)) column%axial_lever = spec%axial_height/spec%height
       call column%put_under(spec%axial_load)
-      call make_rules(column%spring, column%rules)
       column%initial_stiffness = column%rules%initial_stiffness()
       call set_unknowns(column)
    end subroutine new_column
@@ -182,21 +181,22 @@ contains
       integer :: i, joint, n
 
       n = column%n
-      allocate (column%spring(column%unknowns), column%place(column%unknowns))
+      allocate (column%place(column%unknowns))
+      allocate (column%constant_axial(column%unknowns), source=0.0_wp)
       allocate (column%at(3, n), source=0)
       do i = 1, n
          column%at(:2, i) = [i, n + i]
-         column%spring(i) = spec%shear(min(i, size(spec%shear)))
-         column%spring(n + i) = spec%flexure(min(i, size(spec%flexure)))
          ! A shear spring may ask for the work of the flexural one of its joint.
          joint = merge(i - 1, i, column%footing)
          column%place(i) = spring_place(shear, 1, joint, n + i, i)
          column%place(n + i) = spring_place(flexure, 1, joint, index=i)
          if (.not. column%opens) cycle
          column%at(axial, i) = 2*n + i
-         column%spring(2*n + i) = spec%axial_spring(min(i, size(spec%axial_spring)))
          column%place(2*n + i) = spring_place(axial, 1, joint, index=i)
       end do
+      call add_rules(column%rules, spec%shear, n)
+      call add_rules(column%rules, spec%flexure, n)
+      if (column%opens) call add_rules(column%rules, spec%axial_spring, n)
    end subroutine set_springs
 
    !> The coordinates of the bodies, in which the mass is diagonal; see `rbs_structure_column_chain`.

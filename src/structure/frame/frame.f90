@@ -303,7 +303,7 @@ contains
          if (i > self%members) exit
          self%compression(i) = -s(1)
          associate (e => self%element(i))
-            self%spring(e%before + 1:e%before + e%bending + e%opening)%axial_load = -s(1)
+            self%constant_axial(e%before + 1:e%before + e%bending + e%opening) = -s(1)
          end associate
       end do
    end subroutine set_compression

@@ -2,7 +2,7 @@
 !> dead load does in them.
 module rbs_structure_frame_new_frame
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_spring_record, only: spring_record, make_rules
+   use rbs_hysteresis_spring_record, only: spring_record, add_rules
    use rbs_structure_frame_element, only: frame_element, tangent_size
    use rbs_structure_frame_frame, only: frame_type
    use rbs_structure_frame_frame_record, only: name_length
@@ -65,6 +65,7 @@ contains
       integer, intent(in) :: top
       !> Whether that is the one upward, not the one along x
       logical, intent(in), optional :: vertical
+      type(spring_record), allocatable :: spring(:)
       integer :: i, springs, direction
 
       frame%kinematics = kinematics
@@ -87,16 +88,17 @@ contains
       end do
       call number_unknowns(frame, node, member)
       springs = frame%inside + frame%unknowns
-      allocate (frame%spring(springs), frame%place(springs), frame%arm(springs), &
+      allocate (spring(springs), frame%place(springs), frame%arm(springs), frame%constant_axial(springs), &
                 frame%spring_place(frame%inside))
       frame%arm = 0.0_wp
+      frame%constant_axial = 0.0_wp
       direction = 1
       if (present(vertical)) direction = merge(2, 1, vertical)
       frame%arm(frame%inside + frame%number(direction, top)) = 1.0_wp
-      call set_ground(frame, node)
-      call set_elements(frame, node, member)
-      call set_panels(frame, node)
-      call make_rules(frame%spring, frame%rules)
+      call set_ground(frame, node, spring)
+      call set_elements(frame, node, member, spring)
+      call set_panels(frame, node, spring)
+      call add_rules(frame%rules, spring, springs)
       frame%initial_stiffness = frame%rules%initial_stiffness()
       allocate (frame%initial_tangent(frame%tangent_numbers), source=0.0_wp)
       allocate (frame%base_spring(0), frame%base_factor(0))
@@ -169,9 +171,10 @@ contains
    end function is_beam
 
    !> Masses and loads of the nodes, and the springs from the ground.
-   subroutine set_ground(frame, node)
+   subroutine set_ground(frame, node, spring)
       type(frame_type), intent(inout) :: frame
       type(frame_node), intent(in) :: node(:)
+      type(spring_record), intent(inout) :: spring(:)
       integer, parameter :: kind_of(3) = [shear, axial, flexure]
       integer :: i, j
 
@@ -193,11 +196,11 @@ contains
                if (frame%place(frame%inside + at)%kind == 0) then
                   frame%place(frame%inside + at) = spring_place(kind_of(j), 0, 0, index=i, &
                                                                 owner='node '//node(i)%name)
-                  frame%spring(frame%inside + at) = node(i)%ground(j)
+                  spring(frame%inside + at) = node(i)%ground(j)
                end if
-               if (frame%spring(frame%inside + at)%rule == '') then
-                  frame%spring(frame%inside + at)%rule = 'elastic'
-                  frame%spring(frame%inside + at)%value(1) = of_no_account
+               if (spring(frame%inside + at)%rule == '') then
+                  spring(frame%inside + at)%rule = 'elastic'
+                  spring(frame%inside + at)%value(1) = of_no_account
                end if
                associate (push => [node(i)%push, 0.0_wp])
                   frame%pattern(lateral)%force(at) = frame%pattern(lateral)%force(at) + push(j)
@@ -211,18 +214,19 @@ contains
             frame%part(at) = i
             frame%reach(at) = frame%total_height
             frame%place(frame%inside + at) = spring_place(flexure, 0, 0, index=i, owner='node '//node(i)%name)
-            frame%spring(frame%inside + at)%rule = 'elastic'
-            frame%spring(frame%inside + at)%value(1) = of_no_account
+            spring(frame%inside + at)%rule = 'elastic'
+            spring(frame%inside + at)%value(1) = of_no_account
          end associate
       end do
       frame%pattern%last = frame%unknowns
    end subroutine set_ground
 
    !> Geometry of the elements, their springs, and what dead load does in them.
-   subroutine set_elements(frame, node, member)
+   subroutine set_elements(frame, node, member, spring)
       type(frame_type), intent(inout) :: frame
       type(frame_node), intent(in) :: node(:)
       type(frame_member), intent(in) :: member(:)
+      type(spring_record), intent(inout) :: spring(:)
       real(wp) :: axis(2), across(2), chord(6)
       integer :: i, j, before, at
 
@@ -256,7 +260,7 @@ contains
                e%rest_along = m%axial/clear
                call set_rest(e, m, clear)
                do j = 1, size(m%kind)
-                  frame%spring(before + j) = m%spring(j)
+                  spring(before + j) = m%spring(j)
                   frame%spring_place(before + j) = m%place(j)
                   frame%place(before + j) = spring_place(m%kind(j), i, j, index=i, owner=m%name)
                   if (m%kind(j) == flexure) e%share(:, j) = [m%place(j) - 1.0_wp, m%place(j)]
@@ -273,30 +277,31 @@ contains
    end subroutine set_elements
 
    !> A panel is an element of one spring, which "opens" by the rotation of the columns against the beams.
-   subroutine set_panels(frame, node)
+   subroutine set_panels(frame, node, spring)
       type(frame_type), intent(inout) :: frame
       type(frame_node), intent(in) :: node(:)
-      integer :: i, element, spring
+      type(spring_record), intent(inout) :: spring(:)
+      integer :: i, element, at
 
       element = frame%members
-      spring = frame%inside - count(frame%beam_rotation > 0)
+      at = frame%inside - count(frame%beam_rotation > 0)
       do i = 1, size(node)
          if (frame%beam_rotation(i) == 0) cycle
          element = element + 1
-         spring = spring + 1
+         at = at + 1
          associate (e => frame%element(element))
             e%node = i
             e%number = [0, 0, frame%number(3, i), 0, 0, frame%beam_rotation(i)]
             e%to_basic(1, :) = [0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, -1.0_wp]
-            e%before = spring - 1
+            e%before = at - 1
             e%opening = 1
             allocate (e%share(2, 0))
             e%at = frame%tangent_numbers
             frame%tangent_numbers = frame%tangent_numbers + tangent_size(e)
          end associate
-         frame%spring(spring) = node(i)%panel
-         frame%spring_place(spring) = 0.0_wp
-         frame%place(spring) = spring_place(flexure, 0, 1, index=i, owner=node(i)%name)
+         spring(at) = node(i)%panel
+         frame%spring_place(at) = 0.0_wp
+         frame%place(at) = spring_place(flexure, 0, 1, index=i, owner=node(i)%name)
       end do
    end subroutine set_panels
 
