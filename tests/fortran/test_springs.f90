@@ -6,7 +6,8 @@ module test_springs
    use rbs_base_text, only: to_text
    use rbs_hysteresis_springs, only: spring_array
    use rbs_hysteresis_spring_record, only: spring_record
-   use samples, only: make_springs, bilinear, bilinear_1, compression, elastic, random_type, takeda_1, d_c, d_y, f_c, f_y, &
+   use samples, only: make_springs, bilinear, bilinear_1, compression, elastic, random_type, takeda_1, d_c, &
+                      d_y, f_c, f_y, &
                       k_c, k_y, k_u, s_d, s_k
    implicit none
    private

@@ -5,7 +5,8 @@ module test_takeda
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: follow_path, spring_array
    use rbs_hysteresis_spring_record, only: spring_record
-   use samples, only: make_springs, value_of, takeda, takeda_1, k_c, d_c, k_y, d_y, k_u, b0, b1, f_c, f_y, k_0, random_type
+   use samples, only: make_springs, value_of, takeda, takeda_1, k_c, d_c, k_y, d_y, k_u, b0, b1, f_c, f_y, &
+                      k_0, random_type
    implicit none
    private
 
