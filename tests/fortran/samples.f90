@@ -16,7 +16,8 @@ module samples
    implicit none
    private
 
-   public :: make_springs, elastic, bilinear, compression, takeda, bilinear_1, takeda_1, column_1, chain, rich_column, made
+   public :: make_springs
+   public :: elastic, bilinear, compression, takeda, bilinear_1, takeda_1, column_1, chain, rich_column, made
    public :: concrete_1, steel_1, capped, random_type, set_value, value_of
 
    !> Soesianawati & Park No 1, table 3 of the paper: flexure [N m, rad] ...

@@ -30,7 +30,8 @@ contains
       do i = 1, column%n
          associate (at => column%at(flexure, i))
             if (column%rules%name(column%rules%of(at)) /= 'layered') cycle
-            call check_axial_load(column%rules%list(column%rules%of(at))%rule, column%constant_axial(at), text)
+            call check_axial_load(column%rules%list(column%rules%of(at))%rule, column%constant_axial(at), &
+                                  text)
          end associate
          if (text == '') cycle
          call fatal_error(error, bad_input, 'flexure spring of joint '//to_text(spec%joint_number(i))// &
