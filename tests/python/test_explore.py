@@ -31,6 +31,10 @@ from rbsdem.web.state import DEFAULT
 COUNT = itertools.count(1)
 
 
+#: A footing on springs, of 4 t.
+FOOTING = {"rotation": 1e8, "sliding": 1e9, "height": 0.6, "mass": 4e3}
+
+
 def state(**changes):
     """The first column of the page, on a short path; changes are "group_key=value"."""
     found = copy.deepcopy(DEFAULT)
@@ -38,7 +42,7 @@ def state(**changes):
     for name, value in changes.items():
         group, key = name.split("_", 1)
         place = found if group == "loading" else found["columns"][0]
-        place[group][key] = value
+        place.setdefault(group, {"kind": "springs", **FOOTING})[key] = value
     return found
 
 
@@ -193,6 +197,32 @@ def test_two_columns_and_double_curvature(post):
     assert other["height"] == 3.2
 
 
+@pytest.mark.parametrize("ends", ["cantilever", "double"])
+def test_a_footing_is_that_of_the_functions(post, ends):
+    elastic = rbsdem.springs.Elastic
+    plan = 4e3 / (2400 * 0.6)
+    footing = rbsdem.Footing(
+        elastic(1e9), elastic(1e8), mass=4e3, inertia=4e3 * (plan + 0.36) / 12, height=0.6
+    )
+    top = {"cantilever": "free", "double": "fixed"}[ends]
+    column = rbsdem.section.column(section(), 1.6, axial_load=744e3, top=top, footing=footing)
+    given = state(footing_kind="springs", column_ends=ends)
+    (answer,) = post("loops", state=given)["columns"]
+    result = rbsdem.cyclic(column, displacement=1.6 * rbsdem.protocol([0.005, 0.02]))
+    np.testing.assert_allclose(answer["force"], result.force, rtol=1e-5)
+    # The moment of the column, without the height of the footing.
+    assert answer["figures"]["peak_moment"] == pytest.approx(
+        abs(result.moment[:, 1]).max(), rel=1e-5
+    )
+    given["loading"] = {"kind": "synthetic", "seed": 1, "scale": 0.5}
+    (answer,) = post("loops", state=given)["columns"]
+    motion = rbsdem.motions.synthetic(1, 1, dt=0.01)[0].scaled(0.5)
+    result = rbsdem.time_history(
+        replace(column, top_mass=744e3 / 9.80665), ground_acceleration=motion, collapse_drift=0.2
+    )
+    np.testing.assert_allclose(answer["displacement"], result.displacement, rtol=1e-4, atol=1e-9)
+
+
 def test_section_and_band_are_those_of_the_functions(post):
     (answer,) = post("sections", state=state(), code="ec2")["columns"]
     diagram = rbsdem.section.diagram(section(), 744e3)
@@ -266,7 +296,10 @@ def test_double_curvature_in_time_is_the_whole_column(post):
         ({"loading_cycles": 10**400}, "loading.cycles", "must be a whole number"),
         ({"section_width": 10**400}, "section.width", "width"),
         ({"column_height": [1.6]}, "column.height", "must be a number"),
-        ({"loading_kind": "record"}, "loading.name", "not open here"),
+        ({"loading_kind": "record"}, "loading.record", "choose a file"),
+        ({"footing_kind": "piles"}, "footing.kind", "there are none, springs"),
+        ({"footing_rotation": None}, "footing.rotation", "must be a number"),
+        ({"footing_height": -1.0}, "footing.height", "must be above 0"),
     ],
 )
 def test_errors_stand_beside_their_fields(post, changes, field, text):
@@ -406,6 +439,7 @@ def test_python_gives_the_same_loop(post):
     for changes in (
         {},
         {"section_shape": "circle", "section_diameter": 0.5, "column_ends": "double"},
+        {"footing_kind": "springs", "column_ends": "double"},
     ):
         given = state(**changes)
         program = post("export", state=given, form="python")["text"]

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import copy
+import csv
+import re
 import shutil
 import threading
 import time
@@ -60,7 +62,7 @@ class Page:
     def type(self, selector: str, words: str) -> None:
         field = self.one(selector)
         field.send_keys(Keys.CONTROL, "a")
-        field.send_keys(words, Keys.TAB)
+        field.send_keys(words or Keys.DELETE, Keys.TAB)
 
     def wait(self, done: Callable[[], object]) -> None:
         """Wait until something is true; an element that is drawn anew meanwhile is not yet."""
@@ -182,12 +184,9 @@ def test_keys_move_a_handle_and_a_field(page):
     assert nameless == []
 
 
-def test_errors_are_those_of_the_program_and_go(page):
+def test_errors_stand_in_the_units_of_their_fields_and_go(page):
     page.type("#f-bars-number", "11")
-    concrete, bars = rbsdem.Concrete(46.5e6), rbsdem.Layout(11, 0.016, rbsdem.Steel(446e6))
-    with pytest.raises(rbsdem.InputError) as program:
-        rbsdem.RectangularSection(0.4, 0.4, concrete, layout=bars)
-    page.wait(lambda: page.text("#f-bars-number-fault") == str(program.value))
+    page.wait(lambda: page.text("#f-bars-number-fault").startswith("Number = 11 does not spread"))
     assert page.one("#f-bars-number-fault").is_displayed()
     assert page.one("#f-bars-number").get_attribute("aria-invalid") == "true"
     assert "f-bars-number-fault" in page.one("#f-bars-number").get_attribute("aria-describedby")
@@ -197,6 +196,27 @@ def test_errors_are_those_of_the_program_and_go(page):
     page.type("#f-bars-number", "16")
     page.wait(lambda: not page.one("#f-bars-number-fault").is_displayed())
     page.wait(lambda: not page.old())
+    for selector, typed, units, told in (
+        ("concrete-fc", "500", "mm", "Concrete strength = 500 MPa must be from 5 to 200 MPa"),
+        ("concrete-fc", "", "mm", "Concrete strength is empty: give it in MPa."),
+        (
+            "concrete-fc",
+            "500",
+            "in",
+            "Concrete strength = 500 ksi must be from 0.72519 to 29.008 ksi",
+        ),
+        ("column-height", "1", "mm", "Height = 1 mm must be between 50 mm and 100000 mm"),
+        ("column-axial_load", "100000", "mm", "give −1129.9 to 8975.5 kN"),
+        ("ties-legs", "99999", "mm", "Legs along the load = 99999 bars of 7 mm do not fit into"),
+        ("loading-amplitudes", "", "mm", "Drifts is empty: give it in %."),
+        ("loading-amplitudes", "-2", "mm", "Drifts = −2 % must be above zero"),
+        ("loading-cycles", "", "mm", "Cycles at each is empty: give a whole number."),
+    ):
+        Select(page.one("#units")).select_by_value(units)
+        page.type(f"#f-{selector}", typed)
+        page.wait(lambda at=selector, told=told: told in page.text(f"#f-{at}-fault"))
+        assert page.one(f"#f-{selector}-fault").is_displayed()
+        page.open()
 
 
 def test_what_stands_belongs_to_one_accepted_input(page):
@@ -219,7 +239,7 @@ def test_what_stands_belongs_to_one_accepted_input(page):
     assert now() == accepted
     for panel in ("#loopfigure svg", "#figures table", "#curvaturefigure svg", "#codetable table"):
         page.wait(lambda panel=panel: float(page.one(panel).value_of_css_property("opacity")) < 0.5)
-    Select(page.one("#export")).select_by_value("svg")
+    page.one('[title="Save loop.svg"]').click()
     page.wait(lambda: "Nothing is saved" in page.text("#notes"))
     page.type("#f-section-cover", "13")
     page.wait(lambda: not page.old() and now() == accepted)
@@ -233,7 +253,9 @@ def test_what_stands_belongs_to_one_accepted_input(page):
 def test_units_are_a_way_to_look(page):
     before = page.driver.execute_script("return location.hash")
     Select(page.one("#units")).select_by_value("in")
-    assert float(page.value("#f-section-width")) == pytest.approx(0.4 / 0.0254)
+    # Five digits of what was typed in other units, which stays what it is.
+    assert page.value("#f-section-width") == "15.748"
+    assert page.value("#f-column-axial_load") == "167.26"
     page.type("#f-section-width", "20")
     page.wait(lambda: page.one("#undo").is_enabled())
     Select(page.one("#units")).select_by_value("mm")
@@ -256,21 +278,109 @@ def test_two_columns_and_another_loading(page):
 def test_exports(page):
     page.wait(lambda: page.all("#loopfigure .band path"))
     assert "band of 80 %" in page.text("#loopstate")
-    for form in ("namelist", "python", "csv", "svg", "png"):
+    for form, ending in (("namelist", "nml"), ("python", "py"), ("csv", "csv")):
         Select(page.one("#export")).select_by_value(form)
-        name = {"namelist": "column_a.nml", "python": "column_a.py", "csv": "column_a.csv"}.get(
-            form, f"loops.{form}"
-        )
-        assert page.saved(name)
+        assert page.saved(f"column_a.{ending}")
     case = rbsdem.read_case(page.downloads / "column_a.nml")
     assert 1e-3 * abs(case.run().force).max() == pytest.approx(page.peak(), rel=1e-3)
-    ElementTree.fromstring(page.saved("loops.svg"))
-    assert page.saved("loops.png").startswith(b"\x89PNG")
     # A file comes back as the drawing that it was.
     page.type("#f-section-width", "450")
     page.wait(lambda: page.one("#undo").is_enabled())
     page.one("#file").send_keys(str(page.downloads / "column_a.nml"))
     page.wait(lambda: page.value("#f-section-width") == "400")
+
+
+def test_every_panel_is_saved(page):
+    page.wait(lambda: page.all("#interactionfigure path.line.dotted") and not page.old())
+    panels = [one for one in page.all("main > section") if one.is_displayed()][1:]
+    assert all(panel.find_elements(By.CSS_SELECTOR, ".saves button") for panel in panels)
+    texts = {}
+    for button in page.all(".saves button"):
+        if button.is_displayed():
+            name = button.get_attribute("title").removeprefix("Save ")
+            button.click()
+            texts[name] = page.saved(name)
+    assert len(texts) == 14
+    for name, raw in texts.items():
+        if name.endswith("svg"):
+            assert "handle" not in raw.decode()
+            size = ElementTree.fromstring(raw).attrib
+            assert int(size["width"]) > 200
+        elif name.endswith("png"):
+            assert raw.startswith(b"\x89PNG")
+    loop, states, codes = (
+        list(csv.reader(texts[f"{name}.csv"].decode().splitlines()))
+        for name in ("loop", "limit_states", "codes")
+    )
+    assert loop[0] == ["series", "Drift (%)", "Lateral force (kN)"]
+    assert max(float(row[2]) for row in loop[1:] if row[0] == "a") == pytest.approx(
+        page.peak(), rel=1e-3
+    )
+    assert states[0] == ["First reached", "drift %", "d mm", "F kN", "criterion"]
+    assert all(len(row) == 5 for row in states + codes)
+
+
+def test_values_under_the_pointer_and_legends(page):
+    page.wait(lambda: page.all("#interactionfigure path.line.dotted"))
+    legend = [one.get_attribute("textContent") for one in page.all("#curvaturefigure .legend text")]
+    assert legend[:3] == ["not confined", "core confined", "cracking"]
+    assert "largest moment of the loop" in page.text("#interactionfigure .legend")
+    for figure, told in (("loopfigure", r"[\d.−]+ %, [\d.−]+ kN"), ("curvaturefigure", "mrad/m, ")):
+        line = page.one(f"#{figure} path.line.a")
+        at = page.driver.execute_script(
+            "const p = arguments[0].getPointAtLength(9), b = arguments[0].ownerSVGElement"
+            ".getBoundingClientRect(); arguments[0].scrollIntoView({block: 'center'});"
+            "return [p.x - b.width / 2, p.y - b.height / 2]",
+            line,
+        )
+        mouse = ActionChains(page.driver, duration=0)
+        svg = page.one(f"#{figure} svg")
+        mouse.move_to_element_with_offset(svg, round(at[0]), round(at[1])).perform()
+        page.wait(lambda of=figure, words=told: re.search(words, page.text(f"#{of} .probe")))
+        assert page.one(f"#{figure} .probe").get_attribute("visibility") == "visible"
+
+
+def test_bars_step_through_their_sizes(page):
+    handle = page.one('#drawings [data-path="bars.diameter"]')
+    page.driver.execute_script("arguments[0].focus()", handle)
+    keys = ActionChains(page.driver)
+    keys.send_keys(Keys.ARROW_UP).send_keys(Keys.ARROW_UP).perform()
+    page.wait(lambda: page.value("#f-bars-diameter") == "25")
+    page.one("#f-ties-diameter").send_keys(Keys.ARROW_UP)  # from 7 mm, which is no size
+    page.wait(lambda: page.value("#f-ties-diameter") == "8")
+    Select(page.one("#units")).select_by_value("in")
+    page.one("#f-bars-diameter").send_keys(Keys.ARROW_DOWN)
+    page.wait(lambda: page.value("#f-bars-diameter") == "0.875")
+
+
+def test_a_footing_is_drawn_and_turns(page):
+    before = page.peak()
+    Select(page.one("#f-footing-kind")).select_by_value("springs")
+    page.wait(lambda: page.all("#drawings .spring") and page.peak() != before)
+    page.type("#f-footing-rotation", "")
+    page.wait(lambda: "is empty: give it in kN m/rad" in page.text("#f-footing-rotation-fault"))
+    page.type("#f-footing-rotation", "50000")
+    page.wait(lambda: not page.old())
+    page.open(page.driver.current_url)
+    assert page.value("#f-footing-rotation") == "50000"
+
+
+def test_a_record_says_which_file_it_takes(page):
+    Select(page.one("#f-loading-kind")).select_by_value("record")
+    page.wait(lambda: page.text("#f-loading-record-fault") == "choose a file")
+    assert ".at2" in page.text("#f-loading-record-hint")
+
+
+def test_fields_stay_beside_a_long_page(page):
+    page.wait(lambda: page.all("#codetable td"))
+    page.driver.execute_script("window.scrollTo(0, document.body.scrollHeight)")
+    page.wait(
+        lambda: (
+            0
+            <= page.one("#f-section-width").rect["y"] - page.driver.execute_script("return scrollY")
+            < 300
+        )
+    )
 
 
 def test_a_small_screen_and_the_dark(page):
@@ -281,6 +391,12 @@ def test_a_small_screen_and_the_dark(page):
         assert (sum(int(part) for part in paper[4:-1].split(",")) < 380) == dark
     page.wait(lambda: page.one("#loopfigure svg").size["width"] < 390)
     assert page.driver.execute_script("return document.documentElement.scrollWidth") <= 390
+    page.one("#second").click()
+    page.wait(lambda: len(page.all("#codetable tr:first-child th")) == 6)
+    tables = [one for one in page.all(".scroll") if one.is_displayed()]
+    assert len(tables) == 3
+    for table in tables:
+        assert table.get_property("scrollWidth") <= table.get_property("clientWidth")
 
 
 def test_a_report_asks_nothing(unopened, tmp_path):

@@ -336,6 +336,7 @@ def to_json(result: Result, factor: float = 1.0) -> dict[str, Any]:
     rows = shown_rows(result.displacement, force)
     height = result.column.height
     spring = result.energy["spring"]
+    footing = result.column.footing is not None
     answer: dict[str, Any] = {
         "displacement": numbers(factor * result.displacement[rows]),
         "force": numbers(force[rows]),
@@ -356,7 +357,8 @@ def to_json(result: Result, factor: float = 1.0) -> dict[str, Any]:
         ],
         "figures": {
             "peak_force": _peak(force),
-            "peak_moment": _peak(result.base_moment),
+            # That of the column, not of the ground beneath its footing.
+            "peak_moment": _peak(result.moment[:, 1] if footing else result.base_moment),
             "peak_drift": _peak(result.drift),
             "drift_at_loss": None
             if result.dynamic
@@ -393,6 +395,8 @@ def _band(found: Answered) -> dict[str, Any]:
     column = drawn.column
     if not isinstance(column, LayeredColumn):
         return {"none": "a band is for the layered model"}
+    if column.top == "fixed":
+        return {"none": "no band: its scatter is that of columns with one hinge"}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:

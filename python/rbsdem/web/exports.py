@@ -18,10 +18,10 @@ from typing import Any
 
 from rbsdem._arguments import Derived
 from rbsdem.errors import InputError
-from rbsdem.model.shape import Section
+from rbsdem.model.springs import Spring
 from rbsdem.results.case import Case, case_of_text
 from rbsdem.results.result import Result
-from rbsdem.web.state import ENDS, Drawn, Faults, RefusedError, drawn_case, state_of
+from rbsdem.web.state import Drawn, Faults, RefusedError, drawn_case, state_of
 
 _MARK = "! rbsdem explore: "
 #: Letters of the drawing on a line of its comment.
@@ -138,7 +138,7 @@ def exported(
         Column and loading of the state that it was made from.
     """
     if form == "python" and drawn is not None and "case" not in given:
-        return _python(drawn.section, given["column"], loading)
+        return _python(drawn, given["column"], loading)
     if form == "python":
         return (
             'import rbsdem\n\ncase = rbsdem.read_case("case.nml")\n'
@@ -157,34 +157,37 @@ def csv_of(result: Result) -> str:
         return rows.read_text(encoding="utf-8")
 
 
-def _python(section: Section, frame: Mapping[str, Any], loading: Mapping[str, Any]) -> str:
+def _python(drawn: Drawn, frame: Mapping[str, Any], loading: Mapping[str, Any]) -> str:
     """Return a program that computes the loop of a drawn column."""
-    half = ENDS[frame.get("ends", "cantilever")]
+    section, column = drawn.section, drawn.column
     lines = [
         f"section = {type(section).__name__}(",
         *(f"    {name}={_code(value)}," for name, value in _stated(section)),
         ")",
     ]
     moved = loading["kind"] in ("synthetic", "record")
-    height = repr(frame["height"])
-    if half != 1.0:
+    height, more = repr(frame["height"]), ""
+    if drawn.factor != 1.0:
         lines.append(
-            "# The lower half of a column in double curvature"
-            + ("." if moved else "; it moves by half of what the ends do.")
+            "# The lower half of a column in double curvature moves by half of what the ends do."
         )
-        height += f" / {half:g}"
+        height += f" / {drawn.factor:g}"
+    if column.top == "fixed":
+        more += ', top="fixed"'
+    if column.footing is not None:
+        lines.append(f"footing = {_code(column.footing)}")
+        more += ", footing=footing"
     load = repr(frame["axial_load"])
-    lines.append(f"column = rbsdem.section.column(section, {height}, axial_load={load})")
+    lines.append(f"column = rbsdem.section.column(section, {height}, axial_load={load}{more})")
     if moved:
         mass = frame.get("top_mass")
         mass = f"{frame['axial_load']!r} / 9.80665" if mass is None else repr(mass)
         record = f"read_motion({loading.get('name')!r})"
         if loading["kind"] == "synthetic":
             record = f"synthetic(1, seed={loading.get('seed', 1)!r}, dt=0.01)[0]"
-        change = "dataclasses.replace(column, " if half == 1.0 else "column.double_curvature("
         lines += [
             f"motion = rbsdem.motions.{record}.scaled({loading.get('scale', 1.0)!r})",
-            f"column = {change}top_mass={mass})",
+            f"column = dataclasses.replace(column, top_mass={mass})",
             "result = rbsdem.time_history(",
             "    column, ground_acceleration=motion, collapse_drift=0.2, openings=True",
             ")",
@@ -199,7 +202,7 @@ def _python(section: Section, frame: Mapping[str, Any], loading: Mapping[str, An
         ]
     lines += ["print(result)", "print(result.limit_states())", ""]
     text = "\n".join(lines)
-    classes = ", ".join(sorted(set(re.findall(r"\b([A-Z]\w+)\(", text))))
+    classes = ", ".join(sorted(set(re.findall(r"(?<!\.)\b([A-Z]\w+)\(", text))))
     head = "import dataclasses\n\n" if "dataclasses." in text else ""
     return f"{head}import rbsdem\nfrom rbsdem import {classes}\n\n{text}"
 
@@ -209,7 +212,8 @@ def _code(value: Any) -> str:
     if not dataclasses.is_dataclass(value):
         return repr(value)
     given = ", ".join(f"{name}={_code(part)}" for name, part in _stated(value))
-    return f"{type(value).__name__}({given})"
+    module = "rbsdem.springs." if isinstance(value, Spring) else ""
+    return f"{module}{type(value).__name__}({given})"
 
 
 def _stated(record: Any) -> list[tuple[str, Any]]:

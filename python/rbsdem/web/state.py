@@ -20,13 +20,14 @@ from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem.errors import AccuracyWarning, InputError
-from rbsdem.model.column import Column
+from rbsdem.model.column import Column, Footing
 from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import (
     CircularSection,
     RectangularSection,
     Section,
 )
+from rbsdem.model.springs import Elastic
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.shaping import synthetic
 from rbsdem.results.case import Case
@@ -68,9 +69,11 @@ SHAPES: dict[str, tuple[Callable[..., Section], tuple[str, ...]]] = {
 }
 
 #: Groups of the form by the objects that errors name; others belong to the part that is made.
-_GROUPS = {"layout": "bars", "spiral": "ties", "ties": "ties", "section": "section"}
+_GROUPS = {"layout": "bars", "spiral": "ties"} | {n: n for n in ("ties", "section", "footing")}
 #: Fields of the form that errors name otherwise.
 _FIELDS = {"section.bar_diameter": "bars.diameter", "loading.protocol": "loading.name"}
+#: The ground beneath a column: none but the column's own foot, or a footing on springs.
+_GROUND = ("none", "springs")
 
 
 class RefusedError(Exception):
@@ -124,7 +127,8 @@ class Drawn:
     Attributes
     ----------
     column : Column
-        The column that is computed: along a path the lower half of one in double curvature.
+        The column that is computed: along a path the lower half of one in double curvature, unless
+        a footing makes its ends unlike.
     section : Section
         Its section.
     span : float
@@ -180,8 +184,8 @@ def drawn_case(
     faults : Faults
         What is wrong is added here; then there is no case.
     """
-    drawn, notes = column_of(given, faults)
     load = _loading_of(loading, records, faults)
+    drawn, notes = column_of(given, faults, whole=isinstance(load, GroundMotion))
     if drawn is not None and isinstance(load, GroundMotion):
         drawn = _in_motion(drawn, given, faults)
     if drawn is None or load is None or faults.listed:
@@ -198,43 +202,89 @@ def drawn_case(
     return case, drawn, notes
 
 
-def column_of(given: Mapping[str, Any], faults: Faults) -> tuple[Drawn | None, list[str]]:
-    """Make a column, with the notes of the program."""
+def column_of(
+    given: Mapping[str, Any], faults: Faults, whole: bool = False
+) -> tuple[Drawn | None, list[str]]:
+    """Make a column, with the notes of the program.
+
+    Parameters
+    ----------
+    given : mapping
+        A column of the state.
+    faults : Faults
+        What is wrong is added here; then there is no column.
+    whole : bool, optional
+        Whether a column in double curvature is made with both its halves, also without a footing.
+    """
     section = section_of(given, faults)
     frame = _group(given, "column")
     ends = "cantilever" if frame["ends"] is None else frame["ends"]
     if not _arguments.is_one_of(ends, ENDS):
         faults.add("column.ends", f"ends = {ends!r} is not known; there are {', '.join(ENDS)}")
         return None, []
+    before = len(faults.listed)
+    footing = _footing_of(_group(given, "footing"), faults)
     with faults.of("column", "axial_load"):
         height = column_length(frame["height"], "height")
         load = _arguments.number(frame["axial_load"], "axial_load")
-        if section is None:
+        if section is None or len(faults.listed) > before:
             return None, []
+        part = 1.0 if whole or footing else ENDS[ends]
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always")
-            column: Column = columns.column(section, height / ENDS[ends], axial_load=load)
+            column: Column = columns.column(
+                section,
+                height / part,
+                axial_load=load,
+                top="fixed" if part < ENDS[ends] else "free",
+                footing=footing,
+            )
         notes = [str(one.message) for one in told if issubclass(one.category, AccuracyWarning)]
-        return Drawn(column, section, column.height, ENDS[ends]), notes
+        return Drawn(column, section, height / ENDS[ends], part), notes
     return None, []
+
+
+def _footing_of(given: Mapping[str, Any], faults: Faults) -> Footing | None:
+    """Make the footing of a column of the state; None if there is none, or if it is wrong."""
+    kind = given["kind"]
+    if kind is None or kind == "none":
+        return None
+    if not _arguments.is_one_of(kind, _GROUND):
+        faults.add("footing.kind", f"kind = {kind!r} is not known; there are {', '.join(_GROUND)}")
+        return None
+    with faults.of("footing", "rotation"):
+        values = {
+            name: _arguments.number(given[name], name, above=0.0)
+            for name in ("rotation", "sliding", "height")
+        }
+        mass = _arguments.number(given["mass"], "mass", above=0.0) if given["mass"] else 0.0
+        # A block of concrete with a square plan.
+        square = mass / (columns.CONCRETE_DENSITY * values["height"])
+        return Footing(
+            Elastic(values["sliding"]),
+            Elastic(values["rotation"]),
+            mass=mass,
+            inertia=mass * (square + values["height"] ** 2) / 12.0,
+            height=values["height"],
+        )
+    return None
 
 
 def _in_motion(drawn: Drawn, given: Mapping[str, Any], faults: Faults) -> Drawn | None:
     """Return the column with the mass that an earthquake moves; by default that of its axial load.
 
-    A column in double curvature is then computed whole: with mass of their own its halves do not
-    move alike.
+    With mass of their own the halves of a column in double curvature do not move alike, so `drawn`
+    has both.
     """
     with faults.of("column", "top_mass"):
         mass = _group(given, "column")["top_mass"]
         if mass is None:
             mass = max(drawn.column.axial_load, 0.0) / STANDARD_GRAVITY
         mass = _arguments.number(mass, "top_mass")
-        if drawn.factor == 1.0:
-            column = dataclasses.replace(drawn.column, top_mass=mass)
-        else:
-            column = drawn.column.double_curvature(top_mass=mass)
-        return dataclasses.replace(drawn, column=column, factor=1.0)
+        footing = drawn.column.footing
+        if footing is not None and not footing.mass:
+            raise InputError("mass: a footing that moves needs one", "footing.mass")
+        return dataclasses.replace(drawn, column=dataclasses.replace(drawn.column, top_mass=mass))
     return None
 
 
@@ -298,9 +348,9 @@ def _loading_of(
         if kind == "record":
             record = records.get(str(given.get("id")))
             if record is None:
-                raise InputError(
-                    f"name = {given.get('name')!r}: the record is not open here; open its file"
-                )
+                file = given.get("name")
+                again = f"{file} is not open here: choose its file again"
+                raise InputError(again if file else "choose a file", "record")
             return record.scaled(_factor(given))
         raise InputError(
             f"kind = {kind!r} is not known; there are amplitudes, named, synthetic, record"

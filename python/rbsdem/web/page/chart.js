@@ -1,5 +1,7 @@
 // Figures as in a paper: a thin frame, ticks inward on all sides, lines, bands and marks in plain SVG.
 
+import { shown } from "./units.js";
+
 const NS = "http://www.w3.org/2000/svg";
 
 export function svgElement(name, attributes = {}, ...children) {
@@ -53,10 +55,12 @@ export function markSign(shape, filled, kind) {
 }
 
 // spec: lines [{x, y, kind, label}], bands [{x, lower, upper, kind}], marks [{x, y, shape, kind, text}],
-// xLabel, yLabel, symmetric, zero (axes through zero), label (for who does not see it), top (a second scale of x)
+// xLabel, yLabel, symmetric, zero (axes through zero), label (for who does not see it), top (a second scale of x),
+// legend (beneath the figure: lines and marks that have a label)
 export function drawChart(host, spec) {
-  const width = Math.max(240, host.clientWidth || 420), height = spec.height ?? Math.round(Math.min(0.78 * width, 460));
-  const room = { left: 58, right: 14, top: spec.top ? 34 : 12, bottom: 44 };
+  const width = Math.max(240, host.clientWidth || 420), legend = legendOf(spec, width - 58), under = 17 * legend.rows;
+  const height = (spec.height ?? Math.round(Math.min(0.78 * width, 460))) + under;
+  const room = { left: 58, right: 14, top: spec.top ? 34 : 12, bottom: 44 + under };
   const inner = [width - room.left - room.right, height - room.top - room.bottom];
   const xs = [...spec.lines.map(l => l.x), ...(spec.marks ?? []).map(m => [m.x])];
   const ys = [...spec.lines.map(l => l.y), ...(spec.bands ?? []).flatMap(b => [b.lower, b.upper]), ...(spec.marks ?? []).map(m => [m.y])];
@@ -98,7 +102,7 @@ export function drawChart(host, spec) {
     axis.append(svgElement("text", { class: "axislabel", x: right, y: 11, "text-anchor": "end" }, spec.top.label));
   }
   axis.append(svgElement("path", { class: "frame", d: ticks + `M${left} ${top}H${right}V${bottom}H${left}Z` }));
-  axis.append(svgElement("text", { class: "axislabel", x: (left + right) / 2, y: height - 8, "text-anchor": "middle" }, spec.xLabel));
+  axis.append(svgElement("text", { class: "axislabel", x: (left + right) / 2, y: bottom + 36, "text-anchor": "middle" }, spec.xLabel));
   axis.append(svgElement("text", { class: "axislabel", x: 0, y: 0, "text-anchor": "middle", transform: `translate(13 ${((top + bottom) / 2).toFixed(1)}) rotate(-90)` }, spec.yLabel));
   svg.append(axis);
   const plot = svgElement("g", { class: "plot" });
@@ -126,24 +130,76 @@ export function drawChart(host, spec) {
     plot.append(g);
   }
   svg.append(plot);
-  const named = spec.lines.filter(l => l.label);
-  if (named.length > 1 || spec.legend) {
-    const legend = svgElement("g", { class: "legend" });
-    const wide = Math.max(...named.map(l => l.label.length)) * 6.4 + 34;
-    const within = spec.legend === "inside";
-    const x = within ? left + 14 : right - wide, y = bottom - (within ? 0.2 * inner[1] : 12) - 15 * (named.length - 1);
-    named.forEach((line, i) => legend.append(
-      svgElement("path", { class: `line ${line.kind}`, d: `M${x} ${y + 15 * i - 4}h20` }),
-      svgElement("text", { x: x + 25, y: y + 15 * i }, line.label)));
-    svg.append(legend);
-  }
+  legend.group.setAttribute("transform", `translate(${left} ${bottom + 55})`);
+  svg.append(legend.group);
   const cursor = svgElement("g", { class: "cursor", visibility: "hidden" }, svgElement("path", { d: MARKS.circle }));
   svg.append(cursor);
+  svg.append(probeOf(svg, spec, { toX, toY, left, right, top }));
   host.replaceChildren(svg);
+  SPECS.set(svg, spec);
   return { svg, toX, toY, moveCursor(x, y) {
     cursor.setAttribute("visibility", "visible");
     cursor.setAttribute("transform", `translate(${toX(x).toFixed(1)} ${toY(y).toFixed(1)})`);
   } };
+}
+
+// Lines and marks with a label, in as many rows as they need.
+function legendOf(spec, width) {
+  const group = svgElement("g", { class: "legend" }), lines = spec.lines.filter(line => line.label);
+  if (!spec.legend && lines.length < 2) return { group, rows: 0 };
+  const marks = (spec.marks ?? []).filter((mark, i, all) => mark.label && all.findIndex(one => one.label === mark.label) === i);
+  let x = 0, row = 0;
+  for (const one of [...lines, ...marks]) {
+    const sign = one.shape ? 14 : 26, wide = sign + 6.1 * one.label.length + 14;
+    if (x > 0 && x + wide > width) { x = 0; row++; }
+    const y = 17 * row, place = `translate(${x} ${y})`;
+    group.append(one.shape
+      ? svgElement("g", { class: `mark ${one.kind}`, transform: `translate(${x + 5} ${y - 4})` }, svgElement("path", { d: MARKS[one.shape], class: one.filled ? "filled" : "open" }))
+      : svgElement("path", { class: `line ${one.kind}`, transform: place, d: "M0 -4h20" }),
+    svgElement("text", { x: x + sign, y }, one.label));
+    x += wide;
+  }
+  return { group, rows: group.childNodes.length ? row + 1 : 0 };
+}
+
+// The values of the point of a line that is nearest to the pointer.
+function probeOf(svg, spec, { toX, toY, left, right, top }) {
+  const dot = svgElement("path", { d: MARKS.circle }), text = svgElement("text", {}), probe = svgElement("g", { class: "probe", visibility: "hidden" }, dot, text);
+  const [xUnit, yUnit] = [spec.xLabel, spec.yLabel].map(label => label.match(/\((.*)\)/)?.[1] ?? "");
+  const told = (value, unit) => `${shown(value)}${unit && " "}${unit}`;
+  svg.addEventListener("pointerleave", () => probe.setAttribute("visibility", "hidden"));
+  svg.addEventListener("pointermove", event => {
+    const box = svg.getBoundingClientRect(), zoom = svg.width.baseVal.value / box.width;
+    const at = [(event.clientX - box.left) * zoom, (event.clientY - box.top) * zoom];
+    let best = { far: 40 };
+    for (const line of spec.lines) for (let i = 1; i < line.x.length; i++) {
+      if ([line.x[i - 1], line.y[i - 1], line.x[i], line.y[i]].includes(null)) continue;
+      const [ax, ay, bx, by] = [toX(line.x[i - 1]), toY(line.y[i - 1]), toX(line.x[i]), toY(line.y[i])];
+      const length = (bx - ax) ** 2 + (by - ay) ** 2, part = length ? Math.max(0, Math.min(1, ((at[0] - ax) * (bx - ax) + (at[1] - ay) * (by - ay)) / length)) : 0;
+      const place = [ax + part * (bx - ax), ay + part * (by - ay)], far = Math.hypot(at[0] - place[0], at[1] - place[1]);
+      if (far < best.far) best = { far, place, line, value: [line.x[i - 1] + part * (line.x[i] - line.x[i - 1]), line.y[i - 1] + part * (line.y[i] - line.y[i - 1])] };
+    }
+    probe.setAttribute("visibility", best.line ? "visible" : "hidden");
+    if (!best.line) return;
+    const [x, y] = best.place, before = x > (left + right) / 2;
+    dot.setAttribute("transform", `translate(${x.toFixed(1)} ${y.toFixed(1)})`);
+    text.setAttribute("x", x + (before ? -9 : 9));
+    text.setAttribute("y", Math.max(top + 14, y - 8));
+    text.setAttribute("text-anchor", before ? "end" : "start");
+    text.textContent = `${told(best.value[0], xUnit)}, ${told(best.value[1], yUnit)}`;
+  });
+  return probe;
+}
+
+// What a figure shows, as rows of a table.
+const SPECS = new WeakMap();
+
+export function rowsOfChart(svg) {
+  const { lines, bands = [], marks = [], xLabel, yLabel } = SPECS.get(svg), rows = [["series", xLabel, yLabel]];
+  for (const { label, kind, x, y } of lines) x.forEach((value, i) => rows.push([label || kind, value, y[i]]));
+  for (const { kind, x, lower, upper } of bands) for (const [name, y] of [["lower", lower], ["upper", upper]]) x.forEach((value, i) => rows.push([`band ${kind} ${name}`, value, y[i]]));
+  for (const { title, label, x, y } of marks) rows.push([title || label, x, y]);
+  return rows;
 }
 
 function turns(x) {
@@ -166,6 +222,11 @@ export function standalone(svg) {
     to[i].removeAttribute("class");
     to[i].removeAttribute("tabindex");
   });
+  copy.querySelector(".probe")?.remove();
+  copy.querySelectorAll(".handle").forEach(handle => handle.remove());
+  const size = svg.getBoundingClientRect();
+  copy.setAttribute("width", Math.round(size.width));
+  copy.setAttribute("height", Math.round(size.height));
   copy.setAttribute("xmlns", NS);
   const paper = getComputedStyle(document.body).backgroundColor;
   copy.prepend(svgElement("rect", { width: "100%", height: "100%", fill: paper }));
@@ -178,8 +239,8 @@ export async function asPng(svg, scale = 3) {
   try {
     await new Promise((done, failed) => { image.onload = done; image.onerror = failed; image.src = url; });
     const canvas = document.createElement("canvas");
-    canvas.width = scale * svg.width.baseVal.value;
-    canvas.height = scale * svg.height.baseVal.value;
+    canvas.width = scale * image.width;
+    canvas.height = scale * image.height;
     canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
     return await new Promise(done => canvas.toBlob(done, "image/png"));
   } finally {

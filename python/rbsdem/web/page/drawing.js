@@ -1,7 +1,7 @@
 // The section and the column, drawn to scale, with handles that are dragged or moved by keys.
 
 import { svgElement } from "./chart.js";
-import { shown, unitOf } from "./units.js";
+import { barSize, shown, stepOf, unitOf } from "./units.js";
 import { valueAt } from "./fields.js";
 
 const SECTION = 190, LEFT = 26, TOP = 16, HEIGHT = 250, TALL = 200;
@@ -21,7 +21,7 @@ function handlesOf(column, look) {
   found.push({ path: "section.cover", label: "Cover", x: cx - (round ? 0 : 0.25 * section.width * scale), y: cy - half(depth) + section.cover * scale, way: [0, 1 / scale], grid: 0.001, cursor: "ns-resize", least: 0 });
   if ("wall" in section && section.shape.startsWith("hollow"))
     found.push({ path: "section.wall", label: "Wall", x: cx - half(round ? section.diameter : section.width) + section.wall * scale, y: cy, way: [1 / scale, 0], grid: 0.01, cursor: "ew-resize" });
-  if (look.bar) found.push({ path: "bars.diameter", label: "Bar diameter", x: look.bar[0] + 0.5 * bars.diameter * scale, y: look.bar[1], way: [2 / scale, 0], grid: 0.001, cursor: "ew-resize" });
+  if (look.bar) found.push({ path: "bars.diameter", label: "Bar diameter", x: look.bar[0] + 0.5 * bars.diameter * scale, y: look.bar[1], way: [2 / scale, 0], bar: true, cursor: "ew-resize" });
   found.push({ path: "column.height", label: "Height", x: look.px, y: look.ptop, way: [0, -1 / look.tall], grid: 0.05, cursor: "ns-resize" });
   found.push({ path: "column.axial_load", label: "Axial load", x: look.px, y: look.ptail, way: [0, -1 / look.perForce], grid: look.forceGrid, cursor: "ns-resize", dimension: "force", least: -Infinity });
   return found;
@@ -32,7 +32,7 @@ export function scalesOf(column) {
   const { section, column: frame, concrete } = column;
   const round = section.shape.includes("circle");
   const wide = positive(round ? section.diameter : section.width, 0.4), deep = positive(round ? section.diameter : section.depth, 0.4);
-  const height = positive(frame.height, 1.6);
+  const height = positive(frame.height, 1.6) + footingHeight(column);
   const squash = wide * deep * positive(concrete.fc, 30e6);
   return { section: 150 / Math.max(wide, deep), tall: 118 / height, force: 75 / (0.5 * squash), grid: 10 ** Math.floor(Math.log10(squash / 100)) };
 }
@@ -41,13 +41,17 @@ function positive(value, otherwise) {
   return typeof value === "number" && value > 0 ? value : otherwise;
 }
 
+function footingHeight({ footing }) {
+  return footing?.kind === "springs" ? positive(footing.height, 0) : 0;
+}
+
 // host gets one svg; `move(path, value, done)` is called while a handle moves.
 export function drawColumn(host, column, figure, { system, scales, kind, title, move, moved, fixed, stale }) {
   const { section, column: frame } = column;
   const numbers = [section.cover, frame.height, frame.axial_load, ...(section.shape.includes("circle") ? [section.diameter] : [section.width, section.depth])];
   const svg = svgElement("svg", { viewBox: `0 0 ${LEFT + SECTION + 170} ${HEIGHT}`, class: `drawing ${kind}` + (stale ? " stale" : ""), role: "group", "aria-label": `Drawing of column ${title}` });
   if (numbers.some(value => typeof value !== "number")) {
-    svg.append(svgElement("text", { x: 20, y: 40 }, "a size is missing"));
+    svg.append(svgElement("text", { x: 20, y: 40 }, "Nothing is drawn: a size is empty or no number."));
     host.replaceChildren(svg);
     return;
   }
@@ -74,11 +78,20 @@ export function drawColumn(host, column, figure, { system, scales, kind, title, 
   measure(cx, Y(deep / 2) + 24, (round ? "⌀ " : "") + shown(wide / factor) + " " + unit);
   if (!round) svg.append(svgElement("text", { class: "size", "text-anchor": "middle", transform: `translate(${(X(-wide / 2) - 9).toFixed(1)} ${cy}) rotate(-90)` }, shown(deep / factor) + " " + unit));
   // The column from the side: as wide as the section is deep, at its own scale.
-  const double = frame.ends === "double", px = LEFT + SECTION + 78, foot = HEIGHT - 28, tall = scales.tall;
+  const double = frame.ends === "double", px = LEFT + SECTION + 78, ground = HEIGHT - 28, tall = scales.tall;
+  const springs = column.footing?.kind === "springs", foot = ground - footingHeight(column) * tall;
   const ptop = foot - frame.height * tall, thick = Math.max(6, Math.min(60, deep * tall)), stub = 11;
   const hatch = y => { let d = ""; for (let i = 0; i < 9; i++) d += `M${px - 40 + i * 10} ${y}l-7 7`; return d; };
   svg.append(svgElement("rect", { class: "concrete", x: px - thick / 2, y: ptop, width: thick, height: Math.max(0, foot - ptop) }));
-  svg.append(svgElement("rect", { class: "concrete", x: px - 42, y: foot, width: 84, height: stub }), svgElement("path", { class: "thin", d: hatch(foot + stub) }));
+  // How it bends.
+  const bent = px + 0.3 * thick + 8, quarter = (foot - ptop) / 3;
+  svg.append(svgElement("path", { class: "thin bent", d: `M${px} ${foot}C${px} ${foot - quarter} ${double ? bent : (px + 2 * bent) / 3} ${ptop + quarter} ${bent} ${ptop}` }));
+  if (springs) {
+    svg.append(svgElement("rect", { class: "concrete", x: px - 34, y: foot, width: 68, height: ground - foot }));
+    const zigzag = "l3 1.5l-6 2l6 2l-6 2l6 2l-3 1.5";
+    svg.append(svgElement("path", { class: "spring", d: `M${px - 26} ${ground}${zigzag}M${px + 26} ${ground}${zigzag}M${px + 34} ${(foot + ground) / 2}h4l1.5 -3l2 6l2 -6l2 6l2 -6l1.5 3h3m0 -7v14M${px - 42} ${ground + stub}h84` }));
+  } else svg.append(svgElement("rect", { class: "concrete", x: px - 42, y: ground, width: 84, height: stub }));
+  svg.append(svgElement("path", { class: "thin", d: hatch(ground + stub) }));
   if (double) svg.append(svgElement("rect", { class: "concrete", x: px - 42, y: ptop - stub, width: 84, height: stub }));
   const above = double ? ptop - stub : ptop;
   const [load, N] = [frame.axial_load, unitOf(system, "force")];
@@ -98,13 +111,13 @@ export function drawColumn(host, column, figure, { system, scales, kind, title, 
 function handleElement(svg, handle, column, { system, move, moved }) {
   const value = valueAt(column, handle.path), dimension = handle.dimension ?? "length";
   const [unit, factor] = unitOf(system, dimension);
-  const least = handle.least ?? handle.grid;
+  const grid = handle.bar ? 0 : stepOf(system, dimension, handle.grid), least = handle.least ?? grid;
   const g = svgElement("g", { class: "handle", tabindex: 0, role: "slider", "aria-label": handle.label, "data-path": handle.path,
     "aria-valuemin": Number.isFinite(least) ? shown(least / factor).replace("−", "-") : "-1e9", "aria-valuemax": "1e9", "aria-valuenow": Number((value / factor).toPrecision(6)),
     "aria-valuetext": `${shown(value / factor)} ${unit}`, transform: `translate(${handle.x.toFixed(1)} ${handle.y.toFixed(1)})` },
     svgElement("circle", { class: "reach", r: 13 }), svgElement("circle", { class: "knob", r: 4.5 }));
   g.style.cursor = handle.cursor;
-  const put = (wanted, done) => move(handle.path, Math.max(least, Number((Math.round(wanted / handle.grid) * handle.grid).toPrecision(10))), done);
+  const put = (wanted, done) => move(handle.path, handle.bar ? barSize(system, wanted) : Math.max(least, Number((Math.round(wanted / grid) * grid).toPrecision(10))), done);
   g.addEventListener("pointerdown", event => {
     if (event.button) return;
     event.preventDefault();
@@ -131,7 +144,8 @@ function handleElement(svg, handle, column, { system, move, moved }) {
     const way = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1, PageUp: 5, PageDown: -5 }[event.key];
     if (!way) return;
     event.preventDefault();
-    put(valueAt(column, handle.path) + way * handle.grid, true);
+    const now = valueAt(column, handle.path);
+    put(handle.bar ? barSize(system, now, way) : now + way * grid, true);
   });
   return g;
 }

@@ -1,6 +1,6 @@
 // The fields of the form: what a number is called, its dimension, where it stands in the state.
 
-import { unitOf, typed, parsed } from "./units.js";
+import { barSize, inUnits, parsed, stepOf, typed, unitOf } from "./units.js";
 
 const ROUND = ["circle", "hollow_circle"], BOXED = ["rectangle", "hollow_rectangle"];
 const HOLLOW = ["hollow_rectangle", "hollow_circle"];
@@ -19,13 +19,13 @@ export const COLUMN_FIELDS = [
   { group: "Longitudinal bars", fields: [
     { path: "bars.number", label: "Number", dimension: "number", whole: true, step: 1 },
     { path: "bars.face", label: "On the tension face", dimension: "number", whole: true, step: 1, optional: "number/4 + 1", shapes: BOXED },
-    { path: "bars.diameter", label: "Diameter", dimension: "length", step: 0.001 },
+    { path: "bars.diameter", label: "Diameter", dimension: "length", bar: true },
     { path: "bars.fy", label: "Yield stress", dimension: "stress", step: 1e7 },
     { path: "bars.fu", label: "Ultimate stress", dimension: "stress", step: 1e7, optional: "1.5 × yield" },
   ] },
   { group: "Transverse bars", fields: [
     { path: "ties.hoops", label: "Kind", choices: [[false, "spiral"], [true, "single hoops"]], shapes: ROUND },
-    { path: "ties.diameter", label: "Diameter", dimension: "length", step: 0.001 },
+    { path: "ties.diameter", label: "Diameter", dimension: "length", bar: true },
     { path: "ties.spacing", label: "Spacing", dimension: "length", step: 0.005 },
     { path: "ties.legs", label: "Legs along the load", dimension: "number", step: 1, optional: "2", shapes: BOXED },
     { path: "ties.legs_across", label: "Legs across", dimension: "number", step: 1, optional: "as along", shapes: BOXED },
@@ -37,6 +37,11 @@ export const COLUMN_FIELDS = [
     { path: "column.height", label: "Height", dimension: "length", step: 0.05 },
     { path: "column.axial_load", label: "Axial load, compression +", dimension: "force", step: 1e4 },
     { path: "column.top_mass", label: "Mass at the top", dimension: "mass", step: 1e3, optional: "axial load / g", motion: true },
+    { path: "footing.kind", label: "Foot", choices: [["none", "rigid ground"], ["springs", "footing on springs"]] },
+    { path: "footing.rotation", label: "Springs against turning", dimension: "turning", step: 1e7, footing: true },
+    { path: "footing.sliding", label: "Springs against sliding", dimension: "stiffness", step: 1e7, footing: true },
+    { path: "footing.height", label: "Height of the footing", dimension: "length", step: 0.05, footing: true },
+    { path: "footing.mass", label: "Mass of the footing", dimension: "mass", step: 1e3, footing: true, motion: true },
   ] },
 ];
 
@@ -80,6 +85,19 @@ export function element(name, properties = {}, ...children) {
   return made;
 }
 
+const FIELD = Object.fromEntries([...COLUMN_FIELDS.flatMap(({ fields }) => fields), ...LOADING_FIELDS].map(field => [field.path, field]));
+
+// A message of the program as the page says it: with the label and the unit of its field; an empty field says what it lacks.
+export function toldOf(fault, state, column, system) {
+  const field = FIELD[fault.field];
+  if (!field) return inUnits(fault.text, system);
+  const value = valueAt(fault.field.startsWith("loading.") ? state : column, fault.field), name = field.path.split(".")[1];
+  const label = field.label.split(",")[0], [unit] = field.dimension ? unitOf(system, field.dimension) : [""];
+  if (!field.optional && !field.choices && (value === undefined || value === null || value.length === 0))
+    return `${label} is empty: give ${field.whole ? "a whole number" : unit ? `it in ${unit}` : "a number"}.`;
+  return inUnits(fault.text, system, field.dimension).replace(new RegExp(`^(?:[a-z ]+: )?${name} = `), `${label} = `);
+}
+
 function shownValue(field, value, system) {
   const [, factor] = field.dimension ? unitOf(system, field.dimension) : ["", 1];
   if (field.dimension === "drifts") return Array.isArray(value) ? value.map(v => typed(v, factor)).join(", ") : String(value ?? "");
@@ -110,15 +128,16 @@ function fieldRow(field, value, system, edit, fixed) {
   } else {
     const given = { id, value: shownValue(field, value, system), readOnly: fixed, spellcheck: false };
     input = field.dimension === "drifts" ? element("textarea", { ...given, rows: 2 }) : element("input", { ...given, type: "text", inputMode: "decimal" });
-    if (field.optional) input.placeholder = field.optional;
+    input.placeholder = field.optional ?? "needed";
     input.addEventListener("input", () => edit(readValue(field, input.value, system), false));
     input.addEventListener("change", () => edit(readValue(field, input.value, system), true));
     input.addEventListener("keydown", event => {
       const way = { ArrowUp: 1, ArrowDown: -1, PageUp: 5, PageDown: -5 }[event.key];
       const now = readValue(field, input.value, system);
-      if (!way || fixed || !field.step || typeof now !== "number") return;
+      if (!way || fixed || !(field.step || field.bar) || typeof now !== "number") return;
       event.preventDefault();
-      const next = Math.round((now + way * field.step) / field.step * 1e6) / 1e6 * field.step;
+      const step = field.bar ? 0 : stepOf(system, field.dimension, field.step);
+      const next = field.bar ? barSize(system, now, way) : Math.round((now + way * step) / step * 1e6) / 1e6 * step;
       input.value = shownValue(field, Number(next.toPrecision(10)), system);
       edit(readValue(field, input.value, system), false);
     });
@@ -150,10 +169,10 @@ export function drawForm(form, state, active, system, edit, { fixed = false, ope
     row.dataset.path = "case";
     fieldset("Column and loading of a case file", [row]);
   } else {
-    const shape = valueAt(column, "section.shape");
+    const shape = valueAt(column, "section.shape"), footing = valueAt(column, "footing.kind") === "springs";
     for (const { group, fields } of COLUMN_FIELDS) {
       fieldset(group, fields
-        .filter(field => (!field.shapes || field.shapes.includes(shape)) && (!field.motion || motion))
+        .filter(field => (!field.shapes || field.shapes.includes(shape)) && (!field.motion || motion) && (!field.footing || footing))
         .map(field => fieldRow(field, valueAt(column, field.path), system, (value, done) => edit(field.path, value, done), fixed)));
     }
   }
@@ -164,14 +183,16 @@ export function drawForm(form, state, active, system, edit, { fixed = false, ope
   if (state.loading.kind === "record") {
     const button = element("button", { type: "button", disabled: fixed, id: "f-loading-record" }, state.loading.name || "Open a record…");
     button.addEventListener("click", openRecord);
-    const row = element("div", { className: "row" }, element("span", {}, "Record"), button, element("p", { className: "fault", id: "f-loading-record-fault", hidden: true }));
+    button.setAttribute("aria-describedby", "f-loading-record-fault f-loading-record-hint");
+    const row = element("div", { className: "row" }, element("span", {}, "Record"), button, element("p", { className: "fault", id: "f-loading-record-fault", hidden: true }),
+      element("p", { className: "hint", id: "f-loading-record-hint" }, "A file .at2 of the PEER database, or .csv or .txt whose first line names the columns with their units, as time_s, acceleration_g (or m/s2, cm/s2)."));
     row.dataset.path = "loading.record";
     rows.splice(1, 0, row);
   }
   fieldset(state.columns.length > 1 ? "Loading of both columns" : "Loading", rows);
 }
 
-// Put the messages of the program beside their fields; what has no field is returned.
+// Put the messages beside their fields; what has no field is returned.
 export function showFaults(form, faults) {
   const left = [];
   for (const row of form.querySelectorAll(".row")) {

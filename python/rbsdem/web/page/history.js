@@ -40,8 +40,8 @@ export function tidied({ columns, loading }) {
   const group = value => value && typeof value === "object" && !Array.isArray(value) ? value : {};
   return { loading, columns: columns.map((column, i) => {
     if ("case" in column) return { name: String(column.name ?? "AB"[i]), case: String(column.case) };
-    const { section, concrete, bars, ties, column: frame } = column;
-    return { name: String(column.name ?? "AB"[i]), section: { ...group(section), shape: String(section?.shape ?? "rectangle") }, concrete: group(concrete), bars: group(bars), ties: group(ties), column: group(frame) };
+    const { section, concrete, bars, ties, column: frame, footing } = column;
+    return { name: String(column.name ?? "AB"[i]), section: { ...group(section), shape: String(section?.shape ?? "rectangle") }, concrete: group(concrete), bars: group(bars), ties: group(ties), column: group(frame), ...(footing ? { footing: group(footing) } : {}) };
   }) };
 }
 

@@ -1,10 +1,10 @@
 // The page: one state, what it shows of it, and what it asks.
 
-import { SYSTEMS, shown, unitOf } from "./units.js";
-import { standalone, asPng } from "./chart.js";
+import { SYSTEMS, inUnits, shown, unitOf } from "./units.js";
+import { asPng, rowsOfChart, standalone } from "./chart.js";
 import { drawColumn, scalesOf } from "./drawing.js";
-import { LOADINGS, drawForm, element, putAt, refreshFields, showFaults } from "./fields.js";
-import { codeTable, curvatureChart, interactionChart, loopChart, nameOfState, nearCards, scaleChart, stateTables, timeChart } from "./panels.js";
+import { LOADINGS, drawForm, element, putAt, refreshFields, showFaults, toldOf } from "./fields.js";
+import { codeTable, csvOf, curvatureChart, interactionChart, loopChart, nameOfState, nearCards, rowsOfNear, rowsOfTable, scaleChart, stateTables, timeChart } from "./panels.js";
 import { makeHistory, packed, unpacked } from "./history.js";
 import { ask, makeLane } from "./answers.js";
 
@@ -180,15 +180,16 @@ function showDrawings() {
 }
 
 function showMessages() {
-  const heard = latest?.columns ?? [], all = heard.flatMap((loop, i) => loop.faults.map(fault => ({ ...fault, column: i })));
+  const heard = latest?.columns ?? [], of = latest?.state;
+  const all = heard.flatMap((loop, i) => loop.faults.map(fault => ({ field: fault.field, text: toldOf(fault, of, of.columns[i], system), column: i })));
   const left = showFaults(get("form"), all.filter(fault => fault.column === active));
   const lines = [], named = i => heard.length > 1 ? `Column ${latest.state.columns[i].name}: ` : "";
   for (const text of left) lines.push(element("p", { className: "fault" }, text));
   for (const fault of all.filter(one => one.column !== active && !one.field.startsWith("loading."))) lines.push(element("p", { className: "fault" }, named(fault.column) + fault.text));
   heard.forEach((loop, i) => {
-    if (loop.stopped) lines.push(element("p", { className: "note" }, named(i) + loop.stopped));
+    if (loop.stopped) lines.push(element("p", { className: "note" }, named(i) + inUnits(loop.stopped, system)));
     if (loop.status === "axial_failure") lines.push(element("p", { className: "note" }, named(i) + "the axial load is lost at the end of the loop"));
-    for (const text of loop.notes) lines.push(element("p", { className: "note" }, named(i) + text));
+    for (const text of loop.notes) lines.push(element("p", { className: "note" }, named(i) + inUnits(text, system)));
   });
   if (note) lines.push(element("p", { className: "note" }, note));
   get("notes").replaceChildren(...lines);
@@ -250,6 +251,11 @@ function complete(path) {
     if (round) section.diameter ??= size ?? 0.5;
     else { section.width ??= size ?? 0.4; section.depth ??= size ?? 0.4; }
     if (section.shape.startsWith("hollow")) section.wall ??= Number((0.25 * (round ? section.diameter : Math.min(section.width, section.depth))).toPrecision(3));
+    return true;
+  }
+  if (path === "footing.kind") {
+    // As soft as the column itself is a footing that shows.
+    if (column.footing.kind === "springs") { column.footing.rotation ??= 1e8; column.footing.sliding ??= 1e9; column.footing.height ??= 0.6; column.footing.mass ??= 4e3; }
     return true;
   }
   if (path === "loading.kind") {
@@ -319,19 +325,38 @@ function download(name, data, type) {
 }
 
 async function save(form) {
-  const svg = get("loopfigure").querySelector("svg");
-  if (form === "svg" || form === "png") {
-    if (!svg || isOld("loops")) { refuseToSave(); return; }
-    if (form === "svg") download("loops.svg", standalone(svg), "image/svg+xml");
-    else download("loops.png", await asPng(svg));
-    say(`Saved loops.${form}`);
-    return;
-  }
   const answer = fixed ? report.exports[form] : await ask("export", { ...sent(), form, column: active });
   if (!answer?.text) { refuseToSave(); return; }
   const ending = { namelist: "nml", python: "py", csv: "csv" }[form];
   download(`${answer.name}.${ending}`, answer.text, "text/plain");
   say(`Saved ${answer.name}.${ending}`);
+}
+
+// What a panel shows: figures as svg or png, figures and tables as csv.
+async function savePanel(name, host, form) {
+  const [panel] = Object.entries(PANELS).find(([, ids]) => ids.includes(host.closest("section").id)) ?? ["loops"];
+  const figures = [...host.querySelectorAll("svg:is(.chart, .drawing)")], found = host.querySelector("table");
+  if (isOld(panel) || !stood.loops) { refuseToSave(); return; }
+  if (form === "csv") {
+    const rows = host.id === "near" ? rowsOfNear(stood.near.state, stood.near) : found ? rowsOfTable(found) : figures.flatMap(rowsOfChart);
+    download(`${name}.csv`, csvOf(rows), "text/csv");
+  } else for (const [i, svg] of figures.entries()) {
+    const file = `${name}${figures.length > 1 ? "_" + "ab"[i] : ""}.${form}`;
+    if (form === "svg") download(file, standalone(svg), "image/svg+xml");
+    else download(file, await asPng(svg));
+  }
+  say(`Saved ${name}.${form}`);
+}
+
+function addPanelButtons() {
+  const drawn = ["svg", "png"], panels = { draw: ["drawing", drawn], loops: ["loop", ["csv", ...drawn]], summary: ["figures", ["csv"]], states: ["limit_states", ["csv"]],
+    timepanel: ["history", ["csv", ...drawn]], scales: ["scales", ["csv", ...drawn]], curvature: ["moment_curvature", ["csv", ...drawn]],
+    interaction: ["interaction", ["csv", ...drawn]], near: ["nearest_tests", ["csv"]], codes: ["codes", ["csv"]] };
+  for (const [id, [name, forms]] of Object.entries(panels)) {
+    const title = get(id).querySelector("h2"), what = title.firstChild.textContent;
+    const buttons = forms.map(form => element("button", { type: "button", ariaLabel: `Save ${what} as ${form}`, title: `Save ${name}.${form}`, onclick: () => savePanel(name, get(id), form).catch(gone) }, form));
+    title.after(element("div", { className: "saves" }, ...buttons));
+  }
 }
 
 function refuseToSave() {
@@ -358,6 +383,7 @@ async function openRecord(file) {
 }
 
 function setUp() {
+  addPanelButtons();
   for (const id of Object.values(PANELS).flat()) get(id).querySelector("h2").append(element("span", { className: "age" }, "of an earlier input"));
   for (const [key, { label }] of Object.entries(SYSTEMS)) get("units").append(element("option", { value: key }, label));
   get("units").addEventListener("change", () => { system = get("units").value; showAll(); if (!fixed) putLink(); });
@@ -413,7 +439,7 @@ async function start() {
     get("units").value = system;
     get("subtitle").textContent = report.title;
     for (const id of ["undo", "redo", "open", "link", "drawhint"]) get(id).hidden = true;
-    for (const option of [...get("export").options]) if (option.value && !["svg", "png"].includes(option.value) && !report.exports[option.value]) option.remove();
+    for (const option of [...get("export").options]) if (option.value && !report.exports[option.value]) option.remove();
     showAll();
     return;
   }

@@ -60,8 +60,10 @@ export function curvatureChart(host, state, sections, system) {
     if (diagram.fault) { faults.push(diagram.fault); return; }
     const name = sections.length > 1 ? state.columns[i].name + ", " : "";
     lines.push({ x: scaled(diagram.curvature, per), y: scaled(diagram.moment, factor), kind: KINDS[i] + (confined ? "" : " thin dashed"), label: name + (confined ? "core confined" : "not confined") });
-    if (confined) for (const [event, [x, y]] of Object.entries(diagram.events))
-      marks.push({ x: x / per, y: y / factor, shape: { cracking: "circle", yielding: "square", peak: "triangle", ultimate: "diamond" }[event], filled: event !== "cracking", kind: KINDS[i], title: event });
+    if (confined) for (const [event, [x, y]] of Object.entries(diagram.events)) {
+      const [label, shape] = { cracking: ["cracking", "circle"], yielding: ["yielding", "square"], peak: ["largest moment", "triangle"], ultimate: ["ultimate", "diamond"] }[event];
+      marks.push({ x: x / per, y: y / factor, shape, filled: event !== "cracking", kind: KINDS[i], label: name + label, title: `${label}: ${shown(x / per)} ${each}, ${shown(y / factor)} ${unit}` });
+    }
   }));
   if (lines.length) drawChart(host, { lines, marks, fromZero: true, xLabel: `Curvature (${each})`, yLabel: `Moment (${unit})`, label: "Moment against curvature under the axial load", legend: true });
   else host.replaceChildren();
@@ -83,15 +85,16 @@ export function interactionChart(host, state, sections, own, loops, system, code
       else if (found) lines.push({ x: scaled(found.moment, factor), y: scaled(found.axial_load, per), kind: KINDS[i] + kind, label: name + label });
     }
     const loop = loops?.[i];
-    if (loop?.figures.peak_moment && by) marks.push({ x: loop.figures.peak_moment / factor, y: one.axial_load / per, shape: "circle", filled: true, kind: KINDS[i], title: "largest moment of the loop" });
+    if (loop?.figures.peak_moment && by) marks.push({ x: loop.figures.peak_moment / factor, y: one.axial_load / per, shape: "circle", filled: true, kind: KINDS[i], label: name + "largest moment of the loop", title: `largest moment of the loop: ${shown(loop.figures.peak_moment / factor)} ${unit}` });
   });
-  if (lines.length) drawChart(host, { lines, marks, fromZero: true, xLabel: `Moment (${unit})`, yLabel: `Axial load (${newton})`, legend: "inside", label: `Interaction of axial load and moment, ${code}; the dot is the largest moment of the loop` });
+  if (lines.length) drawChart(host, { lines, marks, fromZero: true, xLabel: `Moment (${unit})`, yLabel: `Axial load (${newton})`, legend: true, label: `Interaction of axial load and moment, ${code}; the dot is the largest moment of the loop` });
   else host.replaceChildren();
   for (const fault of faults) host.append(element("p", { className: "fault" }, fault));
 }
 
 export function table(heads, rows, caption) {
   const made = element("table", {});
+  made.style.setProperty("--numbers", heads.length - 1 - (rows[0]?.cells.filter((cell, i) => i && cell?.text !== undefined).length ?? 0));
   if (caption) made.append(element("caption", {}, caption));
   const words = i => rows.every(row => typeof row.cells[i] === "object" && row.cells[i].text !== undefined);
   made.append(element("thead", {}, element("tr", {}, ...heads.map((head, i) => element("th", { scope: "col", className: words(i) ? "text" : "" }, head)))));
@@ -103,6 +106,14 @@ export function table(heads, rows, caption) {
     return made;
   })))));
   return element("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: caption || heads[0] }, made);
+}
+
+// Rows of a table on the page.
+export const rowsOfTable = made => [...made.rows].map(row => [...row.cells].map(cell => cell.textContent.trim()));
+
+export function csvOf(rows) {
+  const cell = value => typeof value === "number" ? Number(value.toPrecision(6)) : String(value ?? "").replace(/−(?=\d)/g, "-");
+  return rows.map(row => row.map(cell).map(text => /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text).join(",") + "\n").join("");
 }
 
 function signOf(name) {
@@ -146,7 +157,7 @@ export function codeTable(host, state, sections, system) {
   const rows = names.map(name => {
     const found = lists.map(list => list.find(value => value.name === name)), first = found.find(Boolean);
     const [unit, factor] = unitOf(system, CODE_UNITS[first.unit] ?? "number");
-    return { cells: [name, ...found.map(value => value ? shown(value.value / factor) : "–"), { text: unit }, { text: first.meaning }, { text: first.source + (first.confirmed ? "" : " *") }] };
+    return { cells: [name, ...found.map(value => value ? shown(value.value / factor) : "–"), unit, { text: first.meaning }, { text: first.source + (first.confirmed ? "" : " *") }] };
   });
   const parts = rows.length ? [table(["Value", ...(lists.length > 1 ? state.columns.map(one => one.name) : [""]), "unit", "meaning", "source"], rows, lists.flat().some(value => !value.confirmed) ? "* not confirmed by a second source" : "")] : [];
   if (fault) parts.push(element("p", { className: "fault" }, fault));
@@ -172,6 +183,12 @@ export function testCard(test, system, more = "") {
   made.append(element("p", {}, [...words, more].filter(Boolean).join(" · ")));
   if (test.status !== "completed") made.append(element("p", { className: "fault" }, `${test.status}: ${test.error}`));
   return made;
+}
+
+export function rowsOfNear(state, near) {
+  const tests = near.columns.flatMap((column, i) => (column.tests ?? []).map(test => [state.columns[i].name, test]));
+  const scores = Object.keys(tests[0]?.[1].scores ?? {});
+  return [["column", "test", "distance", "failure", ...scores], ...tests.map(([name, test]) => [name, test.name, test.distance, test.failure, ...scores.map(score => test.scores[score])])];
 }
 
 export function nearCards(host, state, near, system) {
