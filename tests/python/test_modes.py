@@ -15,6 +15,7 @@ import pytest
 from reference_chain import chain
 from scipy.linalg import expm
 from scipy.optimize import brentq
+from scipy.special import roots_jacobi
 
 import rbsdem
 from rbsdem.springs import Elastic
@@ -286,6 +287,25 @@ def test_chain_with_a_mass_at_the_top_tends_to_the_beam_with_order_2():
     wrong = np.abs(wrong)
     np.testing.assert_allclose(np.log2(wrong[:-1] / wrong[1:])[-1], 2.0, atol=0.05)
     assert np.all(wrong[-1] < 1e-4)
+
+
+@pytest.mark.parametrize(("n", "close"), [(2, 1e-3), (3, 1e-4), (5, 5e-6), (20, 5e-7)])
+def test_joints_at_gauss_radau_points_are_the_beam(n, close):
+    """M^2 is a square along the height, which the rule integrates: stiffness to round-off."""
+    x, w = roots_jacobi(n - 1, 0, 1)
+    share = HEIGHT / 2 * np.append(2 / n**2, w / (1 + x))
+    lengths = np.diff([0.0, *(HEIGHT / 2 * (1 + x)), HEIGHT])
+    if n == 2:
+        np.testing.assert_allclose(share, [HEIGHT / 4, 3 * HEIGHT / 4], rtol=1e-14)
+    column = chain(
+        lengths, MASS / HEIGHT * lengths, SHEAR / share, BENDING / share,
+        depth=DEPTH, top_mass=15 * MASS, gravity=0.0,
+    )  # fmt: skip
+    deflection = rbsdem.cyclic(column, force=[1.0]).displacement[0]
+    beam = HEIGHT**3 / (3 * BENDING) + HEIGHT / SHEAR
+    assert deflection == pytest.approx(beam, rel=1e-13)
+    exact = beam_frequencies(1, top_mass=15 * MASS)
+    assert rbsdem.modes(column, count=1).omega == pytest.approx(exact, rel=close)
 
 
 EULER = np.pi**2 * BENDING / (2 * HEIGHT) ** 2
