@@ -131,11 +131,12 @@ def seed(value: Any, name: str = "seed") -> int:
     return integer(value, name, least=0)
 
 
-def choice(value: Any, name: str, words: Iterable[str]) -> str:
-    """Return `value` if it is one of some words."""
+def choice(value: Any, name: str, words: Iterable[str]) -> Any:
+    """Return the one of some words that `value` is, whose case does not matter."""
     words = tuple(words)
-    if is_one_of(value, words):
-        return str(value)
+    for word in words:
+        if isinstance(value, str) and value.lower() == word.lower():
+            return word
     raise InputError(f"{name} = {shown(value)} is not known; it is one of {', '.join(words)}")
 
 
@@ -245,7 +246,7 @@ def convert(record: object, who: str) -> None:
 
 
 _PLAIN: dict[Any, Callable[[Any, str], Any]] = {
-    float: number, int: integer, bool: boolean, str: text, Literal: text,
+    float: number, int: integer, bool: boolean, str: text,
 }  # fmt: skip
 
 
@@ -259,11 +260,19 @@ def _conversions(record: type) -> list[tuple[str, Callable[[Any, str], Any], boo
         optional = len(kinds) < len(get_args(hints[name]))
         kind = kinds[0] if optional and len(kinds) == 1 else hints[name]
         make = _PLAIN.get(get_origin(kind) or kind)
+        if get_origin(kind) is Literal:
+            make = partial(_word, get_args(kind))
         if make is None and isinstance(kind, type):
             make = partial(_instance_of, kind)
         if make is not None:
             found.append((name, make, optional))
     return found
+
+
+def _word(words: tuple[str, ...], value: object, name: str) -> str:
+    """Return the word that a text is, whose case does not matter; another text is left as it is."""
+    given = text(value, name)
+    return next((word for word in words if word.lower() == given.lower()), given)
 
 
 def _instance_of(kind: type[T], value: object, name: str) -> T:

@@ -72,7 +72,7 @@ contains
       !> The command; empty for all of them
       character(len=*), intent(in) :: topic
       type(error_type), allocatable, intent(inout) :: error
-      character(len=*), parameter :: text(30) = [character(len=84) :: &
+      character(len=*), parameter :: text(37) = [character(len=84) :: &
          'rbsdem '//version//': reinforced-concrete columns as rigid bodies and springs', &
          '', &
          'usage:', &
@@ -80,11 +80,18 @@ contains
          '  rbsdem check CASE.nml [--quiet]                 find all errors of the input', &
          '  rbsdem modes CASE.nml [--count N] [--matrices]  natural frequencies, stable step', &
          '  rbsdem keys [NAME] [--json]                     keys of a group or rule, or all', &
+         '  rbsdem COMMAND --help                           options of a command', &
          '  rbsdem --help | --version', &
          '', &
-         'rbsdem trade CASE.nml needs the command that comes with the Python package,', &
-         'and so do rbsdem peer DIR, predict DIR, ensemble CASE.nml RECORD ... --out DIR,', &
-         'ida CASE.nml RECORD ..., explore and report CASE.nml', &
+         'with the Python package also:', &
+         '  rbsdem explore                                  draw a column, in the browser', &
+         '  rbsdem report CASE.nml                          a page on a case', &
+         '  rbsdem trade CASE.nml                           error and time of the methods', &
+         '  rbsdem ensemble CASE.nml RECORD ... --out DIR   many records', &
+         '  rbsdem ida CASE.nml RECORD ...                  incremental dynamic analysis', &
+         '  rbsdem peer DIR                                 columns beside their tests', &
+         '  rbsdem predict DIR                              tests predicted from drawings', &
+         '  rbsdem completion SHELL                         completion of the command line', &
          '', &
          'CASE.nml may be -, which is standard input.', &
          '', &
@@ -154,10 +161,10 @@ contains
          call say('', error)
          call say('Exit code: 0 all went well, 1 there are no modes, 2 the input is wrong.', error)
       case default
-         call say('usage: rbsdem keys [--json]', error)
+         call say('usage: rbsdem keys [NAME] [--json]', error)
          call say('', error)
-         call say('Prints all groups of a case and all rules of springs with their keys: kind, unit,', error)
-         call say('bounds, default, meaning.', error)
+         call say('Explains the keys of a case file: for a group as column, a rule of springs as', error)
+         call say('takeda, or all of them, each key with kind, unit, bounds, default and meaning.', error)
          call say('', error)
          call say('  --json              as JSON, for programs', error)
       end select

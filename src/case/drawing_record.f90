@@ -10,7 +10,7 @@ module rbs_case_drawing_record
    use rbs_structure_column_column_record, only: most_bodies
    use rbs_section_cross_section, only: spiral, ties
    use rbs_section_section_record, only: append_steel, find_steel, section_record
-   use rbs_section_shape, only: column_size
+   use rbs_section_shape, only: bar_size
    implicit none
    private
 
@@ -151,11 +151,11 @@ contains
       type(key_visitor), intent(inout) :: v
 
       call v%key('number', self%number, '', one_or_more, 'number of bars')
-      call v%key('diameter', self%diameter, 'm', column_size, 'their diameter')
+      call v%key('diameter', self%diameter, 'm', bar_size, 'their diameter')
       call v%key('steel', self%steel, '', any_number, 'number of their steel')
       call v%key('face', self%face, '', one_or_more, &
                  'bars on the tension face of a rectangle; without it number/4 + 1', optional=.true.)
-      call v%key('between_diameter', self%between_diameter, 'm', above_zero, &
+      call v%key('between_diameter', self%between_diameter, 'm', bar_size, &
                  'diameter of the bars between the corners, if it differs', optional=.true.)
       call v%key('between_steel', self%between_steel, '', any_number, &
                  'number of the steel of the bars between the corners, if it differs', optional=.true.)

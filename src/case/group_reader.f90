@@ -3,10 +3,10 @@
 module rbs_case_group_reader
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor
-   use rbs_base_keys, only: key_type, find_key, choice_list, choice_place, text_kind, word_kind, force, &
-                            deformation, stiffness
+   use rbs_base_keys, only: key_type, find_key, choice_list, choice_name, choice_place, text_kind, word_kind, &
+                            force, deformation, stiffness
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: to_text, suggestion, list_of
+   use rbs_base_text, only: to_text, lower, suggestion, list_of
    use rbs_base_units, only: unit_system
    use rbs_case_case_record, only: case_record, most_loadings
    use rbs_case_drawing_record, only: drawing_groups
@@ -206,17 +206,21 @@ contains
    end subroutine put_numbers
 
    !> Set the key at a place to a word or a text.
-   subroutine put_text(self, place, text, messages)
+   subroutine put_text(self, place, given, messages)
       class(group_reader), intent(inout) :: self
       integer, intent(in) :: place
-      character(len=*), intent(in) :: text
+      !> A word may be in upper or lower case
+      character(len=*), intent(in) :: given
       type(message_list), intent(inout) :: messages
       type(key_type) :: key
+      character(len=:), allocatable :: text
 
       if (place == ignored) return
       key = self%keys(place)
+      text = as_listed(key, given)
       if (self%is_spring()) then
          if (key%name == 'rule') then
+            text = lower(text)
             call self%entries%entry(self%entries%count)%set_rule(text)
             call keys_of(text, self%rule_keys)
             call self%collect_keys()
@@ -249,6 +253,22 @@ contains
                               list_of(shape_names))
       end if
    end subroutine put_text
+
+   !> A word as the key lists it, whatever its case; another word or a text as it is.
+   pure function as_listed(key, word) result(listed)
+      type(key_type), intent(in) :: key
+      character(len=*), intent(in) :: word
+      character(len=:), allocatable :: listed
+      integer :: i
+
+      listed = word
+      if (key%kind /= word_kind) return
+      i = 1
+      do while (choice_name(key, i) /= '')
+         if (lower(choice_name(key, i)) == lower(word)) listed = trim(choice_name(key, i))
+         i = i + 1
+      end do
+   end function as_listed
 
    !> After all groups have been set: give the springs to the joints, or check what is asked of a section.
    subroutine finish(self, messages)

@@ -7,7 +7,7 @@ module rbs_case_key_list
    use rbs_base_keys, only: key_type, bound_text, choice_name, choice_length, real_kind, integer_kind, &
                             logical_kind, word_kind
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: exact_text, suggestion, to_text
+   use rbs_base_text, only: exact_text, lower, suggestion, to_text
    use rbs_case_group_reader, only: group_names, group_reader, section_groups
    use rbs_case_text_buffer, only: text_buffer
    use rbs_hysteresis_registry, only: rule_names, keys_of, places_of
@@ -163,16 +163,25 @@ contains
    end function default_of
 
    !> Groups and rules, a line for each key: name, kind, unit, bounds, default, meaning.
-   subroutine keys_as_table(name, buffer, error)
-      !> A group or a rule; empty for all of them
-      character(len=*), intent(in) :: name
+   subroutine keys_as_table(given, buffer, error)
+      !> A group or a rule, in upper or lower case; empty for all of them
+      character(len=*), intent(in) :: given
       type(text_buffer), intent(inout) :: buffer
       type(error_type), allocatable, intent(inout) :: error
       type(key_type), allocatable :: keys(:)
+      character(len=len(given)) :: name
       integer :: i
 
+      name = lower(given)
+      if (index(name, '&') == 1) name = name(2:)
       if (name /= '' .and. all(group_names /= name) .and. all(rule_names /= name)) then
-         call fatal_error(error, bad_input, "there is no group or rule '"//name//"'"// &
+         if (scan(given, './\') > 0) then
+            call fatal_error(error, bad_input, "'"//given//"' looks like a file; keys explains the keys "// &
+                             "of a group or rule, as 'rbsdem keys column', and 'rbsdem check "//given// &
+                             "' finds the errors of a case")
+            return
+         end if
+         call fatal_error(error, bad_input, "there is no group or rule '"//given//"'"// &
                           suggestion(name, [character(len=24) :: group_names, rule_names]))
          return
       end if

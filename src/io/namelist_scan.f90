@@ -171,6 +171,12 @@ contains
          if (self%at > len(self%text)) then
             self%at = begin
             call self%complain('&'//trim(group%name)//' is not closed; end it with /', messages)
+         else if (group_begins(self)) then
+            ! The next group is scanned all the same: it would otherwise be taken for values of this one.
+            call self%complain('&'//trim(group%name)//' of line '//to_text(group%line)// &
+                               ' is not closed before the next group; end it with /', messages)
+            self%failed = .false.
+            return
          else if (self%letter() == '/') then
             exit
          else if (self%entries - group%first + 1 == most_entries) then
@@ -264,7 +270,7 @@ contains
       entry%first = self%words + 1
       do
          call self%skip(' ')
-         if (self%at > len(self%text) .or. self%letter() == '/') exit
+         if (self%at > len(self%text) .or. self%letter() == '/' .or. group_begins(self)) exit
          if (self%letter() == ',') then
             if (after_comma) then
                call self%complain("a value of '"//trim(entry%name)//"' is missing before a comma", messages)
@@ -355,6 +361,13 @@ contains
       at = at + self%run_of(at, ' ')
       is_name_ahead = scan(self%text(at:min(at, len(self%text))), '=(') > 0
    end function is_name_ahead
+
+   !> Whether & and a name come next.
+   pure logical function group_begins(self)
+      type(nml_scan), intent(in) :: self
+
+      group_begins = self%letter() == '&' .and. self%run_of(self%at + 1, name_set) > 0
+   end function group_begins
 
    !> Take a name, in lower case; blank if the next character cannot begin one.
    subroutine take_name(self, name)

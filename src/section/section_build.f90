@@ -7,14 +7,14 @@ module rbs_section_section_build
    use rbs_section_confinement, only: confine
    use rbs_section_cross_section, only: enclose_core, no_ties, section_type, slice, spiral, circular_hoops
    use rbs_section_section_record, only: find_steel, section_record
-   use rbs_section_shape, only: new_core, shape_type
+   use rbs_section_shape, only: new_core, shape_type, thickest_bar
    implicit none
    private
 
    public :: make_section, build_section, outline_core
 
-   !> The thinnest bar, that of a small model, and the thickest [m].
-   real(wp), parameter :: thinnest = 0.003_wp, thickest = 0.075_wp
+   !> The thinnest bar, that of a small model [m].
+   real(wp), parameter :: thinnest = 0.003_wp
 
 contains
 
@@ -120,7 +120,7 @@ contains
       else if (section%bar_diameter < thinnest) then
          call messages%add('section: bar_diameter = '//to_text(section%bar_diameter)//' m is thinner '// &
                            'than any bar; a diameter is in m and no area: 20 mm is 0.02')
-      else if (section%bar_diameter > thickest) then
+      else if (section%bar_diameter > thickest_bar) then
          call messages%add('section: bar_diameter = '//to_text(section%bar_diameter)//' m is larger than '// &
                            'any bar; if the entries of bars are rows, give the bar_diameter of one bar')
       end if

@@ -8,7 +8,7 @@ module rbs_section_section_record
    use rbs_base_text, only: to_text
    use rbs_section_concrete_law, only: concrete_record
    use rbs_section_cross_section, only: no_ties, ties, spiral, circular_hoops
-   use rbs_section_shape, only: column_size, new_shape, shape_choices, shape_type
+   use rbs_section_shape, only: bar_size, new_shape, shape_choices, shape_type
    use rbs_section_steel_law, only: steel_record
    implicit none
    private
@@ -100,7 +100,7 @@ contains
       class(hoops_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
 
-      call v%key('diameter', self%diameter, 'm', column_size, 'diameter of the bar')
+      call v%key('diameter', self%diameter, 'm', bar_size, 'diameter of the bar')
       call v%key('spacing', self%spacing, 'm', spacings, 'distance between hoops, or pitch of the spiral')
       call v%key('steel', self%steel, '', any_number, 'number of the steel')
       if (self%kind == ties) then

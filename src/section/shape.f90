@@ -22,6 +22,11 @@ module rbs_section_shape
    type(bound_type), parameter, public :: column_size = &
       bound_type(0.0_wp, 50.0_wp, least_open=.true., reason='(400 mm is 0.4)')
 
+   !> Diameters of bars [m].
+   real(wp), parameter, public :: thickest_bar = 0.075_wp
+   type(bound_type), parameter, public :: bar_size = &
+      bound_type(0.0_wp, thickest_bar, least_open=.true., reason='(20 mm is 0.02)')
+
    type :: shape_type
       !> Sizes of the smallest rectangle around the figure: across and along the direction of loading [m]
       real(wp) :: width = 0.0_wp, depth = 0.0_wp

@@ -16,8 +16,10 @@ from rbsdem.cli import COMPLETE, app, main
 
 def test_every_command_and_option_of_the_executable_is_known(run_cli):
     """The commands that stand for the executable have the words of its help."""
-    usage = re.findall(r"^  rbsdem ([a-z]+) (.*?)  ", run_cli(["--help"]).stdout, re.MULTILINE)
+    own, python = run_cli(["--help"]).stdout.split("with the Python package")
+    usage = re.findall(r"^  rbsdem ([a-z]+) (.*?)  ", own, re.MULTILINE)
     assert {name for name, _ in usage} == set(app.commands)
+    assert set(re.findall(r"^  rbsdem ([a-z]+) ", python, re.MULTILINE)) == set(COMMANDS)
     assert set(app.list_commands(click.Context(app))) == {*app.commands, *COMMANDS}
     for name, words in usage:
         known = {option for param in app.commands[name].params for option in param.opts}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import importlib.util
 import inspect
 import json
@@ -106,6 +107,19 @@ def test_fields_of_damping_are_the_keys_of_its_group():
 
 def keywords(function: Callable[..., Any]) -> dict[str, inspect.Parameter]:
     return dict(inspect.signature(function, eval_str=False).parameters)
+
+
+@pytest.mark.parametrize("rule", sorted(set(RULES) - {"layered", "compression", "concrete"}))
+def test_words_are_known_in_any_case(tmp_path, rule):
+    """Names of rules and other words of a case file and of Python, in capitals."""
+    spring = SPRINGS[rule](**GOOD[rule])
+    own = rbsdem.Column(2.0, 1e3, spring, spring, kinematics="pdelta", top="fixed")
+    assert own == dataclasses.replace(own, kinematics="PDelta", top="FIXED")
+    text = "&units force = 'N', length = 'm' /\n" + own.to_namelist()
+    text += "&loading drive = 'displacement', amplitudes = 0.01, 0.02 /\n"
+    for name, given in (("a", text), ("b", re.sub(r"'\w+'", lambda word: word[0].upper(), text))):
+        (tmp_path / f"{name}.nml").write_text(given)
+    assert rbsdem.read_case(tmp_path / "a.nml") == rbsdem.read_case(tmp_path / "b.nml")
 
 
 def test_keywords_of_the_analyses_are_the_keys_of_their_groups():

@@ -152,7 +152,8 @@ def calibrate(
         If the test hardly determines a parameter, or does not distinguish two of them.
     """
     started = time.perf_counter()
-    _check(loss, seed, jobs, evaluations, seconds)
+    loss = _arguments.choice(loss, "calibrate: loss", LOSSES)
+    _check(seed, jobs, evaluations, seconds)
     target = Target(test)
     parameters = Parameters(column)
     chosen = free_parameters(parameters, free, bounds)
@@ -191,8 +192,7 @@ def calibrate(
     )
 
 
-def _check(loss: str, seed: int, jobs: int, evaluations: int, seconds: float | None) -> None:
-    _arguments.choice(loss, "calibrate: loss", LOSSES)
+def _check(seed: int, jobs: int, evaluations: int, seconds: float | None) -> None:
     for name, value in (("seed", seed), ("jobs", jobs), ("evaluations", evaluations)):
         least = 0 if name == "seed" else 1
         if _arguments.integer(value, f"calibrate: {name}") < least:

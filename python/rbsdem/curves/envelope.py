@@ -429,7 +429,7 @@ def envelope(curve: Curve, side: Literal[1, -1] = 1) -> Envelope:
 
 def _idealise(x: Array, y: Array, method: str, end: float | None = None) -> Idealisation:
     """Return the two lines of an envelope that begins at zero; see `Envelope.idealise`."""
-    _arguments.choice(method, "method", IDEALISATIONS)
+    method = _arguments.choice(method, "method", IDEALISATIONS)
     if end is not None and method not in ("asce_41", "ec_8"):
         raise InputError(f"method = {method!r} has an end of its own; leave out end")
     top = int(np.argmax(y))

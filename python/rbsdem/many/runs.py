@@ -83,7 +83,7 @@ class Intensity:
 
 def make_intensity(name: str, column: Structure, period: float | None, damping: float) -> Intensity:
     """Return an intensity measure; its period is that of the column unless one is given."""
-    _arguments.choice(name, "intensity", NAMES)
+    name = _arguments.choice(name, "intensity", NAMES)
     if name == "pga":
         if period is not None:
             raise InputError("intensity: 'pga' has no period; leave period out, or take 'sa_t1'")

@@ -142,7 +142,7 @@ class Uncertain:
         from scipy import special  # noqa: PLC0415
         from scipy.stats import qmc  # noqa: PLC0415
 
-        _arguments.choice(method, "method", ("sobol", "lhs", "random"))
+        method = _arguments.choice(method, "method", ("sobol", "lhs", "random"))
         if method == "sobol":
             if number & (number - 1):
                 near = 2 ** round(np.log2(number))

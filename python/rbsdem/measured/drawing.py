@@ -379,7 +379,7 @@ def column(specimen: Specimen, model: Model = DEFAULT, **options: Any) -> Column
         If the model is not known, if the section cannot be analysed, or if the table does not say
         enough of the ends of the test.
     """
-    _arguments.choice(model, "model", MODELS)
+    model = _arguments.choice(model, "model", MODELS)
     checked_specimen(specimen)
     check_options(options)
     tested = _tested(specimen, options.pop("ends", "equivalent"), options.get("footing"))

@@ -231,8 +231,7 @@ def checked_methods(methods: Sequence[str] | None) -> tuple[str, ...]:
         return IN_TIME
     wanted = (methods,) if isinstance(methods, str) else methods
     wanted = tuple(_arguments.several(wanted, "compare_methods: methods", "names"))
-    for method in wanted:
-        _arguments.choice(method, "compare_methods: method", IN_TIME)
+    wanted = tuple(_arguments.choice(word, "compare_methods: method", IN_TIME) for word in wanted)
     if not wanted:
         raise InputError("compare_methods: methods is empty; name one, or leave it out to try all")
     return wanted

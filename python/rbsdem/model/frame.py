@@ -180,7 +180,8 @@ class FrameNode:
     def __post_init__(self) -> None:
         _arguments.convert(self, "FrameNode")
         if self.support:
-            _arguments.choice(self.support, "FrameNode: support", _SUPPORTS)
+            support = _arguments.choice(self.support, "FrameNode: support", _SUPPORTS)
+            object.__setattr__(self, "support", support)
 
     def _groups(self) -> Iterator[_core.Statement]:
         values = {

@@ -154,6 +154,8 @@ class Steel:
 _MIDDLE = 0.05
 
 #: Bars of a layout; more are a mistake, and fill the memory.
+#: Diameter of the thickest bar [m], as in the Fortran part.
+THICKEST = 0.075
 _MOST_BARS = 1000
 
 Bar = tuple[float, float, Steel]
@@ -207,6 +209,7 @@ class Layout:
         if self.number > _MOST_BARS:
             raise InputError(f"layout: number = {self.number} must not be above {_MOST_BARS}")
         _check_positive(self, "layout", diameter="m", between_diameter="m")
+        _check_bar(self, "layout", "diameter", "between_diameter")
 
     @property
     def steels(self) -> list[Steel]:
@@ -354,6 +357,7 @@ class Ties:
         if given(self.legs_across) is None:
             object.__setattr__(self, "legs_across", Derived(self.legs))
         _check_positive(self, "ties", diameter="m", spacing="m", legs="", legs_across="")
+        _check_bar(self, "ties", "diameter")
 
     def statement(self, steel: int) -> _core.Statement:
         """Return the keys of the ties with their values; `steel` is the number of their steel."""
@@ -396,6 +400,7 @@ class Spiral:
     def __post_init__(self) -> None:
         _arguments.convert(self, "spiral")
         _check_positive(self, "spiral", diameter="m", spacing="m")
+        _check_bar(self, "spiral", "diameter")
 
     def statement(self, steel: int) -> _core.Statement:
         """Return the keys of the spiral with their values; `steel` is the number of its steel."""
@@ -415,3 +420,13 @@ def _check_positive(record: object, who: str, **units: str) -> None:
         if value is not None and not 0 < value < math.inf:
             given = f"{who}: {name} = {value} {unit}".rstrip()
             raise InputError(f"{given} must be finite and above zero")
+
+
+def _check_bar(record: object, who: str, *names: str) -> None:
+    """Refuse diameters that no bar has; else every bar would be reported as outside the section."""
+    for name in names:
+        value = getattr(record, name)
+        if value is not None and value > THICKEST:
+            raise InputError(
+                f"{who}: {name} = {value:.6g} m must not be above {THICKEST} (20 mm is 0.02)"
+            )

@@ -305,7 +305,7 @@ def member_forces(
         If there is no such row.
     """
     _arguments.instance(result, "plot.member_forces", FrameResult)
-    _arguments.choice(force, "plot.member_forces: force", ("moment", "axial"))
+    force = _arguments.choice(force, "plot.member_forces: force", ("moment", "axial"))
     row = _row(result, row)
     structure = result.frame
     members = _members(structure)

@@ -84,7 +84,7 @@ def history(
         If `over` is none of these.
     """
     _arguments.instance(result, "history: result", Response)
-    _arguments.choice(over, "over", _OVER)
+    over = _arguments.choice(over, "over", _OVER)
     factor, label = _OVER[over]
     with axes_or_new(ax, (5.2, 2.4)) as drawn:
         drawn.plot(result.time, factor * getattr(result, over), **line_of(MODEL_LINE, line))

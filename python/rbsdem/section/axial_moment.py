@@ -217,7 +217,7 @@ def interaction(
     count, confined = _points(points), is_confined(section, confined)
     if code is None:
         return _own(section, count, confined)
-    _arguments.choice(code, "interaction: code", get_args(Code))
+    code = _arguments.choice(code, "interaction: code", get_args(Code))
     if confined:
         raise InputError("interaction: the blocks of codes are those of unconfined concrete")
     if not section.bars:

@@ -44,7 +44,8 @@ def model_name(model: str, model_parameters: ModelParameters | None = None) -> s
     InputError
         If there is no such model.
     """
-    if _arguments.choice(model, "model", MODELS) != "layered":
+    model = _arguments.choice(model, "model", MODELS)
+    if model != "layered":
         return model
     return f"{model} {_known(model_parameters).label}"
 
@@ -167,8 +168,8 @@ def column(
     (2, '2026.6')
     """
     checked_section(section)
-    _arguments.choice(model, "model", MODELS)
-    _arguments.choice(top, "top", get_args(Top))
+    model = _arguments.choice(model, "model", MODELS)
+    top = _arguments.choice(top, "top", get_args(Top))
     load = _arguments.number(axial_load, "axial_load")
     if restrained is not None:
         restrained = _arguments.integer(restrained, "restrained")

@@ -141,7 +141,7 @@ def springs(
         symmetric.
     """
     checked_section(section)
-    _arguments.choice(shear, "springs: shear", SHEAR)
+    shear = _arguments.choice(shear, "springs: shear", SHEAR)
     confined = is_confined(section, confined)
     axial_load = _arguments.number(axial_load, "axial_load")
     hinge = hinge_length

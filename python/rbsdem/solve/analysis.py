@@ -174,7 +174,7 @@ def matrices(column: Structure, form: Literal["symmetric", "paper"] = "symmetric
         its eqs 1 and 2 and the mass matrix [A B; C D] of eq 3, its misprints corrected.
         M_symmetric = M_paper T with theta = cumulative sum of phi, and so for the others.
     """
-    _arguments.choice(form, "form", ("symmetric", "paper"))
+    form = _arguments.choice(form, "form", ("symmetric", "paper"))
     answer = _core.evaluate("matrices", checked_structure(column)._statement, paper=form == "paper")
     unknowns = tuple(answer.text.split())
     return Matrices(unknowns, *(matrix.copy() for matrix in np.split(answer.rows, 4)))
