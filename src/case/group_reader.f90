@@ -3,8 +3,8 @@
 module rbs_case_group_reader
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor
-   use rbs_base_keys, only: key_type, find_key, choice_list, choice_name, choice_place, text_kind, word_kind, &
-                            force, deformation, stiffness
+   use rbs_base_keys, only: key_type, find_key, choice_list, choice_name, choice_place, text_kind, &
+                            word_kind, force, deformation, stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text, lower, suggestion, list_of
    use rbs_base_units, only: unit_system
