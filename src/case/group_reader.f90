@@ -217,7 +217,7 @@ contains
 
       if (place == ignored) return
       key = self%keys(place)
-      text = as_listed(key, given)
+      call take_as_listed(key, given, text)
       if (self%is_spring()) then
          if (key%name == 'rule') then
             text = lower(text)
@@ -255,10 +255,10 @@ contains
    end subroutine put_text
 
    !> A word as the key lists it, whatever its case; another word or a text as it is.
-   pure function as_listed(key, word) result(listed)
+   pure subroutine take_as_listed(key, word, listed)
       type(key_type), intent(in) :: key
       character(len=*), intent(in) :: word
-      character(len=:), allocatable :: listed
+      character(len=:), allocatable, intent(out) :: listed
       integer :: i
 
       listed = word
@@ -268,7 +268,7 @@ contains
          if (lower(choice_name(key, i)) == lower(word)) listed = trim(choice_name(key, i))
          i = i + 1
       end do
-   end function as_listed
+   end subroutine take_as_listed
 
    !> After all groups have been set: give the springs to the joints, or check what is asked of a section.
    subroutine finish(self, messages)
