@@ -324,7 +324,7 @@ class Frame:
         Dead load on the beams of each floor, downward [N/m].
     kinematics : {"small", "pdelta"}, optional
         Small rotations, or the same with the second-order work of the axial forces under the dead
-        load, which stay as they are so that paths are exact.
+        load, which do not change along a path.
     base : {"fixed", "pinned", "free"}, optional
         How the columns of the grid stand; "free" with springs from the ground.
     diaphragm : bool, optional

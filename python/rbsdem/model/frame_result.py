@@ -272,8 +272,8 @@ class FrameResult:
     def events(self) -> tuple[FrameEvent, ...]:
         """Limit states of the springs, in the order in which they are reached first.
 
-        Cracking, yield and cap of each side. On a path of `pushover` each is a row of its own and
-        exact; else they are those of the rows that were kept.
+        Cracking, yield and cap of each side. On a path of `pushover` each is a row of its own;
+        else it is that of the first row kept beyond it.
         """
         forces = self.base_shear if self.dynamic else self.force
         found = []

@@ -340,7 +340,7 @@ class Response:
     def at(self, time: float) -> dict[str, Any]:
         """Return the state at a time, or at a point of a static path, linear between rows.
 
-        The rows are those of `path`: between two points of a static path the state is exact.
+        The rows are those of `path`, which of a static path has the events between the points too.
 
         Parameters
         ----------

@@ -170,7 +170,7 @@ class Spring:
         """Return the force along a path of deformation.
 
         The path starts at the virgin state (zero) and goes straight from point to point; the force
-        at a point is exact and does not depend on points in between.
+        at a point does not depend on points in between.
 
         Parameters
         ----------
@@ -256,7 +256,7 @@ def _defaults(rule: str) -> dict[str, Any]:
 
 
 def unchecked(kind: type[AnySpring], **values: Any) -> AnySpring:
-    """Make a spring without asking its rule: a model makes twenty, and their column asks for all.
+    """Make a spring without checking it: a model makes twenty, and their column checks them all.
 
     Parameters
     ----------
@@ -395,8 +395,8 @@ class PeakOriented(Spring):
         the strength, of the softening line, of the unloading stiffness, of the target of reloading.
         0 means no deterioration.
     c : float, optional
-        Exponent of deterioration: an excursion that dissipates E reduces the quantity by the share
-        (E/(lambda f_y d_y - sum E))^c.
+        Exponent of deterioration: of the quantity 1 - (E/(lambda f_y d_y))^c is left, E the energy
+        that all excursions so far have dissipated.
     lambda_h, s_min : float, optional
         For shear springs: the strength falls to the share s_min + (1 - s_min)/(1 + W/(lambda_h f_y
         d_y)), W the work of the flexural spring of the same joint since cracking. 0 means that it
@@ -525,7 +525,8 @@ class ConcreteSpring(Spring):
     misfit : float, optional
         Share of the widest opening at which the faces of a closing crack touch, below 1.
     wear : float, optional
-        Share of the strength that is lost each time the crack closes and opens again, below 1.
+        Share of the strength that a wide opening of the crack takes, if the closing has reached
+        2 `d_peak`, and less in proportion before; below 1.
     friction : float, optional
         Share of the force by which the path of opening is below that of closing, once the spring
         was closed by `d_peak` or more; below 1.
@@ -553,10 +554,10 @@ class ConcreteSpring(Spring):
 
 @dataclass(frozen=True)
 class SteelSpring(Spring):
-    """Steel that yields round: elements side by side, each of which slips at a limit of its own.
+    """Steel whose curve is round: parallel elements, each of which slips at a limit of its own.
 
     Iwan 1966, with limits that follow the plastic reach and the roundness of Menegotto and Pinto
-    (1973). It depends continuously on its path, and closed loops never create energy.
+    (1973). It depends continuously on its path, and closed loops do not create energy.
     ``docs/rules.md`` has its lines. Below, d_y = f_y/k, and the plastic reach is the range of the
     deformation so far, which is at least that from -d_y to d_y, less 2 d_y.
 

@@ -206,9 +206,9 @@ class GroundMotion:
     def spectrum(self, periods: ArrayLike | None = None, damping: float = 0.05) -> Spectrum:
         """Return the elastic response spectrum.
 
-        The oscillators are solved exactly for an acceleration that is linear between its points
-        (Nigam and Jennings 1969), with the peaks between points, to 4e-5, and those of the free
-        vibration after the end of the motion.
+        The oscillators are solved in closed form for an acceleration that is linear between its
+        points (Nigam and Jennings 1969). Peaks between points are found to 4e-5, and the free
+        vibration after the end of the motion belongs to the response.
 
         Parameters
         ----------

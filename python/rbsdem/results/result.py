@@ -314,7 +314,7 @@ def pushover(
     points: int = 100,
     initial: Any = None,
 ) -> Any:
-    """Push a frame or a column to one side, exactly from event to event.
+    """Push a frame or a column to one side, from event to event.
 
     Parameters
     ----------

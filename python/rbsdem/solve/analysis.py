@@ -194,10 +194,10 @@ def cyclic(
 ) -> Response | FrameResult:
     """Follow the static path of a column through displacements of the top, or lateral forces.
 
-    The path is exact for `kinematics` "small" and "pdelta": it goes from event to event (a spring
-    reaches the end of its line) without increments or tolerance. With "finite" each increment is
-    solved for equilibrium, and events are located. The path starts at zero, or in the
-    state that another analysis ended in.
+    With `kinematics` "small" and "pdelta" the path goes from event to event (a spring reaches the
+    end of its line) without increments or tolerance. With "finite", and where the axial load
+    varies, equilibrium is solved for at each point and at each event. The path starts at zero, or
+    in the state that another analysis ended in.
 
     Parameters
     ----------
@@ -209,15 +209,15 @@ def cyclic(
         Axial load at the top at each point [N], compression positive, in place of the constant one
         of the column; it changes in proportion on the way from point to point, and the path starts
         under its first value. With `Column(axial_force_ratio=r)` the load is this one plus r F.
-        With `kinematics` "small" it acts on layered joints alone.
+        With `kinematics` "small" it acts on axial springs and layered joints alone.
     initial : Result or path, optional
         The result of this column in whose end the path begins, or a file that
         `Result.save_state` or the executable wrote. A static result that was driven by the same
-        quantity goes on with the same bits as one path. After a response in time the top is held
+        quantity gives the same numbers as one path, to the last bit. After a response in time the top is held
         where the motion has brought it, the velocities vanish, and the joints come to equilibrium;
         so do they where the axial load is another. Axial load, loading, method, masses and damping
-        may differ, springs, lengths, number of bodies and kinematics not. Energies go on; rows and
-        peaks are those of this path.
+        may differ, springs, lengths, number of bodies and kinematics not. Energies are counted
+        from the virgin column; rows and peaks are those of this path.
     every : int, optional
         Keep every n-th point and the last one. By default all points are kept.
     collapse_drift : float, optional
@@ -249,7 +249,8 @@ def cyclic(
     Warns
     -----
     AccuracyWarning
-        If a body turns by more than 0.1 rad with `kinematics` "small" or "pdelta".
+        If a body turns by more than 0.1 rad with `kinematics` "small" or "pdelta", or the top goes
+        beyond half of the height.
     """
     given = {"displacement": displacement, "force": force}
     driven = [(name, values) for name, values in given.items() if values is not None]
@@ -314,9 +315,9 @@ def time_history(
         are loaded from zero to this state. Without "opening" the joints start in equilibrium under
         axial load and weight. As a `Result` of this column, or a file that `Result.save_state` or
         the executable wrote: the state that it ended in. Times that begin where those of the
-        result end go on with the same bits as one analysis, if the method is the same. After a
+        result end give the numbers of one analysis, if the method is the same. After a
         static path the column starts at rest; its lateral force is let go, unless `force` holds
-        it. What may differ is said at `cyclic`.
+        it. `cyclic` says what may differ.
     vertical_acceleration : array_like of shape (m,), or GroundMotion, optional
         Vertical acceleration of the ground, upward positive [m/s2].
     axial_load : array_like, shape (m,), optional
