@@ -213,11 +213,11 @@ def cyclic(
     initial : Result or path, optional
         The result of this column in whose end the path begins, or a file that
         `Result.save_state` or the executable wrote. A static result that was driven by the same
-        quantity gives the same numbers as one path, to the last bit. After a response in time the top is held
-        where the motion has brought it, the velocities vanish, and the joints come to equilibrium;
-        so do they where the axial load is another. Axial load, loading, method, masses and damping
-        may differ, springs, lengths, number of bodies and kinematics not. Energies are counted
-        from the virgin column; rows and peaks are those of this path.
+        quantity gives the same numbers as one path, to the last bit. After a response in time the
+        top is held where the motion has brought it, the velocities vanish, and the joints come to
+        equilibrium; so do they where the axial load is another. Axial load, loading, method, masses
+        and damping may differ, springs, lengths, number of bodies and kinematics not. Energies are
+        counted from the virgin column; rows and peaks are those of this path.
     every : int, optional
         Keep every n-th point and the last one. By default all points are kept.
     collapse_drift : float, optional
