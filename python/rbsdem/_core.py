@@ -374,9 +374,12 @@ def run_ensemble(
     runs: tuple[NDArray[np.int32], NDArray[np.int32], Array],
     control: NDArray[np.int32],
     measures: int,
+    storeys: int = 0,
     kernel: int = 0,
 ) -> tuple[NDArray[np.int32], Array, dict[int, str]]:
     """Run columns under motions; return fates, measures (measures, runs) and errors by run.
+
+    After the measures come the largest drifts of so many storeys, and those at the end.
 
     `runs` are the places of columns and motions, from 0, and the scales. `control` is shared: set
     its first number to stop, read in its second how many runs are done. `kernel` is 0 for the
@@ -391,6 +394,7 @@ def run_ensemble(
         scales=scale,
         level=kernel,
         measures=measures,
+        storeys=storeys,
         **_columns_and_motions(columns, settings, watches, before, motions),
     )
     values = answer.rows.T

@@ -16,6 +16,7 @@ from rbsdem.many.ida import stripes as stripes
 from rbsdem.many.inputs import LIMIT_STATES as LIMIT_STATES
 from rbsdem.many.inputs import MEASURES as MEASURES
 from rbsdem.many.inputs import STATUSES as STATUSES
+from rbsdem.many.inputs import STOREY_MEASURES as STOREY_MEASURES
 from rbsdem.many.uncertain import Sample as Sample
 from rbsdem.many.uncertain import Uncertain as Uncertain
 from rbsdem.many.uncertain import VarianceSplit as VarianceSplit

@@ -56,8 +56,8 @@ contains
    end subroutine plan_ensemble
 
    !> Runs, each of a column, a motion and a factor of the accelerations. Rows: for each run its fate, its
-   !> measures, and for each limit state but the first yield when it is reached. Text: number of the run and
-   !> message of each failure.
+   !> measures, for each limit state but the first yield when it is reached, and the largest drifts of the
+   !> first storeys and those at the end. Text: number of the run and message of each failure.
    subroutine run_ensemble(request, control, answer)
       type(request_type), intent(in) :: request
       !> See `run_block`
@@ -69,9 +69,10 @@ contains
       type(run_result), allocatable :: outcome(:)
       type(error_type), allocatable :: error
       type(text_buffer) :: text
-      integer :: i, at(4), states
+      integer :: i, at(4), states, storeys, known
 
       call take_motions(request, motion)
+      storeys = request%whole('storeys')
       states = 1 + request%whole('measures') - measure_count
       allocate (column(size(request%array('counts'))/3))
       at = 1
@@ -88,11 +89,23 @@ contains
          end do
       end associate
       call run_block(column, motion, run, request%whole('level'), outcome, control)
-      allocate (answer%rows(measure_count + states, size(run)), source=ieee_value(1.0_wp, ieee_quiet_nan))
+      allocate (answer%rows(measure_count + states + 2*storeys, size(run)), &
+                source=ieee_value(1.0_wp, ieee_quiet_nan))
       do i = 1, size(run)
          answer%rows(1, i) = outcome(i)%fate
          answer%rows(2:measure_count + 1, i) = outcome(i)%value
-         if (allocated(outcome(i)%reached)) answer%rows(measure_count + 2:, i) = outcome(i)%reached(2:)
+         associate (row => answer%rows(:, i))
+            if (allocated(outcome(i)%reached)) then
+               row(measure_count + 2:measure_count + states) = outcome(i)%reached(2:)
+            end if
+            if (allocated(outcome(i)%storey)) then
+               known = min(storeys, size(outcome(i)%storey)/2)
+               associate (peaks => measure_count + states, half => size(outcome(i)%storey)/2)
+                  row(peaks + 1:peaks + known) = outcome(i)%storey(:known)
+                  row(peaks + storeys + 1:peaks + storeys + known) = outcome(i)%storey(half + 1:half + known)
+               end associate
+            end if
+         end associate
          if (allocated(outcome(i)%message)) then
             call text%append(to_text(i)//after_number//outcome(i)%message//after)
          end if

@@ -28,6 +28,9 @@ module rbs_output_summary
       real(wp) :: peak_rotation = 0.0_wp
       !> Largest absolute acceleration of the top, in size [m/s2]; negative where it is not looked at
       real(wp) :: peak_floor_acceleration = -1.0_wp
+      !> Drift ratios of the storeys, the last ones and the largest in size (storeys); not allocated without
+      !> storeys
+      real(wp), allocatable :: storey_drift(:), peak_storey_drift(:)
    contains
       procedure :: see_peak
       procedure :: see_turn

@@ -52,6 +52,8 @@ module rbs_structure_structure
       integer :: n = 0
       !> `small`, `pdelta` or `finite`
       integer :: kinematics = small
+      !> Number of storeys whose drifts are known
+      integer :: storeys = 0
       !> Lengths of the bodies (n) [m]
       real(wp), allocatable :: length(:)
       !> Height that drifts are in proportion to, and that of the top above the ground [m]
@@ -126,6 +128,7 @@ module rbs_structure_structure
       procedure :: power_of_loads
       procedure :: kinetic_energy
       procedure :: largest_turn
+      procedure :: storey_drifts
       procedure :: top_displacement
       procedure :: top_acceleration
       procedure :: axial_force
@@ -377,6 +380,16 @@ contains
 
       x = inner_product(size(d), self%arm, d)
    end function top_displacement
+
+   !> Drift ratios of the storeys; there are none.
+   pure subroutine storey_drifts(self, d, drift)
+      class(structure_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+      !> (storeys)
+      real(wp), intent(out), contiguous :: drift(:)
+
+      if (self%storeys < size(d)) drift = 0.0_wp
+   end subroutine storey_drifts
 
    !> Acceleration of the top along x, relative to the ground [m/s2].
    pure real(wp) function top_acceleration(self, d, v, a) result(acceleration)

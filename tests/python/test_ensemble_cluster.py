@@ -38,6 +38,10 @@ def client(cluster: Any, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
 
 
 def test_the_bits_are_those_of_threads_although_a_worker_dies(client: Any) -> None:
+    elastic = rbsdem.FrameMember(3e10, 0.16, 2e-3)
+    frame = rbsdem.Frame.grid(
+        [3.0], [6.0], columns=elastic, beams=elastic, beam_load=1e4, floor_mass=1e4
+    )
     columns, motions = [column(), column(15e3)], [motion(1, 2000), motion(2, 2000)]
     pids = list(client.run(os.getpid).values())
 
@@ -54,6 +58,13 @@ def test_the_bits_are_those_of_threads_although_a_worker_dies(client: Any) -> No
     for name in found.measures:
         np.testing.assert_array_equal(found.measures[name], expected.measures[name])
     assert set(client.run(os.getpid).values()) != set(pids)
+    found, expected = (
+        rbsdem.ensemble(
+            frame, motions, client=each, method="newmark", measures=["peak_storey_drift"]
+        ).measures["peak_storey_drift"]
+        for each in (client, None)
+    )
+    assert (found == expected).all()
 
 
 def test_runs_at_which_workers_die_are_failed(cluster: Any, client: Any) -> None:

@@ -277,20 +277,73 @@ def test_steps_in_time_converge_and_balance(method):
 
 def test_an_ensemble_takes_frames():
     """Measures are those of one run; a frame stands under its load at the start."""
-    frame = three_storeys()
+    frame = three_storeys(damping=rbsdem.Damping(mass=0.1, stiffness=1e-3))
     (motion,) = rbsdem.motions.synthetic(1, seed=3)
+    column = rbsdem.Column(3.0, 1e4, Elastic(1e9), Elastic(1e8))
     runs = rbsdem.ensemble(
-        {"frame": frame}, {"m": motion}, scales=[1.0, 2.0], method="newmark",
-        measures=["peak_drift", "first_yield", "peak_base_shear"],
+        {"frame": frame, "column": column}, {"m": motion}, scales=[1.0, 2.0], method="newmark",
+        measures=[
+            "peak_drift", "residual_drift", "first_yield", "peak_base_shear", "peak_storey_drift",
+            "residual_storey_drift", "peak_storey_drift_1", "residual_storey_drift_3",
+            "peak_storey_drift_4",
+        ],
     )  # fmt: skip
     alone = rbsdem.time_history(frame, motion, method="newmark")
-    assert runs.status.tolist() == ["completed", "completed"]
-    assert runs.measures["peak_base_shear"][0] == abs(alone.summary["peak_base_shear"])
-    assert runs.measures["peak_drift"][0] == abs(alone.summary["peak_displacement"]) / frame.height
+    assert set(runs.status) == {"completed"}
+    measured = {name: values[0] for name, values in runs.measures.items()}
+    assert measured["peak_base_shear"] == abs(alone.summary["peak_base_shear"])
+    assert measured["peak_drift"] == abs(alone.summary["peak_displacement"]) / frame.height
     yields = [event.step for event in alone.events if event.what == "yield"]
-    assert runs.measures["first_yield"][0] == pytest.approx(min(yields), abs=2 * motion.dt)
-    drifts = rbsdem.ida(frame, [motion], levels=[1.0, 2.0], method="newmark")
-    assert len(drifts.runs) >= 2
+    assert measured["first_yield"] == pytest.approx(min(yields), abs=2 * motion.dt)
+    drifts = abs(alone.storey_drift)
+    for name, value in {
+        "residual_drift": abs(alone.drift[-1]),
+        "peak_storey_drift": drifts.max(),
+        "residual_storey_drift": abs(alone.residual_drift).max(),
+        "peak_storey_drift_1": drifts[:, 0].max(),
+        "residual_storey_drift_3": abs(alone.residual_drift[2]),
+    }.items():
+        assert measured[name] == pytest.approx(value, rel=1e-12), name
+    assert np.isnan(runs.measures["peak_storey_drift_4"]).all()
+    assert np.isnan(runs.measures["peak_storey_drift"][2:]).all()
+    assert "peak_storey_drift" not in rbsdem.ensemble(column, motion).measures
+
+    ida = rbsdem.ida(frame, [motion], levels=[1.0, 2.0, 4.0], method="newmark")
+    first = rbsdem.time_history(
+        frame, motion.scaled(float(ida.runs.scale[0])), method="newmark", collapse_drift=0.1
+    )
+    assert ida.runs.measures["peak_storey_drift"][0] == pytest.approx(
+        abs(first.storey_drift).max(), rel=1e-12
+    )
+
+
+def test_a_store_of_frames(tmp_path):
+    """Two shards fill it, a third call finds all there; runs from a state are others."""
+    pytest.importorskip("pyarrow", reason="the extra 'ensembles' brings pyarrow")
+    frames = {"one": three_storeys(), "two": three_storeys(kinematics="small")}
+    motions = rbsdem.motions.synthetic(2, seed=3)
+    given = {
+        "scales": [1.0, 2.0], "method": "newmark",
+        "measures": ["peak_drift", "peak_storey_drift", "peak_storey_drift_2"],
+    }  # fmt: skip
+    whole = rbsdem.ensemble(frames, motions, **given)
+    store = tmp_path / "store"
+    half = rbsdem.ensemble(frames, motions, store=store, shard=(1, 2), **given)
+    assert 0 < (half.status == "").sum() < 8
+    rbsdem.ensemble(frames, motions, store=store, shard=(2, 2), **given)
+    again = rbsdem.ensemble(frames, motions, store=store, **given)
+    assert again.resumed == 8
+    for name, values in whole.measures.items():
+        np.testing.assert_array_equal(again.measures[name], values)
+    state = rbsdem.cyclic(frames["one"], displacement=[0.1, 0.0])
+    pushed = rbsdem.ensemble(
+        frames, motions, store=store, initial={"one": state, "two": None}, **given
+    )
+    assert pushed.resumed == 4
+    assert (pushed.measures["peak_drift"][:4] != whole.measures["peak_drift"][:4]).all()
+    more = given | {"measures": [*given["measures"], "peak_storey_drift_3"]}
+    with pytest.raises(rbsdem.InputError, match="measures"):
+        rbsdem.ensemble(frames, motions, store=store, **more)
 
 
 @pytest.mark.parametrize("seed", range(6))

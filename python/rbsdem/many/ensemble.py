@@ -42,6 +42,7 @@ from rbsdem.many.inputs import (
     raise_faults,
     scale_array,
     states_of_columns,
+    storeys_among,
 )
 from rbsdem.many.plan import Outcome, Piece, Plan, RunStore, compute, cut, expected, one_run
 from rbsdem.model.frame import Structure
@@ -203,10 +204,11 @@ def ensemble(
         Factors of the accelerations: shape (k,) for all, (motions, k) or (columns, motions, k).
         NaN stands for no run.
     measures : sequence of str and callable, optional
-        What is kept of each run: names of `rbsdem.many.inputs.MEASURES` (by default all), limit
-        states (`LIMIT_STATES`: the time at which each is first reached, NaN if it
-        is not), and functions of a `Result` that return a number. A function makes the run's
-        history once more, which takes as long as `time_history`; a limit state does not.
+        What is kept of each run: names of `rbsdem.many.inputs.MEASURES` and, of frames,
+        `STOREY_MEASURES` (by default all), those of a single storey ("peak_storey_drift_2"), limit
+        states (`LIMIT_STATES`: the time at which each is first reached, NaN if it is not), and
+        functions of a `Result` that return a number. A function makes the run's history once more,
+        which takes as long as `time_history`; the others do not.
     collapse_drift : float, optional
         As for `time_history`.
     initial : Result, path, or sequence or mapping of them, optional
@@ -263,7 +265,7 @@ def ensemble(
     names: tuple[str, ...] = ()
     functions: dict[str, Measure] = {}
     with collected(faults):
-        names, functions = checked_measures(measures)
+        names, functions = checked_measures(measures, column_items)
     part = _checked_part(shard, store, faults)
     with collected(faults):
         if jobs is not None:
@@ -286,6 +288,7 @@ def ensemble(
         full.ravel()[wanted],
         functions,
         limit_states_among(names),
+        storeys_among(names),
         before,
     )
     seconds, in_lanes, wrong = expected(plan)

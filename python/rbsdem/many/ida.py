@@ -23,7 +23,6 @@ from rbsdem.many.fragility import Capacities, Counts, Fragile, Fragility, fit_fr
 from rbsdem.many.inputs import Measure, is_switch, limit_states, measures_in_a_list
 from rbsdem.many.runs import (
     LOST,
-    MEASURES,
     Collector,
     RunOptions,
     Runs,
@@ -397,7 +396,8 @@ def ida(
         Before the first run, with all that is wrong.
     """
     begin = time.perf_counter()
-    options["measures"] = _with_drift(options.get("measures", MEASURES))
+    if "measures" in options:
+        options["measures"] = _with_drift(options["measures"])
     hunt = _hunt(levels)
     work = make_collector("ida", column, motions_by_name(motions), **options)
     work.run_unshaken("ida")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -250,6 +251,15 @@ MEASURES = {
     "lost_joint": "number of the joint that lost its axial load, as in a `Result`; NaN: none did",
 }
 
+#: Measures of frames: of the storey where they are largest; NaN without storeys.
+STOREY_MEASURES = {
+    "peak_storey_drift": "largest drift of a storey in size",
+    "residual_storey_drift": "largest drift of a storey at the end of the record, in size",
+}
+
+#: Measures of a single storey of a frame, from 1, are called by these with its number behind.
+_OF_A_STOREY = re.compile(r"(?:peak|residual)_storey_drift_([1-9]\d{0,3})")
+
 #: Limit states that are measures too if they are asked for: the time at which each is first reached
 #: [s], NaN if it is not; see `rbsdem.Result.limit_states`.
 LIMIT_STATES = {name: what for name, what in WATCHED.items() if name != "first_yield"}
@@ -269,6 +279,17 @@ def limit_states_among(names: Sequence[str]) -> tuple[str, ...]:
     return tuple(name for name in LIMIT_STATES if name in names)
 
 
+def storeys_among(names: Sequence[str]) -> int:
+    """Return the number of storeys whose drifts are asked for one by one: up to the highest."""
+    found = [_OF_A_STOREY.fullmatch(name) for name in names]
+    return max((int(each[1]) for each in found if each), default=0)
+
+
+def storey_measures(storeys: int) -> tuple[str, ...]:
+    """Return the names of the measures of single storeys, in the order of the Fortran part."""
+    return tuple(f"{name}_{i + 1}" for name in STOREY_MEASURES for i in range(storeys))
+
+
 def measures_in_a_list(measures: Any) -> list[Any]:
     """Return measures, of which one may stand alone, as a list."""
     if isinstance(measures, str) or callable(measures):
@@ -277,7 +298,7 @@ def measures_in_a_list(measures: Any) -> list[Any]:
 
 
 def checked_measures(
-    measures: Sequence[str | Measure] | None,
+    measures: Sequence[str | Measure] | None, columns: Sequence[Structure]
 ) -> tuple[tuple[str, ...], dict[str, Measure]]:
     """Return the names of the measures that are kept, and the functions by their names.
 
@@ -287,17 +308,20 @@ def checked_measures(
         For a name that is not known, and for functions without a name of their own.
     """
     if measures is None:
-        return tuple(MEASURES), {}
+        frames = any(isinstance(column, Frame) for column in columns)
+        return (*MEASURES, *(STOREY_MEASURES if frames else ())), {}
     measures = measures_in_a_list(measures)
     names: list[str] = []
     functions: dict[str, Measure] = {}
     for measure in measures:
         name: Any = measure if isinstance(measure, str) else getattr(measure, "__name__", None)
         if isinstance(measure, str):
-            if measure not in MEASURES and measure not in LIMIT_STATES:
+            known = measure in MEASURES or measure in LIMIT_STATES or measure in STOREY_MEASURES
+            if not known and not _OF_A_STOREY.fullmatch(measure):
                 raise InputError(
-                    f"measures: {measure!r} is not known; it is one of {', '.join(MEASURES)}, a "
-                    f"limit state ({', '.join(LIMIT_STATES)}), or a function of a Result"
+                    f"measures: {measure!r} is not known; it is one of {', '.join(MEASURES)}, "
+                    f"{', '.join(STOREY_MEASURES)} (with _1 behind: of the first storey), a limit "
+                    f"state ({', '.join(LIMIT_STATES)}), or a function of a Result"
                 )
             names.append(name)
         elif callable(measure) and isinstance(name, str) and name.isidentifier():

@@ -24,7 +24,14 @@ from rbsdem._package import code_digest, extra
 from rbsdem.batch.store import PARQUET, Store, digest
 from rbsdem.checks.criteria import criteria, watches
 from rbsdem.errors import InputError, RbsdemError
-from rbsdem.many.inputs import AT_REST, STATUSES, Measure, Motion, core_measures
+from rbsdem.many.inputs import (
+    AT_REST,
+    STATUSES,
+    Measure,
+    Motion,
+    core_measures,
+    storey_measures,
+)
 from rbsdem.model.column import Column
 from rbsdem.model.frame import Structure
 from rbsdem.model.springs import Layered
@@ -55,7 +62,8 @@ class Plan:
     """Runs with all that they need: some can be taken out of it and sent to another process.
 
     `column` and `motion` are places in `columns` and `motions`. `initial` are the states that the
-    runs of each column begin in; an empty one is at rest, no list that all are.
+    runs of each column begin in; an empty one is at rest, no list that all are. The drifts of so
+    many `storeys` are kept one by one.
     """
 
     columns: list[Structure]
@@ -66,12 +74,13 @@ class Plan:
     scale: Array
     functions: dict[str, Measure] = field(default_factory=dict)
     states: tuple[str, ...] = ()
+    storeys: int = 0
     initial: list[Array] = field(default_factory=list)
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the measures, those of functions left out."""
-        return core_measures() + self.states
+        return core_measures() + self.states + storey_measures(self.storeys)
 
     def __len__(self) -> int:
         """Return the number of runs."""
@@ -182,7 +191,8 @@ def compute(task: Plan, control: Integers | None = None, kernel: int = 0) -> Out
         [(motion.time, motion.acceleration) for motion in task.motions],
         (task.column, task.motion, task.scale),
         control,
-        len(task.names),
+        len(core_measures()) + len(task.states),
+        task.storeys,
         kernel,
     )
     _name_joints(task, values)
@@ -321,7 +331,7 @@ class RunStore:
             "digests": {
                 "settings": digest(json.dumps(plan.settings, sort_keys=True).encode()),
                 "measures": digest(
-                    *(state.encode() for state in plan.states),
+                    *(name.encode() for name in plan.names[len(core_measures()) :]),
                     *(f"{name}\0{_source(f)}".encode() for name, f in plan.functions.items()),
                 ),
             },

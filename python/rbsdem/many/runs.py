@@ -18,6 +18,7 @@ from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.many.ensemble import ensemble
 from rbsdem.many.inputs import (
+    STOREY_MEASURES,
     Measure,
     check_names,
     collected,
@@ -147,7 +148,8 @@ class RunOptions(Solver, total=False):
     collapse_drift : float
         Displacement of the top over the height that counts as a collapse; the default is 0.1.
     measures : sequence
-        What is kept of each run, as for `rbsdem.ensemble`; the default is `MEASURES`.
+        What is kept of each run, as for `rbsdem.ensemble`; the default is `MEASURES`, and those of
+        the storeys of frames.
     initial : Result, path, or sequence or mapping of them
         The state that all runs of a column begin in, as for `rbsdem.ensemble`: what an aftershock
         finds.
@@ -401,7 +403,7 @@ def make_collector(
     period: float | None = None,
     damping: float = 0.05,
     collapse_drift: float = 0.1,
-    measures: Sequence[str | Measure] = MEASURES,
+    measures: Sequence[str | Measure] | None = None,
     initial: Any = None,
     jobs: int | None = None,
     progress: bool = False,
@@ -419,6 +421,9 @@ def make_collector(
         "progress": progress,
         "store": None if store is None else _arguments.path(store, "store"),
     }
+    if measures is None:
+        frames = any(isinstance(structure, Frame) for structure in named.values())
+        measures = (*MEASURES, *(STOREY_MEASURES if frames else ()))
     return Collector(named, motions, measure, measures_in_a_list(measures), settings)
 
 

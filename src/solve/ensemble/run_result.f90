@@ -13,7 +13,7 @@ module rbs_solve_ensemble_run_result
    integer, parameter :: fate_skipped = 0, fate_completed = 1, fate_collapsed = 2, fate_axial = 3, &
                          fate_failed = 4
 
-   integer, parameter :: measure_count = 16
+   integer, parameter :: measure_count = 18
 
    !> One run; not a number where a run has failed.
    type :: run_result
@@ -22,6 +22,8 @@ module rbs_solve_ensemble_run_result
       real(wp) :: value(measure_count) = 0.0_wp
       !> When each limit state was reached first; not a number if it was not (states) [s]
       real(wp), allocatable :: reached(:)
+      !> Largest drift ratios of the storeys in size, then those at the end (2 storeys)
+      real(wp), allocatable :: storey(:)
       !> Why it failed
       character(len=:), allocatable :: message
    end type run_result
@@ -34,7 +36,8 @@ contains
 
       names = 'peak_displacement residual_displacement peak_base_shear peak_rotation input_energy '// &
               'spring_energy damping_energy energy_residual relative_energy_residual first_yield '// &
-              'end_time time_step steps events cut_steps lost_joint'
+              'end_time time_step steps events cut_steps lost_joint peak_storey_drift '// &
+              'residual_storey_drift'
    end function measure_names
 
    !> Fate and measures of a run that has ended.
@@ -63,7 +66,12 @@ contains
                       summary%energy%damping, summary%residual, &
                       summary%residual/max(summary%largest, tiny(1.0_wp)), result%reached(1), &
                       summary%last_time, summary%time_step, real(summary%steps, wp), &
-                      real(summary%events, wp), real(summary%cut_steps, wp), real(summary%lost_joint, wp)]
+                      real(summary%events, wp), real(summary%cut_steps, wp), &
+                      real(summary%lost_joint, wp), nothing, nothing]
+      if (.not. allocated(summary%storey_drift)) return
+      result%storey = [summary%peak_storey_drift, abs(summary%storey_drift)]
+      result%value(measure_count - 1:) = [maxval(summary%peak_storey_drift), &
+                                          maxval(abs(summary%storey_drift))]
    end subroutine collect
 
 end module rbs_solve_ensemble_run_result

@@ -107,6 +107,10 @@ contains
       self%peaks_type = peaks_type()
       self%collapsed = .false.
       call set_bounds(self)
+      if (motion%structure%storeys > 0) then
+         allocate (self%storey_drift(motion%structure%storeys), &
+                   self%peak_storey_drift(motion%structure%storeys), source=0.0_wp)
+      end if
       self%feels = floor
       if (floor) call self%now%create(motion%structure)
       self%q = q
@@ -137,6 +141,10 @@ contains
          displacement = motion%structure%top_displacement(q)
          turn = motion%structure%largest_turn(q)
          shear = motion%base_shear(springs, q, v)
+         if (allocated(self%storey_drift)) then
+            call motion%structure%storey_drifts(q, self%storey_drift)
+            self%peak_storey_drift = max(self%peak_storey_drift, abs(self%storey_drift))
+         end if
       end if
       if (abs(displacement) > abs(self%peak_displacement) .or. abs(load(lateral)) > abs(self%peak_force)) then
          call self%see_peak(displacement, load(lateral))

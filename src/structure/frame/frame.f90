@@ -39,6 +39,8 @@ module rbs_structure_frame_frame
       character(len=name_length), allocatable :: node_name(:), member_name(:)
       integer, allocatable :: storey(:)
       real(wp), allocatable :: x(:), y(:)
+      !> Share of the displacement of a node in the drifts of the storeys below it and above it (2, nodes) [1/m]
+      real(wp), allocatable :: storey_share(:, :)
       !> Where the springs of the members are, in shares of the clear length (inside)
       real(wp), allocatable :: spring_place(:)
       !> Number of the unknown of each displacement, 0 where a support holds it (3, nodes)
@@ -85,6 +87,7 @@ module rbs_structure_frame_frame
       procedure :: add_stiffness
       procedure :: add_geometric
       procedure :: rotations
+      procedure :: storey_drifts
       procedure :: potential_energy
       procedure :: axial_rate
       procedure :: acceleration_scale
@@ -623,6 +626,25 @@ contains
          if (self%number(3, i) > 0) rotation(i) = d(self%inside + self%number(3, i))
       end do
    end subroutine rotations
+
+   !> Differences of the displacements of the floors, mean of their nodes, over the heights.
+   pure subroutine storey_drifts(self, d, drift)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+      real(wp), intent(out), contiguous :: drift(:)
+      integer :: i
+
+      drift = 0.0_wp
+      do i = 1, self%n
+         if (self%number(1, i) == 0) cycle
+         associate (floor => self%storey(i), x => d(self%inside + self%number(1, i)))
+            if (floor > 0) drift(floor) = drift(floor) + self%storey_share(1, i)*x
+            if (floor >= 0 .and. floor < self%storeys) then
+               drift(floor + 1) = drift(floor + 1) + self%storey_share(2, i)*x
+            end if
+         end associate
+      end do
+   end subroutine storey_drifts
 
    !> Of dead load and second-order work, and energy of what is elastic.
    pure real(wp) function potential_energy(self, d) result(energy)

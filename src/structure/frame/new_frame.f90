@@ -81,6 +81,7 @@ contains
       ! A beam alone has none.
       if (.not. frame%height > 0.0_wp) frame%height = maxval(node%x) - minval(node%x)
       frame%total_height = frame%height
+      call set_storeys(frame)
       frame%members = size(member)
       frame%inside = count(node%panel%rule /= '')
       do i = 1, size(member)
@@ -108,6 +109,25 @@ contains
       frame%axial_count = merge(size(frame%element), 0, frame%axially_loaded)
       frame%group = [unknown_group(1, frame%unknowns, 1, 1, frame%inside, 1.0_wp)]
    end subroutine new_frame
+
+   !> Shares of the nodes in the drifts of the storeys.
+   subroutine set_storeys(frame)
+      type(frame_type), intent(inout) :: frame
+      real(wp) :: height
+      integer :: i, nodes
+
+      frame%storeys = max(maxval(frame%storey), 0)
+      allocate (frame%storey_share(2, frame%n), source=0.0_wp)
+      do i = 1, frame%storeys
+         associate (above => frame%storey == i, below => frame%storey == i - 1)
+            height = maxval(frame%y, mask=above) - maxval(frame%y, mask=below)
+            nodes = count(above)
+            where (above) frame%storey_share(1, :) = 1.0_wp/(nodes*height)
+            nodes = count(below)
+            where (below) frame%storey_share(2, :) = -1.0_wp/(nodes*height)
+         end associate
+      end do
+   end subroutine set_storeys
 
    !> Number the unknowns along the order of the nodes.
    subroutine number_unknowns(frame, node, member)
