@@ -39,7 +39,7 @@ module rbs_structure_frame_frame
       character(len=name_length), allocatable :: node_name(:), member_name(:)
       integer, allocatable :: storey(:)
       real(wp), allocatable :: x(:), y(:)
-      !> Share of the displacement of a node in the drifts of the storeys below it and above it (2, nodes) [1/m]
+      !> Share of the displacement of a node in the drifts of the storeys below and above it (2, nodes) [1/m]
       real(wp), allocatable :: storey_share(:, :)
       !> Where the springs of the members are, in shares of the clear length (inside)
       real(wp), allocatable :: spring_place(:)
