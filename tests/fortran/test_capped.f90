@@ -1,4 +1,4 @@
-!> Springs with a capped backbone: corners, deterioration, and the properties of the rules to the last bit.
+!> Springs with a capped backbone: deterioration by hand. Corners are those of reference_capped.py.
 module test_capped
    use check, only: unit_test, check_close, check_same, check_true
    use rbs_base_error, only: error_type
@@ -21,9 +21,7 @@ contains
       type(unit_test), allocatable, intent(out) :: tests(:)
 
       tests = [unit_test('initial stiffness is that of the stiffer side', stiffness), &
-               unit_test('backbone: corners by hand', corners), &
                unit_test('backbone: strength and softening by hand', weakened), &
-               unit_test('backbone: rupture', rupture), &
                unit_test('deterioration: shares by hand', shares), &
                unit_test('a side whose energy is used up has no force and is not stuck', exhausted)]
    end subroutine collect_capped
@@ -62,40 +60,6 @@ contains
       call check_same(error, spec%initial_stiffness(), 500.0_wp, 'up to cracking')
    end subroutine stiffness
 
-   subroutine corners(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(spring_record) :: spec
-      type(backbone_side) :: side
-
-      spec = capped('peak_oriented')
-      side = backbone_side()
-      call side%draw(side_of(spec, 1))
-      call check_same(error, side%d(:side%last), [0.0_wp, 1.0_wp, 3.0_wp, 13.0_wp], 'deformations')
-      call check_same(error, side%f(:side%last), [0.0_wp, 100.0_wp, 120.0_wp, 20.0_wp], 'forces')
-      call check_same(error, side%force([0.5_wp, 2.0_wp, 8.0_wp, 99.0_wp]), &
-                      [50.0_wp, 110.0_wp, 70.0_wp, 20.0_wp], 'between')
-      call check_same(error, side%force(1.0e6_wp), 20.0_wp, 'a residual lasts')
-      call check_close(error, side%meeting(100.0_wp, 0.5_wp), 140.0_wp/90.0_wp, 1.0e-14_wp, 0.0_wp, &
-                       'a steep line from 0.5 meets 90 + 10 d')
-      call check_close(error, side%meeting(50.0_wp, 6.0_wp), 7.5_wp, 1.0e-14_wp, 0.0_wp, &
-                       'one from 6 meets 150 - 10 d')
-      call set_value(spec, 'd_c', 0.25_wp)
-      call set_value(spec, 'f_c', 40.0_wp)
-      call set_value(spec, 'd_cap', 1.0_wp)
-      call set_value(spec, 'f_cap', 100.0_wp)
-      call set_value(spec, 'f_res', 0.0_wp)
-      side = backbone_side()
-      call side%draw(side_of(spec, 1))
-      call check_close(error, side%d(:side%last), [0.0_wp, 0.25_wp, 1.0_wp, 13.0_wp], 1.0e-15_wp, 0.0_wp, &
-                       'cracking, no hardening')
-      call check_same(error, side%f(:side%last), [0.0_wp, 40.0_wp, 100.0_wp, 0.0_wp], 'their forces')
-      call check_same(error, side%force(13.1_wp), 0.0_wp, 'no force left')
-      side%strength = 0.0_wp
-      call side%draw(side_of(spec, 1))
-      call check_same(error, side%force([0.1_wp, 1.0_wp, 99.0_wp]), [0.0_wp, 0.0_wp, 0.0_wp], &
-                      'no strength left')
-   end subroutine corners
-
    !> Half the strength: 5 d + 45 beyond (0.5, 50). Less softening line: (150 C - 10 d).
    subroutine weakened(error)
       type(error_type), allocatable, intent(inout) :: error
@@ -122,23 +86,6 @@ contains
       call check_close(error, side%force(5.0_wp), 0.2_wp*(100.0_wp + 10.0_wp*4.8_wp), 1.0e-14_wp, 0.0_wp, &
                        'its hardening')
    end subroutine weakened
-
-   subroutine rupture(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(spring_record) :: spec
-      type(backbone_side) :: side
-
-      spec = capped('peak_oriented')
-      call set_value(spec, 'd_u', 8.0_wp)
-      side = backbone_side()
-      call side%draw(side_of(spec, 1))
-      call check_same(error, side%d(:side%last), [0.0_wp, 1.0_wp, 3.0_wp, 8.0_wp, 8.7_wp], 'while softening')
-      call set_value(spec, 'd_u', 20.0_wp)
-      side = backbone_side()
-      call side%draw(side_of(spec, 1))
-      call check_same(error, side%d(:side%last), [0.0_wp, 1.0_wp, 3.0_wp, 13.0_wp, 20.0_wp, 20.2_wp], &
-                      'on the residual')
-   end subroutine rupture
 
    subroutine shares(error)
       type(error_type), allocatable, intent(inout) :: error

@@ -1,11 +1,11 @@
 !> Concrete across a joint (docs/rules.md section 9): envelope, unloading, cracks that close gradually.
 module test_concrete
-   use check, only: unit_test, check_close, check_same, check_true
+   use check, only: unit_test, check_close
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: follow_path
    use rbs_hysteresis_spring_record, only: spring_record
-   use samples, only: set_value, concrete_1
+   use samples, only: set_value
    implicit none
    private
 
@@ -19,12 +19,8 @@ contains
       tests = [unit_test('Popovics 1973 at the ends of the chords', rising), &
                unit_test('softening line, residual, no tension', falling), &
                unit_test('Karsan and Jirsa 1969: plastic closing', plastic_closing), &
-               unit_test('unloading is never stiffer than the initial stiffness', stiffest), &
-               unit_test('before the first chord ends: elastic', elastic_begin), &
                unit_test('faces that were apart touch early and close fully later', contact), &
-               unit_test('no misfit, no contact: back to the plastic closing', plain), &
                unit_test('wear: by the way of opening over the widest one', wear), &
-               unit_test('partial unloading is one line both ways', partial), &
                unit_test('friction: two paths, and the initial stiffness between them', friction)]
    end subroutine collect_concrete
 
@@ -76,30 +72,6 @@ contains
       end do
    end subroutine plastic_closing
 
-   !> A plastic closing that is too large is reduced: from (4, 80) the line of slope 100 ends at 3.2.
-   subroutine stiffest(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(spring_record) :: spec
-      real(wp) :: f(3)
-
-      spec = hand()
-      call set_value(spec, 'plastic', 5.0_wp)
-      call follow_path(spec, [-4.0_wp, -3.6_wp, -3.2_wp], f)
-      call check_close(error, f, [-80.0_wp, -40.0_wp, 0.0_wp], 1.0e-12_wp, 1.0e-11_wp, 'force')
-   end subroutine stiffest
-
-   subroutine elastic_begin(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(spring_record) :: spec
-      real(wp) :: f(5), k
-
-      k = 200.0_wp*0.25_wp/(1.0_wp + 0.25_wp**2)/0.5_wp
-      call follow_path(hand(), [-0.4_wp, -0.1_wp, -0.45_wp, -0.2_wp, 0.0_wp], f)
-      call check_close(error, f, -k*[0.4_wp, 0.1_wp, 0.45_wp, 0.2_wp, 0.0_wp], 1.0e-14_wp, 0.0_wp, 'force')
-      spec = hand()
-      call check_true(error, k <= spec%initial_stiffness(), 'chord below the tangent')
-   end subroutine elastic_begin
-
    !> By hand: from (4, 80) unloading as stiff as at first ends at the plastic closing 3.2. Opened to 0.2
    !> (width 3), faces touch at 3.2 - 0.5 3 = 1.7; fully closed at 3.2 + 0.25 (4 - 3.2) = 3.4 with 20.
    subroutine contact(error)
@@ -124,15 +96,6 @@ contains
                        'crushed')
    end subroutine contact
 
-   subroutine plain(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: f(5)
-
-      call follow_path(hand(), [-4.0_wp, 3.0_wp, -1.596875_wp, -2.7984375_wp, -4.0_wp], f)
-      call check_close(error, f, -[80.0_wp, 0.0_wp, 0.0_wp, 40.0_wp, 80.0_wp], 1.0e-12_wp, 1.0e-11_wp, &
-                       'force')
-   end subroutine plain
-
    !> 10 % for a way of opening of widest + d_peak, at twice the closing at the peak and beyond; half of that
    !> at the peak. While the crack becomes wider the sum of way/(width + d_peak) is a logarithm.
    subroutine wear(error)
@@ -156,19 +119,6 @@ contains
       call check_close(error, f(3), -100.0_wp*0.9_wp**(0.5_wp*log((0.466875_wp + 1.0_wp + d_peak)/d_peak)), &
                        1.0e-12_wp, 0.0_wp, 'at the peak')
    end subroutine wear
-
-   subroutine partial(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(spring_record) :: spec
-      real(wp) :: f(7), straight(1)
-
-      spec = concrete_1(1.0_wp)
-      call follow_path(spec, [-1.0e-3_wp, -9.0e-4_wp, -9.8e-4_wp, -7.0e-4_wp, -9.0e-4_wp, -1.0e-3_wp, &
-                              -1.5e-3_wp], f)
-      call follow_path(spec, [-1.5e-3_wp], straight)
-      call check_same(error, f(5), f(2), 'same line')
-      call check_close(error, f([6, 7]), [f(1), straight(1)], 1.0e-13_wp, 0.0_wp, 'no effect')
-   end subroutine partial
 
    !> Unloading from (4, 80) leads to c_p = 2 (0.84 - 0.0415625), along a slope of 80/(4 - c_p); with half of
    !> it lost to friction opening is on half of that line.

@@ -1,4 +1,4 @@
-!> Material laws, strips, equilibrium and events of a section, against closed forms.
+!> Material laws, equilibrium and events of a section, against closed forms.
 module test_section
    use check, only: unit_test, check_close, check_passed
    use rbs_base_constants, only: pi, unset
@@ -11,7 +11,7 @@ module test_section
    use rbs_section_resultants, only: laws_type, resultants, resultants_type, section_laws
    use rbs_section_cross_section, only: section_type, ties
    use rbs_section_section_build, only: build_section
-   use rbs_section_shape, only: new_shape, shape_names, shape_type
+   use rbs_section_shape, only: new_shape
    use rbs_section_steel_law, only: steel_type
    implicit none
    private
@@ -25,7 +25,6 @@ contains
 
       tests = [unit_test('concrete: slope is that of the stress', concrete_slope), &
                unit_test('concrete: Mander core, spalling cover', confined_law), &
-               unit_test('shapes agree with sums of their width', shapes_agree), &
                unit_test('confinement: square ties by hand', confinement), &
                unit_test('axial stiffness is the slope of the axial force', axial_slope), &
                unit_test('no tension, no bars: the moment of a rocking block', rocking)]
@@ -97,46 +96,6 @@ contains
       call check_close(error, concrete_stress(cover, [0.006_wp, 0.05_wp]), [0.0_wp, 0.0_wp], 0.0_wp, 0.0_wp, &
                        'fallen off')
    end subroutine confined_law
-
-   !> Area and moments of a shape against sums of its width over 20 000 thin strips.
-   subroutine shapes_agree(error)
-      type(error_type), allocatable, intent(inout) :: error
-      integer, parameter :: many = 20000
-      type(shape_type), allocatable :: shape
-      real(wp) :: y(many), width(many), dy
-      integer :: place, i
-
-      do place = 1, size(shape_names)
-         call new_shape(shape_names(place), 0.6_wp, 0.6_wp, shape)
-         if (shape%hollow) shape%wall = 0.12_wp
-         if (shape%hollow) shape%side_wall = 0.09_wp
-         dy = shape%depth/many
-         y = [(-0.5_wp*shape%depth + (i - 0.5_wp)*dy, i=1, many)]
-         width = shape%width_at(y)
-         associate (part => pack(width, y > -0.1_wp .and. y < 0.25_wp), &
-                    at => pack(y, y > -0.1_wp .and. y < 0.25_wp))
-            call check_close(error, shape%area_between(-0.1_wp, 0.25_wp), sum(part)*dy, 1.0e-4_wp, 0.0_wp, &
-                             trim(shape_names(place))//': part of the area')
-            call check_close(error, shape%moment_between(-0.1_wp, 0.25_wp), sum(part*at)*dy, 3.0e-4_wp, &
-                             0.0_wp, trim(shape_names(place))//': moment of a part')
-         end associate
-         call check_close(error, shape%area(), sum(width)*dy, 1.0e-5_wp, 0.0_wp, &
-                          trim(shape_names(place))//': area')
-         call check_close(error, shape%area_between(-1.0_wp, 1.0_wp), shape%area(), 1.0e-14_wp, 0.0_wp, &
-                          trim(shape_names(place))//': all of the area')
-         call check_close(error, shape%second_moment(), sum(width*y**2)*dy, 1.0e-5_wp, 0.0_wp, &
-                          trim(shape_names(place))//': second moment')
-         call check_close(error, shape%width_at(0.31_wp), 0.0_wp, 0.0_wp, 0.0_wp, &
-                          trim(shape_names(place))//': width outside')
-         call check_close(error, shape%leg_share(0.0_wp), 1.0_wp, 1.0e-14_wp, 0.0_wp, &
-                          trim(shape_names(place))//': legs at mid-depth')
-      end do
-      call new_shape('circle', 0.6_wp, 0.6_wp, shape)
-      call check_close(error, shape%shear_area(), 0.9_wp*0.25_wp*pi*0.36_wp, 1.0e-14_wp, 0.0_wp, &
-                       'circle: shear area')
-      call check_close(error, shape%leg_share([0.18_wp, -0.24_wp, 0.4_wp]), [0.8_wp, 0.6_wp, 0.0_wp], &
-                       1.0e-13_wp, 1.0e-7_wp, 'circle: legs')
-   end subroutine shapes_agree
 
    subroutine confinement(error)
       type(error_type), allocatable, intent(inout) :: error

@@ -24,7 +24,6 @@ contains
                unit_test('leave turns back on a one-way line', leave_one_way), &
                unit_test('create clears the memory', create_again), &
                unit_test('restore brings back the marked state, to the last bit', restoring), &
-               unit_test('restore deep inside Takeda loops', restoring_deep), &
                unit_test('only springs that leave their line change the version', versions), &
                unit_test('springs that stay on their lines move as along a path', carried), &
                unit_test('a contact presses, and does not pull', contact), &
@@ -200,41 +199,6 @@ contains
       end do
       call check_true(error, springs%events > 100, 'lines were left')
    end subroutine restoring
-
-   !> Two hundred nested loops, then moves away from there and back, which close a few or all of them.
-   subroutine restoring_deep(error)
-      type(error_type), allocatable, intent(inout) :: error
-      character(len=3), parameter :: inner(3) = ['kc ', 'kr ', 'one']
-      integer, parameter :: depth = 200
-      type(random_type) :: random
-      type(spring_array) :: springs, undisturbed
-      real(wp) :: d
-      integer :: i, j, kind
-
-      do kind = 1, 3
-         call make_springs(springs, [takeda_1(trim(inner(kind)))])
-         d = 4.0_wp*d_y
-         do j = 1, depth
-            call springs%advance_to(1, d)
-            d = -0.97_wp*d
-         end do
-         undisturbed = springs
-         do i = 1, 40
-            call springs%mark()
-            do j = 1, i
-               call springs%advance_to(1, random%uniform(-1.0_wp, 1.0_wp)*4.0_wp*d_y*0.97_wp**(depth - 5*i))
-            end do
-            call springs%advance_to(1, 6.0_wp*d_y)
-            call springs%restore()
-            call check_alike(error, springs, undisturbed, random, inner(kind)//', trip '//to_text(i))
-            d = -0.97_wp*d
-            call springs%advance_to(1, d)
-            call undisturbed%advance_to(1, d)
-            call check_alike(error, springs, undisturbed, random, inner(kind)//', loop '//to_text(depth + i))
-            if (allocated(error)) return
-         end do
-      end do
-   end subroutine restoring_deep
 
    subroutine versions(error)
       type(error_type), allocatable, intent(inout) :: error

@@ -1,18 +1,16 @@
-!> Numbers as text, comparison of names, lists of messages.
+!> Numbers as text, lists of messages.
 module test_text
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf, ieee_negative_inf
    use check, only: unit_test, check_equal, check_failed, check_same, check_true
    use rbs_base_error, only: error_type, message_list, fatal_error, analysis_failed, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: exact_text, to_text, lower, suggestion, list_of
+   use rbs_base_text, only: exact_text, to_text
    use rbs_io_text_file, only: read_real, number_ok
    use samples, only: random_type
    implicit none
    private
 
    public :: collect_text
-
-   character(len=8), parameter :: names(3) = ['elastic ', 'bilinear', 'takeda  ']
 
 contains
 
@@ -22,9 +20,6 @@ contains
       tests = [unit_test('numbers have six digits or powers of ten', numbers), &
                unit_test('exact text reads back to the same bits', exact), &
                unit_test('short decimals are read as the library reads them', short_decimals), &
-               unit_test('lower case', lower_case), &
-               unit_test('list of names', lists), &
-               unit_test('nearest name by edit distance', nearest), &
                unit_test('an error carries code and message', one_error), &
                unit_test('messages are raised together, in order', collected), &
                unit_test('messages beyond the limit are counted', flood)]
@@ -92,31 +87,6 @@ contains
          call check_same(error, ours, library, text)
       end do
    end subroutine short_decimals
-
-   subroutine lower_case(error)
-      type(error_type), allocatable, intent(inout) :: error
-
-      call check_equal(error, lower('K_Post [Z@{'), 'k_post [z@{', 'only letters change')
-      call check_equal(error, lower(''), '', 'nothing')
-   end subroutine lower_case
-
-   subroutine lists(error)
-      type(error_type), allocatable, intent(inout) :: error
-
-      call check_equal(error, list_of(names), 'elastic, bilinear, takeda', 'three names')
-      call check_equal(error, list_of(names(3:3)), 'takeda', 'one name')
-      call check_equal(error, list_of(names(4:)), '', 'no name')
-   end subroutine lists
-
-   subroutine nearest(error)
-      type(error_type), allocatable, intent(inout) :: error
-
-      call check_equal(error, suggestion('takda', names), "; did you mean 'takeda'?", 'a letter left out')
-      call check_equal(error, suggestion('Bi-Linear', names), "; did you mean 'bilinear'?", 'a hyphen')
-      call check_equal(error, suggestion('elasticc  ', names), "; did you mean 'elastic'?", 'a letter more')
-      call check_equal(error, suggestion('concrete', names), '', 'another word')
-      call check_equal(error, suggestion('', names), '', 'nothing typed')
-   end subroutine nearest
 
    subroutine one_error(error)
       type(error_type), allocatable, intent(inout) :: error
