@@ -63,7 +63,7 @@ _NAMES = {
     "aci318": "ACI 318-19, nominal",
     "ec2": "EN 1992-1-1, nominal",
     "joint": "joint of the model",
-    None: "own laws of the section",
+    None: "material laws of the section",
 }
 
 #: States of concrete from the largest elongation to the largest compression, and their fills.

@@ -1,4 +1,4 @@
-"""Interaction of axial load and moment: of a section, by its own laws or a code, and of a joint.
+"""Interaction of axial load and moment: of a section, by material laws or a code, and of a joint.
 
 A section fails where its extreme fibre in compression reaches the strain of the code. Each neutral
 axis then gives one axial load and one moment, from bars that all yield in tension to uniform
@@ -41,16 +41,16 @@ class InteractionDiagram(Tabular):
     Attributes
     ----------
     code : {"aci318", "ec2", "joint"} or None
-        Whose stress block; "joint": the layers of a joint; None: the section's own laws.
+        Whose stress block; "joint": the layers of a joint; None: the material laws of the section.
     axial_load, moment : ndarray, shape (k,)
         Nominal strength: axial load [N], ascending, compression positive; moment about mid-depth
         [N m] with y > 0 in tension.
     design_axial_load, design_moment : ndarray, shape (m,)
         Strength with the factors of the code, and its limit of the axial load. Equal to the nominal
-        one for own laws and joints.
+        one for material laws and joints.
     neutral_axis : ndarray, shape (k,)
         Its distance from the extreme fibre in compression [m]; infinite in uniform compression, 0
-        in tension; NaN for own laws and joints.
+        in tension; NaN for material laws and joints.
     tension_strain : ndarray, shape (k,)
         Strain of the outermost bar in tension, elongation positive; NaN likewise.
     """
@@ -119,7 +119,7 @@ class InteractionDiagram(Tabular):
 
     def __repr__(self) -> str:
         return (
-            f"InteractionDiagram({self.code or 'own laws'}, N {self.axial_load[0] / 1e3:.4g} "
+            f"InteractionDiagram({self.code or 'material laws'}, N {self.axial_load[0] / 1e3:.4g} "
             f"to {self.axial_load[-1] / 1e3:.4g} kN, "
             f"largest moment {self.moment.max() / 1e3:.4g} kN m)"
         )
@@ -200,7 +200,7 @@ def interaction(
     points : int, optional
         About how many points.
     confined : bool, optional
-        For the section's own laws: whether the core is confined and the cover spalls.
+        For the material laws of the section: whether the core is confined and the cover spalls.
 
     Returns
     -------

@@ -214,7 +214,7 @@ class Answers:
         return {"columns": [{} if one is None else answer(one) for one in drawn]}
 
     def own(self, asked: Asked, pause: Pause) -> dict[str, Any]:
-        """Return the interaction diagrams by own laws, of section and joint, which take long."""
+        """Return interaction diagrams by material laws, of section and joint; they take long."""
         columns = []
         for _, found in self._columns(asked):
             answer = {}

@@ -114,7 +114,7 @@ function showStatus() {
       words.push(`${name}${loop.model ? loop.model + ", " : ""}${loop.displacement.length} points${seconds}`);
     });
     if (!isMotion() && words.length) {
-      if (bands?.some(band => band.lower)) words.push("shaded: the band of 80 % of left-out tests");
+      if (bands?.some(band => band.lower)) words.push("shaded: band of 80 % of the points of tests that the model had not seen");
       else if (bands) words.push(bands[0].none ?? "");
       else if (!fixed) words.push("computing the band");
     }
@@ -188,7 +188,7 @@ function showMessages() {
   for (const fault of all.filter(one => one.column !== active && !one.field.startsWith("loading."))) lines.push(element("p", { className: "fault" }, named(fault.column) + fault.text));
   heard.forEach((loop, i) => {
     if (loop.stopped) lines.push(element("p", { className: "note" }, named(i) + inUnits(loop.stopped, system)));
-    if (loop.status === "axial_failure") lines.push(element("p", { className: "note" }, named(i) + "the axial load is lost at the end of the loop"));
+    if (loop.status === "axial_failure") lines.push(element("p", { className: "note" }, named(i) + "the column can no longer carry its axial load; the loop ends there"));
     for (const text of loop.notes) lines.push(element("p", { className: "note" }, named(i) + inUnits(text, system)));
   });
   if (note) lines.push(element("p", { className: "note" }, note));
@@ -384,7 +384,7 @@ async function openRecord(file) {
 
 function setUp() {
   addPanelButtons();
-  for (const id of Object.values(PANELS).flat()) get(id).querySelector("h2").append(element("span", { className: "age" }, "of an earlier input"));
+  for (const id of Object.values(PANELS).flat()) get(id).querySelector("h2").append(element("span", { className: "age" }, "for an earlier input"));
   for (const [key, { label }] of Object.entries(SYSTEMS)) get("units").append(element("option", { value: key }, label));
   get("units").addEventListener("change", () => { system = get("units").value; showAll(); if (!fixed) putLink(); });
   get("code").addEventListener("change", () => { if (fixed) { standReport(); showSections(); } else { showAge(); lanes.sections.go(); } });

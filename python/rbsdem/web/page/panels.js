@@ -79,7 +79,7 @@ export function interactionChart(host, state, sections, own, loops, system, code
       lines.push({ x: scaled(by.moment, factor), y: scaled(by.axial_load, per), kind: KINDS[i] + " thin", label: name + "nominal" });
       lines.push({ x: scaled(by.design_moment, factor), y: scaled(by.design_axial_load, per), kind: KINDS[i] + " thin dashed", label: name + "design" });
     }
-    for (const [which, kind, label] of [["section", " dotted", "own laws of the section"], ["joint", "", "joint of the model"]]) {
+    for (const [which, kind, label] of [["section", " dotted", "material laws of the section"], ["joint", "", "joint of the model"]]) {
       const found = own?.[i]?.[which];
       if (found?.fault) faults.push(found.fault);
       else if (found) lines.push({ x: scaled(found.moment, factor), y: scaled(found.axial_load, per), kind: KINDS[i] + kind, label: name + label });
