@@ -27,6 +27,7 @@ from rbsdem.many.runs import NAMES
 from rbsdem.methods.ladder import OF_SETTING
 from rbsdem.methods.physics import Physics
 from rbsdem.methods.study import compare_methods
+from rbsdem.model.frame import Frame
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.read import read_motion, read_motions
 from rbsdem.motions.shaping import synthetic
@@ -37,6 +38,7 @@ from rbsdem.results.case import Case, read_case
 from rbsdem.solve.solver import Solver
 from rbsdem.web.answers import NearestTests
 from rbsdem.web.exports import drawing_in, opened
+from rbsdem.web.report import report as report_record
 from rbsdem.web.report import write_report
 from rbsdem.web.server import ExploreServer
 from rbsdem.web.state import DEFAULT
@@ -492,20 +494,30 @@ def explore(case: Path | None, no_browser: bool, port: int, tests: Path | None) 
 @CASE
 @click.option("-o", "--output", type=FILE, metavar="FILE", help="default CASE.html")
 @click.option("--title", help="title; default that of the case")
+@click.option("--author", default="", help="for the head of the report")
+@click.option("--project", default="", help="for the head of the report")
 @_tests
-def report(case: Path, output: Path | None, title: str | None, tests: Path | None) -> int:
-    r"""Write a case as one html file that opens offline.
+def report(
+    case: Path, output: Path | None, title: str | None, tests: Path | None, **head: str
+) -> int:
+    r"""Write a case as one html file that opens offline and prints on A4.
 
     It holds loops and limit states and, for a drawn column, section, diagrams, band and code
-    values.
+    values; for a frame its drawing with hinges, limit states and forces, with the tables as csv
+    beside it.
 
     \b
     Exit codes: 0 written, 1 the file cannot be written, 2 the input is wrong.
     """
+    found, file = read_case(case), output or case.with_suffix(".html")
+    if isinstance(found.column, Frame):
+        title = title or found.title
+        _tell_files([report_record(found.run(), file, title=title, **head)])
+        return 0
     start = start_of(case)
     near = None if tests is None else NearestTests(tests)
     title = title or start["title"] or case.stem
-    _tell_files([write_report(output or case.with_suffix(".html"), start, title, near)])
+    _tell_files([write_report(file, start, title, near, **head)])
     return 0
 
 

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
 from rbsdem._arguments import Array
+from rbsdem._files import Reported
 from rbsdem.errors import InputError
 from rbsdem.many.fragility import Capacities, Counts, Fragile, Fragility, fit_fragility
 from rbsdem.many.inputs import Measure, is_switch, limit_states, measures_in_a_list
@@ -215,7 +216,7 @@ FRACTILES = (16.0, 50.0, 84.0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class IDA(Fragile[Fragility]):
+class IDA(Fragile[Fragility], Reported):
     """Curves of response over intensity, one for each column and motion.
 
     Attributes

@@ -11,6 +11,7 @@ import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
+from rbsdem._files import Reported
 from rbsdem._package import extra
 from rbsdem.errors import InputError
 from rbsdem.model import files
@@ -101,7 +102,7 @@ class MemberHistory:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class FrameResult:
+class FrameResult(Reported):
     """Rows of an analysis of a frame: arrays with a row for each that was kept.
 
     Attributes

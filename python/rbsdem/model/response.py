@@ -12,6 +12,7 @@ import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array
+from rbsdem._files import Reported
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
 from rbsdem.model.springs import Gauge, Layered, Strains, strains_of
@@ -50,7 +51,7 @@ class Ended(Protocol):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Response:
+class Response(Reported):
     """Rows of an analysis: arrays with a row for each kept step and a column for each joint.
 
     Attributes

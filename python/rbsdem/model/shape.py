@@ -16,6 +16,7 @@ import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Array, Derived, given
+from rbsdem._files import Reported
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Bar, Concrete, Layout, Spiral, Steel, Ties, share_in_tension
 
@@ -98,7 +99,7 @@ class _Parts:
 
 
 @dataclass(frozen=True)
-class Section(_Parts, ABC):
+class Section(_Parts, Reported, ABC):
     """What a section of any shape is made of.
 
     A new shape is a class with the abstract methods below, beside its type in `src/section`.

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 #: Units of SI: factor to the unit on paper, and that unit.
-_PAPER = {
+PAPER = {
     "N": (1e-3, "kN"),
     "J": (1e-3, "kJ"),
     "m": (1e3, "mm"),
@@ -79,8 +79,6 @@ def table(
         ``print`` shows it, in colours ``rich.print`` does.
     """
     import rich.box  # noqa: PLC0415
-    from pandas import DataFrame  # noqa: PLC0415
-    from pandas.api.types import is_numeric_dtype  # noqa: PLC0415
     from rich.table import Table  # noqa: PLC0415
 
     class Printed(Table):
@@ -94,18 +92,9 @@ def table(
 
         __repr__ = __str__
 
-    frame = record if isinstance(record, DataFrame) else record.to_pandas()
-    if frame.index.name is not None:
-        frame = frame.reset_index()
-    units = [str(unit) for unit in frame["unit"]] if "unit" in frame else None
     made = Printed(box=rich.box.SIMPLE_HEAD, padding=(0, 1), show_edge=False, caption=caption)
-    cells: list[list[Text]] = []
-    for name in frame.columns:
-        heading, factor = _heading(str(name))
-        values = list(frame[name])
-        if name == "unit":
-            values = [_PAPER.get(unit, (1.0, unit))[1] for unit in values]
-        numbers = is_numeric_dtype(frame[name]) and frame[name].dtype != bool
+    columns = cells(record)
+    for heading, numbers, _ in columns:
         made.add_column(
             heading,
             justify="right" if numbers else "left",
@@ -113,15 +102,38 @@ def table(
             overflow="ellipsis",
             max_width=None if numbers else _WIDEST,
         )
-        if numbers:
-            factors = (
-                [_PAPER.get(u, (1.0, u))[0] for u in units] if units else [factor] * len(frame)
-            )
-            values = [_figure(value, by) for value, by in zip(values, factors, strict=True)]
-        cells.append([plain(_word(value)) for value in values])
-    for at, row in enumerate(zip(*cells, strict=True)):
-        made.add_row(*row, style=styles[at] if styles else None)
+    for at, row in enumerate(zip(*(texts for _, _, texts in columns), strict=True)):
+        made.add_row(*map(plain, row), style=styles[at] if styles else None)
     return made
+
+
+def cells(record: Tabular | pd.DataFrame) -> list[tuple[str, bool, list[str]]]:
+    """Return heading, whether they are numbers, and texts of each column of a table.
+
+    Parameters
+    ----------
+    record : a record with ``to_pandas``, or DataFrame
+        As for `table`.
+    """
+    from pandas import DataFrame  # noqa: PLC0415
+    from pandas.api.types import is_numeric_dtype  # noqa: PLC0415
+
+    frame = record if isinstance(record, DataFrame) else record.to_pandas()
+    if frame.index.name is not None:
+        frame = frame.reset_index()
+    units = [str(unit) for unit in frame["unit"]] if "unit" in frame else None
+    found = []
+    for name in frame.columns:
+        heading, factor = _heading(str(name))
+        values = list(frame[name])
+        if name == "unit":
+            values = [PAPER.get(unit, (1.0, unit))[1] for unit in values]
+        numbers = is_numeric_dtype(frame[name]) and frame[name].dtype != bool
+        if numbers:
+            factors = [PAPER.get(u, (1.0, u))[0] for u in units] if units else [factor] * len(frame)
+            values = [_figure(value, by) for value, by in zip(values, factors, strict=True)]
+        found.append((heading, numbers, [_word(value) for value in values]))
+    return found
 
 
 def console(width: int) -> Console:
@@ -162,11 +174,11 @@ def plain(text: str, **style: Any) -> Text:
 def _heading(name: str) -> tuple[str, float]:
     """Return the heading of a column and the factor of its numbers."""
     stem, _, unit = name.rpartition("_")
-    if not (stem and unit in _PAPER):
+    if not (stem and unit in PAPER):
         stem, unit = name, "drift" if "drift" in name.split("_") else ""
     words = stem.replace("_", " ")
     words = words[:1].upper() + words[1:]
-    factor, on_paper = _PAPER.get(unit, (1.0, unit))
+    factor, on_paper = PAPER.get(unit, (1.0, unit))
     return (f"{words}\n{on_paper}" if on_paper else words), factor
 
 
@@ -184,5 +196,7 @@ def _figure(value: float, factor: float) -> str:
 
 
 def _word(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
     lines = "" if value is None else str(value)
     return lines.splitlines()[0] if lines else ""

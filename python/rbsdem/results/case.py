@@ -27,6 +27,8 @@ from rbsdem.results.result import Result, cyclic, time_history
 from rbsdem.section.drawing import Groups, layered_column, recipe_of
 from rbsdem.solve.solver import Solver
 
+#: What an analysis was given that no case file has.
+_NO_SETTINGS = ("initial", "corners", "progress")
 _DRIVES = ("displacement", "force", "ground_acceleration", "vertical_acceleration", "axial_load")
 
 
@@ -236,6 +238,25 @@ def case_of_text(text: str) -> Case:
             return read_case(path)
         except InputError as error:
             raise InputError(str(error).replace(str(path), "case")) from None
+
+
+def case_of(result: Result | FrameResult) -> Case:
+    """Return the case of a result: what was run, or its structure, loading and settings.
+
+    Parameters
+    ----------
+    result : Result or FrameResult
+        The result. The state that it began in is no part of its case.
+    """
+    known = getattr(result, "case", None)
+    if isinstance(known, Case):
+        return known
+    given = {name: value for name, value in result.call.items() if name not in _NO_SETTINGS}
+    loads = {name: given.pop(name, None) for name in _DRIVES}
+    size = next(values.size for values in loads.values() if values is not None)
+    method = given.pop("method", "auto") if result.dynamic else "static"
+    time = given.pop("time", np.arange(float(size)))
+    return Case("", result.column, method, time, **loads, settings=given)
 
 
 class _Springs:

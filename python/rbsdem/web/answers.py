@@ -134,6 +134,10 @@ class Answers:
                 self._kept.popitem(last=False)
         return answered
 
+    def keep(self, given: Asked, loading: Asked, known: Answered) -> None:
+        """Keep a column with its response that was computed elsewhere."""
+        self._kept[key_of([given, loading])] = known
+
     def _solve(self, given: Asked, loading: Asked) -> Answered:
         faults, drawn, case = Faults(), None, None
         notes: list[str] = []

@@ -50,7 +50,12 @@ def parts(page: str = "index.html", modules: Sequence[str] = MODULES) -> dict[st
     return {name: folder.joinpath(name).read_bytes() for name in (page, "page.css", *modules)}
 
 
-def one_file(title: str, data: Mapping[str, Any], modules: Sequence[str] = MODULES) -> str:
+def one_file(
+    title: str,
+    data: Mapping[str, Any] | None,
+    modules: Sequence[str] = MODULES,
+    sheets: tuple[str, str] = ("", ""),
+) -> str:
     """Return a page with its style, its modules and its results inside.
 
     It asks nothing of a network: its policy allows only the script and the style that are in it.
@@ -59,12 +64,14 @@ def one_file(title: str, data: Mapping[str, Any], modules: Sequence[str] = MODUL
     ----------
     title : str
         Title of the document.
-    data : mapping
+    data : mapping or None
         What the page would have got from the server.
     modules : sequence of str, optional
-        `MODULES` or `GALLERY`.
+        `MODULES`, `GALLERY`, or none for a page of sheets.
+    sheets : tuple of str, optional
+        Html that stands before and behind what the modules draw.
     """
-    name = "gallery.html" if modules is GALLERY else "index.html"
+    name = {MODULES: "index.html", GALLERY: "gallery.html"}.get(tuple(modules), "report.html")
     files = {key: raw.decode("utf-8") for key, raw in parts(name, modules).items()}
     script = "\n".join(_EXPORT.sub("", _IMPORT.sub("", files[module])) for module in modules)
     style = files["page.css"]
@@ -75,8 +82,11 @@ def one_file(title: str, data: Mapping[str, Any], modules: Sequence[str] = MODUL
     # In JSON "<" stands only in texts, where it can be written so that no tag ends.
     packed = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
     page = files[name]
+    before, behind = (f'<div class="sheets">{html}</div>\n' if html else "" for html in sheets)
     for old, new in (
-        ("<title>rbsdem</title>", f"<title>{_plain(title)}</title>"),
+        ("<main", f"{before}<main"),
+        ("</main>\n", f"</main>\n{behind}"),
+        ("<title>rbsdem</title>", f"<title>{plain(title)}</title>"),
         (
             '<link rel="stylesheet" href="page.css">',
             f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
@@ -98,7 +108,8 @@ def _digest(text: str) -> str:
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
 
 
-def _plain(text: str) -> str:
+def plain(text: str) -> str:
+    """Return a text for html."""
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 

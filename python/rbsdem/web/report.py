@@ -1,24 +1,93 @@
-"""A report: the page with its results inside, one file that asks nothing of a network."""
+"""A report: one html file that asks nothing of a network, with its tables as csv beside it.
+
+Sheets have a heading, a text, figures and a table. A column has besides, between its sheets, the
+page with its results inside.
+"""
 
 from __future__ import annotations
 
+import base64
+import datetime
+import io
 import os
-from collections.abc import Callable, Mapping
+import platform
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import partial, singledispatch
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, get_args
+
+import numpy as np
 
 from rbsdem import _core
-from rbsdem._files import atomic_write
+from rbsdem._files import atomic_write, data_frame, save_frame
+from rbsdem.checks.code_values import code_values
 from rbsdem.errors import InputError
-from rbsdem.web.answers import Answers, NearestTests
-from rbsdem.web.pages import one_file
+from rbsdem.many.ida import IDA
+from rbsdem.model.frame import Frame, Structure
+from rbsdem.model.frame_result import FrameResult
+from rbsdem.model.shape import Section
+from rbsdem.output import frames, many, section
+from rbsdem.output.response import history
+from rbsdem.output.style import style
+from rbsdem.output.tables import PAPER, cells
+from rbsdem.results.case import Case, case_of
+from rbsdem.results.result import Result
+from rbsdem.section.axial_moment import Code, interaction
+from rbsdem.section.curvature import diagram
+from rbsdem.section.layered import LayeredColumn
+from rbsdem.web.answers import Answered, Answers, NearestTests
+from rbsdem.web.pages import MODULES, one_file, plain
+from rbsdem.web.state import Drawn
 
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: Keys that only number things, or say how finely the program divides.
+_NUMBERS = ("id", "steel", "strips", "spring", "joint")
+#: Units of what the keys of a rule are, for springs that turn and for those that do not.
+_OF_RULES = {
+    True: {"stiffness": "N m/rad", "deformation": "rad", "force": "N m"},
+    False: {"stiffness": "N/m", "deformation": "m", "force": "N"},
+}
 #: Letters of a text that a report takes with it.
 _MOST_TEXT = 400_000
 
 
+@dataclass(frozen=True)
+class Sheet:
+    """A part of a report.
+
+    Attributes
+    ----------
+    heading, text : str
+        Its heading and what stands below it.
+    figures : tuple of callables
+        Each draws, and returns axes.
+    table : DataFrame or None
+        Its table, which is written beside the report, too.
+    beside : bool
+        Whether the table is written beside the report only, as long ones are.
+    """
+
+    heading: str
+    text: str = ""
+    figures: tuple[Callable[[], Any], ...] = ()
+    table: pd.DataFrame | None = None
+    beside: bool = False
+
+    @property
+    def name(self) -> str:
+        """The heading, as it stands in names of files."""
+        return self.heading.lower().replace(" ", "_").replace("-", "_")
+
+
 def report_data(
-    state: Mapping[str, Any], title: str, near: NearestTests | None = None
+    state: Mapping[str, Any],
+    title: str,
+    near: NearestTests | None = None,
+    known: Answered | None = None,
 ) -> dict[str, Any]:
     """Return the answers to a state as a report holds them.
 
@@ -30,6 +99,8 @@ def report_data(
         Title of the report.
     near : NearestTests, optional
         Tests to compare with.
+    known : Answered, optional
+        Column and result of the state, which then need not be computed.
 
     Raises
     ------
@@ -37,22 +108,24 @@ def report_data(
         With a line for everything that is wrong with a column or the loading.
     """
     answers, asked = Answers(near), {"state": state}
+    if known is not None:
+        answers.keep(state["columns"][0], state["loading"], known)
 
     def ask(answer: Callable[..., dict[str, Any]], **more: Any) -> Any:
         return answer(asked | more, lambda: None)["columns"]
 
-    loops = ask(answers.loops)
-    faults = [fault["text"] for loop in loops for fault in loop["faults"]]
+    found = ask(answers.loops)
+    faults = [fault["text"] for loop in found for fault in loop["faults"]]
     if faults:
         raise InputError("\n".join(dict.fromkeys(faults)))
     data: dict[str, Any] = {
         "title": title,
         "version": _core.version(),
         "state": {"columns": state["columns"], "loading": state["loading"]},
-        "loops": [{**loop, "seconds": 0} for loop in loops],
+        "loops": [{**loop, "seconds": 0} for loop in found],
         "sections": {code: ask(answers.sections, code=code) for code in ("aci318", "ec2")},
         "bands": ask(answers.bands),
-        "scales": ask(answers.scales) if any(loop.get("dynamic") for loop in loops) else None,
+        "scales": ask(answers.scales) if any(loop.get("dynamic") for loop in found) else None,
         "own": ask(answers.own),
         "near": None if near is None else near.of(state),
         "exports": {},
@@ -70,6 +143,9 @@ def write_report(
     state: Mapping[str, Any],
     title: str,
     near: NearestTests | None = None,
+    *,
+    author: str = "",
+    project: str = "",
 ) -> Path:
     """Write a report of a state of the page, whole or not at all.
 
@@ -79,9 +155,293 @@ def write_report(
         File to write.
     state, title, near
         As for `report_data`.
+    author, project : str, optional
+        For its head.
     """
+    head = _head(title, author, project, None)
+    return _write(path, one_file(title, report_data(state, title, near), sheets=(head, "")))
+
+
+def _write(path: str | os.PathLike[str], page: str) -> Path:
     target = Path(path)
-    page = one_file(title, report_data(state, title, near))
     with atomic_write(target) as file:
         file.write(page.encode("utf-8"))
     return target
+
+
+# ---- reports of records --------------------------------------------------------------------------
+
+
+def report(
+    record: Any,
+    path: str | os.PathLike[str],
+    *,
+    title: str = "",
+    author: str = "",
+    project: str = "",
+    date: str | None = None,
+    **asked: Any,
+) -> Path:
+    """Write a report of a record; see `Result.report`.
+
+    Parameters
+    ----------
+    record : Result, FrameResult, Section or IDA
+        What it is about.
+    path, title, author, project, date
+        As for `Result.report`.
+    **asked
+        What the sheets of the record need besides.
+    """
+    sheets = list(sheets_of(record, **asked))
+    case = case_of(record) if isinstance(record, Result | FrameResult) else None
+    target = Path(path)
+    title = title or (case.title if case else "") or target.stem
+    data = _column_data(record, case, title) if case and isinstance(record, Result) else None
+    front = _head(title, author, project, date) + _html(sheets[0])
+    # Sheets whose table alone is beside the report have nothing to show.
+    behind = "".join(_html(sheet) for sheet in sheets[1:] if sheet.figures or not sheet.beside)
+    made = _write(target, one_file(title, data, MODULES if data else (), (front, behind)))
+    for sheet in sheets:
+        if sheet.table is not None:
+            save_frame(sheet.table, target.with_name(f"{target.stem}_{sheet.name}.csv"))
+    if case is not None:
+        with atomic_write(target.with_suffix(".nml")) as file:
+            file.write(case.to_namelist().encode())
+    return made
+
+
+def _head(title: str, author: str, project: str, date: str | None) -> str:
+    about = {
+        "Project": project,
+        "Author": author,
+        "Date": datetime.date.today().isoformat() if date is None else date,
+        "Program": f"rbsdem {_core.version()}, Python {platform.python_version()}, "
+        f"numpy {np.__version__}",
+    }
+    lines = "<br>".join(plain(f"{name}: {text}") for name, text in about.items() if text)
+    return f"<section><h1>{plain(title)}</h1><p>{lines}</p></section>"
+
+
+def _column_data(result: Result, case: Case, title: str) -> dict[str, Any]:
+    """Return what the page shows of a result; one without the openings of its hinge is run again.
+
+    Strains of layers, from which most limit states follow, need them.
+    """
+    text = case.to_namelist()
+    state = {"columns": [{"name": "A", "case": text}], "loading": {"kind": "own"}}
+    column, drawn = result.column, None
+    if isinstance(column, LayeredColumn) and column.recipe is not None:
+        drawn = Drawn(column, column.recipe.section, column.recipe.height, 1.0)
+    try:
+        result.limit_states()
+    except InputError:
+        return report_data(state, title)
+    return report_data(state, title, known=Answered(result, drawn, case))
+
+
+def _html(sheet: Sheet) -> str:
+    text = f"<p>{plain(sheet.text)}</p>" if sheet.text else ""
+    drawn = "".join(map(_image, sheet.figures))
+    figures = f'<div class="figures">{drawn}</div>' if drawn else ""
+    table = "" if sheet.table is None or sheet.beside else _table(sheet.table)
+    kind = plain(sheet.name)
+    return (
+        f'<section class="sheet-{kind}"><h2>{plain(sheet.heading)}</h2>{text}{figures}{table}'
+        "</section>\n"
+    )
+
+
+def _image(draw: Callable[[], Any]) -> str:
+    """Return a figure as an image of lines, which prints sharply."""
+    import matplotlib.pyplot as plt  # noqa: PLC0415
+
+    figure, drawn = np.ravel(np.array(draw()))[0].figure, io.BytesIO()
+    with style():
+        figure.savefig(drawn, format="svg")
+    plt.close(figure)
+    packed = base64.b64encode(drawn.getvalue()).decode()
+    return f'<img alt="" src="data:image/svg+xml;base64,{packed}">'
+
+
+def _table(frame: pd.DataFrame) -> str:
+    columns = cells(frame)
+    kinds = ["" if numbers else ' class="text"' for _, numbers, _ in columns]
+    head = "".join(
+        f'<th scope="col"{kind}>{plain(heading)}</th>'
+        for kind, (heading, *_) in zip(kinds, columns, strict=True)
+    )
+    rows = "".join(
+        "<tr>"
+        + "".join(f"<td{kind}>{plain(text)}</td>" for kind, text in zip(kinds, row, strict=True))
+        + "</tr>"
+        for row in zip(*(texts for *_, texts in columns), strict=True)
+    )
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+
+
+# ---- sheets --------------------------------------------------------------------------------------
+
+
+def inputs(statement: _core.Statement) -> pd.DataFrame:
+    """Return a row for each value of the groups of a case, with its unit and its meaning.
+
+    Parameters
+    ----------
+    statement : Statement
+        The groups.
+    """
+    known, rows = _core.keys(), []
+    for group, given in _core.groups(statement):
+        own = [*known["groups"].get(group, []), *known["section"].get(given.get("shape"), [])]
+        own += known["rules"].get(given.get("rule"), {}).get("keys", [])
+        keys = {key["name"]: key for key in own}
+        for name, value in given.items():
+            if name in _NUMBERS:
+                continue
+            key = keys.get(name, {})
+            # The sizes of a shape are lengths.
+            unit = key.get("unit", "" if key or group != "section" else "m")
+            unit = _OF_RULES[group == "flexure"].get(unit, unit)
+            factor, unit = (1.0, unit) if unit in ("N/m", "rad") else PAPER.get(unit, (1.0, unit))
+            values = ", ".join(
+                each if isinstance(each, str) else f"{factor * each:.6g}"
+                for each in (value if isinstance(value, list) else [value])
+            )
+            if key.get("kind") == "logical":
+                values = "yes" if value else "no"
+            rows.append((group, name, values, unit, key.get("meaning", "").split(":")[0]))
+    return data_frame(rows, ["group", "key", "value", "in", "meaning"])
+
+
+@singledispatch
+def sheets_of(record: Any) -> Iterator[Sheet]:
+    """Yield the sheets of a record.
+
+    Parameters
+    ----------
+    record : Result, FrameResult, Section or IDA
+        The record.
+    """
+    raise InputError(f"report: there is none of a {type(record).__name__}")
+
+
+@sheets_of.register
+def _of_result(result: Result) -> Iterator[Sheet]:
+    yield _of_structure(result.column)
+    yield Sheet("Summary", str(result.error_estimate), table=_summary(result.summary))
+    if result.dynamic:
+        yield Sheet("Base shear in time", figures=(partial(history, result, "base_shear"),))
+    elif len(cycles := result.half_cycles()):
+        yield Sheet("Half-cycles", table=cycles.to_pandas())
+    with suppress(InputError):
+        yield Sheet("Limit states", table=result.limit_states().to_pandas(), beside=True)
+    yield Sheet("Rows", table=result.to_pandas(), beside=True)
+
+
+@sheets_of.register
+def _of_frame(result: FrameResult) -> Iterator[Sheet]:
+    yield _of_structure(result.frame)
+    largest = int(np.abs(result.displacement).argmax())
+    whole = "Displacements, hinges and forces at the largest displacement of the top."
+    shapes = (
+        partial(frames.frame, result, row=largest),
+        partial(frames.member_forces, result, row=largest),
+        partial(frames.member_forces, result, "axial", row=largest),
+    )
+    yield Sheet("Frame", f"{result.honesty} {whole}", shapes)
+    drawn: list[Callable[[], Any]] = [partial(frames.pushover, result)]
+    if result.frame.storeys:
+        drawn.append(partial(frames.storey_drift, result))
+    yield Sheet("Response", figures=tuple(drawn), table=_summary(result.summary))
+    events = [event._asdict() for event in result.events]
+    units = {"displacement": "displacement_m", "force": "force_N"}
+    if events:
+        yield Sheet("Limit states", table=data_frame(events).rename(columns=units))
+    members = [result.member(name) for name in result.frame.parts.members]
+    rows = {
+        "member": [member.name for member in members],
+        "largest_axial_N": [member.axial.max() for member in members],
+        "least_axial_N": [member.axial.min() for member in members],
+        "largest_moment_Nm": [np.abs(member.moment).max() for member in members],
+        "ductility": [np.nanmax([np.nan, *member.ductility]) for member in members],
+    }
+    yield Sheet("Members", table=data_frame(rows))
+    yield Sheet("Rows", table=result.to_pandas(), beside=True)
+
+
+@sheets_of.register
+def _of_section(
+    drawing: Section, axial_load: float, length: float | None = None
+) -> Iterator[Sheet]:
+    load = _core.group("column", {"axial_load": axial_load, "height": length})
+    yield _drawn(drawing, load)
+    found = diagram(drawing, axial_load, confined=drawing.ties is not None)
+    drawn = (partial(section.moment_curvature, found),)
+    yield Sheet("Moment and curvature", str(found), drawn, found.to_pandas(), beside=True)
+    strengths = {code: interaction(drawing, code) for code in get_args(Code)}
+    for code, strength in strengths.items():
+        moment, design = (strength.moment_at(axial_load, design=one) / 1e3 for one in (False, True))
+        words = (
+            f"Moment with N {axial_load / 1e3:.4g} kN: nominal {moment:.4g} kN m, "
+            f"design {design:.4g} kN m."
+        )
+        drawn = (partial(section.interaction, strength),)
+        yield Sheet(f"Interaction {code}", words, drawn, strength.to_pandas(), beside=True)
+    if length is not None:
+        yield Sheet("Codes", table=code_values(drawing, length, axial_load).to_pandas())
+
+
+@sheets_of.register
+def _of_ida(found: IDA, limits: Mapping[str, Any] | None = None) -> Iterator[Sheet]:
+    yield _of_structure(next(iter(found.runs.columns.values())))
+    yield Sheet("Curves", str(found), (partial(many.ida, found),))
+    try:
+        curves = found.fragilities(limits or {"collapse": ("collapse", None)})
+    except InputError as error:
+        yield Sheet("Fragility", str(error))
+        curves = {}
+    rows = [
+        {"limit_state": name, "theta_m/s2": curve.theta, "beta": curve.beta}
+        for name, curve in curves.items()
+    ]
+    if curves:
+        yield Sheet("Fragility", "", (partial(many.fragilities, curves),), data_frame(rows))
+    motions, names = list(found.runs.motions), list(found.runs.columns)
+    collapses = {
+        "column": np.repeat(np.array(list(map(str, names))), len(motions)),
+        "motion": np.tile(np.array(list(map(str, motions))), len(names)),
+        "collapse_intensity_m/s2": found.collapse_intensity.ravel(),
+    }
+    yield Sheet("Collapse", table=data_frame(collapses))
+    yield Sheet("Runs", table=found.to_pandas(), beside=True)
+
+
+def _of_structure(structure: Structure) -> Sheet:
+    if isinstance(structure, LayeredColumn) and structure.recipe is not None:
+        (own,) = (given for name, given in _core.groups(structure._groups()) if name == "column")
+        shown = ("height", "axial_load", "mass", "top_mass", "kinematics")
+        return _drawn(structure.recipe.section, _core.group("column", {n: own[n] for n in shown}))
+    drawn = (partial(frames.frame, structure),) if isinstance(structure, Frame) else ()
+    return Sheet("Inputs", figures=drawn, table=inputs(structure._groups()))
+
+
+def _drawn(drawing: Section, values: _core.Statement) -> Sheet:
+    drawn = (partial(section.section, drawing),)
+    return Sheet("Inputs", str(drawing), drawn, inputs(values + drawing.drawing()))
+
+
+def _summary(summary: Mapping[str, Any]) -> pd.DataFrame:
+    """Return the figures of an analysis, a row for each."""
+    units = {
+        "displacement": "m", "force": "N", "shear": "N", "energy": "J", "rotation": "rad",
+        "_step": "s",
+    }  # fmt: skip
+    rows = []
+    for name, value in summary.items():
+        unit = "" if "relative" in name else next((u for w, u in units.items() if w in name), "")
+        factor, unit = PAPER.get(unit, (1.0, unit))
+        text = f"{factor * value:.4g}" if isinstance(value, int | float) else str(value)
+        if value:
+            rows.append((name.replace("_", " "), text, unit))
+    return data_frame(rows, ["figure", "value", "in"])
