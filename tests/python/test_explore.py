@@ -14,16 +14,20 @@ import threading
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
+from samples import SECTION
 
 import rbsdem
 from rbsdem.cli import main
 from rbsdem.cli.columns import start_of
 from rbsdem.codes import code_values
+from rbsdem.model.frame_result import FrameResult
+from rbsdem.springs import Elastic
 from rbsdem.web import exports
 from rbsdem.web.answers import NearestTests, shown_rows
 from rbsdem.web.pages import GALLERY, MODULES, parts
-from rbsdem.web.report import report_data, write_report
+from rbsdem.web.report import report, report_data, write_report
 from rbsdem.web.server import MOST_STATE, ExploreServer
 from rbsdem.web.state import DEFAULT
 
@@ -490,6 +494,53 @@ def test_a_report_is_one_file(tmp_path, post, capsys):
     assert not (tmp_path / "wrong.html").exists()
     with pytest.raises(rbsdem.InputError, match="is a folder"):
         write_report(tmp_path, state(), "x")
+
+
+def records():
+    """A record of each kind, the words that its report must have, and the keywords it takes."""
+    drawn = rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6)
+    path = 1.6 * rbsdem.protocol([0.01, 0.03], points=6)
+    yield rbsdem.cyclic(drawn, displacement=path), ("axial load at the top", "1200", "kN"), {}
+    light = replace(rbsdem.peer.paper_columns("pdelta")["zahn_7"], top_mass=2e4)
+    motion = rbsdem.motions.synthetic(1, dt=0.02)[0]
+    moved = rbsdem.time_history(light, ground_acceleration=motion, method="newmark", dt=0.01)
+    yield moved, ("Base shear in time", "N m/rad"), {}
+    member = rbsdem.FrameMember(30e9, 0.16, 2.1e-3, yield_moment=2e5, hardening=0.01)
+    frame = rbsdem.Frame.grid([3.2, 3.0], [6.0], columns=member, beams=member, beam_load=2e4)
+    yield rbsdem.pushover(frame, drift=0.02, points=10), ("no frame was fitted", "C-1-1"), {}
+    yield SECTION, ("40", "MPa", "ASCE 41-17"), {"axial_load": 1.2e6, "length": 1.6}
+    elastic = rbsdem.Column(2.0, 1e3, Elastic(4e5), Elastic(4e9), damping=0.05)
+    many = {"levels": [0.5, 1.0, 2.0], "method": "newmark", "dt": 0.01}
+    ida = rbsdem.ida(elastic, rbsdem.motions.synthetic(2), **many)
+    yield ida, ("no record reached the limit state",), {}
+
+
+@pytest.mark.parametrize("at", range(5))
+def test_a_record_is_reported_with_its_tables_and_its_case(at, tmp_path):
+    """Its case, run again, ends in the same point; csv files hold the tables; it stands alone."""
+    record, words, asked = next(itertools.islice(records(), at, None))
+    head = {"title": "Pier <3>", "author": "A. Engineer", "project": "Bridge", "date": "2026"}
+    path = record.report(tmp_path / "x.html", **head, **asked)
+    page = path.read_text("utf-8")
+    for word in ("Pier &lt;3&gt;", "A. Engineer", "Bridge", "2026", "rbsdem 0", *words):
+        assert word in page, word
+    assert not re.search(r"(src|href)=\"(?!data:|#)", page)
+    tables = {file.stem: pd.read_csv(file) for file in tmp_path.glob("x_*.csv")}
+    assert len(tables) >= 3
+    assert set(tables["x_inputs"]) == {"group", "key", "value", "in", "meaning"}
+    if isinstance(record, rbsdem.Result | FrameResult):
+        again = rbsdem.read_case(tmp_path / "x.nml").run()
+        # A push-over has rows for its events, too.
+        assert again.displacement[-1] == record.displacement[-1]
+        assert again.base_shear[-1] == pytest.approx(record.base_shear[-1], rel=1e-12)
+        assert len(tables["x_rows"]) == record.time.size
+    with pytest.raises(rbsdem.InputError, match="date"):
+        record.report(tmp_path / "y.html", **asked, date=2026)
+
+
+def test_what_has_no_report_says_so(tmp_path):
+    with pytest.raises(rbsdem.InputError, match="there is none of a Column"):
+        report(rbsdem.peer.paper_columns("pdelta")["zahn_7"], tmp_path / "x.html")
 
 
 @pytest.mark.parametrize(("page", "modules"), [("index", MODULES), ("gallery", GALLERY)])

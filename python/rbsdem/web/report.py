@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
-from rbsdem import _core
+from rbsdem import _arguments, _core
 from rbsdem._files import atomic_write, data_frame, save_frame
 from rbsdem.checks.code_values import code_values
 from rbsdem.errors import InputError
@@ -193,6 +193,9 @@ def report(
     **asked
         What the sheets of the record need besides.
     """
+    for name, text in (("title", title), ("author", author), ("project", project), ("date", date)):
+        if not isinstance(text, str | None):
+            raise InputError(f"report: {name} = {_arguments.shown(text)} must be a text")
     sheets = list(sheets_of(record, **asked))
     case = case_of(record) if isinstance(record, Result | FrameResult) else None
     target = Path(path)
