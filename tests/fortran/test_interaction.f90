@@ -32,8 +32,7 @@ contains
       tests = [unit_test('four contacts, by hand', contacts), &
                unit_test('bilinear layers, against an independent return mapping', bilinear_layers), &
                unit_test('work of the layers is that of moment and axial load', energy), &
-               unit_test('a closed path returns its work or takes some', closed_paths), &
-               unit_test('plastic layers fail where all have yielded', plastic_failure)]
+               unit_test('a closed path returns its work or takes some', closed_paths)]
    end subroutine collect_interaction
 
    !> A joint under an axial load at the start.
@@ -214,44 +213,5 @@ contains
          call check_true(error, work + of_load > -1.0e-3_wp*3.0e5_wp*1.0e-2_wp, 'no energy is won')
       end do
    end subroutine closed_paths
-
-   subroutine plastic_failure(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(spring_record) :: layer(4)
-
-      layer = bilinear(100.0_wp, 0.01_wp, 0.0_wp)
-      call check_failure(error, 2.0_wp, reshape([0.01_wp, 2.0_wp, 0.01_wp, 6.0_wp], [2, 2]), 4.0_wp, &
-                         -0.04_wp, -1)
-      call check_failure(error, 0.0_wp, reshape([0.02_wp, 8.0_wp], [2, 1]), 4.0_wp, -0.04_wp, -1)
-      call check_failure(error, -3.0_wp, reshape([0.005_wp, -6.0_wp], [2, 1]), -4.0_wp, 0.015_wp, 1)
-
-   contains
-
-      subroutine check_failure(error, begin, points, load, opening, way)
-         type(error_type), allocatable, intent(inout) :: error
-         real(wp), intent(in) :: begin, points(:, :), load, opening
-         integer, intent(in) :: way
-         class(rule_memory), allocatable :: joint
-         type(segment) :: line
-         class(rule_type), allocatable :: rule
-         real(wp) :: work
-         integer :: j
-
-         call make_joint(joint, begin, four, layer, line, rule)
-         work = 0.0_wp
-         select type (joint)
-         type is (fibre_section)
-            do j = 1, size(points, 2)
-               call check_true(error, .not. joint%failed, 'the joint carries its load so far')
-               call go(joint, points(1, j), points(2, j), work)
-            end do
-            call check_true(error, joint%failed, 'the joint fails')
-            call check_close(error, joint%axial_load, load, 1.0e-12_wp, 0.0_wp, 'load at failure')
-            call check_close(error, joint%opening, opening, 1.0e-9_wp, 0.0_wp, 'opening at failure')
-            call check_true(error, joint%failure_way == way, 'way at failure')
-         end select
-      end subroutine check_failure
-
-   end subroutine plastic_failure
 
 end module test_interaction

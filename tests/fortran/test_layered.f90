@@ -6,7 +6,7 @@ module test_layered
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: follow_path
    use rbs_hysteresis_spring_record, only: spring_record
-   use samples, only: bilinear, concrete_1, elastic, steel_1
+   use samples, only: concrete_1, elastic, steel_1
    implicit none
    private
 
@@ -21,7 +21,6 @@ contains
       type(unit_test), allocatable, intent(out) :: tests(:)
 
       tests = [unit_test('elastic layers: transformed section about its centroid', elastic_section), &
-               unit_test('perfectly plastic layers: moment capacity under axial load', capacity), &
                unit_test('virgin joint of an unsymmetric section has no moment', unsymmetric), &
                unit_test('initial stiffness is the slope of the first line', first_slope)]
    end subroutine collect_layered
@@ -77,30 +76,6 @@ contains
       ei = ea*(depth**2/12.0_wp*(1.0_wp - 1.0_wp/n**2) + centroid**2) + ea_bar*(arm - centroid)**2
       call check_close(error, f, ei*[1.0e-3_wp, -2.0e-3_wp], 1.0e-11_wp, 0.0_wp, 'moment')
    end subroutine elastic_section
-
-   !> All layers yield, those beyond the plastic neutral axis in tension. The axis is at a layer that carries
-   !> the remaining force.
-   subroutine capacity(error)
-      type(error_type), allocatable, intent(inout) :: error
-      integer, parameter :: n = 21
-      real(wp), parameter :: f_y = 1.0e5_wp
-      type(spring_record) :: layer(n)
-      real(wp) :: y(n), f(2), axial_load, expected, rest
-      integer :: i, load, tension
-
-      do i = 1, n
-         y(i) = depth*((i - 0.5_wp)/n - 0.5_wp)
-         layer(i) = bilinear(1.0e9_wp, f_y/1.0e9_wp, 0.0_wp)
-      end do
-      do load = -15, 15, 5
-         axial_load = (load + 0.5_wp)*f_y
-         tension = (n - 1 - load)/2
-         rest = -axial_load - f_y*(tension - (n - 1 - tension))
-         expected = f_y*(sum(y(n - tension + 1:)) - sum(y(:n - tension - 1))) + rest*y(n - tension)
-         call follow_path(joint(axial_load, y, layer), [1.0_wp, -1.0_wp], f)
-         call check_close(error, f, expected*[1.0_wp, -1.0_wp], 1.0e-10_wp, 0.0_wp, 'moment')
-      end do
-   end subroutine capacity
 
    !> Bars on one side only: the joint rotates under the axial load alone, and measures from there.
    subroutine unsymmetric(error)

@@ -22,7 +22,7 @@ module test_run
    use runs, only: run_data, run, times, new_located
    use samples, only: set_value, value_of, bilinear, chain, column_1, compression, elastic, made, k_u, &
                       height_1
-   use row_places, only: row_time, row_displacement, row_kinetic, row_residual, row_top, row_joints
+   use row_places, only: row_time, row_displacement, row_kinetic, row_residual, row_joints
    implicit none
    private
 
@@ -51,7 +51,6 @@ contains
                unit_test('auto: the reason is true', reason), &
                unit_test('joints closed by load and weight stay at rest', at_rest), &
                unit_test('joints that cannot carry their load', cannot_carry), &
-               unit_test('initial openings, given or found', openings), &
                unit_test('a stepper that fails: the rows up to the last good state', failing)]
    end subroutine collect_run
 
@@ -265,36 +264,6 @@ contains
       call run(data, made(spec))
       call check_passed(error, data%outcome, 'openings given')
    end subroutine cannot_carry
-
-   subroutine openings(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(run_data) :: data
-      type(column_record) :: spec
-
-      spec = chain(2, 'small')
-      spec%axial_load = 1.0e6_wp
-      allocate (spec%axial_spring(1))
-      spec%axial_spring(1) = elastic(1.0e9_wp)
-      data%time = [0.0_wp, 1.0e-4_wp]
-      data%axial = [2.0e6_wp, 2.0e6_wp]
-      ! Openings of the initial state are used only if they are marked as given.
-      data%initial%deformation = [1.0e-5_wp, 0.0_wp, 0.0_wp, 0.0_wp, 7.0_wp, 7.0_wp]
-      call run(data, made(spec))
-      call check_passed(error, data%outcome, 'found')
-      if (allocated(error)) return
-      call check_close(error, data%rows(row_joints:row_joints + 5, 1), &
-                       [1.0e-5_wp, 0.0_wp, 0.0_wp, 0.0_wp, -2.0e-3_wp, -2.0e-3_wp], 1.0e-14_wp, 0.0_wp, &
-                       'slips given, openings found')
-      call check_close(error, data%rows(row_top, 1), 2.0_wp - 4.0e-3_wp, 1.0e-14_wp, 0.0_wp, &
-                       'height of the top')
-      data%initial%deformation(5:) = [1.0e-3_wp, 2.0e-3_wp]
-      data%initial%opening_given = .true.
-      call run(data, made(spec))
-      call check_passed(error, data%outcome, 'given')
-      if (allocated(error)) return
-      call check_same(error, data%rows(row_joints + 4:row_joints + 5, 1), [1.0e-3_wp, 2.0e-3_wp], 'given')
-      call check_true(error, data%rows(row_kinetic, 2) > 1.0_wp, 'not in equilibrium')
-   end subroutine openings
 
    subroutine advance_and_fail(self, state, h, error)
       class(failing_stepper), intent(inout) :: self

@@ -149,23 +149,3 @@ def test_column_from_1e_12_to_1e6_times_yield_has_its_springs_on_their_paths(n):
             assert np.max(np.abs(spring.response(way) - force)) < 1e-10 * scale
     again = rbsdem.cyclic(column, force=run.force)
     np.testing.assert_allclose(again.displacement, path, atol=1e-10 * np.max(np.abs(path)))
-
-
-@pytest.mark.parametrize(
-    ("n", "kinematics", "cycles"), [(1, "small", 2000), (3, "pdelta", 300), (2, "finite", 20)]
-)
-@pytest.mark.filterwarnings("ignore:column. axial_load ")
-def test_repeated_cycles_of_a_column_do_not_drift(n, kinematics, cycles):
-    """The beginning of a random cycle, from the third time on."""
-    rng = np.random.default_rng(6)
-    path = 0.03 * rng.uniform(-1, 1, 50)
-    path[[0, 25]] = 0.033, -0.033
-    column = rbsdem.Column(
-        1.6, 614.4, BILINEAR, TAKEDA["kc"], n=n, kinematics=kinematics, axial_load=1e5
-    )
-    run = rbsdem.cyclic(column, displacement=np.tile(path, cycles), every=50)
-    close = 1e-9 if kinematics == "finite" else 1e-13
-    for values in (run.force, run.slip):
-        assert np.max(np.abs(values[3:-1] - values[3])) < close * np.max(np.abs(values))
-    left = run.summary["relative_energy_residual"]
-    assert left < (1e-6 if kinematics == "finite" else 1e-11)

@@ -8,7 +8,6 @@ stands in `messages.txt`.
 from __future__ import annotations
 
 import csv
-import os
 from pathlib import Path
 
 import numpy as np
@@ -316,25 +315,3 @@ def test_histories_of_the_database(peer_folder, through_executable):
         if number % 27 == 0:
             assert np.array_equal(through_executable(str(path), "displacement"), d), name
             assert np.array_equal(through_executable(str(path), "force"), f), name
-
-
-@pytest.mark.parametrize(
-    ("stem", "raw"),
-    [
-        ("Soesianawati_et_al_1986_No1", "soes86u1"),
-        ("Tanaka_and_Park_1990_No1", "tana90u1"),
-        ("Tanaka_and_Park_1990_No5", "tana90u5"),
-        ("Zahn_et_al_1986_No7", "zahn86u7"),
-    ],
-)
-def test_original_file_equals_the_csv_to_the_last_bit(through_executable, peer_folder, stem, raw):
-    path = peer_folder / "raw" / f"{raw}.txt"
-    d, f = numpy_reading(peer_folder / f"{stem}.csv")
-    lines = path.read_text().splitlines()
-    test = read_peer(path)
-    assert test.name == lines[0].strip().strip('"').strip()
-    assert test.force.size == int(lines[1].split()[0])
-    assert np.array_equal(test.displacement, d)
-    assert np.array_equal(test.force, f)
-    assert np.array_equal(through_executable(os.fspath(path), "displacement"), d)
-    assert np.array_equal(through_executable(os.fspath(path), "force"), f)

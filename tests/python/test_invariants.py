@@ -34,8 +34,6 @@ from strategies import (
 
 import rbsdem
 from rbsdem import _core
-from rbsdem.many.inputs import Motion
-from rbsdem.many.plan import Plan, compute
 from rbsdem.springs import SPRINGS, Elastic, Layered, Spring
 
 TIMES = float(os.environ.get("RBSDEM_CASES", "1"))
@@ -1139,34 +1137,3 @@ def test_methods_have_one_answer(rng: Rng) -> None:
     apart = error(move(column, loading, method=name, **fine))
     before = error(move(column, loading, method=name, **coarse))
     assert apart <= 2e-3 or apart < 0.4 * before, f"{name}: {before:.1e}, then {apart:.1e}"
-
-
-@relation(25, judged=0.3)
-def test_lanes_have_the_bits_of_runs_alone(rng: Rng) -> None:
-    """A run of an ensemble is that of `time_history`, in whatever lanes: bits."""
-    column, loading, chosen = motion_case(rng, kinematics=str(rng.choice(["small", "pdelta"])))
-    if "ground_acceleration" not in loading:
-        raise Discard
-    time, ground = loading["time"], loading["ground_acceleration"]
-    columns = [column, replace(column, damping=None)]
-    motions = [Motion(0, time, ground), Motion(1, time[:9], ground[-9:])]
-    scales = np.array([0.0, 0.3, 1.0, 3.0, 10.0])
-    grid = np.meshgrid(np.arange(2), np.arange(2), np.arange(5), indexing="ij")
-    place = [axis.ravel().astype(np.int32) for axis in grid]
-    settings = chosen | ({"collapse_drift": 0.05} if rng.random() < 0.5 else {})
-    task = Plan(columns, motions, settings, place[0], place[1], scales[place[2]])
-    alone = compute(task, kernel=-1)
-    kernel = int(rng.integers(1, 4))
-    together = compute(task, kernel=kernel)
-    assert np.array_equal(together.fates, alone.fates)
-    for name, a, b in zip(task.names, alone.values, together.values, strict=True):
-        assert np.array_equal(a, b, equal_nan=True), f"{difference(name, a, b)}, kernel {kernel}"
-    assert together.errors == alone.errors
-    run = int(rng.integers(scales.size))
-    which = motions[place[1][run]]
-    loads = {"time": which.time, "ground_acceleration": which.acceleration * task.scale[run]}
-    one = move(columns[place[0][run]], loads, **settings)
-    for name, value in zip(task.names, alone.values[:, run], strict=True):
-        told = one.summary.get(name, value)
-        same = np.array_equal(value, told, equal_nan=True)
-        assert same or one.summary["status"] == "failed", f"{name}: {value} {told}"

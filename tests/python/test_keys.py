@@ -155,15 +155,6 @@ def test_executable_prints_the_same_list(run_cli):
     assert names == [key["name"] for keys in lists for key in keys]
 
 
-def test_every_key_says_what_it_means():
-    for keys in [*KEYS["groups"].values(), *(rule["keys"] for rule in RULES.values())]:
-        assert len({key["name"] for key in keys}) == len(keys)
-        for key in keys:
-            assert re.fullmatch(r"[a-z]\w*", key["name"])
-            assert len(key["meaning"]) > 5, key["name"]
-            assert key["kind"] in ("real", "integer", "logical", "word", "text")
-
-
 def tables() -> ModuleType:
     """The script that writes the tables of the documents."""
     path = REPOSITORY / "scripts" / "key_tables.py"

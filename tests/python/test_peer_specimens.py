@@ -218,16 +218,6 @@ def test_all_of_the_table_is_read(database):
     assert all(s.year is None or len(s.year) == 4 for s in database)
 
 
-def test_histories_have_the_rows_and_extremes_of_the_table(database):
-    for s in database.with_history():
-        history, seen = s.history(), s.observed
-        assert history.force.size == seen.points, s.name
-        assert history.force.max() == pytest.approx(seen.largest_force, rel=1e-3, abs=50), s.name
-        assert history.displacement.min() == pytest.approx(
-            seen.smallest_displacement, rel=1e-3, abs=1e-5
-        ), s.name
-
-
 def test_net_forces_reproduce_what_was_published(database):
     """Largest shear of the manual, table A.1, within 1.5 % in one direction or the other."""
     agree = {code: [] for code in (1, 2, 3, 4)}
