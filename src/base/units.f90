@@ -87,7 +87,7 @@ contains
    elemental real(wp) function into_si(self, value, unit)
       class(unit_system), intent(in) :: self
       real(wp), intent(in) :: value
-      !> The SI unit, of N, m, kg, s and rad: 'N/m', 'N m/rad', 'kg m2'
+      !> The SI unit, of N, m, kg, s and rad: 'N/m', 'N m/rad', 'kg m2', 'm4'; stresses in Pa stay
       character(len=*), intent(in) :: unit
 
       into_si = converted(self, value, unit, 1)
@@ -109,7 +109,7 @@ contains
       !> +1: to SI, -1: from SI
       integer, intent(in) :: direction
       type(unit_type) :: one
-      integer :: i, power
+      integer :: i, k, power
       logical :: found
 
       converted = value
@@ -122,7 +122,9 @@ contains
          if (.not. found) cycle
          converted = scaled(converted, one, power)
          if (i == len(unit)) cycle
-         if (unit(i + 1:i + 1) == '2') converted = scaled(converted, one, power)
+         do k = 2, index('1234', unit(i + 1:i + 1))        ! m2, m4
+            converted = scaled(converted, one, power)
+         end do
       end do
    end function converted
 

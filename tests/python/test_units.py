@@ -35,6 +35,7 @@ POWERS = {
     "force": (1, 0, 0), "deformation": (0, 1, 0), "stiffness": (1, -1, 0),
     "moment": (1, 1, 0), "turning stiffness": (1, 1, 0),
     "displacement": (0, 1, 0), "axial_load": (1, 0, 0),
+    "m2": (0, 2, 0), "m4": (0, 4, 0), "N/m": (1, -1, 0), "N m": (1, 1, 0), "Pa": (0, 0, 0),
 }  # fmt: skip
 ENTRY = re.compile(r"(\w+) = ([^=]+?)(?=,\s+\w+ =|\s*$)")
 OF_FLEXURE = {"force": "moment", "stiffness": "turning stiffness", "deformation": "rad"}
@@ -93,6 +94,28 @@ def test_case_in_other_units_is_the_case_in_si(tmp_path, system):
             assert close(getattr(other, drive), getattr(case, drive)), drive
         # What Python writes is SI: the units belong to the file.
         assert "&units" not in other.to_namelist()
+
+
+FRAME = """
+&frame storeys = 3.2, 3.0, bays = 6.0, kinematics = 'pdelta' /
+&floor mass = 80e3, load = 25e3 /
+&member_kind name = 'all', modulus = 30e9, area = 0.16, inertia = 2.1e-3, shear_rigidity = 1e9 /
+&flexure kind = 'all', rule = 'bilinear', k = 4e7, d_y = 6e-3, k_post = 4e5 /
+&column_of kind = 'all', panel = 0.25 /
+&beam_of kind = 'all' /
+&node name = 'N-1-2', load_x = 1e3, load_y = -5e4, load_moment = 2e3, mass = 1e3, inertia = 10.0 /
+&loading drive = 'displacement', values = 0.1, -0.1 /
+"""
+
+
+@pytest.mark.parametrize("system", SYSTEMS, ids=lambda system: " ".join(system.values()))
+def test_frame_in_other_units_is_the_frame_in_si(tmp_path, system):
+    forces = []
+    for text in (FRAME, converted(FRAME, system)):
+        (tmp_path / "frame.nml").write_text(text)
+        case = rbsdem.read_case(tmp_path / "frame.nml")
+        forces.append(case.run().force)
+    np.testing.assert_allclose(forces[1], forces[0], rtol=1e-9)
 
 
 @pytest.mark.parametrize("system", SYSTEMS, ids=lambda system: " ".join(system.values()))
