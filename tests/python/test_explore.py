@@ -23,13 +23,14 @@ from rbsdem.cli import main
 from rbsdem.cli.columns import start_of
 from rbsdem.codes import code_values
 from rbsdem.model.frame_result import FrameResult
+from rbsdem.output import frames as figures_of_frames
 from rbsdem.springs import Elastic
-from rbsdem.web import exports
+from rbsdem.web import exports, frames
 from rbsdem.web.answers import NearestTests, shown_rows
-from rbsdem.web.pages import GALLERY, MODULES, parts
+from rbsdem.web.pages import FRAMES, GALLERY, MODULES, parts
 from rbsdem.web.report import report, report_data, write_report
 from rbsdem.web.server import MOST_STATE, ExploreServer
-from rbsdem.web.state import DEFAULT
+from rbsdem.web.state import DEFAULT, Faults
 
 #: Numbers of requests; a tab counts on.
 COUNT = itertools.count(1)
@@ -130,6 +131,7 @@ GOOD = json.dumps({"tab": "r", "number": 1, "state": state()})
         (400, {"body": "[]"}),
         (400, {"body": '{"tab": "r", "number": 1.5, "state": {}}'}),
         (400, {"body": '{"tab": "r", "number": 1, "state": {"columns": []}}'}),
+        (400, {"path": "frame", "body": '{"tab": "r", "number": 1, "frame": []}'}),
         (400, {"body": '{"tab": "r", "number": 1, "state": {"columns": [1], "loading": {}}}'}),
     ],
 )
@@ -350,6 +352,88 @@ def test_other_shapes(post, shape):
     assert max(answer["force"]) > 50e3
 
 
+def test_a_frame_is_that_of_the_functions(post, tmp_path):
+    given = copy.deepcopy(frames.DEFAULT)
+    given["storeys"][2]["column"] |= {"width": 0.3, "moment": 150e3}
+    answer = post("frame", frame=given)
+
+    def kind(width, depth, moment, share):
+        return rbsdem.FrameMember(
+            30e9, width * depth, share * width * depth**3 / 12, moment, hardening=0.01
+        )
+
+    frame = rbsdem.Frame.grid(
+        [3.2] * 3,
+        [6.0] * 3,
+        columns={(0, 0): kind(0.4, 0.4, 250e3, 0.7), (0, 3): kind(0.3, 0.4, 150e3, 0.7)},
+        beams=kind(0.3, 0.5, 200e3, 0.35),
+        beam_load=25e3,
+        floor_mass=25e3 * 18 / 9.80665,
+        kinematics="pdelta",
+    )
+    push = rbsdem.pushover(frame, drift=0.03, points=40)
+    np.testing.assert_allclose(answer["base_shear"], push.base_shear, rtol=1e-4, atol=10.0)
+    assert answer["period"] == pytest.approx(rbsdem.modes(frame, 1).period[0])
+    assert [(one["member"], one["end"]) for one in answer["events"]] == [
+        (event.member, event.end) for event in push.events
+    ]
+    # At the end of the push: nodes where they are, members between them, sections that turned.
+    node = frame.parts.nodes.index("N-4-3")
+    beam = answer["members"].index("B-3-3")
+    np.testing.assert_allclose(
+        answer["moved"][-1][beam][-1], [push.x[-1, node], push.y[-1, node]], atol=1e-4
+    )
+    yielded = {
+        (answer["members"][member], place)
+        for (member, place), ratio in zip(answer["springs"], answer["ductility"][-1], strict=True)
+        if ratio >= 1.0
+    }
+    ends = {"start": 0.0, "end": 1.0}
+    assert yielded == {(event.member, ends.get(event.end, 0.5)) for event in push.events}
+    # The case file is the same frame and the same push.
+    (tmp_path / "frame.nml").write_text(answer["case"])
+    case = rbsdem.read_case(tmp_path / "frame.nml")
+    assert case.run().displacement[-1] == pytest.approx(0.03 * 9.6)
+    assert case.run().base_shear[-1] == pytest.approx(push.base_shear[-1])
+
+
+def test_members_of_a_frame_bend_as_the_figures_of_python_have_them():
+    """A cubic line with kinks where sections yielded, here for all rows at once."""
+    frame = frames.frame_of(frames.DEFAULT, Faults())
+    push = rbsdem.pushover(frame, drift=0.03, points=40)
+    answer = frames.pushed(frames.DEFAULT)
+    for i, member in enumerate(figures_of_frames._members(frame)):
+        row = answer["pictures"][-1]
+        line = figures_of_frames._deformed(push, member, row, 1.0, np.linspace(0, 1, 7))
+        drawn = np.array(answer["still"][i]) + answer["moved"][-1][i]
+        np.testing.assert_allclose(drawn, line, atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "field", "text"),
+    [
+        (("storeys", 1, "height"), -1.0, "frame.storeys", r"height = -1 m must be .*storey 2"),
+        (("storeys", 0, "beam"), 4, "beam.moment", "moment = None must be a number"),
+        (("storeys", 2, "column", "width"), 1e9, "column.width", "must be from 0.05 to 5"),
+        (("storeys", 2), 7, "frame.storeys", "height = None must be a number"),
+        (("storeys",), [], "frame.storeys", "give 1 to 6"),
+        (("bays",), [6.0] * 7, "frame.bays", "give 1 to 6"),
+        (("bays",), ["x"], "frame.bays", "must be a number"),
+        (("modulus",), 30, "frame.modulus", "must be from"),
+        (("drift",), 10**400, "frame.drift", "drift"),
+        (("beam_load",), 1e6, "frame.beam_load", "does not carry its dead load"),
+    ],
+)
+def test_errors_of_a_frame_stand_beside_their_fields(post, place, value, field, text):
+    given = copy.deepcopy(frames.DEFAULT)
+    part = given
+    for name in place[:-1]:
+        part = part[name]
+    part[place[-1]] = value
+    faults = {one["field"]: one["text"] for one in post("frame", frame=given)["faults"]}
+    assert re.search(text, faults[field])
+
+
 def test_records_are_texts_and_scales_follow(post):
     motion = rbsdem.motions.synthetic(1)[0]
     text = "time_s,acceleration_m/s2\n" + "".join(
@@ -543,7 +627,9 @@ def test_what_has_no_report_says_so(tmp_path):
         report(rbsdem.peer.paper_columns("pdelta")["zahn_7"], tmp_path / "x.html")
 
 
-@pytest.mark.parametrize(("page", "modules"), [("index", MODULES), ("gallery", GALLERY)])
+@pytest.mark.parametrize(
+    ("page", "modules"), [("index", MODULES), ("frame", FRAMES), ("gallery", GALLERY)]
+)
 def test_modules_of_a_page_can_stand_in_one_file(page, modules):
     seen: dict[str, str] = {}
     files = parts(f"{page}.html", modules)

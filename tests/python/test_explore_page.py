@@ -399,6 +399,43 @@ def test_a_small_screen_and_the_dark(page):
         assert table.get_property("scrollWidth") <= table.get_property("clientWidth")
 
 
+def test_a_frame_is_pushed_and_its_hinges_show(unopened):
+    page = unopened
+    page.driver.get(page.address)
+    page.wait(lambda: page.all('a[href="frame.html"]'))
+    page.one('a[href="frame.html"]').click()
+    page.wait(lambda: page.all("#curvefigure path.line.a"))
+    assert len(page.all("#drawing .member")) == 21
+    assert len(page.all("#drawing .hinge")) == 3  # those of the legend
+    page.one("#push").click()
+    page.wait(lambda: page.value("#scrub") == "40")
+    assert page.all("#drawing .hinge.beyond")[1:]
+    assert page.text("#scrubbed").startswith("3 %")
+    assert not page.all("#hingetable tr.later")
+    # One storey more, of smaller columns; then a width that is none.
+    page.type("#f-frame-storeys", "3200, 3200, 3200, 3000")
+    page.wait(lambda: len(page.all("#drawing .member")) == 28)
+    before = page.text("#figures")
+    page.all("#storeys button")[4].click()
+    page.type("#f-column-moment", "100")
+    page.wait(lambda: page.text("#figures") != before)
+    page.all("#storeys button")[0].click()
+    assert page.one("#f-column-moment").get_attribute("placeholder") == "differs"
+    page.type("#f-beam-width", "-1")
+    told = "Width = −1 mm must be from 50 to 5000 mm (storey 1)"
+    page.wait(lambda: told in page.text("#f-beam-width-fault"))
+    assert "hinges" in page.old()
+    page.type("#f-beam-width", "300")
+    page.wait(lambda: not page.old())
+    page.one("#case").click()
+    path = page.downloads / "frame.nml"
+    page.wait(path.is_file)
+    assert len(rbsdem.read_case(path).column.storeys) == 4
+    size(page.driver, 390, 844)
+    page.wait(lambda: page.one("#drawing svg").size["width"] < 390)
+    assert page.driver.execute_script("return document.documentElement.scrollWidth") <= 390
+
+
 def test_a_report_asks_nothing(unopened, tmp_path):
     page = unopened
     path = write_report(tmp_path / "report.html", START, "A pier")

@@ -38,7 +38,7 @@ from rbsdem.section.axial_moment import InteractionDiagram, interaction
 from rbsdem.section.curvature import diagram as diagram_of
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.spread import spread as spread_of
-from rbsdem.web import exports
+from rbsdem.web import exports, frames
 from rbsdem.web.pages import card
 from rbsdem.web.state import (
     MOST_VALUES,
@@ -268,6 +268,18 @@ class Answers:
             return {"none": "rbsdem explore --tests FOLDER shows the tests that are most like it"}
         return self.near.of(state_of(asked), pause)
 
+    # ---- frames ---------------------------------------------------------------------------------
+
+    def frame(self, asked: Asked, pause: Pause) -> dict[str, Any]:
+        """Return a frame that is pushed to one side."""
+        frame = asked.get("frame")
+        if not isinstance(frame, dict):
+            raise RefusedError(400, "frame must be an object")
+        try:
+            return frames.pushed(frame)
+        except Exception as error:
+            return {"faults": [{"field": "", "text": defect(error)}]}
+
     # ---- texts ----------------------------------------------------------------------------------
 
     def export(self, asked: Asked, pause: Pause) -> dict[str, Any]:
@@ -317,7 +329,18 @@ class Answers:
 
 
 #: What can be asked, by the last part of the path.
-LANES = ("loops", "sections", "own", "bands", "scales", "nearest", "export", "open", "record")
+LANES = (
+    "loops",
+    "sections",
+    "own",
+    "bands",
+    "scales",
+    "nearest",
+    "export",
+    "open",
+    "record",
+    "frame",
+)
 
 #: What is asked for once: a newer question takes nothing from it.
 ONCE = ("export", "open", "record")

@@ -31,6 +31,9 @@ MODULES = (
     "main.js",
 )
 
+#: Modules of the page of frames.
+FRAMES = ("units.js", "chart.js", "fields.js", "panels.js", "history.js", "answers.js", "frame.js")
+
 #: Modules of the page of all tests.
 GALLERY = ("units.js", "chart.js", "fields.js", "panels.js", "gallery.js")
 

@@ -20,8 +20,9 @@ from typing import Any, ClassVar
 from urllib.parse import urlsplit
 
 from rbsdem.errors import InputError
+from rbsdem.web import frames
 from rbsdem.web.answers import LANES, ONCE, Answers, NearestTests, defect
-from rbsdem.web.pages import TYPES, parts
+from rbsdem.web.pages import FRAMES, TYPES, parts
 from rbsdem.web.state import RefusedError
 
 #: Largest request [bytes]: a state, and the text of a file.
@@ -80,7 +81,7 @@ class ExploreServer(ThreadingHTTPServer):
         self.token = secrets.token_urlsafe(24)
         self.start = start
         self.answers = Answers(near)
-        self.parts = parts()
+        self.parts = parts() | parts("frame.html", FRAMES)
         self.computing = threading.Lock()
         self.room = threading.BoundedSemaphore(_AT_ONCE)
         self._newest: OrderedDict[tuple[str, str], int] = OrderedDict()
@@ -213,7 +214,8 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _get(self, path: str) -> None:
         if path == "start":
-            begin = {"state": self.server.start, "tests": self.server.answers.near is not None}
+            near = self.server.answers.near is not None
+            begin = {"state": self.server.start, "tests": near, "frame": frames.DEFAULT}
             self._send(200, json.dumps(begin).encode(), "application/json")
             return
         name = path or "index.html"

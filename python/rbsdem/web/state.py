@@ -217,13 +217,13 @@ def column_of(
         Whether a column in double curvature is made with both its halves, also without a footing.
     """
     section = section_of(given, faults)
-    frame = _group(given, "column")
+    frame = group(given, "column")
     ends = "cantilever" if frame["ends"] is None else frame["ends"]
     if not _arguments.is_one_of(ends, ENDS):
         faults.add("column.ends", f"ends = {ends!r} is not known; there are {', '.join(ENDS)}")
         return None, []
     before = len(faults.listed)
-    footing = _footing_of(_group(given, "footing"), faults)
+    footing = _footing_of(group(given, "footing"), faults)
     with faults.of("column", "axial_load"):
         height = column_length(frame["height"], "height")
         load = _arguments.number(frame["axial_load"], "axial_load")
@@ -277,7 +277,7 @@ def _in_motion(drawn: Drawn, given: Mapping[str, Any], faults: Faults) -> Drawn 
     has both.
     """
     with faults.of("column", "top_mass"):
-        mass = _group(given, "column")["top_mass"]
+        mass = group(given, "column")["top_mass"]
         if mass is None:
             mass = max(drawn.column.axial_load, 0.0) / STANDARD_GRAVITY
         mass = _arguments.number(mass, "top_mass")
@@ -290,7 +290,7 @@ def _in_motion(drawn: Drawn, given: Mapping[str, Any], faults: Faults) -> Drawn 
 
 def section_of(given: Mapping[str, Any], faults: Faults) -> Section | None:
     """Make the section of a column of the state; None if something is wrong with it."""
-    sizes, bars, ties = (_group(given, name) for name in ("section", "bars", "ties"))
+    sizes, bars, ties = (group(given, name) for name in ("section", "bars", "ties"))
     shape = sizes["shape"]
     if not _arguments.is_one_of(shape, SHAPES):
         text = f"shape = {shape!r} is not known; there are {', '.join(SHAPES)}"
@@ -301,7 +301,7 @@ def section_of(given: Mapping[str, Any], faults: Faults) -> Section | None:
     parts: dict[str, Any] = {}
     before = len(faults.listed)
     with faults.of("concrete", "fc"):
-        parts["concrete"] = Concrete(_group(given, "concrete")["fc"])
+        parts["concrete"] = Concrete(group(given, "concrete")["fc"])
     with faults.of("bars", "number"):
         face = {} if round_ else {"face": bars["face"]}
         steel = Steel(bars["fy"], bars["fu"])
@@ -376,7 +376,7 @@ def _factor(given: Mapping[str, Any]) -> float:
     return number
 
 
-def _group(given: Mapping[str, Any], name: str) -> dict[str, Any]:
+def group(given: Mapping[str, Any], name: str) -> dict[str, Any]:
     """Return a group of a column; values that are missing are None, which the program refuses."""
     group = given.get(name)
     return defaultdict(lambda: None, group if isinstance(group, Mapping) else {})

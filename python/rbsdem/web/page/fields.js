@@ -47,7 +47,7 @@ export const COLUMN_FIELDS = [
 
 export const LOADING_FIELDS = [
   { path: "loading.kind", label: "Loading", choices: [["amplitudes", "cycles of drift"], ["named", "protocol of the literature"], ["synthetic", "synthetic earthquake"], ["record", "record from a file"]] },
-  { path: "loading.amplitudes", label: "Drifts", dimension: "drifts", kinds: ["amplitudes"] },
+  { path: "loading.amplitudes", label: "Drifts", dimension: "drift", list: true, kinds: ["amplitudes"] },
   { path: "loading.cycles", label: "Cycles at each", dimension: "number", whole: true, step: 1, kinds: ["amplitudes"] },
   { path: "loading.name", label: "Protocol", kinds: ["named"], choices: [["sac", "SAC 1997"], ["aci_374_1", "ACI 374.1"], ["aci_374_2", "ACI 374.2R"], ["fema_461", "FEMA 461"], ["curee", "CUREE"], ["atc_24", "ATC-24"]] },
   { path: "loading.reference", label: "Reference drift", dimension: "drift", step: 0.001, optional: "of the protocol", kinds: ["named"] },
@@ -87,11 +87,12 @@ export function element(name, properties = {}, ...children) {
 
 const FIELD = Object.fromEntries([...COLUMN_FIELDS.flatMap(({ fields }) => fields), ...LOADING_FIELDS].map(field => [field.path, field]));
 
+export const toldOf = (fault, state, column, system) => toldAs(fault, FIELD[fault.field], valueAt(fault.field.startsWith("loading.") ? state : column, fault.field), system);
+
 // A message of the program as the page says it: with the label and the unit of its field; an empty field says what it lacks.
-export function toldOf(fault, state, column, system) {
-  const field = FIELD[fault.field];
+export function toldAs(fault, field, value, system) {
   if (!field) return inUnits(fault.text, system);
-  const value = valueAt(fault.field.startsWith("loading.") ? state : column, fault.field), name = field.path.split(".")[1];
+  const name = field.path.split(".")[1];
   const label = field.label.split(",")[0], [unit] = field.dimension ? unitOf(system, field.dimension) : [""];
   if (!field.optional && !field.choices && (value === undefined || value === null || value.length === 0))
     return `${label} is empty: give ${field.whole ? "a whole number" : unit ? `it in ${unit}` : "a number"}.`;
@@ -100,13 +101,13 @@ export function toldOf(fault, state, column, system) {
 
 function shownValue(field, value, system) {
   const [, factor] = field.dimension ? unitOf(system, field.dimension) : ["", 1];
-  if (field.dimension === "drifts") return Array.isArray(value) ? value.map(v => typed(v, factor)).join(", ") : String(value ?? "");
+  if (field.list) return Array.isArray(value) ? value.map(v => typed(v, factor)).join(", ") : String(value ?? "");
   return typed(value, factor);
 }
 
 function readValue(field, text, system) {
   const [, factor] = unitOf(system, field.dimension);
-  if (field.dimension === "drifts") {
+  if (field.list) {
     const words = text.split(/[\s;,]+/).filter(Boolean);
     return words.map(word => parsed(word, factor)).filter(value => value !== null);
   }
@@ -114,7 +115,7 @@ function readValue(field, text, system) {
 }
 
 // One labelled field with its message; `edit(value, done)` is called while one types and when it is left.
-function fieldRow(field, value, system, edit, fixed) {
+export function fieldRow(field, value, system, edit, fixed) {
   const id = "f-" + field.path.replace(".", "-"), message = id + "-fault";
   const row = element("div", { className: "row" });
   row.dataset.path = field.path;
@@ -127,7 +128,7 @@ function fieldRow(field, value, system, edit, fixed) {
     input.addEventListener("change", () => edit(field.choices.find(([key]) => String(key) === input.value)[0], true));
   } else {
     const given = { id, value: shownValue(field, value, system), readOnly: fixed, spellcheck: false };
-    input = field.dimension === "drifts" ? element("textarea", { ...given, rows: 2 }) : element("input", { ...given, type: "text", inputMode: "decimal" });
+    input = field.list ? element("textarea", { ...given, rows: 2 }) : element("input", { ...given, type: "text", inputMode: "decimal" });
     input.placeholder = field.optional ?? "needed";
     input.addEventListener("input", () => edit(readValue(field, input.value, system), false));
     input.addEventListener("change", () => edit(readValue(field, input.value, system), true));

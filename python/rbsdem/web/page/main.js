@@ -1,10 +1,9 @@
 // The page: one state, what it shows of it, and what it asks.
 
 import { SYSTEMS, inUnits, shown, unitOf } from "./units.js";
-import { asPng, rowsOfChart, standalone } from "./chart.js";
 import { drawColumn, scalesOf } from "./drawing.js";
 import { LOADINGS, drawForm, element, putAt, refreshFields, showFaults, toldOf } from "./fields.js";
-import { codeTable, csvOf, curvatureChart, interactionChart, loopChart, nameOfState, nearCards, rowsOfNear, rowsOfTable, scaleChart, stateTables, timeChart } from "./panels.js";
+import { addSaves, codeTable, curvatureChart, download, interactionChart, loopChart, nameOfState, nearCards, rowsOfNear, saveShown, scaleChart, stateTables, timeChart } from "./panels.js";
 import { makeHistory, packed, unpacked } from "./history.js";
 import { ask, makeLane } from "./answers.js";
 
@@ -316,14 +315,6 @@ function load(found, units, words = "") {
   changed(true);
 }
 
-function download(name, data, type) {
-  const link = element("a", { download: name, href: URL.createObjectURL(data instanceof Blob ? data : new Blob([data], { type })) });
-  document.body.append(link);
-  link.click();
-  link.remove();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-}
-
 async function save(form) {
   const answer = fixed ? report.exports[form] : await ask("export", { ...sent(), form, column: active });
   if (!answer?.text) { refuseToSave(); return; }
@@ -332,32 +323,17 @@ async function save(form) {
   say(`Saved ${answer.name}.${ending}`);
 }
 
-// What a panel shows: figures as svg or png, figures and tables as csv.
-async function savePanel(name, host, form) {
+// What a panel shows, if it belongs to the present input.
+async function savePanel(host, name, form) {
   const [panel] = Object.entries(PANELS).find(([, ids]) => ids.includes(host.closest("section").id)) ?? ["loops"];
-  const figures = [...host.querySelectorAll("svg:is(.chart, .drawing)")], found = host.querySelector("table");
   if (isOld(panel) || !stood.loops) { refuseToSave(); return; }
-  if (form === "csv") {
-    const rows = host.id === "near" ? rowsOfNear(stood.near.state, stood.near) : found ? rowsOfTable(found) : figures.flatMap(rowsOfChart);
-    download(`${name}.csv`, csvOf(rows), "text/csv");
-  } else for (const [i, svg] of figures.entries()) {
-    const file = `${name}${figures.length > 1 ? "_" + "ab"[i] : ""}.${form}`;
-    if (form === "svg") download(file, standalone(svg), "image/svg+xml");
-    else download(file, await asPng(svg));
-  }
+  await saveShown(host, name, form, host.id === "near" ? rowsOfNear(stood.near.state, stood.near) : null);
   say(`Saved ${name}.${form}`);
 }
 
-function addPanelButtons() {
-  const drawn = ["svg", "png"], panels = { draw: ["drawing", drawn], loops: ["loop", ["csv", ...drawn]], summary: ["figures", ["csv"]], states: ["limit_states", ["csv"]],
-    timepanel: ["history", ["csv", ...drawn]], scales: ["scales", ["csv", ...drawn]], curvature: ["moment_curvature", ["csv", ...drawn]],
-    interaction: ["interaction", ["csv", ...drawn]], near: ["nearest_tests", ["csv"]], codes: ["codes", ["csv"]] };
-  for (const [id, [name, forms]] of Object.entries(panels)) {
-    const title = get(id).querySelector("h2"), what = title.firstChild.textContent;
-    const buttons = forms.map(form => element("button", { type: "button", ariaLabel: `Save ${what} as ${form}`, title: `Save ${name}.${form}`, onclick: () => savePanel(name, get(id), form).catch(gone) }, form));
-    title.after(element("div", { className: "saves" }, ...buttons));
-  }
-}
+const FIGURE = ["csv", "svg", "png"];
+const SAVED = { draw: ["drawing", ["svg", "png"]], loops: ["loop", FIGURE], summary: ["figures", ["csv"]], states: ["limit_states", ["csv"]], timepanel: ["history", FIGURE], scales: ["scales", FIGURE],
+  curvature: ["moment_curvature", FIGURE], interaction: ["interaction", FIGURE], near: ["nearest_tests", ["csv"]], codes: ["codes", ["csv"]] };
 
 function refuseToSave() {
   note = "Nothing is saved: the input has errors.";
@@ -383,7 +359,7 @@ async function openRecord(file) {
 }
 
 function setUp() {
-  addPanelButtons();
+  for (const [id, [name, forms]] of Object.entries(SAVED)) addSaves(get(id), name, forms, form => savePanel(get(id), name, form).catch(gone));
   for (const id of Object.values(PANELS).flat()) get(id).querySelector("h2").append(element("span", { className: "age" }, "for an earlier input"));
   for (const [key, { label }] of Object.entries(SYSTEMS)) get("units").append(element("option", { value: key }, label));
   get("units").addEventListener("change", () => { system = get("units").value; showAll(); if (!fixed) putLink(); });
@@ -398,6 +374,7 @@ function setUp() {
   let wait = null;
   window.addEventListener("resize", () => { clearTimeout(wait); wait = setTimeout(() => { showLoops(); showSections(); }, 120); });
   if (fixed) return;
+  get("subtitle").after(element("a", { href: "frame.html", className: "other" }, "frames"));
   get("undo").addEventListener("click", () => restore(past.undo()));
   get("redo").addEventListener("click", () => restore(past.redo()));
   document.addEventListener("keydown", event => {

@@ -1,6 +1,6 @@
 // What the page shows of the answers: figures and tables.
 
-import { drawChart, markSign, svgElement } from "./chart.js";
+import { asPng, drawChart, markSign, rowsOfChart, standalone, svgElement } from "./chart.js";
 import { element } from "./fields.js";
 import { shown, unitOf } from "./units.js";
 
@@ -108,10 +108,35 @@ export function table(heads, rows, caption) {
   return element("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: caption || heads[0] }, made);
 }
 
-// Rows of a table on the page.
-export const rowsOfTable = made => [...made.rows].map(row => [...row.cells].map(cell => cell.textContent.trim()));
+// ---- what is saved ---------------------------------------------------------------------------------
 
-export function csvOf(rows) {
+export function download(name, data, type) {
+  const link = element("a", { download: name, href: URL.createObjectURL(data instanceof Blob ? data : new Blob([data], { type })) });
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+// Figures and tables of a panel: svg or png of each figure, or their numbers as csv.
+export async function saveShown(host, name, form, rows = null) {
+  const figures = [...host.querySelectorAll("svg:is(.chart, .drawing)")], found = host.querySelector("table");
+  if (form === "csv") download(`${name}.csv`, csvOf(rows ?? (found ? rowsOfTable(found) : figures.flatMap(rowsOfChart))), "text/csv");
+  else for (const [i, svg] of figures.entries()) {
+    const file = `${name}${figures.length > 1 ? "_" + "ab"[i] : ""}.${form}`;
+    download(file, form === "svg" ? standalone(svg) : await asPng(svg), "image/svg+xml");
+  }
+}
+
+export function addSaves(host, name, forms, take) {
+  const title = host.querySelector("h2"), what = title.firstChild.textContent;
+  title.after(element("div", { className: "saves" }, ...forms.map(form =>
+    element("button", { type: "button", ariaLabel: `Save ${what} as ${form}`, title: `Save ${name}.${form}`, onclick: () => take(form) }, form))));
+}
+
+const rowsOfTable = made => [...made.rows].map(row => [...row.cells].map(cell => cell.textContent.trim()));
+
+function csvOf(rows) {
   const cell = value => typeof value === "number" ? Number(value.toPrecision(6)) : String(value ?? "").replace(/−(?=\d)/g, "-");
   return rows.map(row => row.map(cell).map(text => /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text).join(",") + "\n").join("");
 }

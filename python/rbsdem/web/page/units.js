@@ -11,11 +11,12 @@ export const SYSTEMS = {
     stress: ["ksi", 6894757.293168], moment: ["kip in", 112.9848290276], curvature: ["1/in", 39.37007874015748],
     mass: ["kip (weight)", 453.59237], energy: ["kip in", 112.9848290276] },
 };
-for (const system of Object.values(SYSTEMS)) {
+for (const [key, system] of Object.entries(SYSTEMS)) {
+  system.line = { mm: ["kN/m", 1e3], m: ["kN/m", 1e3], si: ["N/m", 1], in: ["kip/ft", 14593.90293720636] }[key];
   system.turning = [`${system.moment[0]}/rad`, system.moment[1]];
   system.stiffness = [`${system.force[0]}/${system.length[0]}`, system.force[1] / system.length[1]];
 }
-const FIXED = { drift: ["%", 1e-2], number: ["", 1], ratio: ["", 1], drifts: ["%", 1e-2] };
+const FIXED = { drift: ["%", 1e-2], number: ["", 1], ratio: ["", 1], share: ["%", 1e-2] };
 
 export function unitOf(system, dimension) {
   return FIXED[dimension] ?? SYSTEMS[system][dimension];
@@ -70,9 +71,9 @@ export function barSize(system, diameter, way = 0) {
 }
 
 // A message of the program in the units of the page. Its bounds have no unit: they are in that of the field.
-const SI = { m: ["length", 1, 1], m2: ["length", 1, 2], N: ["force", 1, 1], Pa: ["stress", 1, 1], MPa: ["stress", 1e6, 1], kg: ["mass", 1, 1], "N m": ["moment", 1, 1] };
+const SI = { m: ["length", 1, 1], m2: ["length", 1, 2], N: ["force", 1, 1], Pa: ["stress", 1, 1], MPa: ["stress", 1e6, 1], kg: ["mass", 1, 1], "N m": ["moment", 1, 1], "N/m": ["line", 1, 1] };
 const NUMBER = "-?\\d+(?:\\.\\d+)?(?:e[+-]?\\d+)?";
-const QUANTITY = new RegExp(`(?<![\\w.'])(${NUMBER})(?: to (${NUMBER}))?(?: (m2|m|N m|N|Pa|MPa|kg)(?![\\w/2]))?`, "g");
+const QUANTITY = new RegExp(`(?<![\\w.'])(${NUMBER})(?: to (${NUMBER}))?(?: (m2|m|N m|N/m|N|Pa|MPa|kg)(?![\\w/2]))?`, "g");
 
 export function inUnits(text, system, dimension) {
   if (system === "si") return text;

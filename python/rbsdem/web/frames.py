@@ -1,0 +1,235 @@
+"""The frame of the page: storeys and bays of rectangular members, pushed under its dead load.
+
+A state is what JSON holds, in SI: storeys from the ground up, each with its height, columns and
+beams; widths of the bays; and the loads. What is wrong goes beside its field, as for columns.
+"""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rbsdem import _arguments
+from rbsdem._arguments import Array
+from rbsdem._tables import STANDARD_GRAVITY
+from rbsdem.errors import InputError, RbsdemError, SolveError
+from rbsdem.model.frame import Frame, FrameMember
+from rbsdem.model.frame_result import FrameResult
+from rbsdem.results.result import pushover
+from rbsdem.solve.analysis import modes
+from rbsdem.web.state import Faults, group
+
+#: The frame that the page begins with.
+DEFAULT: dict[str, Any] = {
+    "storeys": [
+        {
+            "height": 3.2,
+            "column": {"width": 0.4, "depth": 0.4, "moment": 250e3},
+            "beam": {"width": 0.3, "depth": 0.5, "moment": 200e3},
+        }
+        for _ in range(3)
+    ],
+    "bays": [6.0, 6.0, 6.0],
+    "modulus": 30e9,
+    "column_share": 0.7,
+    "beam_share": 0.35,
+    "hardening": 0.01,
+    "beam_load": 25e3,
+    "drift": 0.03,
+}
+
+#: Storeys and bays that a page shows, and pictures of the frame on its way.
+_MOST, _PICTURES = 6, 40
+#: Where along a member its deformed shape is drawn.
+_SHARES = np.linspace(0.0, 1.0, 7)
+
+
+#: Bounds of the numbers of a state.
+_BOUNDS: dict[str, dict[str, Any]] = {
+    "height": {"least": 1.0, "most": 20.0, "unit": "m"},
+    "bay": {"least": 1.0, "most": 50.0, "unit": "m"},
+    "width": {"least": 0.05, "most": 5.0, "unit": "m"},
+    "depth": {"least": 0.05, "most": 5.0, "unit": "m"},
+    "moment": {"above": 0.0, "unit": "N m"},
+    "modulus": {"least": 1e9, "most": 1e12, "unit": "Pa"},
+    "column_share": {"above": 0.0, "most": 1.0},
+    "beam_share": {"above": 0.0, "most": 1.0},
+    "hardening": {"least": 0.0, "most": 0.5},
+    "beam_load": {"least": 0.0, "unit": "N/m"},
+    "drift": {"least": 0.001, "most": 0.2},
+}
+
+
+def frame_of(state: Mapping[str, Any], faults: Faults) -> Frame | None:
+    """Make the frame of a state; None if something is wrong with it."""
+
+    def read(given: Any, name: str, field: str, where: str = "") -> float:
+        try:
+            return _arguments.number(given, name, **_BOUNDS[name])
+        except InputError as error:
+            faults.add(field, f"{error}{where}")
+            return 1.0
+
+    def member(storey: Any, what: str, where: str) -> FrameMember:
+        given = group(storey, what)
+        width, depth, moment = (
+            read(given[name], name, f"{what}.{name}", where)
+            for name in ("width", "depth", "moment")
+        )
+        return FrameMember(
+            values["modulus"],
+            width * depth,
+            values[f"{what}_share"] * width * depth**3 / 12.0,
+            yield_moment=moment,
+            hardening=values["hardening"],
+        )
+
+    values = {
+        name: read(state.get(name), name, f"frame.{name}")
+        for name in ("modulus", "column_share", "beam_share", "hardening", "beam_load", "drift")
+    }
+    bays = [read(bay, "bay", "frame.bays") for bay in _listed(state, "bays", faults)]
+    heights = []
+    columns, beams = {}, {}
+    for level, given in enumerate(_listed(state, "storeys", faults), 1):
+        storey, where = given if isinstance(given, Mapping) else {}, f" (storey {level})"
+        heights.append(read(storey.get("height"), "height", "frame.storeys", where))
+        columns[0, level] = member(storey, "column", where)
+        beams[0, level] = member(storey, "beam", where)
+    if faults.listed:
+        return None
+    load = values["beam_load"]
+    with faults.of("frame", "beam_load"):
+        return Frame.grid(
+            heights,
+            bays,
+            columns=columns,
+            beams=beams,
+            beam_load=load,
+            floor_mass=load * sum(bays) / STANDARD_GRAVITY,
+            kinematics="pdelta",
+        )
+    return None
+
+
+def _listed(state: Mapping[str, Any], name: str, faults: Faults) -> list[Any]:
+    given = state.get(name)
+    if isinstance(given, list) and 1 <= len(given) <= _MOST:
+        return given
+    faults.add(f"frame.{name}", f"give 1 to {_MOST} of them")
+    return []
+
+
+def pushed(state: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the frame of a state, pushed to one side: curve, pictures on the way, hinges."""
+    faults, stopped = Faults(), ""
+    try:
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            made = frame_of(state, faults)
+            if made is None:
+                return {"faults": faults.listed}
+            result = pushover(made, drift=state["drift"], points=_PICTURES)
+    except RbsdemError as error:
+        if not isinstance(error, SolveError) or error.result is None:
+            member = re.search(r"of member ([\w-]+)", str(error))
+            text = (
+                f"the frame does not carry its dead load{f' ({member[1]})' if member else ''}: "
+                "give less load, or larger yield moments"
+            )
+            return {"faults": [{"field": "frame.beam_load", "text": text}]}
+        result, stopped = error.result, str(error)
+    frame, parts = result.frame, result.frame.parts
+    rows = np.flatnonzero(result.time == np.rint(result.time))
+    loading = f"&loading drive = 'displacement', values = {state['drift'] * frame.height:.10g} /\n"
+    return {
+        "faults": [],
+        "notes": [str(one.message) for one in told],
+        "stopped": stopped,
+        "height": frame.height,
+        "weight": parts.mass * STANDARD_GRAVITY,
+        "period": float(modes(frame, 1).period[0]) if parts.mass > 0.0 else None,
+        "displacement": _rounded(result.displacement),
+        "base_shear": _rounded(result.base_shear),
+        "pictures": rows.tolist(),
+        "members": list(parts.members),
+        "still": _rounded(_still(frame)),
+        "moved": _rounded(_moved(result, rows)),
+        "ductility": _ductility(result, rows).tolist(),
+        "springs": [
+            [parts.members.index(spring.member), spring.place]
+            for spring in parts.springs_of("flexure")
+        ],
+        "storey_drift": _rounded(np.asarray(result.storey_drift)[rows], 4),
+        "events": [
+            {
+                "member": event.member,
+                "end": event.end,
+                "drift": event.drift,
+                "force": event.force,
+            }
+            for event in result.events
+        ],
+        "case": frame.to_namelist() + loading,
+    }
+
+
+def _still(frame: Frame) -> Array:
+    """Return points along the members, shape (members, points, 2) [m]."""
+    ends = np.column_stack((frame.parts.x, frame.parts.y))[frame.parts.ends]
+    return np.asarray(ends[:, :1] + np.einsum("p,mj->mpj", _SHARES, ends[:, 1] - ends[:, 0]))
+
+
+def _moved(result: FrameResult, rows: NDArray[np.intp]) -> Array:
+    """Return the displacements of points along the members, shape (rows, members, points, 2) [m].
+
+    A member is the cubic line between the rotations of its ends; in sections that yield the
+    rotation beyond the elastic one is a kink at the node.
+    """
+    parts = result.frame.parts
+    nodes = np.column_stack((parts.x, parts.y))[parts.ends]
+    length = np.hypot(*(nodes[:, 1] - nodes[:, 0]).T)
+    axis = (nodes[:, 1] - nodes[:, 0]) / length[:, None]
+    normal = np.column_stack((axis[:, 1], -axis[:, 0]))
+    moved = np.stack((result.x[rows], result.y[rows]), axis=-1)[:, parts.ends]
+    springs = parts.springs_of("flexure")
+    stiffness = np.array([spring.stiffness for spring in springs])
+    plastic = result.springs["rotation"][rows] - result.springs["moment"][rows] / stiffness
+    # Three sections a member: at its start, in the middle, at its end.
+    kinks = plastic.reshape(len(rows), len(parts.members), 3)[:, :, ::2]
+    slopes = length[:, None] * (result.turn[rows][:, parts.ends] + kinks * (1, -1))
+    along, across = (np.einsum("rmej,mj->rme", moved, way) for way in (axis, normal))
+    s = _SHARES
+    bent = (
+        np.multiply.outer(across[..., 0], 1 - 3 * s**2 + 2 * s**3)
+        + np.multiply.outer(slopes[..., 0], s - 2 * s**2 + s**3)
+        + np.multiply.outer(across[..., 1], 3 * s**2 - 2 * s**3)
+        + np.multiply.outer(slopes[..., 1], s**3 - s**2)
+    )
+    stretched = np.multiply.outer(along[..., 0], 1 - s) + np.multiply.outer(along[..., 1], s)
+    return np.asarray(stretched[..., None] * axis[:, None] + bent[..., None] * normal[:, None])
+
+
+def _ductility(result: FrameResult, rows: NDArray[np.intp]) -> Array:
+    """Return the largest rotation of each section so far over that at yield, rounded down."""
+    frame = result.frame
+    yields = np.array(
+        [
+            (frame.kind_of(spring.member).yield_moment or np.inf) / spring.stiffness
+            for spring in frame.parts.springs_of("flexure")
+        ]
+    )
+    reached = np.maximum.accumulate(np.abs(result.springs["rotation"]), axis=0)
+    return np.asarray(np.floor(1e3 * reached[rows] / yields + 1e-6) / 1e3)
+
+
+def _rounded(values: Array, digits: int = 5) -> Any:
+    """Return an array for JSON with some digits of its largest value."""
+    largest = float(np.max(np.abs(values), initial=0.0))
+    places = digits - 1 - int(np.floor(np.log10(largest))) if largest > 0.0 else 0
+    return np.round(values, places).tolist()
