@@ -103,7 +103,8 @@ def main(number: int) -> None:
         column(),
         records,
         intensity="pga",
-        levels=fragility.Hunt(resolution=RESOLUTION, points=1, yielding=False),
+        levels=fragility.Hunt(resolution=RESOLUTION, points=1),
+        refine=[],
         method="newmark",
         dt=STEP,
     )

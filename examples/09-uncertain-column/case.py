@@ -54,9 +54,9 @@ sample = uncertain.sample(COLUMNS, method="sobol", seed=1)
 records = motions.synthetic(RECORDS)
 settings = {"method": "newmark", "dt": 0.005, "period": period, "collapse_drift": 0.05}
 
-hunt = fragility.Hunt(points=1, yielding=False)
-found = rbsdem.ida(sample.columns, records, levels=hunt, **settings)
-alone = rbsdem.ida(median, records, levels=hunt, **settings)
+hunt = fragility.Hunt(points=1)
+found = rbsdem.ida(sample.columns, records, levels=hunt, refine=[], **settings)
+alone = rbsdem.ida(median, records, levels=hunt, refine=[], **settings)
 split = fragility.variance_split(found.collapse_intensity)
 print(f"{COLUMNS} columns, {RECORDS} records, {len(found.runs)} runs, Sa({period:.2f} s)")
 for name in ("record", "model", "residual", "total"):

@@ -226,9 +226,24 @@ def test_frequency_under_a_power_law(k):
     assert FOUND.mean_annual_frequency(hazard) == pytest.approx(wanted, rel=1e-12)
 
 
+def test_intensity_of_an_exceedance():
+    """2 % in 50 years is -ln(0.98)/50 a year; the power laws and the curve are turned round."""
+    x = np.array([0.5, 1.0, 3.0, 9.0])
+    hazard = Hazard(x, [0.1, 0.02, 1e-3, 1e-4])
+    rate = -np.log1p(-0.02) / 50
+    for given in ("2 % in 50 years", "2% in 50 yrs", (0.02, 50), rate, f"{1 / rate:.12f} years"):
+        assert hazard.exceeded(hazard.intensity(given)) == pytest.approx(rate, rel=1e-9)
+    assert [hazard.intensity(each) for each in hazard.frequencies] == pytest.approx(x, rel=1e-12)
+    with pytest.warns(AccuracyWarning, match="beyond its points"):
+        assert hazard.exceeded(hazard.intensity(1e-6)) == pytest.approx(1e-6)
+    p = np.array([0.02, 0.5, 0.9])
+    assert FOUND.probability(FOUND.intensity(p)) == pytest.approx(p, rel=1e-12)
+    assert FOUND.intensity(0.5) == pytest.approx(FOUND.theta)
+
+
 def by_quadrature(hazard: Hazard, mu: float, beta: float) -> float:
     """Return the hazard times the density of ln capacity, by Gauss's rule on panels of beta/4."""
-    x, y = np.log(hazard.intensity), np.log(hazard.frequency)
+    x, y = np.log(hazard.intensities), np.log(hazard.frequencies)
     slope = np.diff(y) / np.diff(x)
     low, high = mu - beta * (40 - beta * slope.min()), mu + 40 * beta
     ends = np.union1d(np.linspace(low, high, int(4 * (high - low) / beta)), x)
@@ -252,7 +267,7 @@ def test_frequency_under_steep_hazards():
         drops = np.minimum(random.exponential(2.0, n) + 1e-6, 30 * gaps)
         hazard = Hazard(np.exp(np.cumsum(gaps) - 2), np.exp(-np.cumsum(drops)))
         mu, beta = random.normal(0, 1.5), np.exp(random.uniform(np.log(0.02), 0))
-        assert hazard.exceeded(hazard.intensity) == pytest.approx(hazard.frequency, rel=1e-12)
+        assert hazard.exceeded(hazard.intensities) == pytest.approx(hazard.frequencies, rel=1e-12)
         wanted = by_quadrature(hazard, mu, beta)
         assert hazard.frequency_of(mu, beta) == pytest.approx(wanted, rel=1e-9)
 

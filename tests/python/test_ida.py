@@ -156,18 +156,28 @@ def test_several_columns_split_the_variance(records):
     assert split.total > 0
 
 
-def test_the_first_yield_is_bracketed(records):
-    """The base yields where its elastic moment is that of the spring, within 5 % of intensity."""
-    found = rbsdem.ida(softening(), records, method="newmark", levels=Hunt(points=3))
-    data = found.capacities("first_yield")
-    assert data.known
-    assert (data.upper < found.lower[0]).all()
-    for place, record in enumerate(records):
-        at = data.values[place] / record.sa(found.runs.measure.period)
-        result = rbsdem.time_history(
-            softening(), ground_acceleration=record.scaled(at), method="newmark"
-        )
-        assert np.abs(result.rotation).max() == pytest.approx(0.004, rel=0.05)
+def test_limit_states_are_bracketed(records):
+    """The base is at its yield and at its cap where its rotation is that, within 5 %."""
+    rotations = {"first_yield": 0.004, "cap": 0.03}
+    few, names = Hunt(points=3), list(rotations)
+    found = rbsdem.ida(softening(), records, method="newmark", levels=few, refine=names)
+    for name, rotation in rotations.items():
+        data = found.capacities(name)
+        assert data.known
+        assert (data.upper < found.upper[0]).all()
+        assert found.fragility(name).theta == pytest.approx(np.exp(np.log(data.values).mean()))
+        for place, record in enumerate(records):
+            unit = record.sa(found.runs.measure.period)
+            low, high = (
+                rbsdem.time_history(
+                    softening(), ground_acceleration=record.scaled(at / unit), method="newmark"
+                )
+                for at in (data.lower[place], data.upper[place])
+            )
+            assert np.abs(low.rotation).max() < rotation <= np.abs(high.rotation).max() * (1 + 1e-9)
+    plain = rbsdem.ida(softening(), records, method="newmark", levels=few, refine=[])
+    assert not plain.capacities("first_yield").known
+    assert len(plain.runs) < len(found.runs)
 
 
 def test_the_scale_of_the_records_does_not_matter(column, records, hunted):
@@ -266,5 +276,6 @@ def test_cloud_counts_collapses(records):
     beyond = norm.cdf((line.a + line.b * np.log(x) - np.log(0.02)) / line.sigma)
     assert curve.probability(x) == pytest.approx(collapse + (1 - collapse) * beyond, rel=1e-12)
     assert found.fragility("collapse").probability(x) == pytest.approx(collapse, rel=1e-12)
+    assert curve.intensity(curve.probability(x)) == pytest.approx(x, rel=1e-9)
     low, high = curve.band(x, n=100)
     assert (low <= high).all()

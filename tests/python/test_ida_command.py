@@ -29,7 +29,18 @@ def folder(tmp_path_factory) -> Path:
 def test_files_and_report(folder, tmp_path, capsys):
     pytest.importorskip("pyarrow")
     out = tmp_path / "new" / "ida"
-    words = [str(CASE), str(folder), *FEW, "--limit", "repair=0.01", "--parquet"]
+    words = [
+        str(CASE),
+        str(folder),
+        *FEW,
+        "--limit",
+        "repair=0.01",
+        "--limit",
+        "cap",
+        "--beta",
+        "cap=0.4",
+        "--parquet",
+    ]
     assert main(["ida", *words, "--out", str(out)]) == 0
     names = ["fractiles.csv", "fragility.csv", "fragility.png", "ida.csv", "ida.parquet", "ida.png"]
     assert sorted(path.name for path in out.iterdir()) == names
@@ -45,6 +56,7 @@ def test_files_and_report(folder, tmp_path, capsys):
     repair = found.fragility("peak_drift", 0.01)
     assert float(curves["repair"]["theta_m/s2"]) == pytest.approx(repair.theta, rel=1e-5)
     assert float(curves["repair"]["beta"]) == pytest.approx(repair.beta, rel=1e-5)
+    assert 6 < float(curves["cap"]["theta_m/s2"]) < 30
     assert len(read_rows(out / "fractiles.csv")) == 50
     printed = capsys.readouterr().out
     assert "Sa(0.61 s, 5 %) (m/s²): 4 records, 12 runs" in printed

@@ -187,7 +187,8 @@ def test_collapse_intensity_against_scipy():
         softening(),
         chosen,
         intensity="pga",
-        levels=Hunt(resolution=0.005, points=1, yielding=False),
+        levels=Hunt(resolution=0.005, points=1),
+        refine=[],
         method="newmark",
         dt=0.001,
     )

@@ -17,6 +17,7 @@ import numpy as np
 from rbsdem._files import save_frame, write_figure
 from rbsdem._package import extra
 from rbsdem._tables import read_table
+from rbsdem.checks.criteria import WATCHED
 from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
 from rbsdem.errors import InputError, RepairWarning
 from rbsdem.many.ensemble import ensemble as run_ensemble
@@ -35,7 +36,7 @@ from rbsdem.output import many as ensemble_figures
 from rbsdem.output import methods as methods_output
 from rbsdem.output import tables
 from rbsdem.results.case import Case, read_case
-from rbsdem.solve.solver import Solver
+from rbsdem.solve.solver import COLLAPSE_DRIFT, Solver
 from rbsdem.web.answers import NearestTests
 from rbsdem.web.exports import drawing_in, opened
 from rbsdem.web.report import report as report_record
@@ -46,8 +47,6 @@ from rbsdem.web.state import DEFAULT
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Collapse drift of an IDA if the case has none.
-_DRIFT = 0.1
 
 _units = click.option("--units", help="unit of records that name none: g, m/s2, cm/s2")
 _jobs = click.option("--jobs", type=int, metavar="N", help="threads; default one per processor")
@@ -252,9 +251,13 @@ def _part(text: str) -> tuple[int, int]:
 @_units
 @click.option("--intensity", default="sa_t1", help=f"{', '.join(NAMES)}; default sa_t1")
 @click.option("--levels", default="hunt", metavar="A,B", help="m/s2; default: found by search")
-@click.option("--limit", multiple=True, metavar="NAME=DRIFT", help="limit state: repair=0.01")
+@click.option(
+    "--limit", multiple=True, metavar="NAME[=DRIFT]", help="limit state: repair=0.01, spalling"
+)
 @click.option("--beta", multiple=True, metavar="NAME=BETA", help="stated dispersion: yield=0.4")
-@click.option("--collapse-drift", type=float, metavar="X", help=f"default: the case, else {_DRIFT}")
+@click.option(
+    "--collapse-drift", type=float, metavar="X", help=f"default: the case, else {COLLAPSE_DRIFT}"
+)
 @click.option("--method", help="method in time; default that of the case")
 @click.option("--dt", type=float, metavar="S", help="step; default that of the case")
 @click.option("--hazard", type=FILE, metavar="FILE", help="csv of intensity, annual frequency")
@@ -301,9 +304,11 @@ def ida(
     motions = _records(list(map(str, records)), units)
     if out is not None:
         out.mkdir(parents=True, exist_ok=True)
+    watched = [name for name in limits if name in WATCHED]
     analysis = run_ida(
         model.column,
         motions,
+        refine=["first_yield", *watched],
         intensity=intensity,
         levels=levels if levels == "hunt" else _numbers(levels, "--levels", example),
         jobs=jobs,
@@ -335,7 +340,7 @@ def _ida_settings(
         settings["dt"] = dt
     if "initial" in case.settings:
         settings["initial"] = case.settings["initial"]
-    drift = case.settings.get("collapse_drift", _DRIFT)
+    drift = case.settings.get("collapse_drift", COLLAPSE_DRIFT)
     return settings | {"collapse_drift": drift if collapse_drift is None else collapse_drift}
 
 
@@ -344,9 +349,15 @@ def _limits(texts: Sequence[str]) -> dict[str, Any]:
     limits: dict[str, Any] = {"yield": ("first_yield", None)}
     for text in texts:
         name, drift = _named_number(text)
-        if not (name and 0 < drift < 1):
-            raise InputError(f"--limit {text}: give a name and a drift, as repair=0.01")
-        limits[name] = drift
+        if text in WATCHED:
+            limits[text] = (text, None)
+        elif name and 0 < drift < 1:
+            limits[name] = drift
+        else:
+            raise InputError(
+                f"--limit {text}: give a name and a drift, as repair=0.01, or one of "
+                f"{', '.join(WATCHED)}"
+            )
     return limits | {"collapse": ("collapse", None)}
 
 

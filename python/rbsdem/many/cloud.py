@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem.errors import InputError
-from rbsdem.many.fragility import Fragile, Fragility, Hazard
+from rbsdem.many.fragility import Fragile, Fragility, Hazard, checked_probability
 from rbsdem.many.inputs import is_switch
 from rbsdem.many.runs import RunOptions, Runs, make_collector, motions_by_name
 from rbsdem.model.frame import Structure
@@ -167,6 +167,25 @@ class CloudFragility(Fragility):
             u = np.log(np.asarray(intensity, dtype=float))
         return np.asarray(self.data.curve(self.data.parts(), u))
 
+    def intensity(self, probability: ArrayLike) -> Array:
+        """Return the intensities at which the limit state has given probabilities."""
+        from scipy import optimize  # noqa: PLC0415
+
+        p, parts = checked_probability(probability), self.data.parts()
+        middle, found = float(np.log(self.theta)), np.empty(p.size)
+        ends = np.array([middle - 4 * _REACH, middle + 4 * _REACH])
+        reached = self.data.curve(parts, ends)
+        for i, each in enumerate(p.ravel()):
+            if not reached[0] < each < reached[1]:
+                raise InputError(
+                    f"probability = {each:g} is reached at no intensity near the runs; their "
+                    f"curve goes from {reached[0]:.3g} to {reached[1]:.3g}"
+                )
+            found[i] = optimize.brentq(
+                lambda u, each=each: float(self.data.curve(parts, np.array([u]))[0]) - each, *ends
+            )
+        return np.exp(found).reshape(p.shape)
+
     def samples(self, n: int = 1000, seed: int = 1) -> tuple[Array, Array]:
         """Return theta and beta of bootstrap samples of the runs, each of shape (n,)."""
         ends = [_theta_beta(data, data.parts()) for data in self._draws(n, seed)]
@@ -191,9 +210,9 @@ class CloudFragility(Fragility):
         """
         if not isinstance(hazard, Hazard):
             raise InputError(
-                f"hazard = {hazard!r} must be a Hazard; Hazard(intensity, frequency) makes one"
+                f"hazard = {hazard!r} must be a Hazard; Hazard(intensities, frequencies) makes one"
             )
-        first = float(np.log(hazard.intensity[0]))
+        first = float(np.log(hazard.intensities[0]))
         u = np.linspace(first, max(first, float(np.log(self.theta))) + _REACH, 4 * _GRID)
         rate = hazard.exceeded(np.exp(u))
         middle = self.data.curve(self.data.parts(), 0.5 * (u[1:] + u[:-1]))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
@@ -33,9 +35,9 @@ class Hazard:
 
     Parameters
     ----------
-    intensity : array_like, shape (m,)
+    intensities : array_like, shape (m,)
         Intensities, ascending, in the unit of the fragility: m/s2 for accelerations.
-    frequency : array_like, shape (m,)
+    frequencies : array_like, shape (m,)
         Mean annual frequencies of their exceedance, descending.
 
     Raises
@@ -44,12 +46,12 @@ class Hazard:
         With a line for everything that is wrong.
     """
 
-    intensity: Array
-    frequency: Array
+    intensities: Array
+    frequencies: Array
 
-    def __init__(self, intensity: ArrayLike, frequency: ArrayLike) -> None:
-        im = np.array(_arguments.finite_vector(intensity, "hazard: intensity"))
-        rate = np.array(_arguments.finite_vector(frequency, "hazard: frequency"))
+    def __init__(self, intensities: ArrayLike, frequencies: ArrayLike) -> None:
+        im = np.array(_arguments.finite_vector(intensities, "hazard: intensities"))
+        rate = np.array(_arguments.finite_vector(frequencies, "hazard: frequencies"))
         faults = []
         if im.size != rate.size or im.size < 2:
             faults.append(
@@ -62,17 +64,52 @@ class Hazard:
             faults.append("hazard: frequencies must be above 0 and descend strictly")
         if faults:
             raise InputError("\n".join(faults))
-        for name, values in (("intensity", im), ("frequency", rate)):
+        for name, values in (("intensities", im), ("frequencies", rate)):
             values.flags.writeable = False
             object.__setattr__(self, name, values)
 
     def exceeded(self, intensity: ArrayLike) -> Array:
         """Return the mean annual frequency with which intensities are exceeded."""
         u = np.log(_arguments.vector(intensity, "intensity", shape="any"))
-        x, y = np.log(self.intensity), np.log(self.frequency)
+        x, y = np.log(self.intensities), np.log(self.frequencies)
         place = np.clip(np.searchsorted(x, u) - 1, 0, x.size - 2)
         slope = np.diff(y) / np.diff(x)
         return np.asarray(np.exp(y[place] + slope[place] * (u - x[place])))
+
+    def intensity(self, exceedance: str | float | tuple[float, float]) -> float:
+        """Return the intensity that is exceeded with a probability or as often as is said.
+
+        Parameters
+        ----------
+        exceedance : str, float or pair of floats
+            "2 % in 50 years", or the same as a pair (0.02, 50) of probability and years, whose mean
+            annual frequency -ln(1 - p)/years is that of a Poisson process; "475 years", a return
+            period; or a mean annual frequency.
+
+        Warns
+        -----
+        AccuracyWarning
+            If the intensity is beyond the points of the hazard.
+
+        Raises
+        ------
+        InputError
+            If a text has another form, or a number is out of its range.
+        """
+        rate = _annual_frequency(exceedance)
+        x, y = np.log(self.intensities), np.log(self.frequencies)
+        place = int(np.clip(np.searchsorted(-y, -np.log(rate)) - 1, 0, x.size - 2))
+        slope = (x[place + 1] - x[place]) / (y[place + 1] - y[place])
+        found = float(np.exp(x[place] + slope * (np.log(rate) - y[place])))
+        if not self.frequencies[-1] <= rate <= self.frequencies[0]:
+            warnings.warn(
+                f"hazard: a frequency of {rate:.4g} a year is beyond its points "
+                f"({self.frequencies[0]:g} to {self.frequencies[-1]:g}); the power law of the "
+                "nearest two is followed",
+                AccuracyWarning,
+                stacklevel=2,
+            )
+        return found
 
     def frequency_of(self, mu: float, beta: float) -> float:
         """Return how often a year a limit state is reached whose fragility is lognormal.
@@ -103,7 +140,7 @@ class Hazard:
             )
         from scipy import special  # noqa: PLC0415
 
-        x, y = np.log(self.intensity), np.log(self.frequency)
+        x, y = np.log(self.intensities), np.log(self.frequencies)
         slope = np.diff(y) / np.diff(x)
 
         def part(low: float, high: float, segment: int) -> float:
@@ -116,18 +153,47 @@ class Hazard:
             before, behind = part(-np.inf, x[0], 0), part(x[-1], np.inf, -1)
         total = before + sum(inside) + behind
         # Of intensities, not of capacities: those beyond a point fail with all capacities below it.
-        failed = special.ndtr((x[[0, -1]] - mu) / beta) * self.frequency[[0, -1]]
+        failed = special.ndtr((x[[0, -1]] - mu) / beta) * self.frequencies[[0, -1]]
         beyond = before - failed[0] + behind + failed[1]
         share = beyond / total if 0.0 < total < np.inf else float(total > 0.0)
         if share > _BEYOND:
             warnings.warn(
                 f"hazard: {100 * share:.0f} % of the mean annual frequency come from "
-                f"intensities beyond its points ({self.intensity[0]:g} to "
-                f"{self.intensity[-1]:g}); give it a wider range",
+                f"intensities beyond its points ({self.intensities[0]:g} to "
+                f"{self.intensities[-1]:g}); give it a wider range",
                 AccuracyWarning,
                 stacklevel=3,
             )
         return float(total)
+
+
+#: "2 % in 50 years", and "475 years".
+_PROBABILITY = re.compile(r"\s*([\d.]+)\s*%\s*in\s*([\d.]+)\s*(?:years?|yrs?|a)?\s*", re.IGNORECASE)
+_RETURN_PERIOD = re.compile(r"\s*([\d.]+)\s*(?:years?|yrs?|a)\s*", re.IGNORECASE)
+
+
+def _annual_frequency(exceedance: Any) -> float:
+    """Return the mean annual frequency of what `Hazard.intensity` takes."""
+    who = "hazard: exceedance"
+    if isinstance(exceedance, str):
+        named, period = _PROBABILITY.fullmatch(exceedance), _RETURN_PERIOD.fullmatch(exceedance)
+        try:
+            if named is not None:
+                return _annual_frequency((float(named[1]) / 100.0, float(named[2])))
+            if period is not None:
+                return 1.0 / _arguments.number(float(period[1]), f"{who}: years", above=0)
+        except ValueError as error:
+            if isinstance(error, InputError):
+                raise
+        raise InputError(
+            f"{who} = {_arguments.shown(exceedance)} must be like '2 % in 50 years' or '475 years'"
+        )
+    if not isinstance(exceedance, (tuple, list)):
+        return _arguments.number(exceedance, f"{who}: annual frequency", above=0)
+    if len(exceedance) != 2:
+        raise InputError(f"{who} has {len(exceedance)} numbers; give probability and years")
+    p = _arguments.number(exceedance[0], f"{who}: probability", above=0, below=1)
+    return -math.log1p(-p) / _arguments.number(exceedance[1], f"{who}: years", above=0)
 
 
 def _part(
@@ -268,6 +334,15 @@ class Capacities:
         return self.lower.size
 
 
+def checked_probability(probability: ArrayLike) -> Array:
+    """Return probabilities that are above 0 and below 1."""
+    p = _arguments.vector(probability, "probability", shape="any")
+    wrong = p[~((p > 0) & (p < 1))]
+    if wrong.size:
+        raise InputError(f"probability = {wrong[0]:g} must be above 0 and below 1, as 0.5")
+    return p
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Fragility:
     """A lognormal fragility curve.
@@ -308,6 +383,13 @@ class Fragility:
                 / self.beta
             )
         return np.asarray(special.ndtr(z))
+
+    def intensity(self, probability: ArrayLike) -> Array:
+        """Return the intensities at which the limit state has given probabilities."""
+        from scipy import special  # noqa: PLC0415
+
+        p = checked_probability(probability)
+        return np.asarray(self.theta * np.exp(self.beta * special.ndtri(p)))
 
     def samples(self, n: int = 1000, seed: int = 1) -> tuple[Array, Array]:
         """Return theta and beta of bootstrap samples of the records, each of shape (n,).
@@ -383,7 +465,7 @@ class Fragility:
         """
         if not isinstance(hazard, Hazard):
             raise InputError(
-                f"hazard = {hazard!r} must be a Hazard; Hazard(intensity, frequency) makes one"
+                f"hazard = {hazard!r} must be a Hazard; Hazard(intensities, frequencies) makes one"
             )
         return hazard.frequency_of(float(np.log(self.theta)), self.beta)
 

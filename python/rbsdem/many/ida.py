@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from rbsdem import _arguments
 from rbsdem._arguments import Array
 from rbsdem._files import Reported
+from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import InputError
 from rbsdem.many.fragility import Capacities, Counts, Fragile, Fragility, fit_fragility
 from rbsdem.many.inputs import Measure, is_switch, limit_states, measures_in_a_list
@@ -40,9 +41,8 @@ if TYPE_CHECKING:
 
 _SMALLEST = 1e-4
 _MOST_REPAIRS = 5
-_YIELD = "measure first_yield"
-#: Ratio of the bounds of the first yield; closer, they count as known (`fragility.NARROW`).
-_YIELD_WIDTH = 1.05
+#: Ratio of the bounds of a limit state; closer, they count as known (`fragility.NARROW`).
+_WIDTH = 1.05
 
 
 @dataclass(frozen=True)
@@ -61,9 +61,6 @@ class Hunt:
         Runs without collapse on each curve, at least.
     highest : float, optional
         Intensity at which the search ends without a collapse [m/s2].
-    yielding : bool, optional
-        Whether to search for the first yield of a spring too, to within 5 %, if the measure
-        "first_yield" is kept.
 
     Raises
     ------
@@ -76,7 +73,6 @@ class Hunt:
     resolution: float = 0.02
     points: int = 10
     highest: float = 200.0
-    yielding: bool = True
 
     def __post_init__(self) -> None:
         faults = []
@@ -91,7 +87,6 @@ class Hunt:
             object.__setattr__(self, name, value)
             if not least < value <= most:
                 faults.append(f"hunt: {name} = {value:g} must be above {least:g}, at most {most:g}")
-        _arguments.boolean(self.yielding, "hunt: yielding")
         if _arguments.integer(self.points, "hunt: points") < 1 or self.points > 1000:
             faults.append(f"hunt: points = {self.points} must be from 1 to 1000")
         if not faults and self.first > self.highest:
@@ -100,7 +95,7 @@ class Hunt:
             raise InputError("\n".join(faults))
 
 
-def hunt_and_fill(work: Collector, hunt: Hunt) -> tuple[Array, Array]:
+def hunt_and_fill(work: Collector, hunt: Hunt, refine: Sequence[str]) -> tuple[Array, Array]:
     """Find the collapses and fill the curves.
 
     Parameters
@@ -109,6 +104,8 @@ def hunt_and_fill(work: Collector, hunt: Hunt) -> tuple[Array, Array]:
         Makes the runs and keeps them.
     hunt : Hunt
         How.
+    refine : sequence of str
+        Limit states among the measures, each of which is found to within 5 % too.
 
     Returns
     -------
@@ -124,10 +121,10 @@ def hunt_and_fill(work: Collector, hunt: Hunt) -> tuple[Array, Array]:
             break
         # A gap that was filled held a collapse at a lower intensity.
         _narrow(work, hunt, low, high)
-    # Layered joints have no one yield point.
-    known = any(_YIELD in part and np.isfinite(part[_YIELD]).any() for part in work.parts)
-    if hunt.yielding and known:
-        _narrow_yield(work, low)
+    # A column may have no such limit state, as without bars that could fracture.
+    measured = (f"measure {name}" for name in refine)
+    found = [m for m in measured if any(np.isfinite(part[m]).any() for part in work.parts)]
+    _narrow_states(work, low, found)
     return low, high
 
 
@@ -164,22 +161,26 @@ def _narrow(work: Collector, hunt: Hunt, low: Array, high: Array) -> None:
         low[wide & ~collapsed] = level[wide & ~collapsed]
 
 
-def _narrow_yield(work: Collector, low: Array) -> None:
-    """Halve the intervals in which a spring yields first, below the collapses."""
-    while True:
-        level = np.full(low.shape, np.nan)
+def _narrow_states(work: Collector, low: Array, states: Sequence[str]) -> None:
+    """Halve the intervals in which limit states are first reached, below the collapses."""
+    while states:
+        level = np.full((*low.shape, len(states)), np.nan)
         for column, motion in np.ndindex(low.shape):
-            tried, at, status = work.tried(column, motion, "intensity", _YIELD, "status")
-            yielded = np.isfinite(at) | np.isin(status, LOST)
-            if not yielded.any():
-                continue
-            first = tried[yielded].min()
-            last = max([0.0, *tried[tried < first]])
-            if first > _YIELD_WIDTH * last and first > _SMALLEST:
-                level[column, motion] = np.sqrt(last * first) if last > 0 else 0.5 * first
+            tried, status, *at = work.tried(column, motion, "intensity", "status", *states)
+            lost = np.isin(status, LOST)
+            for i, reached in enumerate(np.isfinite(each) | lost for each in at):
+                if not reached.any():
+                    continue
+                first = tried[reached].min()
+                last = max([0.0, *tried[tried < first]])
+                if first > _WIDTH * last and first > _SMALLEST:
+                    level[column, motion, i] = np.sqrt(last * first) if last > 0 else 0.5 * first
+            # States that are first reached in one interval ask for one run.
+            _, place = np.unique(level[column, motion], return_index=True)
+            level[column, motion, np.setdiff1d(np.arange(len(states)), place)] = np.nan
         if np.isnan(level).all():
             return
-        work.run(level[:, :, None])
+        work.run(level)
 
 
 def _fill(work: Collector, hunt: Hunt, low: Array, high: Array) -> bool:
@@ -368,6 +369,7 @@ def ida(
     motions: GroundMotion | Sequence[GroundMotion] | Mapping[str, GroundMotion],
     *,
     levels: ArrayLike | Literal["hunt"] | Hunt = "hunt",
+    refine: Sequence[str] | None = None,
     **options: Unpack[RunOptions],
 ) -> IDA:
     """Run an incremental dynamic analysis: every motion at growing intensity.
@@ -381,6 +383,10 @@ def ida(
     levels : array_like, "hunt" or Hunt, optional
         Intensities of the runs [m/s2], or a search for the collapse of each record, whose
         settings are those of `Hunt`.
+    refine : sequence of str, optional
+        Limit states that the search finds to within 5 % too, as ``["first_yield", "spalling"]``;
+        they are then among the measures, with given levels too. The default is "first_yield"
+        if that is a measure; ``[]`` leaves all to the runs made for the collapse.
     **options
         See `rbsdem.many.runs.RunOptions`: intensity, period, damping, collapse_drift, measures,
         initial, jobs, progress, store; and the settings of the method, see `rbsdem.Solver`. With
@@ -401,9 +407,11 @@ def ida(
         options["measures"] = _with_drift(options["measures"])
     hunt = _hunt(levels)
     work = make_collector("ida", column, motions_by_name(motions), **options)
+    refined = _refined(refine, work.names)
+    work.names = [*work.names, *(name for name in refined if name not in work.names)]
     work.run_unshaken("ida")
     if hunt is not None:
-        lower, upper = hunt_and_fill(work, hunt)
+        lower, upper = hunt_and_fill(work, hunt, refined)
     else:
         at = checked_levels(levels)
         collapsed = work.run(np.broadcast_to(at, (*work.shape, at.size)).copy())
@@ -425,6 +433,14 @@ def _hunt(levels: Any) -> Hunt | None:
             raise InputError(f"levels = {levels!r} must be 'hunt' or intensities in m/s2")
         return Hunt()
     return None
+
+
+def _refined(refine: Any, measures: Sequence[Any]) -> list[str]:
+    """Return the limit states that a search narrows."""
+    if refine is None:
+        return ["first_yield"] if "first_yield" in measures else []
+    names = [refine] if isinstance(refine, str) else _arguments.several(refine, "refine", "names")
+    return [_arguments.choice(name, "refine", WATCHED) for name in dict.fromkeys(names)]
 
 
 def _with_drift(measures: Sequence[str | Measure]) -> list[Any]:

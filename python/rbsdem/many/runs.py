@@ -32,7 +32,7 @@ from rbsdem.model.column import Column
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.motions.motion import GroundMotion, checked_motion
 from rbsdem.solve.analysis import modes
-from rbsdem.solve.solver import Solver, checked_solver
+from rbsdem.solve.solver import COLLAPSE_DRIFT, Solver, checked_solver
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -402,7 +402,7 @@ def make_collector(
     intensity: Name = "sa_t1",
     period: float | None = None,
     damping: float = 0.05,
-    collapse_drift: float = 0.1,
+    collapse_drift: float = COLLAPSE_DRIFT,
     measures: Sequence[str | Measure] | None = None,
     initial: Any = None,
     jobs: int | None = None,

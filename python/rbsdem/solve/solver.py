@@ -132,6 +132,10 @@ METHODS = {
     for row in _core.methods()
 }
 
+#: Drift that counts as a collapse, where runs need one and none is given: the displacement of the
+#: top over the height.
+COLLAPSE_DRIFT = 0.1
+
 #: Names of the methods in time, and of those of them that are implicit.
 IN_TIME = tuple(name for name, method in METHODS.items() if method.kind != "static")
 IMPLICIT = tuple(name for name, method in METHODS.items() if method.kind == "implicit")

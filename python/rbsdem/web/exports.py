@@ -21,6 +21,7 @@ from rbsdem.errors import InputError
 from rbsdem.model.springs import Spring
 from rbsdem.results.case import Case, case_of_text
 from rbsdem.results.result import Result
+from rbsdem.solve.solver import COLLAPSE_DRIFT
 from rbsdem.web.state import Drawn, Faults, RefusedError, drawn_case, state_of
 
 _MARK = "! rbsdem explore: "
@@ -189,7 +190,8 @@ def _python(drawn: Drawn, frame: Mapping[str, Any], loading: Mapping[str, Any]) 
             f"motion = rbsdem.motions.{record}.scaled({loading.get('scale', 1.0)!r})",
             f"column = dataclasses.replace(column, top_mass={mass})",
             "result = rbsdem.time_history(",
-            "    column, ground_acceleration=motion, collapse_drift=0.2, openings=True",
+            "    column, ground_acceleration=motion, openings=True,",
+            f"    collapse_drift={COLLAPSE_DRIFT},",
             ")",
         ]
     else:

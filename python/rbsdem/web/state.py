@@ -34,6 +34,7 @@ from rbsdem.results.case import Case
 from rbsdem.section import columns
 from rbsdem.section.ranges import column_length
 from rbsdem.solve.protocol import protocol
+from rbsdem.solve.solver import COLLAPSE_DRIFT
 
 #: The column that the page begins with: test No 1 of Soesianawati and others (1986).
 DEFAULT: dict[str, Any] = {
@@ -194,7 +195,9 @@ def drawn_case(
     # Displacement, force, horizontal and vertical ground acceleration, axial load.
     if isinstance(load, GroundMotion):
         loads = (None, None, load.acceleration, None, None)
-        case = Case(title, drawn.column, "auto", load.time, *loads, {"collapse_drift": 0.2})
+        case = Case(
+            title, drawn.column, "auto", load.time, *loads, {"collapse_drift": COLLAPSE_DRIFT}
+        )
     else:
         path = drawn.column.height * load
         points = np.arange(float(path.size))
