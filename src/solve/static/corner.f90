@@ -70,7 +70,8 @@ contains
       else
          call fatal_error(error, analysis_failed, 'the structure snaps back at '//trim(state_of(path))// &
                           ': no combination of loading and unloading springs was found that lets its '// &
-                          'top go on. A driven top cannot follow that; use a dynamic analysis')
+                          'top go on; '//trim(weakest_spring(path))//' has the least stiffness left. A '// &
+                          'driven top cannot follow that; use a dynamic analysis')
       end if
    end subroutine turn_corner
 
