@@ -432,3 +432,54 @@ def test_a_result_in_a_file(tmp_path):
     assert (moment == quake.member("C-2-1").force[:, 0]).all()
     assert moment.units == "N m"
     assert (table.storey_drift == quake.storey_drift).all()
+
+
+#: Three floors on three lines of columns, whose middle one goes; beams yield at their ends.
+LOST = {
+    "storeys": [3.0] * 3, "bays": [6.0] * 2, "base": "fixed",
+    "columns": FrameMember(E, 10.0, 1e-1), "pattern": "nodes", "control": "y",
+    "control_node": "N-2-1",
+}  # fmt: skip
+
+
+def test_a_lost_column_is_pushed_down_to_the_mechanism_of_its_beams(tmp_path):
+    """Two hinges in each of six beams: 3 x 4 M_p/L."""
+    plastic = FrameMember(E, 0.15, 2e-3, yield_moment=200e3)
+    frame = Frame.grid(**LOST, beams=plastic, nodes=[FrameNode("N-2-1", push_y=-1.0)])
+    rest = frame.without("C-2-1")
+    assert set(frame.parts.members) - set(rest.parts.members) == {"C-2-1"}
+    push = rbsdem.cyclic(rest, displacement=[-0.5])
+    assert push.force[-1] == pytest.approx(3 * 4 * 200e3 / 6.0, rel=1e-9)
+    case = tmp_path / "case.nml"
+    case.write_text(rest.to_namelist() + "&loading drive = 'displacement', values = -0.5 /\n")
+    assert rbsdem.read_case(case).column == rest
+    with pytest.raises(rbsdem.InputError, match="did you mean 'C-2-1'"):
+        frame.without("C-2-11")
+    with pytest.raises(rbsdem.InputError, match="has no member"):
+        frame.without("C-2-3", "B-1-3", "B-2-3")
+
+
+@pytest.mark.parametrize("moment", [1e9, 200e3])
+def test_sudden_loss_of_a_column(moment):
+    """Its force is let go at once: twice the static displacement, or the energy of the push."""
+    beam = FrameMember(E, 0.15, 2e-3, yield_moment=moment, hardening=0.02)
+    whole = Frame.grid(**LOST, beams=beam, nodes=[FrameNode("N-2-2", load_y=-300e3, push_y=-1.0)])
+    carried = whole.parts.compression[whole.parts.members.index("C-2-1")]
+    # The frame without it, held by the force that it carried, in place of the column.
+    held = FrameNode("N-2-1", mass=3e4, load_y=carried, push_y=-1.0)
+    nodes = [FrameNode("N-2-2", load_y=-300e3), held]
+    rest = Frame.grid(**LOST, beams=beam, nodes=nodes).without("C-2-1")
+    t = np.arange(0, 1, 2e-4)
+    fall = rbsdem.time_history(rest, t, force=np.full(t.size, carried), method="newmark", dt=2e-4)
+    start = fall.displacement[0]
+    furthest = (start - fall.displacement).max()
+    push = rbsdem.cyclic(rest, displacement=np.linspace(start, start - 1.2 * furthest, 4000))
+    sunk = start - push.displacement
+    work = np.concatenate([[0], np.cumsum(np.diff(sunk) * (push.force[1:] + push.force[:-1]) / 2)])
+    energy = np.interp(0.0, work[1:] - carried * sunk[1:], sunk[1:])
+    assert furthest == pytest.approx(energy, rel=0.01)
+    if moment > 1e6:
+        still = rbsdem.cyclic(rest, force=[carried])
+        assert furthest / (start - still.displacement[-1]) == pytest.approx(2.0, abs=1e-3)
+    else:
+        assert furthest > 1.2 * 2 * carried * sunk[1] / push.force[1]

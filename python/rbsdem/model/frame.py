@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
@@ -316,7 +316,8 @@ class Frame:
         bays there is one line of columns.
     columns, beams : FrameMember or mapping, optional
         Kinds of the columns and beams of the grid: one for all, or a mapping from (line, storey) or
-        (bay, storey) to a kind, where 0 means all and the last pair that fits counts.
+        (bay, storey) to a kind, where 0 means all and the last pair that fits counts. None: there
+        is no member.
     floor_mass : float or sequence of float, optional
         Mass of each floor, shared by its nodes as the widths beside them [kg]. Its weight acts as
         far as it is given as a load.
@@ -358,8 +359,8 @@ class Frame:
 
     storeys: ArrayLike | None = None
     bays: ArrayLike | None = None
-    columns: FrameMember | Mapping[tuple[int, int], FrameMember] | None = None
-    beams: FrameMember | Mapping[tuple[int, int], FrameMember] | None = None
+    columns: FrameMember | Mapping[tuple[int, int], FrameMember | None] | None = None
+    beams: FrameMember | Mapping[tuple[int, int], FrameMember | None] | None = None
     floor_mass: ArrayLike = 0.0
     beam_load: ArrayLike = 0.0
     kinematics: Literal["small", "pdelta"] = "small"
@@ -415,8 +416,8 @@ class Frame:
         storeys: ArrayLike,
         bays: ArrayLike | None = None,
         *,
-        columns: FrameMember | Mapping[tuple[int, int], FrameMember],
-        beams: FrameMember | Mapping[tuple[int, int], FrameMember] | None = None,
+        columns: FrameMember | Mapping[tuple[int, int], FrameMember | None],
+        beams: FrameMember | Mapping[tuple[int, int], FrameMember | None] | None = None,
         **more: Any,
     ) -> Self:
         """Return a frame of storeys and bays; further keywords are those of `Frame`."""
@@ -489,7 +490,9 @@ class Frame:
             for (at, level), kind in (cells or {}).items()  # type: ignore[union-attr]
             if at in (0, int(line)) and level in (0, int(storey))
         ]
-        return found[-1]
+        kind = found[-1]
+        assert kind is not None, member
+        return kind
 
     def panel_of(self, node: str) -> Spring | None:
         """Return the spring in the panel of a node by the name of the node."""
@@ -497,6 +500,30 @@ class Frame:
         if not any(own.group == "panel" and own.member == node for own in springs):
             return None
         return next((own.panel for own in self.nodes if own.name == node and own.panel), self.panel)
+
+    def without(self, *members: str) -> Self:
+        """Return the frame after the loss of members.
+
+        Parameters
+        ----------
+        *members : str
+            Names: C-line-storey, B-bay-storey, or those of `members`.
+
+        Raises
+        ------
+        InputError
+            If there is no such member, or a node is left without one.
+        """
+        cells = {"C": dict(self.columns or {}), "B": dict(self.beams or {})}  # type: ignore[arg-type]
+        own = {member.name: member for member in self.members}
+        for name in members:
+            place_of(name, self.parts.members, "member")
+            if own.pop(name, None) is None:
+                letter, line, storey = name.split("-")
+                cells[letter].pop((int(line), int(storey)), None)
+                cells[letter][int(line), int(storey)] = None
+        columns, beams = (cells[letter] or None for letter in "CB")
+        return replace(self, columns=columns, beams=beams, members=tuple(own.values()))
 
     def load_of(self, member: str) -> float:
         """Return the dead load on a member, downward, per length along x [N/m]."""
@@ -547,12 +574,12 @@ class Frame:
             ("column_of", "line", self.columns),
             ("beam_of", "bay", self.beams),
         ):
-            for (at, storey), kind in (cells or {}).items():  # type: ignore[union-attr]
+            for (at, storey), cell in (cells or {}).items():  # type: ignore[union-attr]
                 values = {
                     key: at or None,
                     "storey": storey or None,
-                    "kind": _core.Text(names[with_panel(kind, 0.0)]),
-                    "panel": kind.panel or None,
+                    "kind": _core.Text(names[with_panel(cell, 0.0)] if cell else "none"),
+                    "panel": (cell and cell.panel) or None,
                 }
                 parts.append(_core.group(group, values))
         for node in self.nodes:
@@ -567,7 +594,7 @@ class Frame:
 
     def _kinds(self) -> Iterator[FrameMember]:
         for cells in (self.columns, self.beams):
-            yield from (cells or {}).values()  # type: ignore[union-attr]
+            yield from filter(None, (cells or {}).values())  # type: ignore[union-attr]
         yield from (member.kind for member in self.members)
 
 
@@ -576,7 +603,7 @@ def _spring_of(text: str, place: float, stiffness: float) -> FrameSpring:
     return FrameSpring(member, group, rule, place, stiffness)
 
 
-def _cells(given: Any, name: str) -> dict[tuple[int, int], FrameMember] | None:
+def _cells(given: Any, name: str) -> dict[tuple[int, int], FrameMember | None] | None:
     """Return kinds by line (or bay) and storey."""
     if given is None or isinstance(given, FrameMember):
         return None if given is None else {(0, 0): given}
@@ -585,14 +612,16 @@ def _cells(given: Any, name: str) -> dict[tuple[int, int], FrameMember] | None:
             f"frame: {name} = {_arguments.shown(given)} must be a FrameMember, or a mapping from "
             "pairs (line or bay, storey), 0 for all, to FrameMember"
         )
-    found = {}
+    found: dict[tuple[int, int], FrameMember | None] = {}
     for pair, kind in given.items():
         if not (isinstance(pair, tuple) and len(pair) == 2):
             raise InputError(
                 f"frame: {name}: {_arguments.shown(pair)} must be a pair (line or bay, storey)"
             )
         at, storey = (_arguments.integer(number, f"frame: {name}") for number in pair)
-        found[at, storey] = _arguments.instance(kind, f"frame: {name}", FrameMember)
+        if kind is not None:
+            _arguments.instance(kind, f"frame: {name}", FrameMember)
+        found[at, storey] = kind
     return found
 
 
@@ -603,6 +632,18 @@ Structure = Column | Frame
 def checked_structure(structure: object, who: str = "") -> Structure:
     """Return a column or a frame, or raise `InputError` with what makes one."""
     return structure if isinstance(structure, Frame) else checked_column(structure, who)
+
+
+def place_of(name: str, names: tuple[str, ...], what: str) -> int:
+    """Return the number of a node or member, from 0."""
+    if name not in names:
+        import difflib  # noqa: PLC0415
+
+        near = difflib.get_close_matches(str(name), names, 1, 0.0)
+        raise InputError(
+            f"{what} = {_arguments.shown(name)} is not of this frame; did you mean {near[0]!r}?"
+        )
+    return names.index(name)
 
 
 def with_panel(kind: FrameMember, panel: float) -> FrameMember:

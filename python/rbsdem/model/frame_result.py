@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from rbsdem import _arguments, _core
+from rbsdem import _core
 from rbsdem._arguments import Array
 from rbsdem._files import Reported
 from rbsdem._package import extra
 from rbsdem.errors import InputError
 from rbsdem.model import files
-from rbsdem.model.frame import HONESTY, Frame, FrameSpring
+from rbsdem.model.frame import HONESTY, Frame, FrameSpring, place_of
 from rbsdem.model.response import ENERGIES, same
 from rbsdem.model.springs import Landmark
 
@@ -213,7 +213,7 @@ class FrameResult(Reported):
 
     def node(self, name: str) -> Array:
         """Return displacement along x and upward [m] and rotation [rad] of a node, (rows, 3)."""
-        at = _place(name, self.frame.parts.nodes, "node")
+        at = place_of(name, self.frame.parts.nodes, "node")
         return np.column_stack((self.x[:, at], self.y[:, at], self.turn[:, at]))
 
     def member(self, name: str) -> MemberHistory:
@@ -230,7 +230,7 @@ class FrameResult(Reported):
             If there is no such member; the message names the nearest.
         """
         parts = self.frame.parts
-        at = _place(name, parts.members, "member")
+        at = place_of(name, parts.members, "member")
         springs, deformation, force, ductility = [], [], [], []
         for spring, values, forces in self._springs():
             if spring.member != name or spring.group == "panel":
@@ -432,17 +432,6 @@ def rigid_lengths(frame: Frame, member: str) -> tuple[float, float]:
     panel = frame.kind_of(member).panel
     at_base = member.startswith("C") and member.endswith("-1")
     return 0.0 if at_base else panel, panel
-
-
-def _place(name: str, names: tuple[str, ...], what: str) -> int:
-    if name not in names:
-        import difflib  # noqa: PLC0415
-
-        near = difflib.get_close_matches(str(name), names, 1, 0.0)
-        raise InputError(
-            f"{what} = {_arguments.shown(name)} is not of this frame; did you mean {near[0]!r}?"
-        )
-    return names.index(name)
 
 
 def frame_result_of(

@@ -65,13 +65,14 @@ def _kind(given: dict[str, Any], groups: Groups) -> FrameMember:
 
 def _cells(
     group: str, key: str, groups: Groups, kinds: Mapping[str, FrameMember]
-) -> dict[tuple[int, int], FrameMember] | None:
-    found: dict[tuple[int, int], FrameMember] = {}
+) -> dict[tuple[int, int], FrameMember | None] | None:
+    found: dict[tuple[int, int], FrameMember | None] = {}
     for given in groups.get(group, []):
         pair = (int(given.get(key, 0)), int(given.get("storey", 0)))
         # The last that fits counts.
         found.pop(pair, None)
-        found[pair] = with_panel(kinds[given["kind"]], given.get("panel", 0.0))
+        none = given["kind"] == "none"
+        found[pair] = None if none else with_panel(kinds[given["kind"]], given.get("panel", 0.0))
     return found or None
 
 

@@ -179,12 +179,28 @@ contains
       real(wp), intent(in) :: x(:)
       real(wp) :: q(3), moved(6)
 
+      if (element > self%members) then
+         q = [panel_rotation(self, element, x), 0.0_wp, 0.0_wp]
+         return
+      end if
       call self%gather(element, x, moved)
       associate (b => self%element(element)%to_basic)
          q = b(:, 1)*moved(1) + b(:, 2)*moved(2) + b(:, 3)*moved(3) &
              + b(:, 4)*moved(4) + b(:, 5)*moved(5) + b(:, 6)*moved(6)
       end associate
    end function basic
+
+   !> Rotation of the columns of a node against its beams.
+   pure real(wp) function panel_rotation(frame, element, x) result(turn)
+      type(frame_type), intent(in) :: frame
+      integer, intent(in) :: element
+      real(wp), intent(in) :: x(:)
+
+      associate (number => frame%element(element)%number)
+         turn = -x(number(6))
+         if (number(3) > 0) turn = turn + x(number(3))
+      end associate
+   end function panel_rotation
 
    !> Displacements of the nodes at the ends of an element, zero where a support holds them.
    pure subroutine gather(self, element, x, moved)
@@ -437,9 +453,12 @@ contains
       real(wp) :: q(3)
       integer :: i
 
-      do i = 1, size(self%element)
+      do i = 1, self%members
          q = self%basic(i, dx)
          call turn_springs(self%element(i), size(dd), self%tangent_numbers, tangent, q, dd)
+      end do
+      do i = self%members + 1, size(self%element)
+         dd(self%element(i)%before + 1) = panel_rotation(self, i, dx)
       end do
       dd(self%inside + 1:) = dx
    end subroutine rates_on_lines
@@ -526,11 +545,19 @@ contains
       associate (x => d(self%inside + 1:))
          g = dead*self%dead - f(self%inside + 1:)
          correction = 0.0_wp
-         do i = 1, size(self%element)
+         do i = 1, self%members
             q = self%basic(i, x)
             call self%end_forces(i, q, d, f, dead, tangent, s, correction)
             call self%add_element(i, -s, g)
             if (self%axially_loaded) call add_second_order(self, i, x, g)
+         end do
+         do i = self%members + 1, size(self%element)
+            associate (e => self%element(i), spring => self%element(i)%before + 1)
+               correction(spring) = panel_rotation(self, i, x) - d(spring)
+               s(1) = f(spring) + tangent(e%at)*correction(spring)
+               if (e%number(3) > 0) g(e%number(3)) = g(e%number(3)) - s(1)
+               g(e%number(6)) = g(e%number(6)) + s(1)
+            end associate
          end do
       end associate
    end subroutine unknown_forces
@@ -599,7 +626,7 @@ contains
       real(wp) :: row(6, 3)
       integer :: number(6), e, i, j, l
 
-      do e = 1, size(self%element)
+      do e = 1, self%members
          call second_order_rows(self, e, row)
          number = self%element(e)%number
          do l = 1, 3
@@ -663,7 +690,7 @@ contains
                                                                   + e%rest(2)*(gap(2) - gap(3))**2)
                energy = energy + 0.5_wp*e%rest_along*gap(1)**2
             end associate
-            if (self%axially_loaded) call add_second_order(self, i, x, g)
+            if (self%axially_loaded .and. i <= self%members) call add_second_order(self, i, x, g)
          end do
          energy = energy - 0.5_wp*sum(g*x)
       end associate

@@ -23,6 +23,9 @@ module rbs_structure_frame_frame_parts
    !> Nodes nearer than this share of the size of the frame are at one place.
    real(wp), parameter :: one_place = 1.0e-9_wp
 
+   !> The kind of a member of the grid that is not there.
+   integer, parameter :: left_out = -1
+
    !> Groups of springs, in the order of their kinds.
    character(len=*), parameter :: group_of(3) = [character(len=12) :: 'shear', 'flexure', 'axial_spring']
    character(len=*), parameter :: place_of(3) = [character(len=8) :: 'shear', 'flexure', 'axial']
@@ -59,6 +62,7 @@ contains
       if (messages%count > known) return
       call put_node_springs(self, record, messages)
       call put_kinds(self, record, messages)
+      call hold_idle(self)
       call check_geometry(self, messages)
       if (messages%count > known) return
       call choose_top(self, record, messages)
@@ -152,6 +156,9 @@ contains
 
       if (kind%name == '') then
          call messages%add('member_kind: the name is missing; give each a name')
+         return
+      else if (kind%name == 'none') then
+         call messages%add("member_kind 'none': the name means that there is no member; choose another one")
          return
       end if
       bending = 0
@@ -289,17 +296,25 @@ contains
       end do
       do i = 1, size(record%column_of)
          call check_storey('column_of', record%column_of(i)%storey)
-         call check_reference(record%column_of(i)%kind, [record%kind%name], 'column_of', 'kind', messages)
+         call check_cell_kind(record%column_of(i), 'column_of')
          if (record%column_of(i)%line > bays + 1) call refuse('column_of: line', record%column_of(i)%line, &
                                                               'lines of columns', bays + 1)
       end do
       do i = 1, size(record%beam_of)
          call check_storey('beam_of', record%beam_of(i)%storey)
-         call check_reference(record%beam_of(i)%kind, [record%kind%name], 'beam_of', 'kind', messages)
+         call check_cell_kind(record%beam_of(i), 'beam_of')
          if (record%beam_of(i)%line > bays) call refuse('beam_of: bay', record%beam_of(i)%line, 'bays', bays)
       end do
 
    contains
+
+      subroutine check_cell_kind(cell, group)
+         type(cell_record), intent(in) :: cell
+         character(len=*), intent(in) :: group
+
+         if (cell%kind == 'none') return
+         call check_reference(cell%kind, [record%kind%name], group, 'kind', messages)
+      end subroutine check_cell_kind
 
       subroutine check_storey(group, storey)
          character(len=*), intent(in) :: group
@@ -358,7 +373,7 @@ contains
             if (any(record%floor(i)%storey == [0, storey])) member%load = record%floor(i)%load
          end do
       end if
-      call append_member(self, member)
+      if (member%kind_of /= left_out) call append_member(self, member)
 
    contains
 
@@ -370,6 +385,7 @@ contains
          do j = 1, size(cell)
             if (all(cell(j)%line /= [0, line]) .or. all(cell(j)%storey /= [0, storey])) cycle
             member%kind_of = findloc(record%kind%name == cell(j)%kind, .true., dim=1)
+            if (cell(j)%kind == 'none') member%kind_of = left_out
             member%rigid = cell(j)%panel
             if (letter == 'C' .and. storey == 1) member%rigid(1) = 0.0_wp
          end do
@@ -576,7 +592,7 @@ contains
       if (given%panel == 'all') then
          call messages%add("&flexure: panel = 'all' finds no node where a column and a beam meet; remove it")
       else
-         call check_reference(given%panel, self%node%name, '&flexure: panel', 'node', messages)
+         call check_reference(given%panel, [self%node%name], '&flexure: panel', 'node', messages)
       end if
    end subroutine put_panel
 
@@ -708,7 +724,7 @@ contains
                call messages%add('nodes '//trim(self%node(j)%name)//' and '//trim(node%name)// &
                                  ' are at one place; move one of them, or use one in place of both')
             end do
-            if (.not. is_connected(self, i)) then
+            if (.not. is_connected(self, i) .and. node%storey /= 0) then
                call messages%add("node '"//trim(node%name)//"' has no member; connect it, or remove it")
             end if
             if (all(node%held) .and. any(abs(node%load) > 0.0_wp)) then
@@ -733,6 +749,18 @@ contains
          call messages%add('frame: nothing holds it; give nodes a support, or springs to the ground')
       end if
    end subroutine check_geometry
+
+   !> Feet of columns that are left out do not move.
+   subroutine hold_idle(self)
+      type(frame_parts), intent(inout) :: self
+      integer :: i
+
+      do i = 1, size(self%node)
+         if (self%node(i)%storey /= 0 .or. is_connected(self, i)) cycle
+         self%node(i)%held = .true.
+         self%node(i)%ground%rule = ''
+      end do
+   end subroutine hold_idle
 
    pure logical function is_connected(self, node)
       type(frame_parts), intent(in) :: self

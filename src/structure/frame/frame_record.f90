@@ -244,7 +244,8 @@ contains
          call v%key('line', self%line, '', not_negative, 'line of columns from the left, 0 for all')
       end if
       call v%key('storey', self%storey, '', not_negative, 'storey from the ground up, 0 for all')
-      call v%word('kind', self%kind, 'name of the kind of member; the last group that fits counts', &
+      call v%word('kind', self%kind, 'name of the kind of member, ''none'' where there is '// &
+                  'none; the last group that fits counts', &
                   required=.true.)
       call v%key('panel', self%panel, 'm', not_negative, &
                  'rigid length in each node that it ends in, not at the base')

@@ -106,7 +106,7 @@ contains
       call frame%linearise(frame%initial_stiffness, frame%initial_tangent, i)
       frame%stiffest_part = maxval(frame%initial_tangent(frame%element%at))
       frame%axially_loaded = kinematics == pdelta
-      frame%axial_count = merge(size(frame%element), 0, frame%axially_loaded)
+      frame%axial_count = merge(size(member), 0, frame%axially_loaded)
       frame%group = [unknown_group(1, frame%unknowns, 1, 1, frame%inside, 1.0_wp)]
    end subroutine new_frame
 
