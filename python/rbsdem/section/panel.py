@@ -71,7 +71,7 @@ def panel_strength(
         If an argument is refused.
     """
     fc = _arguments.number(fc, "panel_strength: fc", above=0.0)
-    at = _arguments.choice(at, "panel_strength: at", get_args(PanelClass))  # type: ignore[assignment]
+    at = _arguments.choice(at, "panel_strength: at", get_args(PanelClass))
     table = _WITH_HOOPS if hoops else _WITHOUT_HOOPS
     return _PSI * table[at][bool(transverse_beams)] * math.sqrt(fc / 1e6) * 1e6
 
