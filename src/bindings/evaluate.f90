@@ -27,6 +27,7 @@ module rbs_bindings_evaluate
    use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_structure_frame_frame, only: frame_type
+   use rbs_structure_spring_place, only: flexure, axial, layer
    use rbs_structure_structure, only: structure_type, horizontal
    use rbs_version, only: version
    implicit none
@@ -177,6 +178,8 @@ contains
       character(len=12), parameter :: kinds(3) = ['shear       ', 'flexure     ', 'axial_spring']
       character(len=12) :: group
       type(text_buffer) :: text
+      real(c_double), allocatable :: place(:), stiffness(:)
+      real(c_double) :: of_joint(2)
       integer :: i
 
       do i = 1, frame%n
@@ -187,19 +190,53 @@ contains
          call text%append(trim(frame%member_name(i))//tab)
       end do
       call text%append(line)
+      allocate (place(0), stiffness(0))
       do i = 1, frame%inside
-         group = kinds(frame%place(i)%kind)
-         if (i > frame%inside - count(frame%beam_rotation > 0)) group = 'panel'
-         call text%append(trim(frame%place(i)%owner)//' '//trim(group)//' '// &
-                          trim(frame%rules%name(frame%rules%of(i)))//tab)
+         associate (k => frame%initial_stiffness)
+            if (frame%place(i)%kind /= layer) then
+               group = kinds(frame%place(i)%kind)
+               if (i > frame%inside - count(frame%beam_rotation > 0)) group = 'panel'
+               call add_spring(group, trim(frame%rules%name(frame%rules%of(i))), k(i))
+            else if (frame%heads(i)) then
+               call find_joint(frame, i, of_joint)
+               call add_spring(kinds(flexure), 'layered', of_joint(1))
+               call add_spring(kinds(axial), 'layered', of_joint(2))
+            end if
+         end associate
       end do
       answer%text = text%text(:text%length)
       answer%value = [frame%x, frame%y, real(frame%storey, c_double), &
                       (real(frame%element(i)%node, c_double), i=1, frame%members), &
-                      frame%compression(:frame%members), &
-                      frame%spring_place, frame%initial_stiffness(:frame%inside), &
+                      frame%compression(:frame%members), place, stiffness, &
                       -sum(frame%pattern(horizontal)%force)]
+
+   contains
+
+      subroutine add_spring(kind, rule, k)
+         character(len=*), intent(in) :: kind, rule
+         real(c_double), intent(in) :: k
+
+         call text%append(trim(frame%place(i)%owner)//' '//trim(kind)//' '//trim(rule)//tab)
+         place = [place, frame%spring_place(i)]
+         stiffness = [stiffness, k]
+      end subroutine add_spring
    end subroutine tell_parts
+
+   !> Initial stiffness of a joint of layers about its centre of stiffness [N m/rad], and axially [N/m].
+   subroutine find_joint(frame, head, stiffness)
+      type(frame_type), intent(in) :: frame
+      integer, intent(in) :: head
+      real(c_double), intent(out) :: stiffness(2)
+      integer :: first, last
+
+      associate (e => frame%element(frame%place(head)%member), joint => frame%place(head)%joint)
+         first = e%first(joint)
+         last = e%first(joint + 1) - 1
+         associate (k => frame%initial_stiffness(e%before + first:e%before + last), y => e%y(first:last))
+            stiffness = [sum(k*(y - sum(k*y)/sum(k))**2), sum(k)]
+         end associate
+      end associate
+   end subroutine find_joint
 
    subroutine tell_matrices(structure, paper, answer)
       class(structure_type), intent(in) :: structure

@@ -105,10 +105,12 @@ contains
                     'joints that have this spring, from 1 up, 0 beneath a footing, n + 1 at a fixed '// &
                     'top; without it all from 1 that are not named', most_bodies)
       end if
-      if (self%group /= 'layer_spring' .and. self%group /= 'layers') then
+      if (self%group /= 'layer_spring') then
          call v%word('kind', self%kind, 'frame: the kind of members that has the spring')
          call v%key('place', self%place, '', not_negative, 'frame: where in a member, in shares of its '// &
                     'clear length; without it flexure at both ends', most_places)
+      end if
+      if (self%group /= 'layer_spring' .and. self%group /= 'layers') then
          call v%word('node', self%node, "frame: node that it holds to the ground, or 'base'")
          call v%word('panel', self%panel, 'frame, flexure: node whose columns it connects with its '// &
                      "beams, or 'all' where both meet")
@@ -139,29 +141,73 @@ contains
       type(frame_record), intent(inout) :: frame
       type(message_list), intent(inout) :: messages
       type(frame_spring), allocatable :: spring(:)
-      integer :: i
+      integer :: i, n, known
 
       call frame%open_group('')
-      allocate (spring(list%count))
+      known = messages%count
+      call check_ids(list, messages)
+      allocate (spring(count([(all(list%entry(i)%group /= spring_groups(4:)), i=1, list%count)])))
+      n = 0
       do i = 1, list%count
          associate (entry => list%entry(i))
-            if (entry%group == 'layers' .or. entry%group == 'layer_spring') then
-               call messages%add_at(entry%where, '&'//trim(entry%group)//': layered joints are not '// &
-                                    'followed in frames yet; remove them')
-            else if (allocated(entry%joint)) then
+            if (allocated(entry%joint)) then
                call messages%add_at(entry%where, '&'//trim(entry%group)//' has joint, but joints of a '// &
                                     'frame belong to its members; give kind and place')
             end if
-            spring(i)%group = entry%group
-            spring(i)%kind = entry%kind
-            spring(i)%node = entry%node
-            spring(i)%panel = entry%panel
-            spring(i)%spring = entry%spring
-            if (allocated(entry%place)) spring(i)%place = entry%place
+            if (entry%group == 'layers' .and. messages%count == known) call check_owner(list, i, messages)
+            if (any(entry%group == spring_groups(4:))) cycle
+            n = n + 1
+            spring(n)%group = entry%group
+            spring(n)%kind = entry%kind
+            spring(n)%node = entry%node
+            spring(n)%panel = entry%panel
+            spring(n)%spring = entry%spring
+            if (allocated(entry%place)) spring(n)%place = entry%place
+            if (entry%spring%rule /= 'layered' .or. messages%count > known) cycle
+            associate (j => layers_of(list, i))
+               if (j > 0) call set_layers(list, spring(n)%spring, list%entry(j), messages)
+            end associate
          end associate
       end do
       call move_alloc(spring, frame%spring)
    end subroutine give_springs
+
+   !> The layers of a joint in a frame: those of its kind of members and its places; 0: none.
+   pure integer function layers_of(list, joint)
+      type(entry_list), intent(in) :: list
+      integer, intent(in) :: joint
+
+      do layers_of = list%count, 1, -1
+         if (list%entry(layers_of)%group == 'layers' .and. &
+             are_of(list%entry(layers_of), list%entry(joint))) return
+      end do
+   end function layers_of
+
+   !> Whether layers belong to a spring of a frame.
+   pure logical function are_of(layers, spring)
+      type(spring_entry), intent(in) :: layers, spring
+
+      are_of = layers%kind == spring%kind .and. (allocated(layers%place) .eqv. allocated(spring%place))
+      if (.not. are_of .or. .not. allocated(layers%place)) return
+      are_of = size(layers%place) == size(spring%place)
+      if (are_of) are_of = .not. any(abs(layers%place - spring%place) > 0.0_wp)
+   end function are_of
+
+   subroutine check_owner(list, layers, messages)
+      type(entry_list), intent(in) :: list
+      integer, intent(in) :: layers
+      type(message_list), intent(inout) :: messages
+      integer :: i
+
+      do i = 1, list%count
+         associate (spring => list%entry(i))
+            if (spring%group == 'flexure' .and. spring%spring%rule == 'layered' .and. &
+                are_of(list%entry(layers), spring)) return
+         end associate
+      end do
+      call messages%add_at(list%entry(layers)%where, '&layers belong to no &flexure with rule = '// &
+                           "'layered' and the same kind and place; give it these, or remove the layers")
+   end subroutine check_owner
 
    !> Give the springs to the joints of a column.
    subroutine place_springs(list, column, messages)

@@ -63,6 +63,7 @@ contains
       type(case_record), intent(inout) :: case
       type(case_text), intent(inout) :: text
       type(spring_entry) :: entry
+      type(entry_list) :: layer_springs
       integer :: g, i
 
       do g = 1, size(frame_groups)
@@ -78,6 +79,7 @@ contains
             entry%panel = given%panel
             if (allocated(given%place)) entry%place = given%place
             call write_spring(entry, text)
+            if (allocated(given%spring%y)) call write_layers(entry, layer_springs, text)
          end associate
       end do
    end subroutine write_frame
@@ -205,6 +207,8 @@ contains
 
       layers = spring_entry(group='layers', y=joint%spring%y)
       if (allocated(joint%joint)) layers%joint = joint%joint
+      layers%kind = joint%kind
+      if (allocated(joint%place)) layers%place = joint%place
       allocate (layers%layer(size(layers%y)))
       do i = 1, size(layers%y)
          layer = joint%spring%layer(i)

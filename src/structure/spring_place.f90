@@ -4,13 +4,14 @@ module rbs_structure_spring_place
    private
 
    public :: spring_place, spring_name
-   public :: shear, flexure, axial
+   public :: shear, flexure, axial, layer
 
-   !> Kinds of springs, by the deformation that they resist: slip, relative rotation, opening.
-   integer, parameter :: shear = 1, flexure = 2, axial = 3
+   !> Kinds of springs, by the deformation that they resist: slip, relative rotation, opening; in frames the
+   !> layers of a joint are springs of their own, which open by w + y theta.
+   integer, parameter :: shear = 1, flexure = 2, axial = 3, layer = 4
 
    type :: spring_place
-      !> `shear`, `flexure` or `axial`
+      !> `shear`, `flexure`, `axial` or `layer`
       integer :: kind = 0
       !> Member, 1 for a column, 0 for the panel of a node, and joint of it from the bottom up;
       !> joint 0 is that of a footing
@@ -29,7 +30,7 @@ contains
    pure function spring_name(place) result(name)
       type(spring_place), intent(in) :: place
       character(len=80) :: name
-      character(len=9), parameter :: kinds(3) = ['shear    ', 'flexural ', 'axial    ']
+      character(len=9), parameter :: kinds(4) = ['shear    ', 'flexural ', 'axial    ', 'layer    ']
       character(len=12) :: joint
 
       write (joint, '(i0)') place%joint
@@ -39,6 +40,8 @@ contains
          name = 'the '//trim(kinds(place%kind))//' spring from the ground to '//place%owner
       else if (place%member == 0) then
          name = 'the spring of the panel of node '//place%owner
+      else if (place%kind == layer) then
+         name = 'a layer of joint '//trim(joint)//' of member '//place%owner
       else
          name = 'the '//trim(kinds(place%kind))//' spring '//trim(joint)//' of member '//place%owner
       end if

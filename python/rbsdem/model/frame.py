@@ -16,7 +16,7 @@ from rbsdem._arguments import Array
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import TELLING, Column, checked_column
 from rbsdem.model.damping import Damping
-from rbsdem.model.springs import Spring
+from rbsdem.model.springs import Layered, Spring, layer_springs
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -49,9 +49,13 @@ class FrameMember:
         Shear modulus times shear area [N]; 0: no deformation by shear.
     flexure : Spring, sequence of two, or mapping, optional
         Rotational springs in place of `yield_moment`: one for both ends, one for each end, or a
-        mapping from places in shares of the clear length to springs. Of any rule but `Layered`.
-    shear, axial_spring : Spring, optional
-        Springs that slip and that open.
+        mapping from places in shares of the clear length to springs. Joints of layers
+        (`Layered`) take part in the axial force of the member; y is positive on the left of the
+        way from its start to its end, above in a beam of a grid.
+    shear : Spring or mapping, optional
+        Springs that slip, one or by their places.
+    axial_spring : Spring, optional
+        A spring that opens.
     between : {"elastic", "rigid"}, optional
         What is between the springs: the elastic beam, or nothing that bends, where the springs
         hold all of the flexibility.
@@ -69,7 +73,7 @@ class FrameMember:
     hardening: float = 0.0
     shear_rigidity: float = 0.0
     flexure: Spring | Sequence[Spring] | Mapping[float, Spring] | None = None
-    shear: Spring | None = None
+    shear: Spring | Mapping[float, Spring] | None = None
     axial_spring: Spring | None = None
     between: Literal["elastic", "rigid"] = "elastic"
     panel: float = 0.0
@@ -77,37 +81,21 @@ class FrameMember:
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "FrameMember")
-        springs: Any = self.flexure
-        if isinstance(springs, Mapping):
-            springs = tuple(
-                (_arguments.number(place, "FrameMember: flexure"), spring)
-                for place, spring in springs.items()
-            )
-        elif isinstance(springs, Spring):
-            springs = ((0.0, springs), (1.0, springs))
-        elif springs is not None:
-            both = _arguments.several(springs, "FrameMember: flexure", "springs")
-            if len(both) == 2 and all(isinstance(one, Spring) for one in both):
-                springs = ((0.0, both[0]), (1.0, both[1]))
-            else:
-                springs = tuple(both)
-        for item in springs or ():
-            if not (isinstance(item, tuple) and len(item) == 2 and isinstance(item[1], Spring)):
-                raise InputError(
-                    f"FrameMember: flexure = {_arguments.shown(self.flexure)} must be a spring, "
-                    "one for each end, or a mapping from places (0 to 1) to springs"
-                )
-        ordered = springs and tuple(sorted(springs, key=lambda item: item[0]))
-        object.__setattr__(self, "flexure", ordered)
+        for name, usual in (("flexure", (0.0, 1.0)), ("shear", (0.5,))):
+            object.__setattr__(self, name, _placed(getattr(self, name), name, usual))
 
-    @property
-    def places(self) -> tuple[tuple[float, Spring], ...]:
-        """Rotational springs with their places in shares of the clear length."""
-        own: Any = self.flexure
-        return own or ()
+    def at(self, group: str, place: float) -> Spring | None:
+        """Return the spring of a group that was given at a place, None without one."""
+        own = (
+            self.axial_spring if group == "axial_spring" else dict(self._springs(group)).get(place)
+        )
+        return own
 
-    def _groups(self, name: str) -> Iterator[_core.Statement]:
-        """Yield the groups of a case file, under a name."""
+    def _springs(self, group: str) -> tuple[tuple[float, Spring], ...]:
+        return getattr(self, group) or ()
+
+    def _groups(self, name: str, layers: dict[Spring, int]) -> Iterator[_core.Statement]:
+        """Yield the groups of a case file, under a name; new springs of layers are added."""
         yield _core.group(
             "member_kind",
             {
@@ -121,15 +109,43 @@ class FrameMember:
                 "between": None if self.between == "elastic" else self.between,
             },
         )
-        places: dict[Spring, list[float]] = {}
-        for place, spring in self.places:
-            places.setdefault(spring, []).append(place)
-        for spring, where in places.items():
-            yield spring.statement("flexure", kind=_core.Text(name), place=where)
-        for group in ("shear", "axial_spring"):
-            spring = getattr(self, group)
-            if spring is not None:
-                yield spring.statement(group, kind=_core.Text(name))
+        for group in ("flexure", "shear"):
+            places: dict[Spring, list[float]] = {}
+            for place, spring in self._springs(group):
+                places.setdefault(spring, []).append(place)
+            for spring, where in places.items():
+                yield spring.statement(group, kind=_core.Text(name), place=where)
+                if isinstance(spring, Layered):
+                    yield spring.layers_statement(layers, kind=_core.Text(name), place=where)
+        if self.axial_spring is not None:
+            yield self.axial_spring.statement("axial_spring", kind=_core.Text(name))
+
+
+def _placed(
+    given: Any, name: str, usual: tuple[float, ...]
+) -> tuple[tuple[float, Spring], ...] | None:
+    """Return springs by their places, from one, one for each usual place, or a mapping."""
+    springs: Any = given
+    if given is None:
+        return None
+    if isinstance(given, Mapping):
+        springs = [
+            (_arguments.number(place, f"FrameMember: {name}"), spring)
+            for place, spring in given.items()
+        ]
+    elif isinstance(given, Spring):
+        springs = [(place, given) for place in usual]
+    else:
+        springs = _arguments.several(given, f"FrameMember: {name}", "springs")
+        if len(springs) == len(usual) and all(isinstance(one, Spring) for one in springs):
+            springs = list(zip(usual, springs, strict=True))
+    for item in springs:
+        if not (isinstance(item, tuple) and len(item) == 2 and isinstance(item[1], Spring)):
+            raise InputError(
+                f"FrameMember: {name} = {_arguments.shown(given)} must be a spring, "
+                "one for each end, or a mapping from places (0 to 1) to springs"
+            )
+    return tuple(sorted(springs, key=lambda item: item[0]))
 
 
 @dataclass(frozen=True)
@@ -568,8 +584,10 @@ class Frame:
                 storey = None if count == 1 else i + 1
                 values = {"storey": storey, "mass": mass or None, "load": load or None}
                 parts.append(_core.group("floor", values))
+        layers: dict[Spring, int] = {}
         for kind, name in names.items():
-            parts += kind._groups(name)
+            parts += kind._groups(name, layers)
+        parts.append(layer_springs(layers))
         for group, key, cells in (
             ("column_of", "line", self.columns),
             ("beam_of", "bay", self.beams),
@@ -590,7 +608,7 @@ class Frame:
         if self.damping is not None:
             parts.append(self.damping.statement())
         numbers = [number for part in parts for number in part.numbers]
-        return _core.Statement("\n".join(part.text for part in parts), numbers)
+        return _core.Statement("\n".join(part.text for part in parts if part.text), numbers)
 
     def _kinds(self) -> Iterator[FrameMember]:
         for cells in (self.columns, self.beams):
@@ -651,5 +669,6 @@ def with_panel(kind: FrameMember, panel: float) -> FrameMember:
     if kind.panel == panel:
         return kind
     values = {own.name: getattr(kind, own.name) for own in fields(kind)}
-    values["flexure"] = dict(values["flexure"]) if values["flexure"] else None
+    for name in ("flexure", "shear"):
+        values[name] = dict(values[name]) if values[name] else None
     return FrameMember(**values | {"panel": panel})

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from rbsdem.errors import InputError
 from rbsdem.model import files
 from rbsdem.model.frame import HONESTY, Frame, FrameSpring, place_of
 from rbsdem.model.response import ENERGIES, same
-from rbsdem.model.springs import Landmark
+from rbsdem.model.springs import Landmark, Layered
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -238,9 +238,9 @@ class FrameResult(Reported):
             springs.append(spring)
             deformation.append(values)
             force.append(forces)
-            yields = [
-                point.deformation for point in self._landmarks(spring) if point.name == "yield"
-            ]
+            points = [*landmarks_of(self.frame, spring)]
+            points += [point for point, _ in self._yields(spring, values)]
+            yields = [point.deformation for point in points if point.name == "yield"]
             largest = float(np.abs(values).max(initial=0.0))
             ductility.append(largest / min(yields) if yields else np.nan)
         start, end = parts.ends[at]
@@ -266,8 +266,39 @@ class FrameResult(Reported):
                 found.append((spring, self.springs[deformation][:, i], self.springs[force][:, i]))
         return found
 
-    def _landmarks(self, spring: FrameSpring) -> list[Landmark]:
-        return landmarks_of(self.frame, spring)
+    @staticmethod
+    def _reached(point: Landmark, values: Array) -> int | None:
+        """Return the first row in which a deformation has reached a landmark."""
+        rows = np.flatnonzero(point.side * values >= _REACHED * point.deformation)
+        return int(rows[0]) if rows.size else None
+
+    def _yields(self, spring: FrameSpring, rotation: Array) -> list[tuple[Landmark, int | None]]:
+        """Return where the first layer of a joint yields in tension, for each way that it turns."""
+        made = (
+            self.frame.kind_of(spring.member).at(spring.group, spring.place)
+            if spring.rule == "layered" and spring.group == "flexure"
+            else None
+        )
+        if not isinstance(made, Layered):
+            return []
+        joints = self.frame.parts.springs_of("axial_spring")
+        at = next(
+            i
+            for i, one in enumerate(joints)
+            if (one.rule, one.member, one.place) == ("layered", spring.member, spring.place)
+        )
+        opening = self.springs["opening"][:, at]
+        first: dict[Literal[1, -1], int] = {}
+        for y, layer in made.layers:
+            for point in layer.landmarks():
+                row = self._reached(point, opening + y * rotation)
+                if point.name == "yield" and point.side > 0 and row is not None:
+                    side: Literal[1, -1] = 1 if rotation[row] >= 0 else -1
+                    first[side] = min(first.get(side, row), row)
+        return [
+            (Landmark("yield", side, abs(float(rotation[row])), "first layer"), row)
+            for side, row in first.items()
+        ]
 
     @cached_property
     def events(self) -> tuple[FrameEvent, ...]:
@@ -279,11 +310,12 @@ class FrameResult(Reported):
         forces = self.base_shear if self.dynamic else self.force
         found = []
         for spring, values, _ in self._springs():
-            for point in self._landmarks(spring):
-                reached = np.flatnonzero(point.side * values >= _REACHED * point.deformation)
-                if not reached.size:
+            points = [
+                (point, self._reached(point, values)) for point in landmarks_of(self.frame, spring)
+            ]
+            for point, row in [*points, *self._yields(spring, values)]:
+                if row is None:
                     continue
-                row = int(reached[0])
                 end = {0.0: "start", 1.0: "end"}.get(spring.place, f"{spring.place:g}")
                 end = "" if spring.group == "panel" else end
                 found.append(
@@ -417,11 +449,8 @@ def landmarks_of(frame: Frame, spring: FrameSpring) -> list[Landmark]:
             Landmark("yield", 1, turned, "yield_moment"),
             Landmark("yield", -1, turned, "yield_moment"),
         ]
-    if spring.group == "flexure":
-        own = next(own for place, own in kind.places if place == spring.place)
-        return list(own.landmarks())
-    other = kind.shear if spring.group == "shear" else kind.axial_spring
-    return [] if other is None else list(other.landmarks())
+    own = None if spring.rule == "layered" else kind.at(spring.group, spring.place)
+    return [] if own is None else list(own.landmarks())
 
 
 def rigid_lengths(frame: Frame, member: str) -> tuple[float, float]:

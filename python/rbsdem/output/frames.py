@@ -447,7 +447,8 @@ def _draw_hinges(
     beside = _BESIDE * _size(structure)
     points: dict[str, list[Array]] = {state: [] for state in _STATES}
     for spring in structure.parts.springs:
-        if not landmarks_of(structure, spring):
+        layered = (spring.rule, spring.group) == ("layered", "flexure")
+        if not (layered or landmarks_of(structure, spring)):
             continue
         if spring.group == "panel":
             node = structure.parts.nodes.index(spring.member)

@@ -8,7 +8,7 @@ from typing import Any
 from rbsdem import _core
 from rbsdem.model.damping import Damping
 from rbsdem.model.frame import Frame, FrameMember, FrameNode, Member, with_panel
-from rbsdem.model.springs import SPRINGS, Spring
+from rbsdem.model.springs import SPRINGS, Layered, Spring
 
 #: Groups by name, each as often as it was given.
 Groups = Mapping[str, list[dict[str, Any]]]
@@ -48,19 +48,32 @@ def frame_of(groups: Groups) -> Frame:
 
 def _kind(given: dict[str, Any], groups: Groups) -> FrameMember:
     """Return a kind of members with its springs."""
-    flexure: dict[float, Spring] = {}
-    others: dict[str, Any] = {}
-    for group in _SPRINGS:
+    found: dict[str, Any] = {}
+    for group, usual in (("flexure", [0.0, 1.0]), ("shear", [0.5])):
         for spring in groups.get(group, []):
-            if spring.get("kind") != given["name"]:
-                continue
-            if group == "flexure":
-                places = _core.several(spring.get("place", [0.0, 1.0]))
-                flexure |= dict.fromkeys(places, _spring(spring))
-            else:
-                others[group] = _spring(spring)
+            if spring.get("kind") == given["name"]:
+                places = _core.several(spring.get("place", usual))
+                made = _layered(spring, groups) if spring["rule"] == "layered" else _spring(spring)
+                found.setdefault(group, {}).update(dict.fromkeys(places, made))
+    for spring in groups.get("axial_spring", []):
+        if spring.get("kind") == given["name"]:
+            found["axial_spring"] = _spring(spring)
     own: dict[str, Any] = _core.typed("member_kind", given)
-    return FrameMember(**own, flexure=flexure or None, **others)
+    return FrameMember(**own, **found)
+
+
+def _layered(given: dict[str, Any], groups: Groups) -> Layered:
+    """Return a joint of layers, whose kind and places are those of its spring."""
+    springs = {int(one["id"]): _spring(one) for one in groups["layer_spring"]}
+
+    def where(group: dict[str, Any]) -> tuple[Any, ...]:
+        return group.get("kind"), *_core.several(group.get("place", []))
+
+    layers = next(one for one in groups["layers"] if where(one) == where(given))
+    numbers = (int(number) for number in _core.several(layers["spring"]))
+    return Layered(
+        list(zip(_core.several(layers["y"]), (springs[i] for i in numbers), strict=True))
+    )
 
 
 def _cells(
@@ -102,5 +115,5 @@ def _nodes(groups: Groups, lines: int) -> list[FrameNode]:
 
 
 def _spring(given: Mapping[str, Any]) -> Spring:
-    places = ("rule", "kind", "node", "panel", "place")
+    places = ("rule", "kind", "node", "panel", "place", "id")
     return SPRINGS[given["rule"]](**{k: v for k, v in given.items() if k not in places})

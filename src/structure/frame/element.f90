@@ -16,6 +16,11 @@
 !> are brought there by deformations -H f,
 !>
 !>     H_ij = delta_ij/k_i - p_i' K p_j/(k_i k_j)
+!>
+!> Joints of layers are condensed by their compliances: with w and theta of a joint, z = (w, theta) or the one
+!> deformation of a single spring, q = sum P z + F_rest s and K_j z' = P' s', so that
+!>
+!>     F = sum P K_j^-1 P' + F_rest,   K_j = sum k [1 y; y y^2],   layers open by w + y theta
 module rbs_structure_frame_element
    use rbs_base_constants, only: no_stiffness
    use rbs_base_kinds, only: wp
@@ -23,6 +28,7 @@ module rbs_structure_frame_element
    private
 
    public :: frame_element, tangent_size, find_tangent, find_forces, find_rates
+   public :: layered_tangent, layered_forces, layered_rates, joint_motion
 
    !> Springs without stiffness share a motion as if each had this part of its initial one.
    real(wp), parameter :: shared = 1.0e-9_wp
@@ -44,7 +50,16 @@ module rbs_structure_frame_element
       real(wp) :: rest_along = 0.0_wp
       !> Where its tangent begins in the work array of the frame
       integer :: at = 1
+      !> Joints, if some are of layers: first spring of each in the element, and one more (joints + 1); what
+      !> axial force and end moments do on w and theta of each (3, 2, joints); distances of the layers
+      !> (springs) [m]
+      logical :: layered = .false.
+      integer, allocatable :: first(:)
+      real(wp), allocatable :: arm(:, :, :), y(:)
    end type frame_element
+
+   !> Numbers of a joint in a tangent: w and theta of a joint per axial force and moment.
+   integer, parameter :: of_joint = 3
 
 contains
 
@@ -55,6 +70,7 @@ contains
 
       associate (m => element%bending, n => element%opening)
          numbers = 9 + 4*(m + n) + m**2 + n**2
+         if (element%layered) numbers = 9 + of_joint*(size(element%first) - 1) + m + n
       end associate
    end function tangent_size
 
@@ -121,6 +137,183 @@ contains
          dd(j) = rate(1, j)*q(1) + rate(2, j)*q(2) + rate(3, j)*q(3)
       end do
    end subroutine find_rates
+
+   !> Stiffness of an element with joints of layers, and the compliances of its joints.
+   pure subroutine layered_tangent(e, m, k, k0, stiffness, soft, stable)
+      type(frame_element), intent(in) :: e
+      integer, intent(in) :: m
+      !> Present and initial stiffness of its springs
+      real(wp), intent(in) :: k(m), k0(m)
+      real(wp), intent(out) :: stiffness(3, 3), soft(of_joint, size(e%first) - 1)
+      !> Whether it does not snap back: each joint that softens is held by the rest of the element
+      logical, intent(out) :: stable
+      real(wp) :: flexible(3, 3), now(3), whole(3), determinant, minor(3)
+      integer :: i, j, softening
+
+      flexible = 0.0_wp
+      if (e%rest_along > 0.0_wp) flexible(1, 1) = 1.0_wp/e%rest_along
+      if (allocated(e%rest)) then
+         flexible(2:, 2:) = 1.0_wp/e%rest(1)
+         flexible(2, 2) = flexible(2, 2) + 1.0_wp/e%rest(2)
+         flexible(3, 3) = flexible(3, 3) + 1.0_wp/e%rest(2)
+         flexible(2, 3) = flexible(2, 3) - 1.0_wp/e%rest(2)
+         flexible(3, 2) = flexible(2, 3)
+      end if
+      softening = 0
+      do j = 1, size(e%first) - 1
+         i = e%first(j)
+         associate (last => e%first(j + 1) - 1)
+            if (last == i) then
+               soft(:, j) = [1.0_wp/merge(k(i), shared*k0(i), abs(k(i)) > shared*k0(i)), 0.0_wp, 0.0_wp]
+               if (soft(1, j) < 0.0_wp) softening = softening + 1
+            else
+               now = sums(last - i + 1, e%y(i:last), k(i:last))
+               whole = sums(last - i + 1, e%y(i:last), k0(i:last))
+               determinant = now(1)*now(3) - now(2)**2
+               ! Layers without stiffness share a motion as if each had a little of its initial one.
+               if (abs(determinant) <= shared*(whole(1)*whole(3) - whole(2)**2)) then
+                  now = now + shared*whole
+                  determinant = now(1)*now(3) - now(2)**2
+               end if
+               soft(:, j) = [now(3), -now(2), now(1)]/determinant
+               if (determinant < 0.0_wp) then
+                  softening = softening + 1
+               else if (now(1) < 0.0_wp) then
+                  softening = softening + 2
+               end if
+            end if
+         end associate
+         call add_joint(e%arm(:, :, j), soft(:, j), flexible)
+      end do
+      minor(1) = flexible(1, 1)
+      minor(2) = flexible(1, 1)*flexible(2, 2) - flexible(1, 2)**2
+      stiffness(:, 1) = cross_product(flexible(:, 2), flexible(:, 3))
+      stiffness(:, 2) = cross_product(flexible(:, 3), flexible(:, 1))
+      stiffness(:, 3) = cross_product(flexible(:, 1), flexible(:, 2))
+      minor(3) = sum(flexible(:, 1)*stiffness(:, 1))
+      stiffness = stiffness/minor(3)
+      ! As many negative directions in all as in the joints alone, by the signs of the leading minors.
+      stable = softening == count([minor(1) < 0.0_wp, minor(2)*minor(1) < 0.0_wp, minor(3)*minor(2) < 0.0_wp])
+   end subroutine layered_tangent
+
+   !> Sums of k, k y and k y**2.
+   pure function sums(n, y, k)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: y(n), k(n)
+      real(wp) :: sums(3)
+
+      sums = [sum(k), sum(k*y), sum(k*y**2)]
+   end function sums
+
+   !> Add the flexibility of a joint.
+   pure subroutine add_joint(arm, soft, flexible)
+      real(wp), intent(in) :: arm(3, 2), soft(of_joint)
+      real(wp), intent(inout) :: flexible(3, 3)
+      integer :: i
+
+      do i = 1, 3
+         flexible(:, i) = flexible(:, i) + arm(:, 1)*(soft(1)*arm(i, 1) + soft(2)*arm(i, 2)) &
+                          + arm(:, 2)*(soft(2)*arm(i, 1) + soft(3)*arm(i, 2))
+      end do
+   end subroutine add_joint
+
+   pure function cross_product(a, b) result(c)
+      real(wp), intent(in) :: a(3), b(3)
+      real(wp) :: c(3)
+
+      c = [a(2)*b(3) - a(3)*b(2), a(3)*b(1) - a(1)*b(3), a(1)*b(2) - a(2)*b(1)]
+   end function cross_product
+
+   !> As `find_forces`.
+   pure subroutine layered_forces(e, m, stiffness, soft, gap, d, f, s, correction)
+      type(frame_element), intent(in) :: e
+      integer, intent(in) :: m
+      !> Of `layered_tangent`
+      real(wp), intent(in) :: stiffness(3, 3), soft(of_joint, size(e%first) - 1)
+      !> Deformations and forces of the springs, without dead load
+      real(wp), intent(in) :: gap(3), d(m), f(m)
+      real(wp), intent(out) :: s(3), correction(m)
+      real(wp) :: missing(2), moved(2), all(3)
+      integer :: j
+
+      all = gap
+      do j = 1, size(e%first) - 1
+         missing = section_forces(e, j, m, f)
+         all = all + e%arm(:, 1, j)*(soft(1, j)*missing(1) + soft(2, j)*missing(2)) &
+               + e%arm(:, 2, j)*(soft(2, j)*missing(1) + soft(3, j)*missing(2))
+      end do
+      s = stiffness(:, 1)*all(1) + stiffness(:, 2)*all(2) + stiffness(:, 3)*all(3)
+      do j = 1, size(e%first) - 1
+         missing = [sum(e%arm(:, 1, j)*s), sum(e%arm(:, 2, j)*s)] - section_forces(e, j, m, f)
+         moved = [sum(soft(:2, j)*missing), sum(soft(2:, j)*missing)]
+         associate (of => e%first(j), last => e%first(j + 1) - 1)
+            correction(of:last) = moved(1) + e%y(of:last)*moved(2)
+            if (last == of) cycle
+            ! Layers stay in line.
+            moved = joint_motion(e, j, m, d)
+            correction(of:last) = correction(of:last) + (moved(1) + e%y(of:last)*moved(2) - d(of:last))
+         end associate
+      end do
+   end subroutine layered_forces
+
+   !> Axial force and moment of the springs of a joint.
+   pure function section_forces(e, joint, m, f) result(forces)
+      type(frame_element), intent(in) :: e
+      integer, intent(in) :: joint, m
+      real(wp), intent(in) :: f(m)
+      real(wp) :: forces(2)
+
+      associate (of => e%first(joint), last => e%first(joint + 1) - 1)
+         forces = [sum(f(of:last)), sum(e%y(of:last)*f(of:last))]
+      end associate
+   end function section_forces
+
+   !> Opening in the middle and rotation of a joint of layers, told by its outermost ones; or the deformation
+   !> of a single spring.
+   pure function joint_motion(e, joint, m, d) result(z)
+      type(frame_element), intent(in) :: e
+      integer, intent(in) :: joint, m
+      real(wp), intent(in) :: d(m)
+      real(wp) :: z(2)
+      integer :: low, high
+
+      associate (of => e%first(joint), last => e%first(joint + 1) - 1)
+         z = [d(of), 0.0_wp]
+         if (last == of) return
+         low = of - 1 + minloc(e%y(of:last), dim=1)
+         high = of - 1 + maxloc(e%y(of:last), dim=1)
+         z(2) = (d(high) - d(low))/(e%y(high) - e%y(low))
+         z(1) = d(low) - e%y(low)*z(2)
+      end associate
+   end function joint_motion
+
+   !> Changes of the deformations with those of the ends, and bounds of what they are the sum of.
+   pure subroutine layered_rates(e, m, stiffness, soft, q, dd, terms)
+      type(frame_element), intent(in) :: e
+      integer, intent(in) :: m
+      real(wp), intent(in) :: stiffness(3, 3), soft(of_joint, size(e%first) - 1), q(3)
+      real(wp), intent(out) :: dd(m)
+      !> For q that are sizes, all positive (springs)
+      logical, intent(in) :: terms
+      real(wp) :: s(3), of_section(2), z(2)
+      integer :: j
+
+      s = stiffness(:, 1)*q(1) + stiffness(:, 2)*q(2) + stiffness(:, 3)*q(3)
+      if (terms) s = abs(stiffness(:, 1))*q(1) + abs(stiffness(:, 2))*q(2) + abs(stiffness(:, 3))*q(3)
+      do j = 1, size(e%first) - 1
+         associate (of => e%first(j), last => e%first(j + 1) - 1)
+            if (terms) then
+               of_section = [sum(abs(e%arm(:, 1, j))*s), sum(abs(e%arm(:, 2, j))*s)]
+               z = [sum(abs(soft(:2, j))*of_section), sum(abs(soft(2:, j))*of_section)]
+               dd(of:last) = z(1) + abs(e%y(of:last))*z(2)
+            else
+               of_section = [sum(e%arm(:, 1, j)*s), sum(e%arm(:, 2, j)*s)]
+               z = [sum(soft(:2, j)*of_section), sum(soft(2:, j)*of_section)]
+               dd(of:last) = z(1) + e%y(of:last)*z(2)
+            end if
+         end associate
+      end do
+   end subroutine layered_rates
 
    pure function rest_of(element) result(rest)
       type(frame_element), intent(in) :: element

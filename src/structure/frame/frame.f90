@@ -8,9 +8,11 @@ module rbs_structure_frame_frame
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_channel, only: channel_type, response_type, row_contents
-   use rbs_structure_frame_element, only: frame_element, find_forces, find_rates, find_tangent
+   use rbs_structure_frame_element, only: frame_element, find_forces, find_rates, find_tangent, &
+                                          joint_motion, layered_forces, layered_rates, layered_tangent, &
+                                          tangent_size
    use rbs_structure_frame_frame_record, only: name_length
-   use rbs_structure_spring_place, only: shear
+   use rbs_structure_spring_place, only: shear, flexure, axial
    use rbs_structure_structure, only: structure_type, motion_result, lateral, horizontal, signals, top_axial
    implicit none
    private
@@ -43,6 +45,8 @@ module rbs_structure_frame_frame
       real(wp), allocatable :: storey_share(:, :)
       !> Where the springs of the members are, in shares of the clear length (inside)
       real(wp), allocatable :: spring_place(:)
+      !> Whether a spring is the first layer of a joint (inside)
+      logical, allocatable :: heads(:)
       !> Number of the unknown of each displacement, 0 where a support holds it (3, nodes)
       integer, allocatable :: number(:, :)
       !> The same of the rotation of the beams, where a panel lets them turn against columns; else 0 (nodes)
@@ -129,14 +133,19 @@ contains
             at = e%at + 9 + 3*(m + n)
             first = e%before + 1
             of = at + m**2 + n**2
+            if (e%layered) of = e%at + tangent_size(e) - (m + n)
             if (is_of(m + n, tangent(of), k(first), k0(first))) cycle
             if (i > frame%members) then
                call find_panel(k(first), tangent(e%at), tangent(e%at + 9), tangent(at))
                call remember(1, tangent(of), k(first), k0(first))
                cycle
             end if
-            call find_tangent(e, m, n, k(first), k0(first), tangent(e%at), tangent(e%at + 9), tangent(at), &
-                              tangent(at + m**2), stable)
+            if (e%layered) then
+               call layered_tangent(e, m + n, k(first), k0(first), tangent(e%at), tangent(e%at + 9), stable)
+            else
+               call find_tangent(e, m, n, k(first), k0(first), tangent(e%at), tangent(e%at + 9), &
+                                 tangent(at), tangent(at + m**2), stable)
+            end if
             if (stable) call remember(m + n, tangent(of), k(first), k0(first))
          end associate
          if (.not. stable) unstable = i
@@ -248,6 +257,13 @@ contains
       associate (e => frame%element(element))
          gap(2) = gap(2) - dead*frame%dead_rotation(1, element)
          gap(3) = gap(3) - dead*frame%dead_rotation(2, element)
+         if (e%layered) then
+            do j = 1, size(e%first) - 1
+               gap = gap - matmul(e%arm(:, :, j), joint_motion(e, j, size(e%y), &
+                                                               d(e%before + 1:e%before + size(e%y))))
+            end do
+            return
+         end if
          do j = 1, e%bending
             gap(2) = gap(2) - e%share(1, j)*d(e%before + j)
             gap(3) = gap(3) - e%share(2, j)*d(e%before + j)
@@ -273,20 +289,25 @@ contains
       real(wp), intent(inout), contiguous :: correction(:)
 
       call balance_ends(self, self%element(element), size(d), self%tangent_numbers, &
-                        gap_of(self, element, q, d, dead), dead, f, tangent, s, correction)
+                        gap_of(self, element, q, d, dead), dead, d, f, tangent, s, correction)
    end subroutine end_forces
 
-   pure subroutine balance_ends(frame, e, springs, numbers, gap, dead, f, tangent, s, correction)
+   pure subroutine balance_ends(frame, e, springs, numbers, gap, dead, d, f, tangent, s, correction)
       type(frame_type), intent(in) :: frame
       type(frame_element), intent(in) :: e
       integer, intent(in) :: springs, numbers
-      real(wp), intent(in) :: gap(3), dead, f(springs), tangent(numbers)
+      real(wp), intent(in) :: gap(3), dead, d(springs), f(springs), tangent(numbers)
       real(wp), intent(out) :: s(3)
       real(wp), intent(inout) :: correction(springs)
       integer :: at
 
       associate (m => e%bending, n => e%opening, first => e%before + 1, &
                  last => e%before + e%bending + e%opening)
+         if (e%layered) then
+            call layered_forces(e, m + n, tangent(e%at), tangent(e%at + 9), gap, d(first:last), &
+                                f(first:last) - dead*frame%dead_force(first:last), s, correction(first:last))
+            return
+         end if
          at = e%at + 9 + 3*(m + n)
          call find_forces(m, n, tangent(e%at), tangent(e%at + 9), tangent(at), tangent(at + m**2), gap, &
                           f(first:last) - dead*frame%dead_force(first:last), s, correction(first:last))
@@ -469,8 +490,13 @@ contains
       real(wp), intent(in) :: tangent(numbers), q(3)
       real(wp), intent(inout) :: dd(springs)
 
-      call find_rates(e%bending + e%opening, tangent(e%at + 9), q, &
-                      dd(e%before + 1:e%before + e%bending + e%opening))
+      associate (first => e%before + 1, last => e%before + e%bending + e%opening)
+         if (e%layered) then
+            call layered_rates(e, size(e%y), tangent(e%at), tangent(e%at + 9), q, dd(first:last), .false.)
+         else
+            call find_rates(e%bending + e%opening, tangent(e%at + 9), q, dd(first:last))
+         end if
+      end associate
    end subroutine turn_springs
 
    !> Take rates that are round-off of larger ones for zero: a spring that stands still on a corner of its
@@ -480,7 +506,7 @@ contains
       real(wp), intent(in), contiguous :: tangent(:), dx(:)
       real(wp), intent(inout), contiguous :: dd(:)
       real(wp) :: size_of(3)
-      integer :: number(6), i, j, k, at
+      integer :: number(6), i, k
 
       do i = 1, size(self%element)
          associate (e => self%element(i))
@@ -489,15 +515,31 @@ contains
             do k = 1, 6
                if (number(k) > 0) size_of = size_of + abs(e%to_basic(:, k)*dx(number(k)))
             end do
-            do j = 1, e%bending + e%opening
-               at = e%at + 6 + 3*j
-               if (abs(dd(e%before + j)) < round_off*sum(abs(tangent(at:at + 2))*size_of)) then
-                  dd(e%before + j) = 0.0_wp
-               end if
-            end do
+            call drop_small(e, size(dd), self%tangent_numbers, tangent, size_of, dd)
          end associate
       end do
    end subroutine drop_round_off
+
+   pure subroutine drop_small(e, springs, numbers, tangent, size_of, dd)
+      type(frame_element), intent(in) :: e
+      integer, intent(in) :: springs, numbers
+      real(wp), intent(in) :: tangent(numbers), size_of(3)
+      real(wp), intent(inout) :: dd(springs)
+      real(wp) :: terms(e%bending + e%opening)
+      integer :: at, j
+
+      if (e%layered) then
+         call layered_rates(e, size(terms), tangent(e%at), tangent(e%at + 9), size_of, terms, .true.)
+      else
+         do j = 1, size(terms)
+            at = e%at + 6 + 3*j
+            terms(j) = sum(abs(tangent(at:at + 2))*size_of)
+         end do
+      end if
+      do j = 1, size(terms)
+         if (abs(dd(e%before + j)) < round_off*terms(j)) dd(e%before + j) = 0.0_wp
+      end do
+   end subroutine drop_small
 
    pure subroutine unknown_rates(self, dd, dx)
       class(frame_type), intent(in) :: self
@@ -734,12 +776,14 @@ contains
       channel = pack(channel, held)
    end subroutine channels
 
-   !> Springs of a kind in the members.
+   !> Springs of a kind in the members, joints of layers among those that rotate and open.
    pure integer function springs_of(self, kind)
       class(frame_type), intent(in) :: self
       integer, intent(in) :: kind
 
       springs_of = count(self%place(:self%inside)%kind == kind)
+      ! A joint of layers rotates and opens.
+      if (kind == flexure .or. kind == axial) springs_of = springs_of + count(self%heads)
    end function springs_of
 
    pure subroutine fill_row(self, contents, response, springs, d, row)
@@ -774,8 +818,12 @@ contains
       at = at + 3*m
       do kind = 1, 3
          associate (of_kind => self%place(:self%inside)%kind == kind, number => self%springs_of(kind))
-            row(at + 1:at + number) = pack(d(:self%inside), of_kind)
-            row(at + number + 1:at + 2*number) = pack(f(:self%inside), of_kind)
+            if (kind /= shear .and. any(self%heads)) then
+               call fill_joints(self, kind, d, f, number, row(at + 1:at + 2*number))
+            else
+               row(at + 1:at + number) = pack(d(:self%inside), of_kind)
+               row(at + number + 1:at + 2*number) = pack(f(:self%inside), of_kind)
+            end if
             at = at + 2*number
          end associate
       end do
@@ -786,6 +834,38 @@ contains
       end do
       row(at + self%n + 1) = response%ground
    end subroutine fill_row
+
+   !> Rotations and moments, or openings and axial forces, of the joints in the order of the members.
+   pure subroutine fill_joints(self, kind, d, f, number, row)
+      type(frame_type), intent(in) :: self
+      integer, intent(in) :: kind, number
+      real(wp), intent(in), contiguous :: d(:), f(:)
+      real(wp), intent(out) :: row(number, 2)
+      real(wp) :: z(2)
+      integer :: at, i, j, of, last
+
+      at = 0
+      do i = 1, size(self%element)
+         associate (e => self%element(i))
+            do j = 1, e%bending + e%opening
+               of = e%before + j
+               if (self%place(of)%kind == kind) then
+                  at = at + 1
+                  row(at, :) = [d(of), f(of)]
+               else if (self%heads(of)) then
+                  at = at + 1
+                  last = e%before + e%first(self%place(of)%joint + 1) - 1
+                  z = joint_motion(e, self%place(of)%joint, size(e%y), d(e%before + 1:e%before + size(e%y)))
+                  if (kind == axial) then
+                     row(at, :) = [z(1), sum(f(of:last))]
+                  else
+                     row(at, :) = [z(2), sum(f(of:last)*e%y(j:j + last - of))]
+                  end if
+               end if
+            end do
+         end associate
+      end do
+   end subroutine fill_joints
 
    !> What supports and springs from the ground hold the frame with along x [N].
    pure real(wp) function base_force(self, d, f) result(force)

@@ -10,7 +10,7 @@ module rbs_structure_frame_frame_parts
    use rbs_structure_frame_frame_record, only: frame_record, frame_spring, kind_record, cell_record, &
                                                name_length
    use rbs_structure_frame_new_frame, only: frame_node, frame_member, is_beam
-   use rbs_structure_spring_place, only: shear, flexure, axial
+   use rbs_structure_spring_place, only: shear, flexure, axial, layer
    implicit none
    private
 
@@ -126,9 +126,9 @@ contains
                call messages%add(name//': a panel has one spring, which turns; give it as &flexure')
             end if
             call s%spring%validate(name, messages)
-            if (s%spring%rule == 'layered') then
-               call messages%add(name//': layered joints are not followed in frames yet; take a rule for '// &
-                                 'the moment alone, such as takeda or peak_oriented')
+            if (s%spring%rule == 'layered' .and. s%node /= '') then
+               call messages%add(name//': a joint of layers stands in a member; take a rule for the '// &
+                                 'moment alone, such as takeda or peak_oriented')
             else if (all(rule_names /= s%spring%rule)) then
                cycle                                ! reported by the spring
             else if (.not. suits(s%spring%rule, place_of(kind))) then
@@ -653,7 +653,7 @@ contains
       type(spring_record) :: one
       integer :: i, j, k, group
 
-      allocate (m%kind(0), m%place(0), m%spring(0))
+      allocate (m%kind(0), m%joint(0), m%place(0), m%y(0), m%spring(0))
       m%axial = kind%modulus*kind%area
       if (is_given(kind%yield_moment)) then
          do i = 1, 3
@@ -692,20 +692,38 @@ contains
       end do
    end subroutine put_kind
 
+   !> Append a spring, or the layers of a joint.
    subroutine append_spring(m, kind, place, spring)
       type(frame_member), intent(inout) :: m
       integer, intent(in) :: kind
       real(wp), intent(in) :: place
       type(spring_record), intent(in) :: spring
       type(spring_record), allocatable :: longer(:)
-      integer :: n
+      integer :: i, joint, layers, n
 
       n = size(m%kind)
-      m%kind = [m%kind, kind]
-      m%place = [m%place, place]
-      allocate (longer(n + 1))
+      joint = 1
+      if (n > 0) joint = m%joint(n) + 1
+      if (spring%rule == 'layered') then
+         layers = size(spring%y)
+         m%kind = [m%kind, spread(layer, 1, layers)]
+         m%y = [m%y, spring%y]
+      else
+         layers = 1
+         m%kind = [m%kind, kind]
+         m%y = [m%y, 0.0_wp]
+      end if
+      m%joint = [m%joint, spread(joint, 1, layers)]
+      m%place = [m%place, spread(place, 1, layers)]
+      allocate (longer(n + layers))
       longer(:n) = m%spring
-      longer(n + 1) = spring
+      if (spring%rule == 'layered') then
+         do i = 1, layers
+            longer(n + i) = spring%layer(i)
+         end do
+      else
+         longer(n + 1) = spring
+      end if
       call move_alloc(longer, m%spring)
    end subroutine append_spring
 

@@ -7,7 +7,7 @@ module rbs_structure_frame_new_frame
    use rbs_structure_frame_frame, only: frame_type
    use rbs_structure_frame_frame_record, only: name_length
    use rbs_structure_frame_numbering, only: order_nodes
-   use rbs_structure_spring_place, only: spring_place, shear, flexure, axial
+   use rbs_structure_spring_place, only: spring_place, shear, flexure, axial, layer
    use rbs_structure_structure, only: unknown_group, pdelta, lateral, horizontal, vertical, signals
    implicit none
    private
@@ -45,9 +45,10 @@ module rbs_structure_frame_new_frame
       real(wp) :: rigid(2) = 0.0_wp
       !> E A [N], E I [N m2] and G A_s [N] of the elastic rest; 0 where it is rigid
       real(wp) :: axial = 0.0_wp, bending = 0.0_wp, sliding = 0.0_wp
-      !> Springs: kind, place in shares of the clear length, parameters; those that open come last
-      integer, allocatable :: kind(:)
-      real(wp), allocatable :: place(:)
+      !> Springs: kind, joint, place in shares of the clear length, parameters; those that open come last.
+      !> Layers of a joint follow one another, with their distances from its middle [m]
+      integer, allocatable :: kind(:), joint(:)
+      real(wp), allocatable :: place(:), y(:)
       type(spring_record), allocatable :: spring(:)
       !> Dead load downward per length along x [N/m]
       real(wp) :: load = 0.0_wp
@@ -91,6 +92,7 @@ contains
       springs = frame%inside + frame%unknowns
       allocate (spring(springs), frame%place(springs), frame%arm(springs), frame%constant_axial(springs), &
                 frame%spring_place(frame%inside))
+      allocate (frame%heads(frame%inside), source=.false.)
       frame%arm = 0.0_wp
       frame%constant_axial = 0.0_wp
       direction = 1
@@ -282,10 +284,12 @@ contains
                do j = 1, size(m%kind)
                   spring(before + j) = m%spring(j)
                   frame%spring_place(before + j) = m%place(j)
-                  frame%place(before + j) = spring_place(m%kind(j), i, j, index=i, owner=m%name)
+                  frame%place(before + j) = spring_place(m%kind(j), i, m%joint(j), index=i, owner=m%name)
+                  frame%heads(before + j) = m%kind(j) == layer .and. findloc(m%joint, m%joint(j), dim=1) == j
                   if (m%kind(j) == flexure) e%share(:, j) = [m%place(j) - 1.0_wp, m%place(j)]
                   if (m%kind(j) == shear) e%share(:, j) = -1.0_wp/clear
                end do
+               if (any(m%kind == layer)) call set_joints(e, m, clear)
                call put_load(frame, m, i, axis, clear)
                e%at = at
                at = at + tangent_size(e)
@@ -325,6 +329,38 @@ contains
       end do
    end subroutine set_panels
 
+   !> Joints of an element some of which are of layers.
+   subroutine set_joints(e, m, clear)
+      type(frame_element), intent(inout) :: e
+      type(frame_member), intent(in) :: m
+      real(wp), intent(in) :: clear
+      real(wp) :: moment(3)
+      integer :: i, j, joints
+
+      e%layered = .true.
+      joints = maxval(m%joint)
+      e%y = m%y
+      allocate (e%first(joints + 1), e%arm(3, 2, joints))
+      e%first(joints + 1) = size(m%kind) + 1
+      e%arm = 0.0_wp
+      do j = 1, joints
+         i = findloc(m%joint, j, dim=1)
+         e%first(j) = i
+         moment = [0.0_wp, m%place(i) - 1.0_wp, m%place(i)]
+         select case (m%kind(i))
+         case (layer)
+            e%arm(1, 1, j) = 1.0_wp
+            e%arm(:, 2, j) = moment
+         case (axial)
+            e%arm(1, 1, j) = 1.0_wp
+         case (shear)
+            e%arm(:, 1, j) = [0.0_wp, -1.0_wp, -1.0_wp]/clear
+         case default
+            e%arm(:, 1, j) = moment
+         end select
+      end do
+   end subroutine set_joints
+
    !> The elastic rest bends as a beam that is supported at its ends: alike or against each other.
    subroutine set_rest(e, m, clear)
       type(frame_element), intent(inout) :: e
@@ -359,6 +395,8 @@ contains
          share = m%place(j)
          at = frame%element(i)%before + j
          if (m%kind(j) == flexure) frame%dead_force(at) = -down*clear**2*share*(1.0_wp - share)/2.0_wp
+         if (frame%heads(at)) call bend_layers(-down*clear**2*share*(1.0_wp - share)/2.0_wp, &
+                                               m%y, m%joint == m%joint(j), frame%element(i)%before)
          if (m%kind(j) == shear) frame%dead_force(at) = down*clear*(0.5_wp - share)
       end do
       if (m%bending > 0.0_wp) then
@@ -371,6 +409,20 @@ contains
          lever = merge(1.0_wp, -1.0_wp, k == 1)*m%rigid(k)*axis(1)
          if (at > 0) frame%dead(at) = frame%dead(at) + lever*all/2.0_wp
       end do
+
+   contains
+
+      !> The moment in a joint of layers, as two forces on its outermost ones.
+      subroutine bend_layers(moment, y, of_joint, before)
+         real(wp), intent(in) :: moment, y(:)
+         logical, intent(in) :: of_joint(:)
+         integer, intent(in) :: before
+
+         associate (low => minloc(y, dim=1, mask=of_joint), high => maxloc(y, dim=1, mask=of_joint))
+            frame%dead_force(before + high) = moment/(y(high) - y(low))
+            frame%dead_force(before + low) = -moment/(y(high) - y(low))
+         end associate
+      end subroutine bend_layers
    end subroutine put_load
 
 end module rbs_structure_frame_new_frame
