@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import itertools
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from strategies import between, rules, spring
 
 import rbsdem
+from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties
 from rbsdem.frames import Frame, FrameMember, FrameNode, Member
+from rbsdem.model.column import bodies
 from rbsdem.springs import Bilinear, Elastic, PeakOriented, Spring, Takeda
 
 pytestmark = pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
@@ -209,6 +212,73 @@ def test_a_column_as_a_frame(rule):
     assert rows == len(path) or rule in ("peak_oriented", "pinching")
     size = np.abs(one.force).max()
     assert np.abs(other.force[:rows] - one.force[:rows]).max() < 1e-11 * size
+
+
+def drawn(depth: float) -> RectangularSection:
+    """A section with bars in all faces."""
+    bars = Layout(8, 0.018, Steel(446e6, 702e6))
+    ties = Ties(0.008, 0.1, Steel(364e6, 521e6))
+    return RectangularSection(0.4, depth, Concrete(30e6), layout=bars, ties=ties, cover=0.03)
+
+
+def test_a_column_of_layers_as_a_frame():
+    """Layers as springs of a frame under a weight: the forces of the column, which has one spring.
+
+    With their force at first, joints open and rotate as those of the column.
+    """
+    column = rbsdem.section.column(drawn(0.4), 1.6, axial_load=700e3)
+    column = replace(column, kinematics="small", shear=[Elastic(k=1e9), Elastic(k=1e9)])
+    hinge, above = column.joints("flexure")
+    place = bodies(column)[0][0] / column.height
+    kind = FrameMember(
+        E, 1e3, INERTIA, flexure={0.0: hinge, place: above}, shear=Elastic(k=5e8), between="rigid"
+    )
+    nodes = [FrameNode("foot", 0, 0, "fixed"), FrameNode("top", 0, 1.6, load_y=-700e3)]
+    frame = Frame(nodes=nodes, members=[Member("C", "foot", "top", kind)], pattern="uniform")
+    path = 1.6 * rbsdem.protocol([0.004, 0.02, 0.03], points=7)
+    one, other = followed(column, path, openings=True), followed(frame, path)
+    assert np.abs(other.force - one.force).max() < 1e-11 * np.abs(one.force).max()
+    turned = other.springs["rotation"][:, 0]
+    assert np.abs(turned - one.rotation[:, 0]).max() < 1e-12
+    assert np.abs(other.springs["opening"][:, 0] - one.opening[:, 0]).max() < 1e-12
+    assert np.abs(other.springs["axial_force"] + 700e3).max() < 1e-12 * 700e3
+    (first,) = [event for event in other.events if event.what == "yield" and event.side == 1]
+    assert first.end == "start"
+
+
+def test_a_frame_of_drawings():
+    """Cracked beams lengthen and press the columns: paths balance, more points change no bit."""
+    column = rbsdem.section.member(drawn(0.4), 2.7, axial_load=400e3, panel=0.25)
+    beam = rbsdem.section.member(drawn(0.5), 5.6, panel=0.2)
+    frame = Frame.grid(
+        [3.2], [6.0], columns=column, beams=beam, beam_load=20e3, floor_mass=40e3,
+        kinematics="pdelta",
+    )  # fmt: skip
+    path = frame.height * np.array([0.005, -0.01, 0.02])
+    whole = followed(frame, path)
+    assert whole.summary["relative_energy_residual"] < 1e-10
+    size = abs(whole.summary["peak_force"])
+    assert np.abs(whole.base_shear - whole.force).max() < 1e-9 * size
+    # What presses the beam presses the columns apart.
+    assert np.abs(whole.member("B-1-1").axial).min() > 1e3
+    fine = np.concatenate([[a + (b - a) / 2, b] for a, b in zip([0, *path[:-1]], path)])  # noqa: B905
+    parts = followed(frame, fine)
+    assert np.abs(parts.force[1::2] - whole.force).max() < 1e-11 * size
+    motion = rbsdem.GroundMotion(3 * np.sin(0.08 * np.arange(200)), 0.01)
+    shaken = rbsdem.time_history(frame, motion, method="newmark", dt=0.005)
+    assert shaken.summary["relative_energy_residual"] < 1e-2
+    runs = rbsdem.ensemble([frame], [motion], dt=0.005, method="newmark")
+    yields = [event.step for event in shaken.events if event.what == "yield"]
+    assert runs.measures["first_yield"][0] == pytest.approx(min(yields), abs=0.02)
+
+
+def test_a_frame_of_drawings_comes_back(tmp_path):
+    """Layers stand once in the text, by their kinds and places."""
+    column = rbsdem.section.member(drawn(0.4), 2.7, axial_load=400e3)
+    frame = Frame.grid([3.2], [6.0], columns=column, beams=column)
+    loading = "&loading drive = 'displacement', values = 0, 0.01 /\n"
+    (tmp_path / "case.nml").write_text(frame.to_namelist() + loading)
+    assert rbsdem.read_case(tmp_path / "case.nml").column == frame
 
 
 @pytest.mark.parametrize("seed", range(12))

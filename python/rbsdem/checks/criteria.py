@@ -17,7 +17,7 @@ from rbsdem._arguments import Array
 from rbsdem.checks.formulas import goodnight_buckling_strain, quantities
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
-from rbsdem.model.frame import Frame, Structure
+from rbsdem.model.frame import Frame, FrameSpring, Structure
 from rbsdem.model.frame_result import landmarks_of
 from rbsdem.model.response import Response
 from rbsdem.model.shape import Section
@@ -110,7 +110,11 @@ def _criteria(column: Structure, names: Collection[str]) -> list[Criterion]:
     found: list[Criterion] = []
     if isinstance(column, Frame):
         for group, states, what in (("flexure", _TURNS, "rotation"), ("shear", _SLIPS, "slip")):
-            for number, own in enumerate(column.parts.springs_of(group), 1):
+            springs = column.parts.springs_of(group)
+            single = [own for own in springs if own.rule != "layered"]
+            if group == "flexure":
+                found += _of_joints(column, springs, len(single))
+            for number, own in enumerate(single, 1):
                 where = f"the {group} spring of {own.member} at {own.place:g} of its length"
                 if own.group == "panel":
                     where = f"the panel of node {own.member}"
@@ -128,6 +132,26 @@ def _criteria(column: Structure, names: Collection[str]) -> list[Criterion]:
         if joint > 0:
             found += _of_spring(joint, spring, _SLIPS, "slip")
     return [criterion for criterion in found if criterion.name in names]
+
+
+def _of_joints(frame: Frame, springs: Sequence[FrameSpring], number: int) -> Iterator[Criterion]:
+    """Yield where layers yield in tension; they are numbered behind the rotational springs."""
+    for own in springs:
+        made = frame.kind_of(own.member).at(own.group, own.place)
+        if not isinstance(made, Layered):
+            continue
+        places: dict[Spring, list[float]] = {}
+        for y, layer in made.layers:
+            places.setdefault(layer, []).append(y)
+        for y, layer in made.layers:
+            number += 1
+            # Plane sections: of equal layers the outermost ones are stretched most.
+            if y not in (min(places[layer]), max(places[layer])):
+                continue
+            for mark in layer.landmarks():
+                if mark.name == "yield" and mark.side > 0:
+                    source = f"{mark.source} of a {type(layer).__name__} layer of {own.member}"
+                    yield Criterion("first_yield", number, mark.deformation, source, rotation=1.0)
 
 
 def all_watches(column: Structure, openings: bool) -> Array:

@@ -486,8 +486,13 @@ class Frame:
 
     @property
     def joint_numbers(self) -> range:
-        """Numbers of the rotational springs in members, from 1, as limit states know them."""
-        return range(1, len(self.parts.springs) + 1)
+        """Numbers of the springs in members, from 1, as limit states know them, layers last."""
+        made = (self.kind_of(own.member).at("flexure", own.place) for own in self._joints())
+        layers = sum(len(one.layers) for one in made if isinstance(one, Layered))
+        return range(1, len(self.parts.springs) + layers + 1)
+
+    def _joints(self) -> list[FrameSpring]:
+        return [own for own in self.parts.springs_of("flexure") if own.rule == "layered"]
 
     @property
     def damped(self) -> bool:

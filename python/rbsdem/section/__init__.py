@@ -8,6 +8,7 @@ tension.
 from rbsdem.section.axial_moment import InteractionDiagram as InteractionDiagram
 from rbsdem.section.axial_moment import interaction as interaction
 from rbsdem.section.columns import column as column
+from rbsdem.section.columns import member as member
 from rbsdem.section.curvature import Diagram as Diagram
 from rbsdem.section.curvature import diagram as diagram
 from rbsdem.section.curvature import moment_curvature as moment_curvature

@@ -8,9 +8,10 @@ from typing import Any, Literal, TypeAlias, get_args, overload
 
 from rbsdem import _arguments
 from rbsdem.errors import AccuracyWarning, InputError
-from rbsdem.model.column import MOST_BODIES, Column, Footing, Top
+from rbsdem.model.column import MOST_BODIES, Column, Footing, Top, bodies
+from rbsdem.model.frame import FrameMember
 from rbsdem.model.shape import Section, checked_section
-from rbsdem.model.springs import Elastic, Spring
+from rbsdem.model.springs import Elastic, Pinching, Spring
 from rbsdem.section.layered import LayeredColumn, LayeredModel, body_lengths, lumping
 from rbsdem.section.paper_springs import springs
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
@@ -208,6 +209,70 @@ def column(
     if top == "fixed":
         made = made.double_curvature()
     return made if footing is None else replace(made, footing=footing)
+
+
+def member(
+    section: Section,
+    length: float,
+    *,
+    axial_load: float = 0.0,
+    model_parameters: ModelParameters | None = None,
+    restrained: int | None = None,
+    panel: float = 0.0,
+    name: str = "",
+) -> FrameMember:
+    """Return the kind of members of a frame with this section: each half is a layered column.
+
+    From each end to the middle, where the moment is taken to change its sign, the member is a
+    cantilever of the layered model: a joint of layers with bar slip at the end, a joint that cracks
+    between it and the middle, and a shear spring in series. The axial force is that of the frame;
+    `axial_load` only chooses what the model takes from it (length and softening of the hinge,
+    strength in shear). Beams have none. Shear does not decay with the work of the hinges.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    length : float
+        Clear length between its ends [m].
+    axial_load : float, optional
+        Compression under the dead load [N].
+    model_parameters, restrained
+        As for `column`.
+    panel, name
+        As for `FrameMember`.
+
+    Raises
+    ------
+    InputError
+        If a value is refused, or the section cannot carry the axial load.
+    """
+    half = column(
+        section,
+        0.5 * column_length(length, "length"),
+        axial_load=axial_load,
+        model_parameters=model_parameters,
+        restrained=restrained,
+    )
+    hinge, above = half.joints("flexure")
+    place = bodies(half)[0][0] / length
+    fails, slips = (
+        replace(spring, lambda_h=0.0) if isinstance(spring, Pinching) else spring
+        for spring in half.joints("shear")
+    )
+    modulus, area = section.concrete_law["ec"], section.gross_area
+    # The hinges shorten by their layers, the rest by this.
+    hinges = 2 * modulus * area / sum(layer.k for _, layer in hinge.layers)  # type: ignore[attr-defined]
+    return FrameMember(
+        modulus=modulus,
+        area=area * length / max(length - hinges, 0.1 * length),
+        inertia=area * section.depth**2 / 12,
+        flexure={0.0: hinge, place: above, 1 - place: above.mirrored(), 1.0: hinge},
+        shear={0.0: fails, 0.5 * place: slips, 1 - 0.5 * place: slips, 1.0: fails},
+        between="rigid",
+        panel=panel,
+        name=name,
+    )
 
 
 def _layered(

@@ -9,7 +9,7 @@ module rbs_solve_time_sight
    use rbs_solve_time_cubic, only: cubic_type, cubic_through
    use rbs_loading_loads, only: lateral, horizontal
    use rbs_solve_time_motion, only: motion_type, motion_result
-   use rbs_structure_spring_place, only: shear, flexure
+   use rbs_structure_spring_place, only: shear, flexure, layer
    use rbs_structure_structure, only: finite
    implicit none
    private
@@ -102,7 +102,12 @@ contains
       do i = 1, size(self%watch)
          ! A kind that the structure does not have has the factor 0, with any spring.
          self%watch(i)%slips = max(motion%structure%spring_of(shear, self%watch(i)%joint), 1)
-         self%watch(i)%turns = max(motion%structure%spring_of(flexure, self%watch(i)%joint), 1)
+         self%watch(i)%turns = motion%structure%spring_of(flexure, self%watch(i)%joint)
+         ! Behind the flexural springs come layers of joints.
+         if (self%watch(i)%turns == 0) then
+            self%watch(i)%turns = max(motion%structure%spring_of(layer, self%watch(i)%joint - &
+                                                   count(motion%structure%place%kind == flexure)), 1)
+         end if
       end do
       self%peaks_type = peaks_type()
       self%collapsed = .false.
