@@ -182,7 +182,7 @@ function drawCurve(host, row) {
   const [unit, factor] = unitOf(system, "force"), [length, metre] = unitOf(system, "length");
   const drift = answer.displacement.map(value => 100 * value / answer.height), shear = answer.base_shear.map(value => value / factor);
   const marks = answer.events.filter(event => 100 * event.drift <= drift[row] + 1e-9).map(event => ({ x: 100 * event.drift, y: event.force / factor, shape: "circle", kind: "a", label: "a section yields", title: `${event.member}, ${event.end}` }));
-  drawChart(host, { lines: [{ x: drift, y: shear, kind: "test thin" }, { x: drift.slice(0, row + 1), y: shear.slice(0, row + 1), kind: "a", label: "so far" }], marks, fromZero: true, legend: true, height: 330,
+  drawChart(host, { lines: [{ x: drift, y: shear, kind: "test thin", label: "the whole push" }, { x: drift.slice(0, row + 1), y: shear.slice(0, row + 1), kind: "a", label: "so far" }], marks, fromZero: true, legend: true, height: 330,
     xLabel: "Roof drift (%)", yLabel: `Base shear (${unit})`, top: { factor: answer.height / 100 / metre, label: `roof displacement (${length})` }, label: `Base shear against roof drift; largest ${shown(Math.max(...shear))} ${unit}` });
 }
 

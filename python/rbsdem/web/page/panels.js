@@ -94,7 +94,9 @@ export function interactionChart(host, state, sections, own, loops, system, code
 
 export function table(heads, rows, caption) {
   const made = element("table", {});
-  made.style.setProperty("--numbers", heads.length - 1 - (rows[0]?.cells.filter((cell, i) => i && cell?.text !== undefined).length ?? 0));
+  const count = heads.length - 1 - (rows[0]?.cells.filter((cell, i) => i && cell?.text !== undefined).length ?? 0);
+  made.style.setProperty("--numbers", count);
+  if (count > 4) made.className = "many";
   if (caption) made.append(element("caption", {}, caption));
   const words = i => rows.every(row => typeof row.cells[i] === "object" && row.cells[i].text !== undefined);
   made.append(element("thead", {}, element("tr", {}, ...heads.map((head, i) => element("th", { scope: "col", className: words(i) ? "text" : "" }, head)))));
@@ -155,7 +157,7 @@ export function stateTables(host, below, state, loops, bands, system) {
     const found = loops.map((_, i) => reached.find(at => at.name === name && at.i === i)), first = found.find(Boolean);
     return { sign: signOf(name), cells: [nameOfState(name), ...found.flatMap(numbers), { text: first.source }] };
   });
-  const heads = ["First reached", ...loops.flatMap((_, i) => [(two ? names[i] + ", " : "") + "drift %", `d ${length}`, `F ${unit}`]), "criterion"];
+  const heads = ["First reached", ...loops.flatMap((_, i) => ["drift %", `d ${length}`, `F ${unit}`].map(head => (two ? names[i] + ", " : "") + head)), "criterion"];
   host.replaceChildren(rows.length ? table(heads, rows, "") : element("p", { className: "empty" }, "None is reached."));
   const facts = [];
   const add = (what, key, dimension, digits = 4) => {
