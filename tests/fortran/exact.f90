@@ -11,7 +11,7 @@ module exact
    private
 
    public :: jet, point, variant, state
-   public :: sample, variant_of, random_state, place, dense_mass, dense_acceleration
+   public :: sample, variant_of, random_state, place, dense_acceleration
 
    !> A function of time: value, first and second derivative.
    type :: jet

@@ -2,7 +2,6 @@
 program unit_tests
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use check, only: unit_test, run_suite
-   use test_band, only: collect_band
    use test_capped, only: collect_capped
    use test_chain, only: collect_chain
    use test_concrete, only: collect_concrete
@@ -16,13 +15,11 @@ program unit_tests
    use test_modal, only: collect_modal
    use test_peak_oriented, only: collect_peak_oriented
    use test_protocol, only: collect_protocol
-   use test_results, only: collect_results
    use test_rules, only: collect_rules
    use test_run, only: collect_run
    use test_section, only: collect_section
    use test_shear, only: collect_shear
    use test_signal, only: collect_signal
-   use test_units, only: collect_units
    use test_springs, only: collect_springs
    use test_static, only: collect_static
    use test_static_finite, only: collect_static_finite
@@ -47,13 +44,13 @@ program unit_tests
       procedure(collect_interface), pointer, nopass :: collect => null()
    end type suite_type
 
-   type(suite_type) :: suites(29)
+   type(suite_type) :: suites(26)
    character(len=80) :: wanted, pattern
    integer :: i, run, failed, found
 
    suites = [suite_type('text', collect_text), suite_type('section', collect_section), &
               suite_type('linalg', collect_linalg), &
-             suite_type('units', collect_units), suite_type('takeda', collect_takeda), &
+             suite_type('takeda', collect_takeda), &
              suite_type('capped', collect_capped), &
              suite_type('peak_oriented', collect_peak_oriented), &
              suite_type('concrete', collect_concrete), &
@@ -62,10 +59,9 @@ program unit_tests
              suite_type('interaction', collect_interaction), &
              suite_type('springs', collect_springs), &
              suite_type('chain', collect_chain), &
-             suite_type('band', collect_band), &
              suite_type('finite', collect_finite), suite_type('frame', collect_frame), &
              suite_type('protocol', collect_protocol), suite_type('signal', collect_signal), &
-             suite_type('results', collect_results), suite_type('time_plan', collect_time_plan), &
+             suite_type('time_plan', collect_time_plan), &
              suite_type('modal', collect_modal), suite_type('static', collect_static), &
              suite_type('static_finite', collect_static_finite), &
              suite_type('run', collect_run), &

@@ -30,7 +30,6 @@ contains
       tests = [unit_test('accelerations solve the dense equation of motion', dense), &
                unit_test('powers are the rates of the energies', power), &
                unit_test('velocities of bodies and of joints, kinetic energy', bodies), &
-               unit_test('height of the top to second order', height), &
                unit_test('one body: the fast step is the step of the chain', fast_step)]
    end subroutine collect_chain
 
@@ -266,33 +265,6 @@ contains
       call check_close(error, column%kinetic_energy(0.0_wp*v, v), 0.5_wp*dot_product(v, matmul(mass, v)), &
                        1.0e-13_wp, 0.0_wp, 'kinetic energy')
    end subroutine check_bodies
-
-   !> The potential of the axial load alone is the load times the rise of the top.
-   subroutine height(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(column_record) :: spec
-      type(state_type) :: state
-      real(wp) :: top(2)
-      integer :: n, kind
-
-      do n = 1, 6
-         do kind = 0, 3
-            spec = variant(n, kind, random)
-            spec%self_weight = .false.
-            call random_state(spec, random, state)
-            top(1) = state%motion%structure%top_displacement(state%q)
-            associate (column => column_of(state))
-               top(2) = column%top_height(state%q)
-            end associate
-            call check_close(error, spec%axial_load*(top(2) - spec%height), &
-                             state%motion%structure%potential_energy(state%q), 1.0e-9_wp, 0.0_wp, &
-                             'n = '//to_text(n)//', variant '//to_text(kind)//', height')
-            call check_close(error, top(1), dot_product(state%motion%structure%arm, state%q), 0.0_wp, &
-                             1.0e-15_wp, 'displacement')
-         end do
-      end do
-   end subroutine height
 
    !> `one_body` only chooses the method of computation.
    subroutine fast_step(error)

@@ -8,8 +8,7 @@ module test_finite
    use rbs_structure_column_finite, only: finite_chain_type
    use rbs_structure_column_column_record, only: column_record
    use rbs_structure_structure, only: motion_result, lateral
-   use exact, only: point, variant, state, sample, variant_of, random_state, place, dense_mass, &
-                    dense_acceleration
+   use exact, only: point, variant, state, sample, variant_of, random_state, place, dense_acceleration
    use samples, only: elastic, made, random_type
    implicit none
    private
@@ -24,7 +23,6 @@ contains
       tests = [unit_test('accelerations against M = sum J'' diag(m, m, I) J', accelerations), &
                unit_test('closed joints are open ones held by their reactions', reactions), &
                unit_test('power balance of loads, springs, potential and damping', power_balance), &
-               unit_test('kinetic energy and position of the top', kinetic), &
                unit_test('velocity and acceleration of the top', moving_top), &
                unit_test('potential of axial load and weight from the heights', potential), &
                unit_test('potential of small rotations, without cancellation', small_potential)]
@@ -145,31 +143,6 @@ contains
       end subroutine add
 
    end subroutine power_balance
-
-   subroutine kinetic(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(random_type) :: random
-      type(column_record) :: spec
-      class(column_type), allocatable :: column
-      type(state) :: now
-      type(point) :: points(6)
-      real(wp), allocatable :: mass(:, :)
-      integer :: i
-
-      do i = 8, 9
-         spec = sample(5, variant_of(i))
-         column = made(spec)
-         now = random_state(column, random)
-         if (allocated(mass)) deallocate (mass)
-         allocate (mass(column%unknowns, column%unknowns))
-         call dense_mass(spec, now%q, mass)
-         call check_close(error, column%kinetic_energy(now%q, now%v), &
-                          0.5_wp*dot_product(now%v, matmul(mass, now%v)), 1.0e-13_wp, 0.0_wp, 'v M v/2')
-         call place(spec, now%q, now%v, now%v, points)
-         call check_close(error, [column%top_displacement(now%q), column%top_height(now%q)], &
-                          [points(6)%x%d(0), points(6)%y%d(0)], 0.0_wp, 1.0e-14_wp, 'top')
-      end do
-   end subroutine kinetic
 
    !> Velocity and acceleration of the top are derivatives of its displacement; a fixed top moves along
    !> its own directions.

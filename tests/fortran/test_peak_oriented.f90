@@ -21,9 +21,7 @@ contains
    subroutine collect_peak_oriented(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('backbone, residual and rupture', backbone), &
-               unit_test('cracking: unloading leads to the cracking point of the other side', cracking), &
-               unit_test('unloading, reloading to yield, to the peaks, past the cap', sequence), &
+      tests = [unit_test('unloading, reloading to yield, to the peaks, past the cap', sequence), &
                unit_test('inner loops close at the turn where they began', inner_loops), &
                unit_test('pinching: the break, with and without a permanent deformation', pinching), &
                unit_test('strength deteriorates', strength), &
@@ -46,37 +44,6 @@ contains
       call follow_path(spec, d, f)
       call check_close(error, f, by_hand, close, 1.0e-10_wp, what)
    end subroutine expect
-
-   subroutine backbone(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp), parameter :: d(7) = [0.5_wp, 1.0_wp, 2.0_wp, 3.0_wp, 8.0_wp, 13.0_wp, 20.0_wp]
-      real(wp), parameter :: f(7) = [50.0_wp, 100.0_wp, 110.0_wp, 120.0_wp, 70.0_wp, 20.0_wp, 20.0_wp]
-      type(spring_record) :: spec
-
-      spec = capped('peak_oriented')
-      call expect(error, spec, d, f, 'positive side')
-      call expect(error, spec, -d, -f, 'negative side')
-      call set_value(spec, 'd_u', 15.0_wp)
-      ! The other side is whole: from 20 straight to its cap, which is steeper than to its yield point.
-      call expect(error, spec, [13.0_wp, 20.0_wp, 15.0_wp, 17.0_wp, 15.0_wp, -1.0_wp], &
-                  [20.0_wp, 0.0_wp, -600.0_wp/23.0_wp, 0.0_wp, -600.0_wp/23.0_wp, -2520.0_wp/23.0_wp], 'torn')
-      call expect(error, spec, [15.0_wp, 15.1_wp, 15.15_wp, 15.1_wp, 15.15_wp], &
-                  [20.0_wp, 10.0_wp, 5.0_wp, 0.0_wp, 5.0_wp], 'tearing')
-   end subroutine backbone
-
-   !> From (0.6, 70) with (70 + 40)/(0.6 + 0.2).
-   subroutine cracking(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(spring_record) :: spec
-
-      spec = capped('peak_oriented')
-      call set_value(spec, 'd_c', 0.2_wp)
-      call set_value(spec, 'f_c', 40.0_wp)
-      call expect(error, spec, [0.1_wp, 0.2_wp, 0.6_wp, 1.0_wp], [20.0_wp, 40.0_wp, 70.0_wp, 100.0_wp], &
-                  'backbone')
-      call expect(error, spec, [0.6_wp, 0.4_wp, -0.2_wp, -0.6_wp], [70.0_wp, 42.5_wp, -40.0_wp, -70.0_wp], &
-                  'unloading')
-   end subroutine cracking
 
    subroutine sequence(error)
       type(error_type), allocatable, intent(inout) :: error

@@ -6,9 +6,9 @@ module test_section
    use rbs_base_kinds, only: wp
    use rbs_section_balance, only: follow
    use rbs_section_concrete_law, only: concrete_both, concrete_stress, concrete_type, confined_concrete, &
-                                       plain_concrete, spalling_concrete, tension_ts, tension_zero
+                                       plain_concrete, spalling_concrete, tension_zero
    use rbs_section_confinement, only: volumetric_ratio
-   use rbs_section_resultants, only: laws_type, resultants, resultants_type, section_laws
+   use rbs_section_resultants, only: section_laws
    use rbs_section_cross_section, only: section_type, ties
    use rbs_section_section_build, only: build_section
    use rbs_section_shape, only: new_shape
@@ -26,7 +26,6 @@ contains
       tests = [unit_test('concrete: slope is that of the stress', concrete_slope), &
                unit_test('concrete: Mander core, spalling cover', confined_law), &
                unit_test('confinement: square ties by hand', confinement), &
-               unit_test('axial stiffness is the slope of the axial force', axial_slope), &
                unit_test('no tension, no bars: the moment of a rocking block', rocking)]
    end subroutine collect_section
 
@@ -120,31 +119,6 @@ contains
       call check_close(error, section%core%eps_cu, 0.004_wp + 1.4_wp*rho*400.0e6_wp*0.1_wp/section%core%fc, &
                        1.0e-12_wp, 0.0_wp, 'eps_cu')
    end subroutine confinement
-
-   !> Also where the tip of the crack moves through the strips; to the error of the midpoint rule in the one
-   !> that is cut.
-   subroutine axial_slope(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(section_type) :: section
-      type(laws_type) :: laws
-      type(resultants_type) :: sums, more, less
-      real(wp), parameter :: step = 1.0e-10_wp
-      real(wp) :: eps0
-      integer :: tension, i
-
-      section = beam(.true., 50)
-      do tension = tension_zero, tension_ts
-         laws = section_laws(section, tension, .false.)
-         do i = -3, 3
-            eps0 = 3.1e-4_wp*i + 1.7e-5_wp
-            sums = resultants(section, laws, eps0, 5.0e-3_wp)
-            more = resultants(section, laws, eps0 + step, 5.0e-3_wp)
-            less = resultants(section, laws, eps0 - step, 5.0e-3_wp)
-            call check_close(error, sums%stiffness, (more%n - less%n)/(2.0_wp*step), 5.0e-4_wp, 1.0e5_wp, &
-                             'slope')
-         end do
-      end do
-   end subroutine axial_slope
 
    !> Linear concrete without tension: x = sqrt(2 N/(E b phi)), M = N (h/2 - x/3).
    subroutine rocking(error)

@@ -17,10 +17,7 @@ contains
       type(unit_test), allocatable, intent(out) :: tests(:)
 
       tests = [unit_test('a signal without points does not act', acts), &
-               unit_test('linear between the points, exact at them', interpolation), &
-               unit_test('constant before the first and after the last point', beyond), &
                unit_test('times may be in any order', any_order), &
-               unit_test('points at very unequal distances', unequal), &
                unit_test('the corner that follows a time', corners), &
                unit_test('corners asked for in any order, values in between', corners_and_values), &
                unit_test('corners are found where times are coarse', late_corners), &
@@ -43,32 +40,6 @@ contains
       call check_true(error, s%acts(), 'zeros are points')
    end subroutine acts
 
-   subroutine interpolation(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(signal_type) :: s
-
-      s = table([1.0_wp, 2.0_wp, 4.0_wp, 5.0_wp], [3.0_wp, -1.0_wp, 7.0_wp, 7.0_wp])
-      call check_same(error, s%at_time(1.0_wp), 3.0_wp, 'first point')
-      call check_same(error, s%at_time(1.25_wp), 2.0_wp, 'a quarter down')
-      call check_same(error, s%at_time(2.0_wp), -1.0_wp, 'second point')
-      call check_same(error, s%at_time(3.5_wp), 5.0_wp, 'three quarters up')
-      call check_same(error, s%at_time(4.0_wp), 7.0_wp, 'third point')
-      call check_same(error, s%at_time(4.5_wp), 7.0_wp, 'flat')
-      call check_same(error, s%at_time(5.0_wp), 7.0_wp, 'last point')
-   end subroutine interpolation
-
-   subroutine beyond(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(signal_type) :: s
-
-      s = table([1.0_wp, 2.0_wp], [3.0_wp, -1.0_wp])
-      call check_same(error, s%at_time(-1.0e9_wp), 3.0_wp, 'long before')
-      call check_same(error, s%at_time(0.999_wp), 3.0_wp, 'just before')
-      call check_same(error, s%at_time(2.001_wp), -1.0_wp, 'just after')
-      call check_same(error, s%at_time(1.0e9_wp), -1.0_wp, 'long after')
-      call check_same(error, s%at_time(1.5_wp), 1.0_wp, 'and back inside')
-   end subroutine beyond
-
    subroutine any_order(error)
       type(error_type), allocatable, intent(inout) :: error
       type(random_type) :: random
@@ -85,16 +56,6 @@ contains
          call check_close(error, s%at_time(t), 3.0_wp*t - 2.0_wp, 1.0e-13_wp, 1.0e-13_wp, 'a straight line')
       end do
    end subroutine any_order
-
-   subroutine unequal(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(signal_type) :: s
-
-      s = table([0.0_wp, 1.0e-9_wp, 1.0_wp, 1.0e9_wp], [0.0_wp, 1.0_wp, 1.0_wp, 0.0_wp])
-      call check_close(error, s%at_time(0.5e-9_wp), 0.5_wp, 1.0e-15_wp, 0.0_wp, 'on the jump')
-      call check_close(error, s%at_time(0.5_wp), 1.0_wp, 1.0e-15_wp, 0.0_wp, 'on the plateau')
-      call check_close(error, s%at_time(0.5e9_wp), 0.5_wp, 1.0e-8_wp, 0.0_wp, 'on the slope')
-   end subroutine unequal
 
    subroutine corners(error)
       type(error_type), allocatable, intent(inout) :: error

@@ -7,8 +7,7 @@ module test_springs
    use rbs_hysteresis_springs, only: spring_array
    use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: make_springs, bilinear, bilinear_1, compression, elastic, random_type, takeda_1, d_c, &
-                      d_y, f_c, f_y, &
-                      k_c, k_y, k_u, s_d, s_k
+                      d_y, f_c, f_y, k_y, k_u, s_d
    implicit none
    private
 
@@ -22,7 +21,6 @@ contains
       tests = [unit_test('a spring that arrives at an open end is on the next line', arrive_open), &
                unit_test('a spring that arrives at a closed end stays on the line', arrive_closed), &
                unit_test('leave turns back on a one-way line', leave_one_way), &
-               unit_test('create clears the memory', create_again), &
                unit_test('restore brings back the marked state, to the last bit', restoring), &
                unit_test('only springs that leave their line change the version', versions), &
                unit_test('springs that stay on their lines move as along a path', carried), &
@@ -86,23 +84,6 @@ contains
       call check_close(error, springs%force(1), force, 1.0e-15_wp, 0.0_wp, 'the force stays')
       call check_same(error, springs%d(1), 2.0_wp*d_y, 'the deformation stays')
    end subroutine leave_one_way
-
-   subroutine create_again(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(spring_array) :: springs
-      type(spring_record) :: specs(5)
-
-      call every_kind(specs)
-      call make_springs(springs, specs)
-      call springs%move_all([1.0_wp, 1.0_wp, 1.0_wp, 1.0_wp, 1.0_wp])
-      call make_springs(springs, specs(2:3))
-      call check_equal(error, springs%count, 2, 'count')
-      call check_equal(error, springs%events, 0, 'events')
-      call check_same(error, springs%work, [0.0_wp, 0.0_wp], 'work')
-      call springs%move_all([0.5_wp*s_d, 0.5_wp*d_c])
-      call check_same(error, [springs%force(1), springs%force(2)], [s_k*0.5_wp*s_d, k_c*0.5_wp*d_c], &
-                      'uncracked again')
-   end subroutine create_again
 
    !> One more spring of every kind, for the tests of restore.
    subroutine all_kinds(specs)

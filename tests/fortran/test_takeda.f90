@@ -27,7 +27,6 @@ contains
       tests = [unit_test('S2 cracked, not yielded', s2), &
                unit_test('S3 yielded, full reversals, with work', s3), &
                unit_test('S4 partial unloading, inner loops', s4), &
-               unit_test('equality: an exact return to the peak unloads from the backbone', exact_return), &
                unit_test('equality: a turn at zero force leads directly to the other side', turn_at_zero), &
                unit_test('6000 nested peaks: the oldest are forgotten, without a jump', forgotten_peaks), &
                unit_test('partial unloading does not fill the memory', partial_unloading)]
@@ -161,22 +160,6 @@ contains
       z_5 = 5.0_wp*d_y - f_5/k_r5
       f(15) = -f_4/(z_5 + 4.0_wp*d_y)*z_5
    end function s4_by_hand
-
-   subroutine exact_return(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: f(4), k_in(3)
-      integer :: i
-
-      k_in = [min(b1*k_c, k_r4), max(b1*k_r4, slope_4), k_r4]
-      do i = 1, 3
-         call follow_path(takeda_1(inner(i)), [4.0_wp, -4.0_wp, 4.0_wp, 3.9_wp]*d_y, f)
-         call check_close(error, f(4), f_4 - k_r4*0.1_wp*d_y, 1.0e-12_wp, 0.0_wp, inner(i)//': K_r, not K_in')
-         call follow_path(takeda_1(inner(i)), [4.0_wp*d_y, -4.0_wp*d_y, nearest(4.0_wp*d_y, -1.0_wp), &
-                                               3.9_wp*d_y], f)
-         call check_close(error, f(4), f_4 - k_in(i)*0.1_wp*d_y, 1.0e-12_wp, 0.0_wp, &
-                          inner(i)//': K_in one number below the peak')
-      end do
-   end subroutine exact_return
 
    !> Turn a few floating-point numbers beyond a crossing of zero force, where force and distance are
    !> round-off: their ratio must not become a slope.

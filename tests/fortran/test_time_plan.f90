@@ -1,10 +1,10 @@
 !> The plan of the steps, and the input that is refused.
 module test_time_plan
-   use check, only: unit_test, check_close, check_equal, check_failed, check_passed, check_same, check_true
+   use check, only: unit_test, check_close, check_equal, check_passed, check_same, check_true
    use rbs_base_constants, only: unset, unset_integer
-   use rbs_base_error, only: error_type, bad_input
+   use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_solve_time_plan, only: time_plan, new_plan, check_times
+   use rbs_solve_time_plan, only: time_plan, new_plan
    use samples, only: random_type
    implicit none
    private
@@ -21,8 +21,6 @@ contains
 
       tests = [unit_test('no dt: equal steps, not above the longest', automatic), &
                unit_test('dt that divides within round-off', nearly_dividing), &
-               unit_test('too many steps', too_many), &
-               unit_test('number of rows', number_of_rows), &
                unit_test('intervals that are all shorter than the step', short_intervals), &
                unit_test('steps and rows of random loadings', any_loading)]
    end subroutine collect_time_plan
@@ -61,36 +59,6 @@ contains
       call check_true(error, .not. plan%free, 'steps follow the loading')
       call check_equal(error, plan%steps, 4000, 'steps')
    end subroutine nearly_dividing
-
-   subroutine too_many(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(time_plan) :: plan
-
-      call new_plan(plan, [0.0_wp, 1.0e9_wp], 1.0e-3_wp, longest, limit, outcome)
-      call check_failed(error, outcome, bad_input, '1e+12 steps of 0.001 s are more than 2e+09')
-      call new_plan(plan, [0.0_wp, 1.0e50_wp], 1.0e-50_wp, longest, limit, outcome)
-      call check_failed(error, outcome, bad_input, 'shorten the duration')
-      ! With more, the number of steps itself would overflow.
-      call new_plan(plan, [0.0_wp, 1.0e50_wp], 1.0e-300_wp, longest, limit, outcome)
-      call check_failed(error, outcome, bad_input, 'too short for any number of steps')
-      call check_times([0.0_wp, 1.0e300_wp], outcome)
-      call check_failed(error, outcome, bad_input, 'value 2 of 2 is 1e+300')
-   end subroutine too_many
-
-   subroutine number_of_rows(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(error_type), allocatable :: outcome
-      type(time_plan) :: plan
-
-      call new_plan(plan, [0.0_wp, 0.5_wp, 0.75_wp], 0.0625_wp, longest, limit, outcome)
-      call check_passed(error, outcome, 'plan')
-      call check_equal(error, plan%rows(unset_integer), 3, 'one at each time of the loading')
-      call check_equal(error, plan%rows(1), 13, 'start and 12 steps')
-      call check_equal(error, plan%rows(4), 4, 'start, 4, 8, 12')
-      call check_equal(error, plan%rows(5), 4, 'start, 5, 10, 12')
-      call check_equal(error, plan%rows(100), 2, 'start and 12')
-   end subroutine number_of_rows
 
    subroutine short_intervals(error)
       type(error_type), allocatable, intent(inout) :: error
