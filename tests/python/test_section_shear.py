@@ -238,19 +238,6 @@ def test_sezen_moehle_2004_by_hand() -> None:
     assert torn == pytest.approx(v_s)
 
 
-def test_aci_318_by_hand() -> None:
-    v_s = 2 * 0.25 * math.pi * 100.0 * 300.0 * 450.0 / 100.0
-    v_c = (0.17 * 5.0 + 150e3 / (6 * 150e3)) * 300 * 450
-    assert strength.shear_strength_aci(plain(), 150e3) == pytest.approx(v_c + v_s)
-    # Without ties: size effect and ratio of the bars.
-    size = math.sqrt(2.0 / (1.0 + 0.004 * 450.0))
-    v_c = (0.66 * size * (1000.0 / 135e3) ** (1 / 3) * 5.0 + 150e3 / (6 * 150e3)) * 300 * 450
-    assert strength.shear_strength_aci(plain(ties=None), 150e3) == pytest.approx(v_c)
-    # Much compression: 0.05 f'c in the formula.
-    most = strength.shear_strength_aci(plain(), 3e6)
-    assert most == pytest.approx((0.17 * 5.0 + 0.05 * 25.0) * 135e3 + v_s)
-
-
 def test_simplified_mcft_solves_its_own_equation() -> None:
     v = strength.shear_strength_mcft(plain(), 1.35, 150e3) / 1e3
     # By hand at that V: M/V = L - d = 0.9 m, z = 405 mm, s_ze = 300 mm.

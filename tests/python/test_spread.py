@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from statistics import NormalDist
 
 import numpy as np
 import pytest
@@ -39,21 +38,6 @@ NONE = Scatter(
 
 def column(**changes: float):
     return rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6).with_parameters(**changes)
-
-
-@pytest.mark.parametrize("number", [8, 16, 64])
-def test_sobol_points_are_spread_evenly(number: int) -> None:
-    """Each of n equal slices of every axis has one point, each of n equal boxes of two axes too."""
-    normal = NormalDist()
-    share = np.vectorize(normal.cdf)(_normal_points(number))
-    for place in range(3):
-        assert sorted(np.floor(number * share[:, place]).astype(int)) == list(range(number))
-    bits = number.bit_length() - 1
-    for first in range(bits + 1):
-        boxes = {
-            (int(a * 2**first), int(b * 2 ** (bits - first))) for a, b in share[:, :2].tolist()
-        }
-        assert len(boxes) == number
 
 
 def test_without_scatter_the_band_is_that_of_the_shape() -> None:

@@ -333,47 +333,6 @@ def shear_strength_sezen(
     return min(max(1.15 - 0.075 * ductility, 0.7), 1.0) * (v_c + v_s)
 
 
-def shear_strength_aci(section: Section, axial_load: float) -> float:
-    """Return the nominal shear strength of ACI 318-19, normal-weight concrete.
-
-    V_c = (0.17 sqrt(f'c) + N/(6 A_g)) b d with at least the minimum of ties, else
-    V_c = (0.66 lambda_s rho_w^(1/3) sqrt(f'c) + N/(6 A_g)) b d; V_s = A_v f_yt d/s.
-
-    Parameters
-    ----------
-    section : Section
-        The section.
-    axial_load : float
-        Compression positive [N].
-
-    Returns
-    -------
-    float
-        V_n, without the factor phi [N].
-
-    Notes
-    -----
-    ACI 318-19, 22.5.1.2, 22.5.3, 22.5.5, 22.5.8.5.3, 9.6.3.4. sqrt(f'c) up to 8.3 MPa, f_yt up to
-    420 MPa, N/(6 A_g) up to 0.05 f'c, V_c from 0 to 0.42 sqrt(f'c) b d, V_s up to
-    0.66 sqrt(f'c) b d.
-    """
-    sizes = shear_sizes(section)
-    root = min(math.sqrt(sizes.fc / _MPA), 8.3)
-    tie_yield = min(sizes.tie_yield, 420.0 * _MPA)
-    area = sizes.width * sizes.d
-    pressed = min(axial_load / (6.0 * sizes.gross_area), 0.05 * sizes.fc)
-    least = max(0.062 * root, 0.35) * _MPA / tie_yield if tie_yield > 0.0 else math.inf
-    if sizes.tie_ratio >= least:
-        v_c = (0.17 * root * _MPA + pressed) * area
-    else:
-        size = min(math.sqrt(2.0 / (1.0 + 4.0 * sizes.d)), 1.0)
-        ratio = sizes.tension_steel / area
-        v_c = (0.66 * size * ratio ** (1.0 / 3.0) * root * _MPA + pressed) * area
-    v_c = min(max(v_c, 0.0), 0.42 * root * _MPA * area)
-    v_s = min(sizes.tie_area * tie_yield * sizes.d / sizes.spacing, 0.66 * root * _MPA * area)
-    return v_c + v_s
-
-
 def shear_failure_drift(section: Section, shear_force: float, axial_load: float) -> float:
     """Return the drift ratio at which a column that has yielded loses its shear strength.
 
