@@ -75,9 +75,8 @@ module rbs_structure_structure
       real(wp) :: stiffest_part = 0.0_wp
       !> Displacement of the top per deformation, for small rotations: what static paths control (springs)
       real(wp), allocatable :: arm(:)
-      !> The springs whose forces, times the factors beside them, add up to the base shear
-      integer, allocatable :: base_spring(:)
-      real(wp), allocatable :: base_factor(:)
+      !> The spring whose force is the base shear; 0: `base_force` tells it
+      integer :: base_spring = 0
       !> Axial load at the top that is there from the start, compression positive [N]
       real(wp) :: axial_load = 0.0_wp
       !> Change of the axial load at the top per lateral force on a static path
@@ -558,7 +557,7 @@ contains
       real(wp), intent(in), contiguous :: d(:), f(:)
 
       force = 0.0_wp
-      if (size(d) + size(f) < size(self%base_spring)) force = self%base_factor(1)
+      if (size(d) + size(f) < self%base_spring) force = self%height
    end function base_force
 
    !> Work of a load that keeps its direction, per unit of its signal.

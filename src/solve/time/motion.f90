@@ -31,6 +31,8 @@ module rbs_solve_time_motion
       real(wp), allocatable :: modal(:, :)
       !> Whether there is damping at all, and whether any axial force does second-order work
       logical :: damped = .false., second_order = .false.
+      !> The spring whose force is the base shear, 0 where more than that belongs to it
+      integer :: base_spring = 0
       !> Whether the power of the loads follows from velocity of the top and momentum alone, and that of
       !> damping is none
       logical :: plain = .false.
@@ -59,6 +61,7 @@ contains
       self%joint_damping = structure%stiffness_damping*structure%initial_stiffness
       if (structure%tangent_numbers > 0) self%joint_damping = 0.0_wp
       self%damped = structure%damped
+      if (.not. self%damped .and. structure%base_spring > 0) self%base_spring = structure%base_spring
       if (allocated(structure%modal_damping)) then
          call modal_damping(structure, self%modal, error)
          if (allocated(error)) return
@@ -233,27 +236,23 @@ contains
       class(motion_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in) :: q(springs%count), v(springs%count)
-      real(wp) :: of_spring
-      integer :: i, j
+      integer :: i
 
-      force = 0.0_wp
       associate (structure => self%structure)
-         do j = 1, size(structure%base_spring)
-            i = structure%base_spring(j)
-            of_spring = springs%f0(i) + springs%k(i)*(q(i) - springs%d0(i))
+         i = structure%base_spring
+         if (i == 0) then
+            force = structure%base_force(q, springs%f0 + springs%k*(q - springs%d0))
+         else
+            force = springs%f0(i) + springs%k(i)*(q(i) - springs%d0(i))
             if (self%damped) then
                if (structure%tangent_damping) then
-                  of_spring = of_spring + structure%stiffness_damping*max(springs%k(i), 0.0_wp)*v(i)
+                  force = force + structure%stiffness_damping*max(springs%k(i), 0.0_wp)*v(i)
                else
-                  of_spring = of_spring + self%joint_damping(i)*v(i)
+                  force = force + self%joint_damping(i)*v(i)
                end if
                ! The matrix is symmetric: its columns lie together.
-               if (allocated(self%modal)) of_spring = of_spring + inner_product(size(v), self%modal(:, i), v)
+               if (allocated(self%modal)) force = force + inner_product(size(v), self%modal(:, i), v)
             end if
-            force = force + structure%base_factor(j)*of_spring
-         end do
-         if (size(structure%base_spring) == 0) then
-            force = structure%base_force(q, springs%f0 + springs%k*(q - springs%d0))
          end if
          if (structure%mass_damping > 0.0_wp) then
             force = force - structure%mass_damping*structure%speed(horizontal, q, v)

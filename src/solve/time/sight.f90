@@ -136,15 +136,20 @@ contains
       !> [s]
       real(wp), intent(in) :: clock
       real(wp) :: displacement, turn, shear
+      integer :: i
 
       if (associated(motion%one_body)) then
          ! Its steps are short: nothing is called that need not be.
          displacement = q(1) + motion%one_body%length(1)*q(2)
          turn = abs(q(2))
-         shear = springs%f0(1) + springs%k(1)*(q(1) - springs%d0(1))
       else
          displacement = motion%structure%top_displacement(q)
          turn = motion%structure%largest_turn(q)
+      end if
+      i = motion%base_spring
+      if (i > 0) then
+         shear = springs%f0(i) + springs%k(i)*(q(i) - springs%d0(i))
+      else
          shear = motion%base_shear(springs, q, v)
          if (allocated(self%storey_drift)) then
             call motion%structure%storey_drifts(q, self%storey_drift)
@@ -272,7 +277,7 @@ contains
       !> How far a cubic goes beyond its ends, for the sum of both velocities there [s]
       real(wp), intent(in) :: reach
       real(wp) :: shear(2), more, longer
-      integer :: i, j
+      integer :: i
 
       grow = .true.
       if (motion%damped) return
@@ -292,17 +297,14 @@ contains
             more = reach*(abs(structure%speed(lateral, q0, v0)) + abs(structure%speed(lateral, q1, v1)))
          end if
          if (goes_beyond(displacement(1), displacement(2), more, self%peak_displacement)) return
-         shear = 0.0_wp
-         more = 0.0_wp
-         do j = 1, size(structure%base_spring)
-            i = structure%base_spring(j)
-            associate (f0 => structure%base_factor(j)*springs%f0(i), &
-                       k => structure%base_factor(j)*springs%k(i))
-               shear = shear + [f0 + k*(q0(i) - springs%d0(i)), f0 + k*(q1(i) - springs%d0(i))]
-               more = more + reach*abs(k)*(abs(v0(i)) + abs(v1(i)))
+         i = structure%base_spring
+         if (i > 0) then
+            associate (f0 => springs%f0(i), k => springs%k(i))
+               shear = [f0 + k*(q0(i) - springs%d0(i)), f0 + k*(q1(i) - springs%d0(i))]
+               more = reach*abs(k)*(abs(v0(i)) + abs(v1(i)))
             end associate
-         end do
-         if (goes_beyond(shear(1), shear(2), more, self%peak_base_shear)) return
+            if (goes_beyond(shear(1), shear(2), more, self%peak_base_shear)) return
+         end if
          call structure%rotations(q0, self%rotation(:, 1))
          call structure%rotations(q1, self%rotation(:, 2))
          call structure%rotations(v0, self%rotation(:, 3))

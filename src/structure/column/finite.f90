@@ -387,9 +387,13 @@ contains
       body%s_below = body%s
       body%c_below = body%c
       rotation = body%rotation + q(i, flexure)
-      ! Side by side, so that they are found together.
-      s = sin(rotation)
-      c = cos(rotation)
+      ! Side by side, so that they are found together; the straight column needs neither.
+      s = 0.0_wp
+      c = 1.0_wp
+      if (abs(rotation) > 0.0_wp) then
+         s = sin(rotation)
+         c = cos(rotation)
+      end if
       body%rotation = rotation
       body%s = s
       body%c = c

@@ -104,7 +104,6 @@ contains
       call add_rules(frame%rules, spring, springs)
       frame%initial_stiffness = frame%rules%initial_stiffness()
       allocate (frame%initial_tangent(frame%tangent_numbers), source=0.0_wp)
-      allocate (frame%base_spring(0), frame%base_factor(0))
       call frame%linearise(frame%initial_stiffness, frame%initial_tangent, i)
       frame%stiffest_part = maxval(frame%initial_tangent(frame%element%at))
       frame%axially_loaded = kinematics == pdelta
