@@ -33,9 +33,11 @@ loop = rbsdem.cyclic(column, displacement=length * rbsdem.protocol([0.005, 0.01,
 print(f"\npeak force of the column {loop.summary['peak_force'] / 1e3:.0f} kN")
 
 core = section.confinement
-confined = rbsdem.section.diagram(section, axial_load, confined=True, ultimate="mander")
+confined = rbsdem.section.diagram(section, axial_load, ultimate="mander")
 print(f"core {core.fcc / 1e6:.1f} MPa, hoop fracture at a strain of {core.eps_cu:.4f}")
 print(f"ultimate curvature {1e3 * confined.events.ultimate.curvature:.0f} mrad/m, confined")
+lines = confined.idealise("caltrans")
+print(lines, lines.capacity(length), sep="\n")
 
 # Bars one by one, and a circle: a pier of 900 mm with a spiral.
 pier = CircularSection(
@@ -52,5 +54,5 @@ print("pier, kN m at 0, 10, ... 50 mrad/m:", *(f"{value / 1e3:.0f}" for value in
 if "--no-plot" not in sys.argv:
     rbsdem.plot.save(rbsdem.plot.section(section), "section.png")
     rbsdem.plot.save(rbsdem.plot.section_springs(springs), "springs.png")
-    rbsdem.plot.save(rbsdem.plot.moment_curvature(confined), "confined.png")
+    rbsdem.plot.save(rbsdem.plot.moment_curvature(confined, idealise="caltrans"), "confined.png")
     print("wrote section.png, springs.png, confined.png")

@@ -48,7 +48,7 @@ def made(
         **DRAWN | changes,
     )
     section = peer.draw(specimen).section
-    peak = rbsdem.section.diagram(section, load).events.peak
+    peak = rbsdem.section.diagram(section, load, confined=False).events.peak
     assert peak is not None
     gross = 3 * section.concrete_law["ec"] * section.width * section.depth**3 / 12 / LENGTH**3
     turns = LENGTH * np.repeat([0.005, 0.01, 0.02, 0.03, 0.04, 0.06], 2) * np.tile([1, -1], 6)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import reference_section as reference
 import strategies
-from samples import STEEL
+from samples import EIGHT_BARS, STEEL, TWELVE_BARS
 
 import rbsdem
 from rbsdem import (
@@ -286,7 +286,7 @@ def test_everything_that_a_hollow_section_can_be_asked(section):
 
 def test_events_of_a_diagram():
     section = tied()
-    found = diagram(section, 6e5, ultimate="drop")
+    found = diagram(section, 6e5, confined=False, ultimate="drop")
     names = ("cracking", "yielding", "peak", "ultimate")
     at = {name: getattr(found.events, name) for name in names}
     order = [at[name].curvature for name in names]
@@ -311,7 +311,7 @@ def test_events_of_a_diagram():
 
 def test_rules_of_the_ultimate_point():
     section = tied()
-    cover = diagram(section, 6e5, eps_cover=0.004).events.ultimate
+    cover = diagram(section, 6e5, ultimate="cover", eps_cover=0.004).events.ultimate
     assert cover.strain + 0.2 * cover.curvature == pytest.approx(0.004, rel=1e-9)
     mander = diagram(section, 6e5, confined=True, ultimate="mander").events.ultimate
     core = section.confinement
@@ -322,6 +322,54 @@ def test_rules_of_the_ultimate_point():
     assert steel.curvature * bar - steel.strain == pytest.approx(0.1, rel=1e-6)
     first = diagram(section, 2.5e6, yielding="first").events.yielding
     assert first.strain + 0.2 * first.curvature == pytest.approx(0.002, rel=1e-9)
+
+
+@pytest.mark.parametrize("section", [EIGHT_BARS, TWELVE_BARS], ids=["rectangle", "circle"])
+def test_two_lines_in_place_of_a_diagram(section):
+    """Both go through the first yield; one has equal areas, the other the strains of its moment."""
+    load = 0.2 * 30e6 * section.gross_area
+    found = diagram(section, load, points=2000)
+    assert found.confined
+    mander, steel = (diagram(section, load, ultimate=rule).events for rule in ("mander", "steel"))
+    both = [one.ultimate.curvature for one in (mander, steel) if one.ultimate]
+    assert found.events.ultimate.curvature == min(both)
+    end, first = found.events.ultimate, found.events.yielding
+    line = found.idealise("caltrans")
+    assert line.stiffness == pytest.approx(first.moment / first.curvature, rel=1e-12)
+    assert line.yield_moment == pytest.approx(line.stiffness * line.yield_curvature, rel=1e-12)
+    at = (found.curvature >= first.curvature) & (found.curvature <= end.curvature)
+    straight = np.minimum(line.stiffness * found.curvature[at], line.yield_moment)
+    straight = np.trapezoid(straight, found.curvature[at])
+    assert straight == pytest.approx(np.trapezoid(found.moment[at], found.curvature[at]), rel=1e-5)
+    line = found.idealise("priestley")
+    bar = max(y for y, _, _ in section.bars)
+    crushed = (found.strain + 0.5 * section.depth * found.curvature) / 0.004
+    reached = np.maximum(crushed, (found.curvature * bar - found.strain) / 0.015)
+    row = np.flatnonzero(reached >= 1.0)[0]
+    nominal = np.interp(1.0, reached[row - 1 : row + 1], found.moment[row - 1 : row + 1])
+    assert line.yield_moment == pytest.approx(nominal, rel=1e-4)
+    assert line.ductility == pytest.approx(end.curvature / line.yield_curvature)
+
+
+def test_displacement_capacity_is_the_integral_of_the_curvatures():
+    """Linear up to yield and a block of l_p beyond it; l_p of a published example, 0.506 m."""
+    found = diagram(EIGHT_BARS, 1750e3)
+    for method in ("caltrans", "priestley"):
+        line = found.idealise(method)
+        given = line.capacity(1.5)
+        assert given.hinge_length == pytest.approx(0.506, rel=1e-9)
+        slip = 0.0 if method == "caltrans" else 0.253
+        lever = 1.5 + slip
+        elastic = line.ultimate_moment / line.stiffness
+        x = np.linspace(0.0, lever, 200_001)
+        block = np.where(x <= given.hinge_length, line.ultimate.curvature - elastic, 0.0)
+        curvature = elastic * (1.0 - x / lever) + block
+        moved = np.trapezoid(curvature * (lever - x), x)
+        assert given.displacement == pytest.approx(moved, rel=1e-4)
+        at_yield = line.yield_curvature * lever**2 / 3.0
+        assert given.ductility == pytest.approx(given.displacement / at_yield)
+    with pytest.raises(InputError, match='must be "caltrans" or "priestley"'):
+        found.idealise("best")
 
 
 def test_no_bars_no_load_no_tension():

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Bar
 from rbsdem.model.shape import Section, checked_section
+from rbsdem.section.curvature import hardening_share, hinge_length, strain_penetration
 from rbsdem.section.ranges import carried_load, column_length
 
 # ---- The quantities of a drawing that formulas of codes use, in the units they are written in ----
@@ -466,15 +467,15 @@ def hinge_length_priestley(q: Quantities) -> float:
     k L + L_sp, at least 2 L_sp; k = 0.2 (f_u/f_y - 1) up to 0.08, L_sp = 0.022 f_y d_b. NaN where
     the tensile strength of the bars is not known.
     """
-    slip = 0.022 * q.fy * q.bar
     if math.isnan(q.fu):
         return math.nan
-    return max(min(0.2 * (q.fu / q.fy - 1.0), 0.08) * q.span + slip, 2.0 * slip)
+    slip = 1e6 * strain_penetration(q.fy, q.bar)
+    return hinge_length(hardening_share(q.fy, q.fu), q.span, slip)
 
 
 def hinge_length_paulay(q: Quantities) -> float:
     """Return the hinge length 0.08 L + 0.022 d_b f_y of Paulay, Priestley 1992 [mm]."""
-    return 0.08 * q.span + 0.022 * q.bar * q.fy
+    return 0.08 * q.span + 1e6 * strain_penetration(q.fy, q.bar)
 
 
 # ---- Regressions on tests: Elwood and Eberhard, Haselton, Berry and Eberhard, Goodnight ----------

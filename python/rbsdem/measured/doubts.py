@@ -198,7 +198,7 @@ def _strength(specimen: Specimen, test: MeasuredTest) -> float:
     """Return the largest base moment over the strength of the section, both sides alike."""
     try:
         section = draw(specimen).section
-        peak = diagram(section, specimen.axial_load).events.peak
+        peak = diagram(section, specimen.axial_load, confined=False).events.peak
     except RbsdemError:
         return math.nan
     if peak is None or not peak.moment > 0:

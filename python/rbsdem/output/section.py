@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -80,13 +80,21 @@ _BARS: dict[str, dict[str, Any]] = {
 }
 
 
-def moment_curvature(diagram: Diagram, *, ax: Axes | None = None, **line: Any) -> Axes:
+def moment_curvature(
+    diagram: Diagram,
+    *,
+    idealise: Literal["caltrans", "priestley"] | None = None,
+    ax: Axes | None = None,
+    **line: Any,
+) -> Axes:
     """Draw moment against curvature with its events, in kN m and mrad/m.
 
     Parameters
     ----------
     diagram : Diagram
-        What `Section.diagram` returns.
+        What `rbsdem.section.diagram` returns.
+    idealise : {"caltrans", "priestley"}, optional
+        Draw the two lines of `Diagram.idealise`, too.
     ax : matplotlib Axes, optional
         Where to draw; a new figure without it.
     **line
@@ -98,7 +106,12 @@ def moment_curvature(diagram: Diagram, *, ax: Axes | None = None, **line: Any) -
         The axes.
     """
     with axes_or_new(ax, (3.5, 2.8)) as drawn:
-        drawn.plot(1e3 * diagram.curvature, diagram.moment / 1e3, **line_of(MODEL_LINE, line))
+        core = {"label": "Core confined" if diagram.confined else "Not confined"}
+        x, y = 1e3 * diagram.curvature, diagram.moment / 1e3
+        drawn.plot(x, y, **line_of(MODEL_LINE | core, line))
+        if idealise is not None:
+            corners = diagram.idealise(idealise).to_pandas().to_numpy()
+            drawn.plot(*(corners * (1e3, 1e-3)).T, **TEST_LINE, label=idealise.capitalize())
         _draw_events(diagram.events, float(diagram.curvature[-1]), drawn)
         _dress(drawn)
         drawn.set_ylim(bottom=min(0.0, float(np.min(diagram.moment)) / 1e3))

@@ -9,7 +9,9 @@ from rbsdem.section.axial_moment import InteractionDiagram as InteractionDiagram
 from rbsdem.section.axial_moment import interaction as interaction
 from rbsdem.section.columns import column as column
 from rbsdem.section.columns import member as member
+from rbsdem.section.curvature import BilinearDiagram as BilinearDiagram
 from rbsdem.section.curvature import Diagram as Diagram
+from rbsdem.section.curvature import DisplacementCapacity as DisplacementCapacity
 from rbsdem.section.curvature import diagram as diagram
 from rbsdem.section.curvature import moment_curvature as moment_curvature
 from rbsdem.section.curvature import strains as strains

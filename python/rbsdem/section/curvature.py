@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +15,7 @@ from rbsdem._files import Tabular, data_frame
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Tension
 from rbsdem.model.shape import Section
-from rbsdem.section.ranges import checked_load, is_confined
+from rbsdem.section.ranges import checked_load, column_length, is_confined
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -110,6 +111,78 @@ class Diagram(Tabular):
         frame["event"] = [named.get(value, "") for value in self.curvature.tolist()]
         return frame
 
+    def idealise(self, method: Literal["caltrans", "priestley"] = "caltrans") -> BilinearDiagram:
+        """Replace the diagram up to its ultimate point by two straight lines.
+
+        Parameters
+        ----------
+        method : {"caltrans", "priestley"}, optional
+            "caltrans": through the first yield of a bar, then a constant moment with equal areas
+            between that point and the ultimate one. "priestley": through the first yield (a bar, or
+            0.002 in the concrete) to the nominal moment, at 0.004 in the extreme fibre or 0.015 in
+            a bar, then to the ultimate point.
+
+        Returns
+        -------
+        BilinearDiagram
+            Yield point, stiffness and ductility; `capacity` of it is that of a column.
+
+        Raises
+        ------
+        InputError
+            If the method is not known, or the diagram has no yield before its ultimate point.
+
+        Notes
+        -----
+        Caltrans, Seismic Design Criteria 1.7 (2013), 3.3.1. Priestley, Calvi, Kowalsky 2007;
+        strains and lines as in CUMBIA (Montejo, Kowalsky 2007).
+        """
+        if method not in ("caltrans", "priestley"):
+            raise InputError(
+                f'idealise: method = {_arguments.shown(method)} must be "caltrans" or "priestley"'
+            )
+        settings: dict[str, Any] = {
+            "axial_load": self.axial_load,
+            "tension": self.tension,
+            "confined": self.confined,
+            "yielding": "first" if method == "priestley" else "tension",
+            "eps_yield": 0.002,
+            "eps_cover": 0.004,
+        }
+        found = _find(self.section, settings)[0]
+        first, last = found.yielding, self.events.ultimate
+        if first is None or last is None or first.curvature >= last.curvature:
+            raise InputError(
+                "idealise: the diagram has no yield before its ultimate point; "
+                "choose another ultimate, or look at a smaller axial load"
+            )
+        stiffness = first.moment / first.curvature
+        if method == "priestley":
+            moment = self._nominal(found.ultimate or last, last)
+            return BilinearDiagram(
+                self, method, first, last, moment / stiffness, moment, last.moment
+            )
+        between = np.linspace(first.curvature, last.curvature, 1000)
+        moments, _ = _moments(self.section, self.axial_load, between, self.tension, self.confined)
+        area = float(np.sum(0.5 * (moments[1:] + moments[:-1]) * np.diff(between)))
+        moment = area / (last.curvature - first.curvature)
+        if moment > first.moment:
+            # The first line goes on beyond the first yield.
+            rest = last.curvature**2 - first.curvature**2 - 2.0 * area / stiffness
+            moment = stiffness * (last.curvature - math.sqrt(max(rest, 0.0)))
+        turn = moment / stiffness
+        return BilinearDiagram(self, method, first, last, turn, moment, moment)
+
+    def _nominal(self, crushed: Point, last: Point) -> float:
+        """Return the moment at 0.004 in the extreme fibre or 0.015 in a bar, which comes first."""
+        end = min(crushed.curvature, last.curvature)
+        curvature = np.linspace(0.0, end, 400)
+        moment, strain = _moments(
+            self.section, self.axial_load, curvature, self.tension, self.confined
+        )
+        stretched = curvature * max(y for y, _, _ in self.section.bars) - strain
+        return float(np.interp(min(0.015, stretched[-1]), stretched, moment))
+
     def __repr__(self) -> str:
         points = ", ".join(
             f"{name} {point.moment / 1e3:.4g} kN m at {1e3 * point.curvature:.3g} mrad/m"
@@ -117,6 +190,154 @@ class Diagram(Tabular):
         )
         core = "confined" if self.confined else "not confined"
         return f"Diagram(N {self.axial_load / 1e3:.4g} kN, {core}: {points})"
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class BilinearDiagram(Tabular):
+    """Two straight lines in place of a moment-curvature diagram.
+
+    Attributes
+    ----------
+    diagram : Diagram
+        The diagram.
+    method : str
+        By which.
+    first_yield, ultimate : Point
+        Points of the diagram.
+    yield_curvature, yield_moment : float
+        phi_y [1/m] and its moment [N m], where the lines meet.
+    ultimate_moment : float
+        Where the second line ends [N m].
+    """
+
+    diagram: Diagram
+    method: str
+    first_yield: Point
+    ultimate: Point
+    yield_curvature: float
+    yield_moment: float
+    ultimate_moment: float
+
+    @property
+    def stiffness(self) -> float:
+        """E I_eff, secant to the first yield [N m2]."""
+        return self.first_yield.moment / self.first_yield.curvature
+
+    @property
+    def stiffness_ratio(self) -> float:
+        """E I_eff over E_c I_g of the gross section."""
+        section = self.diagram.section
+        return self.stiffness / (section.concrete_law["ec"] * section.inertia)
+
+    @property
+    def ductility(self) -> float:
+        """Ductility of curvature, mu_phi = phi_u/phi_y."""
+        return self.ultimate.curvature / self.yield_curvature
+
+    def capacity(self, length: float) -> DisplacementCapacity:
+        """Return the displacement capacity of a cantilever by its plastic hinge.
+
+        Parameters
+        ----------
+        length : float
+            Shear span L, from the hinge to the point without moment [m].
+
+        Returns
+        -------
+        DisplacementCapacity
+            Hinge length, yield and ultimate displacement, without those of shear and P-Delta.
+
+        Notes
+        -----
+        With L_sp = 0.022 f_y d_b (MPa) and phi_p = phi_u - phi_y.
+        "caltrans" (SDC 1.7, 3.1.3 and 7.6.2): L_p = 0.08 L + L_sp >= 2 L_sp, Delta_y = phi_y L^2/3,
+        Delta_p = L_p phi_p (L - L_p/2). "priestley": L_p = k L + L_sp >= 2 L_sp with
+        k = 0.2 (f_u/f_y - 1) <= 0.08, Delta_y = phi_y (L + L_sp)^2/3 and, with phi'_y and M'_y of
+        the first yield, Delta_u = phi_e (L + L_sp)^2/3 + (phi_u - phi_e) L_p (L + L_sp - L_p/2),
+        phi_e = phi'_y M_u/M'_y.
+        """
+        span = column_length(length, "length")
+        section = self.diagram.section
+        _, _, steel = max(section.bars, key=lambda bar: bar[0])
+        bar, ultimate = section.bar_diameter or 0.0, self.ultimate.curvature
+        if self.method == "caltrans":
+            share, lever, elastic = 0.08, span, self.yield_curvature
+        else:
+            if steel.fu is None:
+                raise InputError("capacity: k needs the fu of the bars; give their Steel an fu")
+            share = hardening_share(steel.fy, steel.fu)
+            lever = span + strain_penetration(steel.fy, bar)
+            elastic = self.ultimate_moment / self.stiffness
+        hinge = hinge_length(share, span, strain_penetration(steel.fy, bar))
+        at_yield = self.yield_curvature * lever**2 / 3.0
+        turned = (ultimate - elastic) * hinge
+        most = elastic * lever**2 / 3.0 + turned * (lever - 0.5 * hinge)
+        return DisplacementCapacity(self.method, span, hinge, at_yield, most, turned)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return a DataFrame with the three corners of the lines."""
+        curvature = [0.0, self.yield_curvature, self.ultimate.curvature]
+        moment = [0.0, self.yield_moment, self.ultimate_moment]
+        return data_frame({"curvature_1/m": curvature, "moment_Nm": moment})
+
+    def __repr__(self) -> str:
+        return (
+            f"BilinearDiagram({self.method}: M {self.yield_moment / 1e3:.4g} kN m, "
+            f"E I_eff {self.stiffness / 1e6:.4g} MN m2 ({self.stiffness_ratio:.3f} of gross), "
+            f"phi_y {1e3 * self.yield_curvature:.3g} mrad/m, "
+            f"phi_u {1e3 * self.ultimate.curvature:.4g} mrad/m, mu_phi {self.ductility:.3g})"
+        )
+
+
+@dataclass(frozen=True)
+class DisplacementCapacity:
+    """Displacements of a cantilever with a plastic hinge at its foot.
+
+    Attributes
+    ----------
+    method : str
+        By which.
+    length, hinge_length : float
+        L and l_p [m].
+    yield_displacement, displacement : float
+        Of the point without moment, at yield and at the ultimate curvature [m].
+    plastic_rotation : float
+        Of the hinge [rad].
+    """
+
+    method: str
+    length: float
+    hinge_length: float
+    yield_displacement: float
+    displacement: float
+    plastic_rotation: float
+
+    @property
+    def ductility(self) -> float:
+        """Ductility of displacement, mu_Delta."""
+        return self.displacement / self.yield_displacement
+
+    def __str__(self) -> str:
+        return (
+            f"{self.method}: l_p {1e3 * self.hinge_length:.4g} mm, displacement at yield "
+            f"{1e3 * self.yield_displacement:.4g} mm, capacity {1e3 * self.displacement:.4g} mm "
+            f"(drift {100 * self.displacement / self.length:.3g} %, ductility {self.ductility:.3g})"
+        )
+
+
+def strain_penetration(fy: float, bar: float) -> float:
+    """Return L_sp = 0.022 f_y d_b (MPa), for f_y [Pa] and d_b [m]; in m."""
+    return 0.022e-6 * fy * bar
+
+
+def hardening_share(fy: float, fu: float) -> float:
+    """Return k = 0.2 (f_u/f_y - 1) <= 0.08 (Priestley, Calvi, Kowalsky 2007)."""
+    return min(0.2 * (fu / fy - 1.0), 0.08)
+
+
+def hinge_length(share: float, span: float, penetration: float) -> float:
+    """Return the length of a plastic hinge, k L + L_sp >= 2 L_sp, in the unit of L and L_sp."""
+    return max(share * span + penetration, 2.0 * penetration)
 
 
 def make_point(row: Array) -> Point | None:
@@ -227,9 +448,9 @@ def diagram(
     axial_load: float,
     *,
     tension: Tension = "ts",
-    confined: bool = False,
+    confined: bool | None = None,
     yielding: str = "tension",
-    ultimate: str = "cover",
+    ultimate: str | None = None,
     eps_yield: float = 0.002,
     eps_cover: float = 0.003,
     points: int = 100,
@@ -243,16 +464,20 @@ def diagram(
         The section.
     axial_load : float
         Compression positive [N].
-    tension, confined
+    tension : {"ts", "bare", "zero"}, optional
         As for `moment_curvature`.
+    confined : bool, optional
+        Whether the core inside the ties is confined and the cover spalls; by default it is where
+        there are ties.
     yielding : {"tension", "first"}, optional
         Yield is where the first bar in tension yields; or that or the strain `eps_yield` of
         the extreme fibre in compression, whichever comes first (Priestley, Calvi, Kowalsky
         2007).
-    ultimate : {"cover", "mander", "steel", "drop"}, optional
-        Ultimate is where the extreme fibre is at `eps_cover`; the edge of the core is at the
-        strain of hoop fracture (needs `confined`); the first bar breaks; the moment has fallen
-        by 20 per cent of its peak, once concrete is crushed or a bar has broken.
+    ultimate : {"fracture", "cover", "mander", "steel", "drop"}, optional
+        Ultimate is where hoops or a bar break first ("fracture", the default with a confined
+        core); the extreme fibre is at `eps_cover` ("cover", the default without one); the edge of
+        the core is at the strain of hoop fracture (needs `confined`); the first bar breaks; the
+        moment has fallen by 20 per cent of its peak, once concrete is crushed or a bar has broken.
     eps_yield, eps_cover : float, optional
         Strains of the extreme fibre, compression positive.
     points : int, optional
@@ -271,8 +496,11 @@ def diagram(
     InputError, SolveError
         As for `moment_curvature`; `InputError` also if a rule is not known or does not apply.
     """
-    load, confined = checked_load(section, axial_load), is_confined(section, confined)
-    settings = {
+    core = section.ties is not None if confined is None else confined
+    load, confined = checked_load(section, axial_load), is_confined(section, core)
+    if ultimate is None:
+        ultimate = "fracture" if confined else "cover"
+    settings: dict[str, Any] = {
         "axial_load": load,
         "tension": tension,
         "confined": confined,
@@ -281,7 +509,7 @@ def diagram(
         "eps_yield": _arguments.number(eps_yield, "diagram: eps_yield"),
         "eps_cover": _arguments.number(eps_cover, "diagram: eps_cover"),
     }
-    events, end, lost = _find(section, settings)
+    events, end, lost = _events(section, settings)
     if furthest is None:
         furthest = end.curvature
         if events.ultimate:
@@ -291,9 +519,7 @@ def diagram(
         if not 0.0 < furthest * section.depth <= 1.0:
             raise InputError(f"furthest = {furthest} 1/m must be above zero and below 1/depth")
     points = _arguments.integer(points, "points", least=2, most=_MOST_POINTS)
-    named = [
-        point.curvature for point in (*_named(events).values(), end) if point.curvature <= furthest
-    ]
+    named = [p.curvature for p in (*_named(events).values(), end) if p.curvature <= furthest]
     # Closer together where the diagram turns, at small curvatures.
     curvature = np.unique(np.concatenate([furthest * np.linspace(0.0, 1.0, points) ** 2, named]))
     moment, strain = _moments(section, load, curvature, tension, confined)
@@ -313,6 +539,21 @@ def largest_moment(section: Section, axial_load: float, confined: bool) -> float
         return peak.moment
     curvature = np.linspace(0.0, broken.curvature, 100)
     return float(_moments(section, axial_load, curvature, "ts", confined)[0].max())
+
+
+def _events(section: Section, settings: dict[str, Any]) -> tuple[Events, Point, bool]:
+    """Return the answer of `_find`; for "fracture" that of the rule whose point comes first."""
+    if settings["ultimate"] != "fracture":
+        return _find(section, settings)
+    core = section.confinement
+    rules = ["steel", "mander"] if core is not None and core.eps_cu < 1.0 else ["steel"]
+    found = [_find(section, settings | {"ultimate": rule}) for rule in rules]
+
+    def place(answer: tuple[Events, Point, bool]) -> float:
+        point = answer[0].ultimate
+        return math.inf if point is None else point.curvature
+
+    return min(found, key=place)
 
 
 def _find(section: Section, settings: dict[str, Any]) -> tuple[Events, Point, bool]:

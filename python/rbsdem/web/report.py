@@ -379,9 +379,27 @@ def _of_section(
 ) -> Iterator[Sheet]:
     load = _core.group("column", {"axial_load": axial_load, "height": length})
     yield _drawn(drawing, load)
-    found = diagram(drawing, axial_load, confined=drawing.ties is not None)
-    drawn = (partial(section.moment_curvature, found),)
-    yield Sheet("Moment and curvature", str(found), drawn, found.to_pandas(), beside=True)
+    found = diagram(drawing, axial_load)
+    lines = [found.idealise("caltrans"), found.idealise("priestley")]
+    drawn = (partial(section.moment_curvature, found, idealise="caltrans"),)
+    rows = {
+        "method": [line.method for line in lines],
+        "moment_Nm": [line.yield_moment for line in lines],
+        "E_I_eff_Nm2": [line.stiffness for line in lines],
+        "phi_y_1/m": [line.yield_curvature for line in lines],
+        "phi_u_1/m": [line.ultimate.curvature for line in lines],
+        "mu_phi": [line.ductility for line in lines],
+    }
+    if length is not None:
+        columns = [line.capacity(length) for line in lines]
+        rows |= {
+            "l_p_m": [column.hinge_length for column in columns],
+            "displacement_at_yield_m": [column.yield_displacement for column in columns],
+            "capacity_m": [column.displacement for column in columns],
+            "ductility": [column.ductility for column in columns],
+        }
+    yield Sheet("Moment and curvature", str(found), drawn, data_frame(rows))
+    yield Sheet("Moment-curvature points", table=found.to_pandas(), beside=True)
     strengths = {code: interaction(drawing, code) for code in get_args(Code)}
     for code, strength in strengths.items():
         moment, design = (strength.moment_at(axial_load, design=one) / 1e3 for one in (False, True))
