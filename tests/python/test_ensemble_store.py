@@ -172,7 +172,7 @@ def test_ctrl_c_is_an_exception_with_what_is_done(
         return real(task, control)
 
     monkeypatch.setattr(ensemble, "compute", break_off)
-    with pytest.raises(KeyboardInterrupt, match=r"broken off after [0-9]+ of 24 runs") as caught:
+    with pytest.raises(KeyboardInterrupt, match=r"interrupted after [0-9]+ of 24 runs") as caught:
         run(tmp_path)
     assert isinstance(caught.value, rbsdem.Interrupted)
     found = caught.value.ensemble
@@ -308,4 +308,4 @@ def test_every_run_that_has_ended_is_kept(tmp_path: Path, number: signal.Signals
         assert process.returncode == -number
     else:
         assert process.returncode == 1
-        assert f"Interrupted: ensemble: broken off after {ended} of 160 runs" in err
+        assert f"Interrupted: ensemble: interrupted after {ended} of 160 runs" in err

@@ -301,7 +301,7 @@ def _clear(folder: Path) -> Iterator[None]:
         raise OSError(
             error.errno,
             f"store: {folder}: {os.strerror(error.errno)}; the shards that were written are kept, "
-            "and a new start goes on from there",
+            "and a new start computes the rest",
         ) from error
 
 

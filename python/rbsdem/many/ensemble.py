@@ -480,12 +480,12 @@ def _told(found: Ensemble, store: Any) -> str:
     """Return what an interruption has left."""
     done = int((found.status != "").sum())
     kept = (
-        "the attribute `ensemble` of this error has them; with store= the next call goes on"
+        "this error has them as `ensemble`; with store= the next call computes the rest"
         if store is None
-        else f"they are in {store}, and the same call goes on from there"
+        else f"they are in {store}, and the same call computes the rest"
     )
     return (
-        f"ensemble: broken off after {done} of {len(found)} runs; {kept} (allow_partial=True "
+        f"ensemble: interrupted after {done} of {len(found)} runs; {kept} (allow_partial=True "
         "returns what is done)"
     )
 

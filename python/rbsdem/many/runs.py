@@ -157,7 +157,7 @@ class RunOptions(Solver, total=False):
         As for `rbsdem.ensemble`.
     store : path
         Folder that keeps the runs, as for `rbsdem.ensemble`; a second start, with more records too,
-        goes on from there.
+        computes what is missing.
     """
 
     intensity: Name

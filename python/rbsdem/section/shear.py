@@ -496,7 +496,7 @@ def shear_spring(
     -------
     Pinching
         Of the slip of the whole length: cracks at the share V_c of the concrete by Sezen and Moehle
-        (2004), which is that of a principal tension; goes on with `cracked_shear_stiffness`; yields
+        (2004), which is that of a principal tension; then has `cracked_shear_stiffness`; yields
         near `rbsdem.section.strength.shear_strength_mcft` with its `arch_factor`; loses its force
         by the drift at axial failure of Elwood and Moehle (2005). A section that is not symmetric
         has a negative side of its own, that of the section upside down.

@@ -61,7 +61,7 @@ def one_file(
 ) -> str:
     """Return a page with its style, its modules and its results inside.
 
-    It asks nothing of a network: its policy allows only the script and the style that are in it.
+    It uses no network: its policy allows only the script and the style that are in it.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A report: one html file that asks nothing of a network, with its tables as csv beside it.
+"""A report: one html file that needs no network, with its tables as csv beside it.
 
 Sheets have a heading, a text, figures and a table. A column has besides, between its sheets, the
 page with its results inside.
