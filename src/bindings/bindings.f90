@@ -1,4 +1,5 @@
-! The only file that f2py reads: the entry points for Python. Which quantities can be evaluated is listed in `rbs_bindings_evaluate`.
+! The only file that f2py reads: the entry points for Python. What can be evaluated is listed in
+! `rbs_bindings_evaluate`.
 !
 ! f2py would treat real(wp) as a C float without a warning, so only c_double and c_int appear here.
 
