@@ -112,7 +112,7 @@ def frame_of(state: Mapping[str, Any], faults: Faults) -> Frame | None:
             beams=beams,
             beam_load=load,
             floor_mass=load * sum(bays) / STANDARD_GRAVITY,
-            kinematics="pdelta",
+            kinematics="pdelta" if load > 0.0 else "small",
         )
     return None
 
@@ -172,6 +172,7 @@ def pushed(state: Mapping[str, Any]) -> dict[str, Any]:
                 "end": event.end,
                 "drift": event.drift,
                 "force": event.force,
+                "dead": bool(event.step <= result.time[0]),
             }
             for event in result.events
         ],

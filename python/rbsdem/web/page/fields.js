@@ -95,7 +95,7 @@ export function toldAs(fault, field, value, system) {
   const name = field.path.split(".")[1];
   const label = field.label.split(",")[0], [unit] = field.dimension ? unitOf(system, field.dimension) : [""];
   if (!field.optional && !field.choices && (value === undefined || value === null || value.length === 0))
-    return `${label} is empty: give ${field.whole ? "a whole number" : unit ? `it in ${unit}` : "a number"}.`;
+    return `${label}: give ${field.whole ? "a whole number" : unit ? `a value in ${unit}` : "a number"}`;
   return inUnits(fault.text, system, field.dimension).replace(new RegExp(`^(?:[a-z ]+: )?${name} = `), `${label} = `);
 }
 
@@ -199,7 +199,7 @@ export function showFaults(form, faults) {
   for (const row of form.querySelectorAll(".row")) {
     const mine = faults.filter(fault => fault.field === row.dataset.path);
     const place = row.querySelector(".fault"), input = row.querySelector("input, select, textarea, button");
-    const text = mine.map(fault => fault.text).join("\n");
+    const text = [...new Set(mine.map(fault => fault.text))].join("\n");
     if (place.textContent !== text) place.textContent = text;
     place.hidden = !text;
     if (text) input.setAttribute("aria-invalid", "true");

@@ -25,7 +25,7 @@ const ALL = [
 ];
 const LOADS = [
   { path: "frame.beam_load", label: "Dead load on the beams", dimension: "line", step: 1e3 },
-  { path: "frame.drift", label: "Push to a roof drift of", dimension: "drift", step: 0.005 },
+  { path: "frame.drift", label: "Roof drift of the push", dimension: "drift", step: 0.005 },
 ];
 const FIELDS = Object.fromEntries([...GRID, ...MEMBERS.flatMap(([, fields]) => fields), ...ALL, ...LOADS].map(field => [field.path, field]));
 // Colours of hinges by their largest rotation over that at yield.
@@ -107,7 +107,7 @@ function showAge() {
 }
 
 function showMessages() {
-  const faults = (asked?.faults ?? []).map(fault => ({ field: fault.field, text: toldAs(fault, FIELDS[fault.field], fault.field in FIELDS ? valueOf(fault.field) ?? "" : "", system) }));
+  const faults = (asked?.faults ?? []).map(fault => ({ field: fault.field, text: toldAs(fault, FIELDS[fault.field], fault.field in FIELDS ? [valueOf(fault.field)].flat().filter(one => one !== null && one !== undefined) : null, system) }));
   const left = showFaults(get("form"), faults).map(text => element("p", { className: "fault" }, text));
   const notes = [asked?.stopped, ...(asked?.notes ?? [])].filter(Boolean).map(text => element("p", { className: "note" }, inUnits(text, system)));
   get("notes").replaceChildren(...left, ...notes);
@@ -191,11 +191,11 @@ function showTables(at, row) {
   const percent = value => `${shown(100 * value, 3)} %`;
   get("figures").replaceChildren(table(["", ""], [
     ["first period", answer.period === null ? "–" : `${shown(answer.period, 3)} s`], ["dead load", `${shown(answer.weight / factor)} ${unit}`], ["largest base shear", `${shown(most / factor)} ${unit}`],
-    ["the same over the dead load", answer.weight ? shown(most / answer.weight, 3) : "–"], ["drift at the first yield", first ? percent(first.drift) : "–"],
+    ["the same over the dead load", answer.weight ? shown(most / answer.weight, 3) : "–"], ["drift at the first yield", first ? (first.dead ? "under the dead load" : percent(first.drift)) : "–"],
     ["sections that yield so far", String(answer.ductility[at].filter(value => value >= 1).length)]].map(cells => ({ cells })), ""));
   get("drifttable").replaceChildren(table(["Storey", "drift %"], answer.storey_drift[at].map((value, i) => ({ cells: [String(i + 1), shown(100 * value, 3)] })).reverse(), `At a roof drift of ${percent(answer.displacement[row] / answer.height)}`));
   get("hingetable").replaceChildren(answer.events.length ? table(["Member", "section", "roof drift %", `base shear ${unit}`],
-    answer.events.map(event => ({ kind: event.drift <= answer.displacement[row] / answer.height + 1e-9 ? "" : "later", cells: [event.member, ["start", "end"].includes(event.end) ? event.end : "middle", shown(100 * event.drift, 3), shown(event.force / factor)] })), "") : element("p", { className: "empty" }, "No section yields."));
+    answer.events.map(event => ({ kind: event.drift <= answer.displacement[row] / answer.height + 1e-9 ? "" : "later", cells: [event.member, ["start", "end"].includes(event.end) ? event.end : "middle", ...(event.dead ? ["dead load", "–"] : [shown(100 * event.drift, 3), shown(event.force / factor)])] })), "") : element("p", { className: "empty" }, "No section yields."));
 }
 
 // ---- what is done ----------------------------------------------------------------------------------
