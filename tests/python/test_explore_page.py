@@ -426,6 +426,8 @@ def test_a_frame_is_pushed_and_its_hinges_show(unopened):
     assert "hinges" in page.old()
     page.type("#f-beam-width", "300")
     page.wait(lambda: not page.old())
+    page.driver.refresh()  # the frame is in the address
+    page.wait(lambda: len(page.all("#drawing .member")) == 28)
     page.one("#case").click()
     path = page.downloads / "frame.nml"
     page.wait(path.is_file)

@@ -4,6 +4,7 @@ import { SYSTEMS, inUnits, shown, unitOf } from "./units.js";
 import { drawChart, svgElement } from "./chart.js";
 import { element, fieldRow, showFaults, toldAs, valueAt, putAt } from "./fields.js";
 import { addSaves, download, saveShown, table } from "./panels.js";
+import { packed, unpackedFrame } from "./history.js";
 import { makeLane } from "./answers.js";
 
 const get = id => document.getElementById(id);
@@ -55,6 +56,12 @@ function edit(path, value) {
   else for (const one of storey ? [frame.storeys[storey - 1]] : frame.storeys) putAt(one, path, value);
   lane.go();
   showAge();
+  putLink();
+}
+
+// The frame stays in the address, as a link and when the page is loaded again.
+function putLink() {
+  window.history.replaceState(null, "", "#f=" + packed({ frame, units: system }));
 }
 
 function showTabs() {
@@ -220,7 +227,7 @@ async function save(id, name, form) {
 
 async function begin() {
   for (const [key, { label }] of Object.entries(SYSTEMS)) get("units").append(element("option", { value: key }, label));
-  get("units").addEventListener("change", () => { system = get("units").value; showForm(); show(); });
+  get("units").addEventListener("change", () => { system = get("units").value; showForm(); show(); putLink(); });
   get("form").addEventListener("submit", event => event.preventDefault());
   get("scrub").addEventListener("input", show);
   get("push").addEventListener("click", push);
@@ -231,7 +238,10 @@ async function begin() {
   }
   let wait = null;
   window.addEventListener("resize", () => { clearTimeout(wait); wait = setTimeout(show, 120); });
-  frame = (await (await fetch("start")).json()).frame;
+  const linked = location.hash.startsWith("#f=") ? unpackedFrame(location.hash.slice(3)) : null;
+  if (linked && SYSTEMS[linked.units]) system = linked.units;
+  get("units").value = system;
+  frame = linked?.frame ?? (await (await fetch("start")).json()).frame;
   showForm();
   lane.go();
 }

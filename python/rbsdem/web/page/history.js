@@ -45,10 +45,22 @@ export function tidied({ columns, loading }) {
   }) };
 }
 
+function decoded(text) {
+  const raw = atob(text.replace(/-/g, "+").replace(/_/g, "/"));
+  return JSON.parse(new TextDecoder().decode(Uint8Array.from(raw, letter => letter.charCodeAt(0))));
+}
+
+// The frame of a link, or null.
+export function unpackedFrame(text) {
+  try {
+    const value = decoded(text), { storeys, bays } = value.frame;
+    return Array.isArray(bays) && Array.isArray(storeys) && storeys.length && storeys.every(one => one && typeof one === "object") ? value : null;
+  } catch { return null; }
+}
+
 export function unpacked(text) {
   try {
-    const raw = atob(text.replace(/-/g, "+").replace(/_/g, "/"));
-    const value = JSON.parse(new TextDecoder().decode(Uint8Array.from(raw, letter => letter.charCodeAt(0))));
+    const value = decoded(text);
     const right = value && Array.isArray(value.state?.columns) && value.state.columns.length >= 1 &&
       value.state.columns.length <= 2 && value.state.columns.every(one => one && typeof one === "object") &&
       value.state.loading && typeof value.state.loading === "object";
