@@ -55,6 +55,8 @@ module rbs_structure_frame_element
       !> (springs) [m]
       logical :: layered = .false.
       integer, allocatable :: first(:)
+      !> Its lowest and its highest layer (2, joints)
+      integer, allocatable :: outermost(:, :)
       real(wp), allocatable :: arm(:, :, :), y(:)
    end type frame_element
 
@@ -225,48 +227,50 @@ contains
    end function cross_product
 
    !> As `find_forces`.
-   pure subroutine layered_forces(e, m, stiffness, soft, gap, d, f, s, correction)
+   pure subroutine layered_forces(e, m, stiffness, soft, gap, d, f, dead, dead_force, s, correction)
       type(frame_element), intent(in) :: e
       integer, intent(in) :: m
       !> Of `layered_tangent`
       real(wp), intent(in) :: stiffness(3, 3), soft(of_joint, size(e%first) - 1)
-      !> Deformations and forces of the springs, without dead load
-      real(wp), intent(in) :: gap(3), d(m), f(m)
+      !> What the joints miss to add up to the motion of the ends; deformations and forces of the springs; the
+      !> share of the dead load that acts, and what it does in them
+      real(wp), intent(in) :: gap(3), d(m), f(m), dead, dead_force(m)
       real(wp), intent(out) :: s(3), correction(m)
-      real(wp) :: missing(2), moved(2), all(3)
-      integer :: j
+      real(wp) :: all(3), force, moment, moved(2)
+      integer :: i, j
 
       all = gap
       do j = 1, size(e%first) - 1
-         missing = section_forces(e, j, m, f)
-         all = all + e%arm(:, 1, j)*(soft(1, j)*missing(1) + soft(2, j)*missing(2)) &
-               + e%arm(:, 2, j)*(soft(2, j)*missing(1) + soft(3, j)*missing(2))
+         force = 0.0_wp
+         moment = 0.0_wp
+         do i = e%first(j), e%first(j + 1) - 1
+            force = force + (f(i) - dead*dead_force(i))
+            moment = moment + e%y(i)*(f(i) - dead*dead_force(i))
+         end do
+         moved = [soft(1, j)*force + soft(2, j)*moment, soft(2, j)*force + soft(3, j)*moment]
+         all = all + (e%arm(:, 1, j)*moved(1) + e%arm(:, 2, j)*moved(2))
+         ! Kept for what follows.
+         i = e%first(j)
+         correction(i) = force
+         if (e%first(j + 1) > i + 1) correction(i + 1) = moment
       end do
       s = stiffness(:, 1)*all(1) + stiffness(:, 2)*all(2) + stiffness(:, 3)*all(3)
       do j = 1, size(e%first) - 1
-         missing = [sum(e%arm(:, 1, j)*s), sum(e%arm(:, 2, j)*s)] - section_forces(e, j, m, f)
-         moved = [sum(soft(:2, j)*missing), sum(soft(2:, j)*missing)]
-         associate (of => e%first(j), last => e%first(j + 1) - 1)
-            correction(of:last) = moved(1) + e%y(of:last)*moved(2)
-            if (last == of) cycle
-            ! Layers stay in line.
-            moved = joint_motion(e, j, m, d)
-            correction(of:last) = correction(of:last) + (moved(1) + e%y(of:last)*moved(2) - d(of:last))
-         end associate
+         i = e%first(j)
+         force = sum(e%arm(:, 1, j)*s) - correction(i)
+         if (e%first(j + 1) == i + 1) then
+            correction(i) = soft(1, j)*force
+            cycle
+         end if
+         moment = sum(e%arm(:, 2, j)*s) - correction(i + 1)
+         ! Layers stay in line.
+         moved = joint_motion(e, j, m, d) + [soft(1, j)*force + soft(2, j)*moment, &
+                                             soft(2, j)*force + soft(3, j)*moment]
+         do i = e%first(j), e%first(j + 1) - 1
+            correction(i) = (moved(1) + e%y(i)*moved(2)) - d(i)
+         end do
       end do
    end subroutine layered_forces
-
-   !> Axial force and moment of the springs of a joint.
-   pure function section_forces(e, joint, m, f) result(forces)
-      type(frame_element), intent(in) :: e
-      integer, intent(in) :: joint, m
-      real(wp), intent(in) :: f(m)
-      real(wp) :: forces(2)
-
-      associate (of => e%first(joint), last => e%first(joint + 1) - 1)
-         forces = [sum(f(of:last)), sum(e%y(of:last)*f(of:last))]
-      end associate
-   end function section_forces
 
    !> Opening in the middle and rotation of a joint of layers, told by its outermost ones; or the deformation
    !> of a single spring.
@@ -275,13 +279,10 @@ contains
       integer, intent(in) :: joint, m
       real(wp), intent(in) :: d(m)
       real(wp) :: z(2)
-      integer :: low, high
 
-      associate (of => e%first(joint), last => e%first(joint + 1) - 1)
-         z = [d(of), 0.0_wp]
-         if (last == of) return
-         low = of - 1 + minloc(e%y(of:last), dim=1)
-         high = of - 1 + maxloc(e%y(of:last), dim=1)
+      associate (low => e%outermost(1, joint), high => e%outermost(2, joint))
+         z = [d(low), 0.0_wp]
+         if (low == high) return
          z(2) = (d(high) - d(low))/(e%y(high) - e%y(low))
          z(1) = d(low) - e%y(low)*z(2)
       end associate

@@ -251,6 +251,7 @@ contains
       real(wp), intent(in) :: q(3), dead
       real(wp), intent(in), contiguous :: d(:)
       real(wp) :: gap(3)
+      real(wp) :: z(2)
       integer :: j
 
       gap = q
@@ -259,8 +260,8 @@ contains
          gap(3) = gap(3) - dead*frame%dead_rotation(2, element)
          if (e%layered) then
             do j = 1, size(e%first) - 1
-               gap = gap - matmul(e%arm(:, :, j), joint_motion(e, j, size(e%y), &
-                                                               d(e%before + 1:e%before + size(e%y))))
+               z = joint_motion(e, j, size(e%y), d(e%before + 1:e%before + size(e%y)))
+               gap = gap - (e%arm(:, 1, j)*z(1) + e%arm(:, 2, j)*z(2))
             end do
             return
          end if
@@ -304,8 +305,8 @@ contains
       associate (m => e%bending, n => e%opening, first => e%before + 1, &
                  last => e%before + e%bending + e%opening)
          if (e%layered) then
-            call layered_forces(e, m + n, tangent(e%at), tangent(e%at + 9), gap, d(first:last), &
-                                f(first:last) - dead*frame%dead_force(first:last), s, correction(first:last))
+            call layered_forces(e, m + n, tangent(e%at), tangent(e%at + 9), gap, d(first), f(first), dead, &
+                                frame%dead_force(first:last), s, correction(first))
             return
          end if
          at = e%at + 9 + 3*(m + n)

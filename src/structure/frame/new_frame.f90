@@ -339,12 +339,13 @@ contains
       e%layered = .true.
       joints = maxval(m%joint)
       e%y = m%y
-      allocate (e%first(joints + 1), e%arm(3, 2, joints))
+      allocate (e%first(joints + 1), e%arm(3, 2, joints), e%outermost(2, joints))
       e%first(joints + 1) = size(m%kind) + 1
       e%arm = 0.0_wp
       do j = 1, joints
          i = findloc(m%joint, j, dim=1)
          e%first(j) = i
+         e%outermost(:, j) = [minloc(m%y, dim=1, mask=m%joint == j), maxloc(m%y, dim=1, mask=m%joint == j)]
          moment = [0.0_wp, m%place(i) - 1.0_wp, m%place(i)]
          select case (m%kind(i))
          case (layer)
