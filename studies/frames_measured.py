@@ -1,18 +1,15 @@
 """Frames from their drawings against tested frames: tables of docs/frames.md.
 
-    python studies/frames_measured.py [FOLDER] [--ends 0|1|asce] [--entries]
+    python studies/frames_measured.py [FOLDER] [--ends 0|1|asce] [--follow] [--entries]
 
 FOLDER, by default that of the environment variable RBSDEM_FRAMES_DIR, holds `portals.csv` (the 23
 bare portals of the FRESCO database), and `park_ruitong_peaks.csv`; the drawings of Vecchio and
 Emara 1992 and of Park and Dai Ruitong 1988 stand here.
 
-Each half of a member is a cantilever of `rbsdem.section.column` from its end to mid-length, pushed
-once: its secant at 70 % of yield, with slip of the bars, is the elastic member. The hinge at its
-end has the yield moment and the largest moment of `rbsdem.section.diagram`, and turns as far as
-the cantilever does. Nothing is fitted. Taken where the database is silent: heights and spans between
-axes, the load on each column, two legs of ties, no panels. The model is pushed as far as the test.
-`--ends` is the rigid share of the nodes; with `--follow` the loads on columns do no second-order
-work, as those of tie rods.
+Members are those of `rbsdem.section.member`. Nothing is fitted. Taken where the database is silent:
+heights and spans between axes, the load on each column, two legs of ties, no panels. The model is
+pushed as far as the test. `--ends` is the rigid share of the nodes, by default by the rule of ASCE
+41-17; with `--follow` the loads on columns do no second-order work, as those of tie rods.
 """
 
 from __future__ import annotations
@@ -23,14 +20,13 @@ import math
 import os
 import re
 import warnings
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 import rbsdem
 from rbsdem.frames import Frame, FrameMember, FrameNode, Member, Panel
-from rbsdem.springs import PeakOriented
 
 #: Beam bars differ at the ends or cannot be read: see the comments of the database.
 DOUBTFUL = {82, 84, 104, 160, 180, 186}
@@ -39,68 +35,17 @@ STOPPED = {96, 97, 98, 99}
 #: Stiffnesses that are those of no concrete frame of this size, by factors of 30 and more.
 OTHER_UNITS = {31, 154}
 
-#: The hinge before it yields, over the stiffness of the cantilever.
-STIFF = 50.0
-#: Drift that the halves are pushed to.
-FURTHEST = 0.04
-
-
-@dataclass(frozen=True)
-class Half:
-    """A pushed cantilever: E I at yield [N m2], and its hinge: moments [N m], rotations."""
-
-    bending: float
-    yields: float
-    peak: float
-    cap: float
-    fall: float
-
-
-def half(section: rbsdem.RectangularSection, length: float, load: float) -> Half:
-    """Return half of a member from its length [m] and axial load [N]."""
-    plain = rbsdem.section.diagram(section, load, tension="bare", confined=True).events
-    peak = plain.peak.moment
-    yields = min(plain.yielding.moment if plain.yielding else 0.9 * peak, 0.99 * peak)
-    column = rbsdem.section.column(section, length, axial_load=load)
-    push = rbsdem.pushover(column, drift=FURTHEST)
-    drift = push.displacement / length
-    # Without the second-order moment of the axial load.
-    moment = push.force * length + load * push.displacement
-    top = int(moment.argmax())
-    soft = float(np.interp(0.7 * yields, moment[: top + 1], drift[: top + 1])) / (0.7 * yields)
-    at = float(np.interp(peak, np.maximum.accumulate(moment[: top + 1]), drift[: top + 1]))
-    below = np.flatnonzero(moment[top:] <= 0.8 * moment[top])
-    fall = 5.0 * float(drift[top + below[0]] - drift[top]) if below.size else 10.0
-    share = 3.0 * (1.0 - 1.0 / STIFF)
-    return Half(
-        length / (share * soft), yields, peak,
-        max(at - peak * soft, 2e-3), max(fall, 0.02),
-    )  # fmt: skip
-
 
 def kind(
-    section: rbsdem.RectangularSection,
-    length: float,
-    load: float = 0.0,
-    panel: float = 0.0,
-    uncracked: bool = False,
+    section: rbsdem.RectangularSection, length: float, load: float = 0.0, panel: float = 0.0
 ) -> FrameMember:
-    """Return a kind of members of a flexible length; hinges hog at their positive rotations."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        sides = [half(one, 0.5 * length, load) for one in (section.mirrored, section)]
-    hog, sag = sides
-    bending = 0.5 * (hog.bending + sag.bending)
-    stiff = STIFF * 3.0 * bending / (0.5 * length)
-    ends = PeakOriented(
-        d_y=hog.yields / stiff, f_y=hog.yields, d_cap=hog.cap, f_cap=hog.peak, d_pc=hog.fall,
-        d_y_neg=sag.yields / stiff, f_y_neg=sag.yields, d_cap_neg=sag.cap, f_cap_neg=sag.peak,
-        d_pc_neg=sag.fall,
-    )  # fmt: skip
-    modulus = section.concrete_law["ec"]
-    if uncracked:
-        return FrameMember(modulus, section.gross_area, section.inertia, panel=panel)
-    return FrameMember(modulus, section.gross_area, bending / modulus, flexure=ends, panel=panel)
+    """Return the kind of members with a section; where they turn forward its top is in tension."""
+    return rbsdem.section.member(section.mirrored, length, axial_load=load, panel=panel)
+
+
+def strength(section: rbsdem.RectangularSection, load: float) -> float:
+    """Return the largest moment of a section [N m]."""
+    return rbsdem.section.diagram(section, load).events.peak.moment
 
 
 def shares(ends: str, column: float, beam: float) -> tuple[float, float]:
@@ -150,43 +95,45 @@ def section_of(
     )  # fmt: skip
 
 
-def pushed(frame: Frame, drift: float) -> rbsdem.frames.FrameResult:
-    """Push as far as the path goes."""
+def followed(frame: Frame, path: np.ndarray) -> rbsdem.frames.FrameResult:
+    """Follow displacements as far as the path goes; say where it ends."""
     try:
-        return rbsdem.cyclic(frame, displacement=np.linspace(0, drift * frame.height, 801)[1:])
+        return rbsdem.cyclic(frame, displacement=path)
     except rbsdem.SolveError as error:
-        print(error)
+        rows = error.result.displacement
+        print(f"(the path ends at row {rows.size} of {len(path)}, {1e3 * rows[-1]:.0f} mm)")
         return error.result
 
 
+def pushed(frame: Frame, drift: float) -> rbsdem.frames.FrameResult:
+    """Push to a drift."""
+    return followed(frame, np.linspace(0, drift * frame.height, 801)[1:])
+
+
 def portal(row: dict[str, str], ends: str, follow: bool) -> tuple[float, float, float, float]:
-    """Return stiffness before cracking and at yield [N/m], peak [N] and drift there of a portal."""
+    """Return the first stiffness and that at 70 % of the peak [N/m], peak [N] and drift there."""
     sizes = {name: 1e-3 * float(row[name]) for name in (
         "frm_h", "frm_l", "col_h", "col_d", "bm_h", "bm_t")}  # fmt: skip
     column = section_of(row, "col", sizes["col_d"], sizes["col_h"])
     beam = section_of(row, "bm", sizes["bm_t"], sizes["bm_h"])
     load = 1e3 * float(row["inp_column_vertical_load"] or 0)
     span, height = sizes["frm_l"], sizes["frm_h"]
-    rigid = shares(ends, half(column, 0.4 * height, load).peak, half(beam, 0.4 * span, 0.0).peak)
+    rigid = shares(ends, strength(column, load), strength(beam, 0.0))
     inner = (0.5 * rigid[0] * sizes["bm_h"], 0.5 * rigid[1] * sizes["col_h"])
 
-    def frame(uncracked: bool) -> Frame:
-        return Frame.grid(
-            [height], [span],
-            columns=kind(column, height - inner[0], load, inner[0], uncracked),
-            beams=kind(beam, span - 2.0 * inner[1], 0.0, inner[1], uncracked),
-            kinematics="small" if follow or uncracked else "pdelta", pattern="uniform",
-            nodes=[] if uncracked else [
-                FrameNode(f"N-{line}-1", load_y=-load * (1 + 1e-5 * line)) for line in (1, 2)
-            ],
-        )  # fmt: skip
-
-    push = pushed(frame(False), float(row["glb_peak_lateral_drift"]))
-    stiff = pushed(frame(True), 1e-3)
+    frame = Frame.grid(
+        [height], [span],
+        columns=kind(column, height - inner[0], load, inner[0]),
+        beams=kind(beam, span - 2.0 * inner[1], 0.0, inner[1]),
+        kinematics="small" if follow else "pdelta", pattern="uniform",
+        nodes=[FrameNode(f"N-{line}-1", load_y=-load) for line in (1, 2)],
+    )  # fmt: skip
+    push = pushed(frame, float(row["glb_peak_lateral_drift"]))
     top = int(push.force.argmax())
+    early = int(np.argmax(push.force >= 0.7 * push.force[top]))
     return (
-        float(stiff.force[-1] / stiff.displacement[-1]),
         float(push.force[0] / push.displacement[0]),
+        float(push.force[early] / push.displacement[early]),
         float(push.force[top]),
         float(push.drift[top]),
     )
@@ -223,8 +170,8 @@ def portals(folder: Path, ends: str, follow: bool, entries: bool) -> None:
     print("| --- | --- | --- | --- | --- |")
     print(scores("peak, all", [one[2] for one in found.values()]))
     print(scores("peak, without doubtful entries", [one[2] for one in sure]))
-    print(scores("initial stiffness over that before cracking", [one[0] for one in stiff]))
-    print(scores("initial stiffness over that at yield", [one[1] for one in stiff]))
+    print(scores("initial stiffness over the first one", [one[0] for one in stiff]))
+    print(scores("initial stiffness over that at 70 % of the peak", [one[1] for one in stiff]))
     print(scores("drift at peak", [one[3] for one in last]))
 
 
@@ -242,7 +189,7 @@ def vecchio_emara(ends: str) -> None:
         )  # fmt: skip
 
     column, beam = section(0.051), section(0.041)
-    strong = [half(one, 1.0, n).peak for one, n in ((column, 700e3), (beam, 0.0))]
+    strong = strength(column, 700e3), strength(beam, 0.0)
     # Two columns meet below the roof.
     rigid = shares(ends, 2 * strong[0], strong[1])
     inner = [0.2 * share for share in rigid]
@@ -254,21 +201,22 @@ def vecchio_emara(ends: str) -> None:
         },
         beams=kind(beam, 3.5 - 2 * inner[1], 0.0, inner[1]),
         kinematics="pdelta", pattern="nodes",
-        nodes=[FrameNode(f"N-{line}-2", load_y=-700e3 - line, push_x=0.5) for line in (1, 2)],
+        nodes=[FrameNode(f"N-{line}-2", load_y=-700e3, push_x=0.5) for line in (1, 2)],
     )  # fmt: skip
     push = pushed(frame, 0.155 / 4.0)
-    back = rbsdem.cyclic(frame, force=[0.0], initial=push)
+    back = rbsdem.cyclic(frame, force=np.linspace(push.force[-1], 0, 50), initial=push)
     force = np.concatenate([[0.0], push.force, back.force])
     moved = np.concatenate([[0.0], push.displacement, back.displacement])
     energy = float(np.trapezoid(force, moved))
     top = int(push.force.argmax())
-    # Secant to first yield of a hinge.
-    first = next(event for event in push.events if event.what == "yield")
+    # The first hinge is told to be that of the lower beam.
+    beam_events = [event for event in push.events if event.member == "B-1-1"]
+    first = next(event for event in beam_events if event.what == "yield")
     peak, at = push.force[top] / 1e3, 1e3 * push.displacement[top]
     secant = first.force / first.displacement / 1e6
     print(
-        f"Vecchio, Emara: peak {peak:.0f} kN at {at:.0f} mm (330 at 50), secant at first yield "
-        f"{secant:.1f} kN/mm (6.1), energy {energy / 1e3:.1f} kN m (44.4)"
+        f"Vecchio, Emara: peak {peak:.0f} kN at {at:.0f} mm (330 at 50), secant where the "
+        f"lower beam yields {secant:.1f} kN/mm (6.1), energy {energy / 1e3:.1f} kN m (44.4)"
     )
 
 
@@ -292,15 +240,21 @@ def park_ruitong(folder: Path, ends: str) -> None:
     # R12 and R8, five sets at 75 mm: two legs of each as three of 12 mm, nearly.
     hoops = rbsdem.Ties(0.012, 0.075, rbsdem.Steel(283e6), legs=2 + 2 * (8 / 12) ** 2)
     panel = Panel(column, beam, hoops=hoops, beam_length=2.119, column_height=2.473)
-    strong = half(column, 1.0, 0.0).peak, half(beam, 1.9, 0.0).peak
+    strong = strength(column, 0.0), strength(beam, 0.0)
     rigid = shares(ends, *strong)
     up, side = 0.2285 * rigid[0], 0.203 * rigid[1]
     post = kind(column, 2 * (1.2365 - up), 0.0)
     arm = kind(beam, 2 * (2.119 - side), 0.0)
 
     def at_node(member: FrameMember, end: float) -> FrameMember:
-        spring = dict(member.places)[end]
-        return replace(member, flexure={end: spring})
+        """Return the half of a member whose hinge is at its start or its end."""
+
+        def on_half(springs: tuple[tuple[float, rbsdem.springs.Spring], ...]) -> dict:
+            return {abs(end - 2 * at): spring for at, spring in springs if at < 0.5}
+
+        return replace(
+            member, flexure=on_half(member.flexure), shear=on_half(member.shear), area=member.area
+        )
 
     places = {
         "foot": (0.0, -1.2365),
@@ -313,7 +267,7 @@ def park_ruitong(folder: Path, ends: str) -> None:
         FrameNode(name, *place, supports[name], push_x=float(name == "head"))
         for name, place in places.items()
     ]
-    # 55 kN at 848 mm of each beam; what it does in the node is the moment of a cantilever.
+    # Without the 55 kN at 848 mm of each beam, whose moments in the node are in balance.
     members = [
         Member("lower", "foot", "node", at_node(post, 1.0), (0.0, up)),
         Member("upper", "node", "head", at_node(post, 0.0), (up, 0.0)),
@@ -326,10 +280,10 @@ def park_ruitong(folder: Path, ends: str) -> None:
     test = np.array([float(row["V_kN"]) for row in rows])
     middle = FrameNode("node", 0.0, 0.0, panel=panel.spring())
     frame = Frame(nodes=[*nodes, middle], members=members, pattern="nodes", control_node="head")
-    run = rbsdem.cyclic(frame, displacement=path)
-    ratios = test / (1e-3 * run.force[-len(path) :])
-    turn = run.springs["rotation"][-len(path) :, -1]
-    share = 100 * np.abs(turn * 2.473 / run.displacement[-len(path) :])
+    run = followed(frame, path)
+    rows = run.force.size
+    ratios = test[:rows] / (1e-3 * run.force)
+    share = 100 * np.abs(run.springs["rotation"][:, -1] * 2.473 / run.displacement)
     least, most = ratios.min(), ratios.max()
     print(
         f"Park, Dai Ruitong: peaks, test over model {least:.2f} to {most:.2f}, median "
