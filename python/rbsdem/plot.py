@@ -18,6 +18,7 @@ from rbsdem.output.loops import four_panels as four_panels
 from rbsdem.output.loops import limit_states as limit_states
 from rbsdem.output.loops import loop as loop
 from rbsdem.output.loops import loops_over_test as loops_over_test
+from rbsdem.output.loops import lumped_hinge as lumped_hinge
 from rbsdem.output.many import cloud as cloud
 from rbsdem.output.many import fragilities as fragilities
 from rbsdem.output.many import fragility as fragility

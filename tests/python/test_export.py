@@ -10,7 +10,8 @@ import pytest
 
 import rbsdem
 from rbsdem import InputError
-from rbsdem.springs import Bilinear, Elastic
+from rbsdem.results.lumped import MATERIALS, _hysteretic
+from rbsdem.springs import Bilinear, Elastic, PeakOriented
 
 TIME = np.arange(0.0, 1.0, 0.01)
 MOTION = 3.0 * np.sin(8 * TIME)
@@ -184,3 +185,52 @@ def test_residual_drift_in_time_is_that_of_an_ensemble():
     runs = rbsdem.ensemble(column, [(time, motion)])
     assert abs(shaken.residual_drift) == runs.to_pandas()["residual_drift"][0] > 1e-4
     assert shaken.drift == pytest.approx(shaken.displacement / 2.0)
+
+
+def test_lumped_hinge_of_a_capped_hinge(tmp_path):
+    """A column that is such a hinge: backbone, Lambda and loop come back; a push has the cap."""
+    lasting = dict.fromkeys(("lambda_s", "lambda_c", "lambda_k", "lambda_a"), 40.0)
+    own = PeakOriented(d_y=0.005, f_y=2e5, d_cap=0.03, f_cap=2.4e5, d_pc=0.06, **lasting)
+    column = rbsdem.Column(2.0, 1e3, Elastic(1e13), own, axial_load=3e5, kinematics="pdelta")
+    drifts = rbsdem.protocol([0.003, 0.008, 0.015, 0.025, 0.045])
+    hinge = rbsdem.cyclic(column, displacement=2.0 * drifts, every=7).lumped_hinge()
+    hinge.to_csv(tmp_path / "hinge.csv")
+    lines = (tmp_path / "hinge.csv").read_text().splitlines()
+    assert lines[0].endswith("K_e_N_m/rad,M_y_N_m,M_c/M_y,theta_y_rad,theta_p_rad,theta_pc_rad,"
+                             "theta_u_rad")  # fmt: skip
+    assert [line.split(",")[0] for line in lines[1:]] == ["cyclic"] * 2 + ["monotonic"] * 2
+    for line in lines[3:]:
+        wanted = [4e7, 2e5, 1.2, 0.005, 0.025, 0.06, 0.0675]
+        assert [float(word) for word in line.split(",")[3:]] == pytest.approx(wanted, rel=1e-5)
+    assert hinge.endurance == pytest.approx(40.0 * 0.005, rel=1e-3)
+    assert hinge.nrmse("IMKPeakOriented") < 1e-3
+    assert hinge.nrmse("Hysteretic") < 0.1
+    for material in MATERIALS:
+        tcl, py = (hinge.opensees(material, language) for language in ("tcl", "py"))
+        command = next(line for line in tcl.splitlines() if line.startswith("uniaxialMaterial"))
+        called = next(line for line in py.splitlines() if line.startswith("ops.uniaxialMaterial"))
+        given = [float(word) for word in called[21:-1].replace("'", "").split(", ")[2:]]
+        assert [float(word) for word in command.split()[3:]] == given
+        compile(py, "cantilever", "exec")
+        assert f"nrmse {hinge.nrmse(material):.3f}" in tcl
+
+
+def test_hysteretic_is_that_of_opensees():
+    """Moments of OpenSees 3.7.1 (testUniaxialMaterial) at turning points, in the same steps."""
+    points = [(100.0, 0.005), (120.0, 0.02), (60.0, 0.06)]
+    points += [(90.0, 0.006), (110.0, 0.025), (40.0, 0.07)]
+    turns = [0.004, -0.003, 0.012, -0.010, 0.012, -0.010, 0.030, -0.022, 0.005, -0.028, 0.032,
+             0.010, 0.045, -0.05, 0.05, -0.075, 0.02]  # fmt: skip
+    theirs = [80.0, -42.5, 109.333333, -94.210526, 108.937969, -93.835333, 105.0, -106.842105,
+              23.474742, -105.333333, 102.0, -14.200326, 82.5, -71.111111, 75.0, -40.0,
+              37.11678]  # fmt: skip
+    ours = _hysteretic(points, (0.6, 0.3, 0.05, 0.4), np.array(turns))
+    assert ours == pytest.approx(theirs, abs=1e-6)
+
+
+def test_lumped_hinge_is_that_of_a_cantilever_on_a_static_path():
+    with pytest.raises(InputError, match="static path"):
+        RESULTS["dynamic"].lumped_hinge()
+    both = rbsdem.Column(2.0, 1e3, Elastic(1e9), Bilinear(1e7, 0.01, 1e5), top="fixed")
+    with pytest.raises(InputError, match="cantilever"):
+        rbsdem.cyclic(both, displacement=[0.01, -0.01]).lumped_hinge()

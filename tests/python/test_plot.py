@@ -60,6 +60,7 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
     sheared = shear.shear_diagram(PAPER.section, 1.6, PAPER.axial_load, furthest=0.022)
     code = rbsdem.section.interaction(PAPER.section, "ec2")
     values = codes.code_values(SECTION, 1.6, 1.2e6)
+    hinge = RESULT.lumped_hinge()
     states, history, spectrum = BENT.limit_states(), shaken(), records[0].spectrum()
     line = Envelope(1, np.array([0.0, 0.02, 0.06]), np.array([0.0, 2e5, 2e5]))
     band = rbsdem.section.spread(LAYERED, BENT.displacement, samples=8)
@@ -88,6 +89,11 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
             plot.limit_states,
             (states,),
             (1e3 * first.displacement, first.force / 1e3),
+        ),
+        "lumped_hinge": (
+            plot.lumped_hinge,
+            (hinge,),
+            (1e3 * hinge.rotation[-1], hinge.moment[-1] / 1e3),
         ),
         "code_comparison": (plot.code_comparison, (codes.compare(values, BENT),), None),
         "moment_curvature": (
@@ -128,6 +134,7 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
 
 #: Labels of the horizontal and the vertical axis.
 LABELS = {
+    "lumped_hinge": ("Chord rotation (mrad)", "Moment at the base (kN m)"),
     **dict.fromkeys(
         ("loop", "loops_over_test", "comparison", "calibration", "limit_states", "envelope"),
         ("Top displacement (mm)", "Lateral force (kN)"),

@@ -9,7 +9,7 @@ multiple-stripe analysis has the same intensities for all records, or records fo
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -407,8 +407,9 @@ def ida(
         options["measures"] = _with_drift(options["measures"])
     hunt = _hunt(levels)
     work = make_collector("ida", column, motions_by_name(motions), **options)
-    refined = _refined(refine, work.names)
-    work.names = [*work.names, *(name for name in refined if name not in work.names)]
+    named = {name for name in work.names if isinstance(name, str)}
+    refined = _refined(refine, named)
+    work.names = [*work.names, *(name for name in refined if name not in named)]
     work.run_unshaken("ida")
     if hunt is not None:
         lower, upper = hunt_and_fill(work, hunt, refined)
@@ -435,12 +436,12 @@ def _hunt(levels: Any) -> Hunt | None:
     return None
 
 
-def _refined(refine: Any, measures: Sequence[Any]) -> list[str]:
+def _refined(refine: Any, measures: Collection[str]) -> list[str]:
     """Return the limit states that a search narrows."""
     if refine is None:
         return ["first_yield"] if "first_yield" in measures else []
     names = [refine] if isinstance(refine, str) else _arguments.several(refine, "refine", "names")
-    return [_arguments.choice(name, "refine", WATCHED) for name in dict.fromkeys(names)]
+    return list(dict.fromkeys(_arguments.choice(name, "refine", WATCHED) for name in names))
 
 
 def _with_drift(measures: Sequence[str | Measure]) -> list[Any]:
