@@ -97,6 +97,8 @@ module rbs_structure_structure
       !> Numbers that depend on the present stiffness of the springs: none where deformations follow from the
       !> unknowns alone
       integer :: tangent_numbers = 0
+      !> They, on the initial stiffness (tangent_numbers)
+      real(wp), allocatable :: initial_tangent(:)
       !> Loads in the order of their signals (signals)
       type(load_pattern) :: pattern(signals)
    contains
@@ -108,7 +110,7 @@ module rbs_structure_structure
       procedure(collect), deferred :: forces
       !> Axial forces that do second-order work, under loads
       procedure(press), deferred :: axial_forces
-      procedure(assemble), deferred :: add_stiffness
+      procedure(assemble_springs), deferred :: add_stiffness
       procedure(assemble), deferred :: add_geometric
       !> Absolute rotations of the bodies
       procedure(turn), deferred :: rotations
@@ -135,9 +137,6 @@ module rbs_structure_structure
       procedure :: check_initial
       ! Where deformations follow from the unknowns and the present stiffness of the springs
       procedure :: linearise
-      procedure :: rates_on_lines
-      procedure :: forces_on_lines
-      procedure :: add_on_lines
       procedure :: damp
       procedure :: add_damping
       procedure :: spring_of
@@ -173,12 +172,12 @@ module rbs_structure_structure
    end type motion_result
 
    abstract interface
-      subroutine gather(self, dx, dd)
+      subroutine gather(self, tangent, dx, dd)
          import :: structure_type, wp
          implicit none
          class(structure_type), intent(in) :: self
-         !> (unknowns)
-         real(wp), intent(in), contiguous :: dx(:)
+         !> See `linearise`; (unknowns)
+         real(wp), intent(in), contiguous :: tangent(:), dx(:)
          !> (springs)
          real(wp), intent(out), contiguous :: dd(:)
       end subroutine gather
@@ -194,16 +193,18 @@ module rbs_structure_structure
       end subroutine spread_out
 
       !> Forces of springs, of loads but the inertia of the moving ground, and of axial forces.
-      subroutine collect(self, d, load, axial, f, g)
+      subroutine collect(self, d, load, axial, tangent, f, g, correction)
          import :: structure_type, wp
          implicit none
          class(structure_type), intent(in) :: self
-         !> Deformations (springs), signals of the loads, axial forces (see `axial_forces`)
-         real(wp), intent(in), contiguous :: d(:), load(:), axial(:)
+         !> Deformations (springs), signals of the loads, axial forces (see `axial_forces`), see `linearise`
+         real(wp), intent(in), contiguous :: d(:), load(:), axial(:), tangent(:)
          !> Forces of the springs; those of slips get the second-order share of the axial forces (springs)
          real(wp), intent(inout), contiguous :: f(:)
          !> (unknowns) [N, N m]
          real(wp), intent(out), contiguous :: g(:)
+         !> Of the deformations, to bring what lies between the unknowns to equilibrium (springs, or none)
+         real(wp), intent(inout), contiguous :: correction(:)
       end subroutine collect
 
       subroutine press(self, load, axial)
@@ -215,13 +216,23 @@ module rbs_structure_structure
          real(wp), intent(out), contiguous :: axial(:)
       end subroutine press
 
-      !> Add to a lower band, band(1 + i - j, j) = a(i, j): B' diag(k) B of the stiffness of the springs, or
-      !> the geometric stiffness of the axial forces.
+      !> Add B' diag(k) B of the springs to a lower band, band(1 + i - j, j) = a(i, j).
+      subroutine assemble_springs(self, k, tangent, band)
+         import :: structure_type, wp
+         implicit none
+         class(structure_type), intent(in) :: self
+         !> Stiffness of the springs, and what follows from it (see `linearise`)
+         real(wp), intent(in), contiguous :: k(:), tangent(:)
+         !> (half_width + 1, unknowns)
+         real(wp), intent(inout), contiguous :: band(:, :)
+      end subroutine assemble_springs
+
+      !> Add the geometric stiffness of axial forces to a lower band.
       subroutine assemble(self, k, band)
          import :: structure_type, wp
          implicit none
          class(structure_type), intent(in) :: self
-         !> Stiffness of the springs, or axial forces
+         !> Axial forces
          real(wp), intent(in), contiguous :: k(:)
          !> (half_width + 1, unknowns)
          real(wp), intent(inout), contiguous :: band(:, :)
@@ -313,12 +324,12 @@ contains
       integer :: i
 
       associate (x => result%force)
-         call self%forces(d, load, result%axial(:pressing), result%f, x)
+         call self%forces(d, load, result%axial(:pressing), result%tangent, result%f, x, result%correction)
          call self%add_ground(load, x)
          do i = 1, self%unknowns
             x(i) = merge(0.0_wp, x(i)/self%inertias(i), self%is_held(i))
          end do
-         call self%spring_rates(x, result%a)
+         call self%spring_rates(result%tangent, x, result%a)
          result%of_speeds = [self%work_of(lateral, x), self%work_of(horizontal, x)]
       end associate
       if (self%mass_damping > 0.0_wp) result%a = result%a - self%mass_damping*v
@@ -452,38 +463,6 @@ contains
       unstable = 0
       if (size(k) < self%tangent_numbers) tangent = 0.0_wp
    end subroutine linearise
-
-   !> Changes of the deformations from those of the unknowns, on the present lines.
-   subroutine rates_on_lines(self, tangent, dx, dd)
-      class(structure_type), intent(in) :: self
-      !> See `linearise`
-      real(wp), intent(in), contiguous :: tangent(:), dx(:)
-      !> (springs)
-      real(wp), intent(out), contiguous :: dd(:)
-
-      if (size(tangent) == 0) call self%spring_rates(dx, dd)
-   end subroutine rates_on_lines
-
-   !> Forces on the unknowns (see `forces`), and what brings the rest to equilibrium.
-   subroutine forces_on_lines(self, d, load, axial, tangent, f, g, correction)
-      class(structure_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:), load(:), axial(:), tangent(:)
-      real(wp), intent(inout), contiguous :: f(:)
-      real(wp), intent(out), contiguous :: g(:)
-      !> Of the deformations (springs, or none)
-      real(wp), intent(inout), contiguous :: correction(:)
-
-      if (size(tangent) + size(correction) == 0) call self%forces(d, load, axial, f, g)
-   end subroutine forces_on_lines
-
-   !> Add the stiffness of the springs to a band; see `assemble`.
-   subroutine add_on_lines(self, k, tangent, band)
-      class(structure_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: k(:), tangent(:)
-      real(wp), intent(inout), contiguous :: band(:, :)
-
-      if (size(tangent) == 0) call self%add_stiffness(k, band)
-   end subroutine add_on_lines
 
    !> Add forces of damping in proportion to stiffness, where it is no damping of the springs one by one.
    subroutine damp(self, v, tangent, g)

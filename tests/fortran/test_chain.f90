@@ -242,6 +242,7 @@ contains
       class(column_type), intent(in) :: column
       type(random_type), intent(inout) :: random
       real(wp), dimension(column%unknowns) :: v, x, back, f, pull, g, dead
+      real(wp) :: none(0)
       real(wp), parameter :: unloaded(4) = 0.0_wp
       real(wp) :: mass(column%unknowns, column%unknowns)
       integer :: n
@@ -251,11 +252,11 @@ contains
       pull = random%uniform_array(-1.0_wp, 1.0_wp, column%unknowns)
       f = pull
       call column%unknown_rates(v, x)
-      call column%spring_rates(x, back)
+      call column%spring_rates(unloaded(:0), x, back)
       call check_close(error, back, v, 0.0_wp, 1.0e-14_wp, 'there and back')
-      call column%forces(v, unloaded, unloaded(:0), f, g)
+      call column%forces(v, unloaded, unloaded(:0), unloaded(:0), f, g, none)
       f = 0.0_wp*f
-      call column%forces(v, unloaded, unloaded(:0), f, dead)
+      call column%forces(v, unloaded, unloaded(:0), unloaded(:0), f, dead, none)
       g = g - dead
       call check_close(error, dot_product(g, x), -dot_product(pull, v), 0.0_wp, &
                        1.0e-13_wp*(1.0_wp + maxval(abs(dead))), 'equal works')

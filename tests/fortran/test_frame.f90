@@ -120,6 +120,7 @@ contains
 
       member%axial = along
       member%kind = [flexure, flexure, flexure]
+      member%joint = [1, 2, 3]
       member%place = [0.0_wp, 0.5_wp, 1.0_wp]
       allocate (member%spring(3))
       do i = 1, 3
@@ -184,7 +185,7 @@ contains
          else
             member(i)%axial = along
             member(i)%bending = bending
-            allocate (member(i)%kind(0), member(i)%place(0), member(i)%spring(0))
+            allocate (member(i)%kind(0), member(i)%joint(0), member(i)%place(0), member(i)%spring(0))
          end if
       end do
       call new_frame(frame, node, member, small, 2)

@@ -97,7 +97,7 @@ contains
          return
       end if
       band = 0.0_wp
-      call frame%add_stiffness(frame%initial_stiffness, band)
+      call frame%add_stiffness(frame%initial_stiffness, tangent, band)
       call matrix%create(frame%unknowns, frame%half_width, band(1, :))
       matrix%band(:frame%half_width + 1, :) = band
       call matrix%factor()

@@ -60,9 +60,9 @@ contains
       class(structure_type), intent(in) :: structure
       type(matrices_type), intent(inout) :: matrices
       real(wp) :: band(structure%half_width + 1, structure%unknowns), axial(structure%axial_count)
-      real(wp) :: tangent(structure%tangent_numbers), at_rest(signals)
+      real(wp) :: at_rest(signals)
       character(len=2), parameter :: along(3) = ['x_', 't_', 'y_']
-      integer :: i, m, unstable
+      integer :: i, m
 
       m = structure%unknowns
       allocate (matrices%mass(m, m), matrices%stiffness(m, m), matrices%geometric(m, m), &
@@ -75,7 +75,7 @@ contains
          end associate
       end do
       band = 0.0_wp
-      call structure%add_stiffness(structure%initial_stiffness, band)
+      call structure%add_stiffness(structure%initial_stiffness, structure%initial_tangent, band)
       call fill(band, matrices%stiffness)
       if (structure%axially_loaded) then
          band = 0.0_wp
@@ -86,9 +86,7 @@ contains
       end if
       if (.not. structure%damped) return
       band = 0.0_wp
-      tangent = 0.0_wp
-      call structure%linearise(structure%initial_stiffness, tangent, unstable)
-      call structure%add_damping(1.0_wp, tangent, band)
+      call structure%add_damping(1.0_wp, structure%initial_tangent, band)
       call fill(band, matrices%damping)
       matrices%damping = matrices%damping + structure%mass_damping*matrices%mass
    end subroutine assemble_bands

@@ -135,7 +135,7 @@ contains
 
       call matrix%create(structure%unknowns, structure%half_width)
       matrix%band = 0.0_wp
-      call structure%add_stiffness(structure%initial_stiffness, matrix%band)
+      call structure%add_stiffness(structure%initial_stiffness, structure%initial_tangent, matrix%band)
       if (.not. axial) return
       at_rest = 0.0_wp
       call structure%axial_forces(at_rest, force)

@@ -59,7 +59,7 @@ contains
                 source=0.0_wp)
       self%control = frame%arm(frame%inside + 1:)
       call initial%create(frame%unknowns, frame%half_width)
-      call frame%add_on_lines(frame%initial_stiffness, frame%initial_tangent, initial%band)
+      call frame%add_stiffness(frame%initial_stiffness, frame%initial_tangent, initial%band)
       call self%matrix%create(frame%unknowns, frame%half_width, initial%band(1, :))
    end subroutine create
 
@@ -109,9 +109,9 @@ contains
          if (.not. found) return
          self%force_rate = y(1)
          self%force_correction = y(2)
-         call frame%rates_on_lines(self%tangent, self%change(:, 1), rate)
+         call frame%spring_rates(self%tangent, self%change(:, 1), rate)
          call frame%drop_round_off(self%tangent, self%change(:, 1), rate)
-         call frame%rates_on_lines(self%tangent, self%change(:, 2), self%correction)
+         call frame%spring_rates(self%tangent, self%change(:, 2), self%correction)
          rate = rate + y(1)*self%inner_load
          self%correction = self%correction + self%inner + y(2)*self%inner_load
          self%displacement_rate = sum(self%control*self%change(:, 1))
@@ -130,7 +130,7 @@ contains
          found = self%unstable == 0
          if (.not. found) return
          self%matrix%band = 0.0_wp
-         call frame%add_on_lines(springs%k, self%tangent, self%matrix%band)
+         call frame%add_stiffness(springs%k, self%tangent, self%matrix%band)
          if (frame%axially_loaded) call frame%add_geometric(frame%compression, self%matrix%band)
       end associate
    end subroutine linearise

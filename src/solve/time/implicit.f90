@@ -230,7 +230,7 @@ contains
 
       call self%tangent%find_correction(self%step, state, h, self%dx)
       associate (now => self%step%now)
-         call state%motion%structure%rates_on_lines(now%tangent, self%dx, self%dq)
+         call state%motion%structure%spring_rates(now%tangent, self%dx, self%dq)
          if (size(now%correction) > 0) self%dq = self%dq + now%correction
       end associate
       found = .true.
@@ -350,7 +350,7 @@ contains
                state%of_loads = state%of_loads + mean(i)*motion%structure%work_of(i, self%step%moved)
             end if
          end do
-         call motion%structure%rates_on_lines(self%step%now%tangent, self%step%v1, self%step%w1)
+         call motion%structure%spring_rates(self%step%now%tangent, self%step%v1, self%step%w1)
          if (motion%varies) then
             before = motion%structure%power_of_loads(state%q, state%v, lifts(state%load))
             after = motion%structure%power_of_loads(self%step%q1, self%step%w1, lifts(load))

@@ -102,7 +102,7 @@ contains
             self%k = self%k + of_damping*motion%joint_damping
          end if
          self%matrix%band = 0.0_wp
-         call structure%add_on_lines(self%k, step%now%tangent, self%matrix%band)
+         call structure%add_stiffness(self%k, step%now%tangent, self%matrix%band)
          if (structure%stiffness_damping > 0.0_wp) then
             call structure%add_damping(of_damping, step%now%tangent, self%matrix%band)
          end if

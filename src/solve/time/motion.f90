@@ -111,12 +111,7 @@ contains
       if (self%damped .or. self%second_order .or. springs%pressed) then
          call find_others(self, springs, v, load, result, m)
       end if
-      if (self%structure%tangent_numbers == 0) then
-         call self%structure%forces(q, load, result%axial(:m), result%f, g)
-      else
-         call self%structure%forces_on_lines(q, load, result%axial(:m), result%tangent, result%f, g, &
-                                             result%correction)
-      end if
+      call self%structure%forces(q, load, result%axial(:m), result%tangent, result%f, g, result%correction)
    end subroutine forces_on_bodies
 
    !> What else acts besides the forces of the springs on their lines.

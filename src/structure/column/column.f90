@@ -140,12 +140,12 @@ contains
    end subroutine put_under
 
    !> Changes of the deformations of the joints from those of the bodies.
-   subroutine spring_rates(self, dx, dd)
+   subroutine spring_rates(self, tangent, dx, dd)
       class(column_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: dx(:)
+      real(wp), intent(in), contiguous :: tangent(:), dx(:)
       real(wp), intent(out), contiguous :: dd(:)
 
-      call deformations(self%n, self%kinds, self%lower, self%upper, dx, dd)
+      if (size(tangent) == 0) call deformations(self%n, self%kinds, self%lower, self%upper, dx, dd)
    end subroutine spring_rates
 
    !> Changes of the displacements of the bodies from those of the joints.
@@ -159,12 +159,14 @@ contains
    end subroutine unknown_rates
 
    !> Forces on the bodies, without the inertia of the moving ground.
-   subroutine forces(self, d, load, axial, f, g)
+   subroutine forces(self, d, load, axial, tangent, f, g, correction)
       class(column_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:), load(:), axial(:)
+      real(wp), intent(in), contiguous :: d(:), load(:), axial(:), tangent(:)
       real(wp), intent(inout), contiguous :: f(:)
       real(wp), intent(out), contiguous :: g(:)
+      real(wp), intent(inout), contiguous :: correction(:)
 
+      if (size(tangent) + size(correction) > 0) return
       if (size(axial) > 0) call second_order_forces(self%n, self%length, axial, d, f, 2, g)
       call body_forces(self%n, self%kinds, self%lower, self%upper, f, load(lateral), &
                        self%axial_load + load(top_axial), self%weight, size(axial) > 0, g)
@@ -226,12 +228,12 @@ contains
    end function axial_rate
 
    !> Add B' diag(k) B.
-   subroutine add_stiffness(self, k, band)
+   subroutine add_stiffness(self, k, tangent, band)
       class(column_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: k(:)
+      real(wp), intent(in), contiguous :: k(:), tangent(:)
       real(wp), intent(inout), contiguous :: band(:, :)
 
-      call add_joint_stiffness(self%n, self%kinds, self%lower, self%upper, k, band)
+      if (size(tangent) == 0) call add_joint_stiffness(self%n, self%kinds, self%lower, self%upper, k, band)
    end subroutine add_stiffness
 
    !> Add the geometric stiffness.

@@ -223,6 +223,7 @@ contains
       where (column%mass > 0.0_wp) column%inverse_mass = 1.0_wp/column%mass
       where (column%inertia > 0.0_wp) column%inverse_inertia = 1.0_wp/column%inertia
       if (column%held) column%inverse_inertia(n) = 0.0_wp
+      allocate (column%initial_tangent(0))
       column%axial_count = 2*n
       column%work_size = 5*n
       column%base_spring = column%at(shear, 1)

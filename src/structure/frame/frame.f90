@@ -63,15 +63,10 @@ module rbs_structure_frame_frame
       real(wp), allocatable :: compression(:)
       !> Rigid ends and clear length (3, elements) [m]
       real(wp), allocatable :: lengths(:, :)
-      !> Tangents of the elements whose springs have their initial stiffness (tangent_numbers)
-      real(wp), allocatable :: initial_tangent(:)
       !> Height for moments, 1 for forces: what brings them to one unit (unknowns)
       real(wp), allocatable :: reach(:)
    contains
       procedure :: linearise
-      procedure :: rates_on_lines
-      procedure :: forces_on_lines
-      procedure :: add_on_lines
       procedure :: damp
       procedure :: add_damping
       procedure :: unknown_forces
@@ -377,7 +372,7 @@ contains
    end function way_of_load
 
    !> Stiffness of the elements, from their tangents, and of the ground.
-   subroutine add_on_lines(self, k, tangent, band)
+   subroutine add_stiffness(self, k, tangent, band)
       class(frame_type), intent(in) :: self
       !> Of the springs (springs)
       real(wp), intent(in), contiguous :: k(:), tangent(:)
@@ -390,7 +385,7 @@ contains
          end associate
       end do
       band(1, :) = band(1, :) + k(self%inside + 1:)
-   end subroutine add_on_lines
+   end subroutine add_stiffness
 
    !> Add B' A B of an element, B its elongation and rotations per unknown.
    pure subroutine add_product(self, element, a, band)
@@ -459,16 +454,8 @@ contains
       end associate
    end subroutine damping_of
 
-   subroutine spring_rates(self, dx, dd)
-      class(frame_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: dx(:)
-      real(wp), intent(out), contiguous :: dd(:)
-
-      call self%rates_on_lines(self%initial_tangent, dx, dd)
-   end subroutine spring_rates
-
    !> Changes of the deformations from those of the unknowns.
-   subroutine rates_on_lines(self, tangent, dx, dd)
+   subroutine spring_rates(self, tangent, dx, dd)
       class(frame_type), intent(in) :: self
       real(wp), intent(in), contiguous :: tangent(:), dx(:)
       real(wp), intent(out), contiguous :: dd(:)
@@ -483,7 +470,7 @@ contains
          dd(self%element(i)%before + 1) = panel_rotation(self, i, dx)
       end do
       dd(self%inside + 1:) = dx
-   end subroutine rates_on_lines
+   end subroutine spring_rates
 
    pure subroutine turn_springs(e, springs, numbers, tangent, q, dd)
       type(frame_element), intent(in) :: e
@@ -550,18 +537,8 @@ contains
       dx = dd(self%inside + 1:)
    end subroutine unknown_rates
 
-   subroutine forces(self, d, load, axial, f, g)
-      class(frame_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:), load(:), axial(:)
-      real(wp), intent(inout), contiguous :: f(:)
-      real(wp), intent(out), contiguous :: g(:)
-      real(wp) :: correction(size(d))
-
-      call self%forces_on_lines(d, load, axial, self%initial_tangent, f, g, correction)
-   end subroutine forces
-
    !> Forces on the unknowns under all dead load and the lateral one.
-   subroutine forces_on_lines(self, d, load, axial, tangent, f, g, correction)
+   subroutine forces(self, d, load, axial, tangent, f, g, correction)
       class(frame_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:), load(:), axial(:), tangent(:)
       real(wp), intent(inout), contiguous :: f(:)
@@ -571,7 +548,7 @@ contains
       call self%unknown_forces(d, f, 1.0_wp, tangent, g, correction)
       ! The axial forces are those of the dead load.
       if (size(axial) >= 0) g = g + load(lateral)*self%pattern(lateral)%force
-   end subroutine forces_on_lines
+   end subroutine forces
 
    !> Forces on the unknowns: dead load less what springs and elastic rest carry, and second-order forces;
    !> corrections of the deformations that bring the inside of the elements to equilibrium.
@@ -649,18 +626,6 @@ contains
       axial = self%compression(:size(axial))
       if (size(load) < 0) axial = 0.0_wp
    end subroutine axial_forces
-
-   subroutine add_stiffness(self, k, band)
-      class(frame_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: k(:)
-      real(wp), intent(inout), contiguous :: band(:, :)
-      real(wp) :: tangent(self%tangent_numbers)
-      integer :: unstable
-
-      tangent = 0.0_wp
-      call self%linearise(k, tangent, unstable)
-      call self%add_on_lines(k, tangent, band)
-   end subroutine add_stiffness
 
    subroutine add_geometric(self, k, band)
       class(frame_type), intent(in) :: self
@@ -921,10 +886,11 @@ contains
       real(wp), intent(in) :: d(size(self%place)), v(size(self%place)), load(signals)
       integer, intent(in) :: pressing
       type(motion_result), intent(inout) :: result
+      real(wp) :: correction(size(d))
       integer :: i
 
       associate (x => result%force)
-         call self%forces(d, load, result%axial(:pressing), result%f, x)
+         call self%forces(d, load, result%axial(:pressing), self%initial_tangent, result%f, x, correction)
          if (self%stiffness_damping > 0.0_wp) call self%damp(v(self%inside + 1:), self%initial_tangent, x)
          call self%add_ground(load, x)
          do i = 1, self%unknowns
@@ -934,7 +900,7 @@ contains
                x(i) = 0.0_wp
             end if
          end do
-         call self%spring_rates(x, result%a)
+         call self%spring_rates(self%initial_tangent, x, result%a)
       end associate
    end subroutine accelerations
 
