@@ -496,8 +496,8 @@ def diagram(
     InputError, SolveError
         As for `moment_curvature`; `InputError` also if a rule is not known or does not apply.
     """
-    core = section.ties is not None if confined is None else confined
-    load, confined = checked_load(section, axial_load), is_confined(section, core)
+    load = checked_load(section, axial_load)
+    confined = is_confined(section, section.ties is not None if confined is None else confined)
     if ultimate is None:
         ultimate = "fracture" if confined else "cover"
     settings: dict[str, Any] = {
@@ -505,7 +505,7 @@ def diagram(
         "tension": tension,
         "confined": confined,
         "yielding": yielding,
-        "ultimate": ultimate,
+        "ultimate": _arguments.text(ultimate, "diagram: ultimate"),
         "eps_yield": _arguments.number(eps_yield, "diagram: eps_yield"),
         "eps_cover": _arguments.number(eps_cover, "diagram: eps_cover"),
     }
@@ -546,7 +546,8 @@ def _events(section: Section, settings: dict[str, Any]) -> tuple[Events, Point, 
     if settings["ultimate"] != "fracture":
         return _find(section, settings)
     core = section.confinement
-    rules = ["steel", "mander"] if core is not None and core.eps_cu < 1.0 else ["steel"]
+    hoops = settings["confined"] and core is not None and core.eps_cu < 1.0
+    rules = ["steel", "mander"] if hoops else ["steel"]
     found = [_find(section, settings | {"ultimate": rule}) for rule in rules]
 
     def place(answer: tuple[Events, Point, bool]) -> float:
