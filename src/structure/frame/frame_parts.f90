@@ -125,11 +125,13 @@ contains
             if (s%panel /= '' .and. s%group /= 'flexure') then
                call messages%add(name//': a panel has one spring, which turns; give it as &flexure')
             end if
-            call s%spring%validate(name, messages)
-            if (s%spring%rule == 'layered' .and. s%node /= '') then
+            if (s%spring%rule == 'layered' .and. s%kind == '') then
                call messages%add(name//': a joint of layers stands in a member; take a rule for the '// &
                                  'moment alone, such as takeda or peak_oriented')
-            else if (all(rule_names /= s%spring%rule)) then
+               cycle
+            end if
+            call s%spring%validate(name, messages)
+            if (all(rule_names /= s%spring%rule)) then
                cycle                                ! reported by the spring
             else if (.not. suits(s%spring%rule, place_of(kind))) then
                call messages%add(name//" cannot be of the rule '"//trim(s%spring%rule)//"'; it is one of "// &
