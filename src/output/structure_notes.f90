@@ -17,6 +17,12 @@ module rbs_output_structure_notes
    !> Young's moduli of building materials [Pa].
    real(wp), parameter :: least_modulus = 1.0e8_wp, largest_modulus = 1.0e12_wp
 
+   !> Radii of gyration above are those of no member [m].
+   real(wp), parameter :: largest_radius = 10.0_wp
+
+   !> Masses [kg] and loads [N/m] below are those of no floor of storeys as high as that [m].
+   real(wp), parameter :: least_mass = 200.0_wp, least_load = 100.0_wp, low_storey = 2.0_wp
+
 contains
 
    subroutine structure_notes(case, notes)
@@ -47,6 +53,20 @@ contains
                            ' Pa is that of no building material; 30 GPa is 30e9')
          end associate
       end do
+      do i = 1, size(frame%kind)
+         associate (radius => sqrt(frame%kind(i)%inertia/frame%kind(i)%area))
+            if (radius <= largest_radius) cycle
+            call notes%add("member_kind '"//trim(frame%kind(i)%name)//"': inertia and area make a radius "// &
+                           'of gyration of '//to_text(radius)//' m; they are in m4 and m2, and '// &
+                           '1e12 mm4 are 1, 1e6 mm2 are 1')
+         end associate
+      end do
+      if (allocated(frame%storeys)) then
+         do i = 1, size(frame%floor)
+            call check_floor('mass', frame%floor(i)%mass, least_mass, 'kg', '40 t is 40e3')
+            call check_floor('load', frame%floor(i)%load, least_load, 'N/m', '10 kN/m is 10e3')
+         end do
+      end if
       heavy = any(frame%floor%mass > 0.0_wp) .or. any(frame%node%mass > 0.0_wp)
       loaded = any(abs(frame%floor%load) > 0.0_wp) .or. any(abs(frame%node%load_y) > 0.0_wp) .or. &
                any(abs(frame%member%load) > 0.0_wp)
@@ -68,6 +88,16 @@ contains
          call notes%add('frame: '//name//' has lengths of '//to_text(minval(length))//' to '// &
                         to_text(maxval(length))//' m; lengths are in m, and 3200 mm is 3.2')
       end subroutine check_lengths
+
+      !> Models for a shaking table have low storeys.
+      subroutine check_floor(name, value, least, unit, meant)
+         character(len=*), intent(in) :: name, unit, meant
+         real(wp), intent(in) :: value, least
+
+         if (.not. value > 0.0_wp .or. value >= least .or. minval(frame%storeys) < low_storey) return
+         call notes%add('floor: '//name//' = '//to_text(value)//' '//unit//' is that of no floor of a '// &
+                        'building; '//meant)
+      end subroutine check_floor
    end subroutine frame_notes
 
 end module rbs_output_structure_notes

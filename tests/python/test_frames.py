@@ -553,3 +553,31 @@ def test_sudden_loss_of_a_column(moment):
         assert furthest / (start - still.displacement[-1]) == pytest.approx(2.0, abs=1e-3)
     else:
         assert furthest > 1.2 * 2 * carried * sunk[1] / push.force[1]
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        ({"floor_mass": 80.0}, "floor: mass = 80 kg is that of no floor .* 40 t is 40e3"),
+        ({"beam_load": 25.0}, "floor: load = 25 N/m is that of no floor .* 10 kN/m is 10e3"),
+        ({"storeys": [3200.0] * 3}, "storeys has lengths of 3200 .* 3200 mm is 3.2"),
+        ({"columns": FrameMember(30e3, A, INERTIA)}, "modulus = 30000 Pa is that of no building"),
+        ({"columns": FrameMember(E, 1.6e5, 2e9)}, "radius of gyration of 111.803 m"),
+    ],
+)
+def test_units_that_are_none_of_a_building(more, told):
+    """A warning, as any of them may be meant."""
+    given = {"columns": COLUMN, "beams": BEAM, "floor_mass": 80e3, "beam_load": 25e3}
+    with pytest.warns(rbsdem.errors.AccuracyWarning, match=told):
+        Frame.grid(**{"storeys": [3.2] * 3, "bays": [6.0] * 3} | given | more)
+
+
+def test_a_frame_that_cannot_carry_its_load_or_goes_nowhere():
+    """The share of the dead load and the spring are told; a push-over needs a way."""
+    with pytest.raises(
+        rbsdem.SolveError, match=r"share of 0\.\d+ of it the flexural spring .* B-1-1"
+    ):
+        three_storeys(beam_load=1e6)
+    for drift in (0.0, np.nan):
+        with pytest.raises(rbsdem.InputError, match="drift = .* must be a finite number that is"):
+            rbsdem.pushover(three_storeys(), drift=drift)

@@ -359,6 +359,8 @@ def pushover(
             raise InputError("pushover: pattern is for frames; a column is pushed at its top")
         structure = replace(structure, pattern=pattern)  # type: ignore[arg-type]
     far = _arguments.number(given[said[0]], f"pushover: {said[0]}")
+    if not math.isfinite(far) or far == 0:
+        raise InputError(f"pushover: {said[0]} = {far:g} must be a finite number that is not 0")
     if said[0] == "drift":
         far *= structure.height
     points = _arguments.integer(points, "pushover: points")

@@ -31,7 +31,8 @@ contains
       call load_once(frame, state, error)
       frame%axially_loaded = second_order
       if (second_order .and. .not. allocated(error)) call load_once(frame, state, error)
-      if (allocated(error)) error%message = 'dead load: '//error%message
+      ! The path has one row, from no load to all of it.
+      if (allocated(error)) error%message = 'dead load: '//error%message(len('row 1: ') + 1:)
    end subroutine put_dead_load
 
    subroutine load_once(frame, state, error)

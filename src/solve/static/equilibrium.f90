@@ -18,6 +18,8 @@ module rbs_solve_static_equilibrium
    public :: equilibrium_type
 
    type, abstract :: equilibrium_type
+      !> Whether the dead load of a frame grows with the force, from 0 to 1, in place of the lateral one
+      logical :: loads = .false.
       !> Number of springs that can move; they are the first ones
       integer :: moving = 0
       !> Rates of force and displacement, and of the way on which the force does its work as far as it is

@@ -21,8 +21,6 @@ module rbs_solve_static_frame_equilibrium
    real(wp), parameter :: no_more = 1.0_wp
 
    type, extends(equilibrium_type) :: frame_equilibrium
-      !> Whether the dead load grows with the force, from 0 to 1, in place of the lateral one
-      logical :: loads = .false.
       !> An element that snaps back on the present lines; 0: none
       integer :: unstable = 0
       type(frame_type), pointer, private :: frame => null()

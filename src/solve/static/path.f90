@@ -34,6 +34,8 @@ module rbs_solve_static_path
       integer :: moving = 0
       !> Whether the force is driven, else the displacement
       logical :: by_force = .false.
+      !> Whether what is driven is the share of the dead load of a frame
+      logical :: of_dead_load = .false.
       !> Displacement of the top [m], lateral force [N], work of the force [J]
       real(wp) :: displacement = 0.0_wp, force = 0.0_wp, work = 0.0_wp
       !> What is driven, and the way it goes on the line found last: +1, -1, 0 for no line

@@ -57,6 +57,7 @@ contains
       path%steady => structure
       path%equilibrium => equilibrium
       path%is_straight = .true.
+      path%of_dead_load = equilibrium%loads
       allocate (path%q(equilibrium%moving), source=0.0_wp)
       call begin_path(path, by_force, equilibrium%moving, .false., task%before, error)
       if (allocated(error)) return

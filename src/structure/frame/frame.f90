@@ -34,6 +34,9 @@ module rbs_structure_frame_frame
    !> Share of the terms of a rate that it is round-off below.
    real(wp), parameter :: round_off = 1.0e-12_wp
 
+   !> Share of the terms of all elements that counts as those of any.
+   real(wp), parameter :: of_all = 0.01_wp
+
    type, extends(structure_type) :: frame_type
       type(frame_element), allocatable :: element(:)
       !> Names, floors of the grid (-1 for nodes that are none of it) and places [m] of the nodes (nodes), and
@@ -488,24 +491,39 @@ contains
    end subroutine turn_springs
 
    !> Take rates that are round-off of larger ones for zero: a spring that stands still on a corner of its
-   !> curve, as in a mechanism beside it, must not be sent either way.
+   !> curve, as in a mechanism beside it, must not be sent either way. Larger ones are those of the ends of
+   !> its element, and of all elements, as displacements are round-off of each other.
    pure subroutine drop_round_off(self, tangent, dx, dd)
       class(frame_type), intent(in) :: self
       real(wp), intent(in), contiguous :: tangent(:), dx(:)
       real(wp), intent(inout), contiguous :: dd(:)
-      real(wp) :: size_of(3)
-      integer :: number(6), i, k
+      real(wp) :: largest(3)
+      integer :: i
 
+      largest = 0.0_wp
+      do i = 1, size(self%element)
+         largest = max(largest, size_at(self%element(i)))
+      end do
       do i = 1, size(self%element)
          associate (e => self%element(i))
-            size_of = 0.0_wp
-            number = e%number
-            do k = 1, 6
-               if (number(k) > 0) size_of = size_of + abs(e%to_basic(:, k)*dx(number(k)))
-            end do
-            call drop_small(e, size(dd), self%tangent_numbers, tangent, size_of, dd)
+            call drop_small(e, size(dd), self%tangent_numbers, tangent, max(size_at(e), of_all*largest), dd)
          end associate
       end do
+
+   contains
+
+      !> What the changes at the ends of an element add up from, in size.
+      pure function size_at(e) result(terms)
+         type(frame_element), intent(in) :: e
+         real(wp) :: terms(3)
+         integer :: k
+
+         terms = 0.0_wp
+         do k = 1, 6
+            if (e%number(k) > 0) terms = terms + abs(e%to_basic(:, k)*dx(e%number(k)))
+         end do
+      end function size_at
+
    end subroutine drop_round_off
 
    pure subroutine drop_small(e, springs, numbers, tangent, size_of, dd)

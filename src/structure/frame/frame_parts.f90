@@ -20,6 +20,9 @@ module rbs_structure_frame_frame_parts
    real(wp), parameter :: share(3) = [1.0_wp/6.0_wp, 2.0_wp/3.0_wp, 1.0_wp/6.0_wp]
    real(wp), parameter :: point(3) = [0.0_wp, 0.5_wp, 1.0_wp]
 
+   !> A mechanism of sections that harden less is known to fewer digits than its energies are checked to.
+   real(wp), parameter :: least_hardening = 1.0e-7_wp
+
    !> Nodes nearer than this share of the size of the frame are at one place.
    real(wp), parameter :: one_place = 1.0e-9_wp
 
@@ -140,7 +143,7 @@ contains
             if (s%kind == '' .and. allocated(s%place)) then
                call messages%add(name//': place is for springs of members; remove it')
             else if (allocated(s%place)) then
-               if (any(s%place < 0.0_wp) .or. any(s%place > 1.0_wp)) then
+               if (.not. all(s%place >= 0.0_wp .and. s%place <= 1.0_wp)) then
                   call messages%add(name//': place is a share of the clear length, from 0 to 1')
                end if
             end if
@@ -188,6 +191,9 @@ contains
             call messages%add(name//': it has a yield_moment and springs of its own; keep one of them')
          else if (abs(kind%hardening) > 0.0_wp .and. .not. is_given(kind%yield_moment)) then
             call messages%add(name//': hardening does nothing without yield_moment; give one, or remove it')
+         else if (abs(kind%hardening) > 0.0_wp .and. abs(kind%hardening) < least_hardening) then
+            call messages%add(name//': hardening = '//to_text(kind%hardening)//' is lost in round-off; '// &
+                              'give 0, or '//to_text(least_hardening)//' or more')
          else if (kind%between == 'rigid' .and. .not. most > least) then
             call messages%add(name//": with between = 'rigid' all bending is in springs; give it two "// &
                               'flexural springs or more, at different places')
