@@ -27,8 +27,8 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "python"))
 
 from strategies import between, rules, spring
 
-#: No part of a way ends where an earlier turning point is passed: there springs stand on the ends of
-#: their lines but for the round-off of the point that is given.
+#: No part of a way ends where an earlier turning point is passed: there springs stand on the ends
+#: of their lines but for the round-off of the point that is given.
 TURNS = np.array([1.0, -1.0, 1.53, -0.7, 2.0, 0.0])
 RULES = [rule for rule in rules("flexure") if rule not in ("layered", "compression")]
 CAPPED = ["peak_oriented", "pinching"]
