@@ -151,7 +151,7 @@ contains
       largest = rows(row_force, peak)
       call check_true(error, peak > 10 .and. peak < 290, 'a peak inside')
       call run_path(spec, .true., [0.5_wp*largest, 1.1_wp*largest], driven, outcome)
-      call check_failed(error, outcome, analysis_failed, 'is beyond the capacity of the structure')
+      call check_failed(error, outcome, analysis_failed, 'is beyond the capacity of the column')
       last = size(driven, 2)
       call check_close(error, driven(row_force, last), largest, 1.0e-5_wp, 0.0_wp, 'force reached')
    end subroutine smooth_peak
