@@ -213,7 +213,29 @@ def write_figure(drawn: Any, path: str | os.PathLike[str], **options: Any) -> No
     """
     ending = Path(path).suffix.lower().lstrip(".")
     with atomic_write(path) as file:
-        np.ravel(drawn)[0].figure.savefig(file, format=ending or "png", **options)
+        file.write(figure_bytes(drawn, ending or "png", **options))
+
+
+def figure_bytes(drawn: Any, ending: str, **options: Any) -> bytes:
+    """Return a figure as the bytes of a file.
+
+    Parameters
+    ----------
+    drawn : matplotlib Figure or Axes, or array of Axes
+        The figure, or axes of it.
+    ending : str
+        Format, as the ending of a file names it.
+    **options
+        Of `savefig`.
+
+    Returns
+    -------
+    bytes
+        Content of the file.
+    """
+    content = io.BytesIO()
+    np.ravel(drawn)[0].figure.savefig(content, format=ending, **options)
+    return content.getvalue()
 
 
 def escape_formula(text: str) -> str:

@@ -145,7 +145,7 @@ contains
       r33 = 0.0_wp
       do j = 1, n
          pivot = band(1, j) - r11
-         if (.not. pivot > 0.0_wp) call count_negative(pivot, negative)
+         if (.not. pivot > tiny(1.0_wp)) call count_negative(pivot, negative)
          share = 1.0_wp/pivot
          below1 = band(2, j) - r21
          below2 = band(3, j) - r31
@@ -177,7 +177,7 @@ contains
       negative = 0
       do j = 1, n
          pivot = band(1, j)
-         if (.not. pivot > 0.0_wp) call count_negative(pivot, negative)
+         if (.not. pivot > tiny(1.0_wp)) call count_negative(pivot, negative)
          band(1, j) = 1.0_wp/pivot
          last = min(width, n - j)
          do i = 1, last
@@ -194,7 +194,7 @@ contains
       integer, intent(inout) :: negative
 
       negative = negative + 1
-      if (.not. abs(pivot) > 0.0_wp) pivot = -sqrt(tiny(1.0_wp))
+      if (.not. abs(pivot) > tiny(1.0_wp)) pivot = -sqrt(tiny(1.0_wp))
    end subroutine count_negative
 
    !> Solve with the factor of `factor_narrow`.

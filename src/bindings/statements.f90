@@ -26,7 +26,7 @@ contains
    !> Set all groups of a text.
    subroutine put_statements(text, number, setter, messages)
       character(len=*), intent(in) :: text
-      real(c_double), intent(in) :: number(:)
+      real(c_double), intent(in), contiguous :: number(:)
       type(group_reader), intent(inout) :: setter
       type(message_list), intent(inout) :: messages
       integer :: first, last, at
@@ -46,7 +46,7 @@ contains
    !> Set one group.
    subroutine put_group(line, number, at, setter, messages)
       character(len=*), intent(in) :: line
-      real(c_double), intent(in) :: number(:)
+      real(c_double), intent(in), contiguous :: number(:)
       !> Index of the last number that was taken
       integer, intent(inout) :: at
       type(group_reader), intent(inout) :: setter
@@ -69,7 +69,7 @@ contains
    !> Set one key to its value.
    subroutine put_item(item, number, at, setter, messages)
       character(len=*), intent(in) :: item
-      real(c_double), intent(in) :: number(:)
+      real(c_double), intent(in), contiguous :: number(:)
       integer, intent(inout) :: at
       type(group_reader), intent(inout) :: setter
       type(message_list), intent(inout) :: messages
@@ -95,7 +95,7 @@ contains
    !> Set a case from its text and numbers, without validation.
    subroutine case_from_statements(text, number, case, error)
       character(len=*), intent(in) :: text
-      real(c_double), intent(in) :: number(:)
+      real(c_double), intent(in), contiguous :: number(:)
       type(case_record), intent(out) :: case
       type(error_type), allocatable, intent(out) :: error
       type(group_reader) :: setter
@@ -109,7 +109,7 @@ contains
    !> Validate and make a structure; the rest of the case is set but not validated.
    subroutine structure_from_statements(text, number, structure, before, case, error)
       character(len=*), intent(in) :: text
-      real(c_double), intent(in) :: number(:)
+      real(c_double), intent(in), contiguous :: number(:)
       class(structure_type), allocatable, intent(out) :: structure
       !> The state that its analyses begin in, see `make_structure`
       type(end_state), intent(out) :: before
@@ -123,7 +123,7 @@ contains
    !> Validate a single spring, given as the only one of the group flexure.
    subroutine spring_from_statements(text, number, axial_load, spring, error)
       character(len=*), intent(in) :: text
-      real(c_double), intent(in) :: number(:)
+      real(c_double), intent(in), contiguous :: number(:)
       !> Axial load on the layers, if there are any [N]
       real(c_double), intent(in) :: axial_load
       type(spring_record), intent(out) :: spring

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import base64
 import datetime
-import io
 import os
 import platform
 from collections.abc import Callable, Iterator, Mapping
@@ -21,7 +20,7 @@ from typing import TYPE_CHECKING, Any, get_args
 import numpy as np
 
 from rbsdem import _arguments, _core
-from rbsdem._files import atomic_write, data_frame, save_frame
+from rbsdem._files import atomic_write, data_frame, figure_bytes, save_frame
 from rbsdem.checks.code_values import code_values
 from rbsdem.errors import InputError
 from rbsdem.many.ida import IDA
@@ -259,11 +258,10 @@ def _image(draw: Callable[[], Any]) -> str:
     """Return a figure as an image of lines, which prints sharply."""
     import matplotlib.pyplot as plt  # noqa: PLC0415
 
-    figure, drawn = np.ravel(np.array(draw()))[0].figure, io.BytesIO()
+    drawn = draw()
     with style():
-        figure.savefig(drawn, format="svg")
-    plt.close(figure)
-    packed = base64.b64encode(drawn.getvalue()).decode()
+        packed = base64.b64encode(figure_bytes(drawn, "svg")).decode()
+    plt.close(np.ravel(drawn)[0].figure)
     return f'<img alt="" src="data:image/svg+xml;base64,{packed}">'
 
 

@@ -1,5 +1,6 @@
 !> Static paths that begin in the state another analysis ended in, and the state that they end in themselves.
 module rbs_solve_static_resume
+   use rbs_base_constants, only: unbounded
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -123,16 +124,22 @@ contains
       class(static_path), intent(inout) :: path
       type(error_type), allocatable, intent(out) :: error
       real(wp), dimension(path%springs%count) :: q, way, next
-      real(wp) :: more, next_more, before, change, slope, share, now, largest
+      real(wp) :: more, next_more, before, change, slope, share, now, largest, line_lengths
       type(false_position) :: line
       integer :: round, trial
       logical :: found, there
 
       q = path%springs%d
+      ! Where nothing but round-off has been displaced, the lengths of the lines say what is small.
+      way = 0.0_wp
+      where (path%springs%first > -unbounded .and. path%springs%last < unbounded)
+         way = path%springs%last - path%springs%first
+      end where
+      line_lengths = measure_of(way, way)
       there = .false.
       call path%springs%mark()
       call path%find_balance(way, more, found)
-      largest = measure_of(q, q)
+      largest = max(line_lengths, measure_of(q, q))
       change = measure_of(way, way)
       do round = 1, most_rounds
          if (.not. found .or. .not. change < huge(1.0_wp)) exit
@@ -168,8 +175,7 @@ contains
       if (.not. there .or. path%springs%stuck) then
          call fatal_error(error, analysis_failed, 'initial: no equilibrium was found at the displacement '// &
                           to_text(path%displacement)//' m in which the first analysis ended; let '// &
-                          'the motion '// &
-                          'come to rest first, or change axial_load')
+                          'the motion come to rest first, or change axial_load')
       end if
       call path%springs%forget_mark()
 

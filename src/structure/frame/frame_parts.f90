@@ -1,6 +1,7 @@
 !> Nodes and members of a frame from what the user gave: the grid is laid out, names are found, and everything
 !> that is wrong gets a message with its remedy.
 module rbs_structure_frame_frame_parts
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use rbs_base_check, only: is_given
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
@@ -179,7 +180,7 @@ contains
                bending = bending + 2
                least = 0.0_wp
                most = 1.0_wp
-            else
+            else if (all(ieee_is_finite(s%place))) then
                bending = bending + size(s%place)
                least = min(least, minval(s%place))
                most = max(most, maxval(s%place))
