@@ -79,6 +79,7 @@ contains
       type(message_list), intent(inout) :: messages
       character(len=:), allocatable :: name, from
       integer :: i, j, known, kind
+      logical :: inside
 
       call record%check('frame', messages)
       do i = 1, size(record%floor)
@@ -144,7 +145,9 @@ contains
             if (s%kind == '' .and. allocated(s%place)) then
                call messages%add(name//': place is for springs of members; remove it')
             else if (allocated(s%place)) then
-               if (.not. all(s%place >= 0.0_wp .and. s%place <= 1.0_wp)) then
+               inside = all(ieee_is_finite(s%place))
+               if (inside) inside = all(s%place >= 0.0_wp .and. s%place <= 1.0_wp)
+               if (.not. inside) then
                   call messages%add(name//': place is a share of the clear length, from 0 to 1')
                end if
             end if
@@ -180,7 +183,8 @@ contains
                bending = bending + 2
                least = 0.0_wp
                most = 1.0_wp
-            else if (all(ieee_is_finite(s%place))) then
+            else
+               if (.not. all(ieee_is_finite(s%place))) return
                bending = bending + size(s%place)
                least = min(least, minval(s%place))
                most = max(most, maxval(s%place))
