@@ -209,10 +209,6 @@ contains
 
       call parts%find(self%frame, messages)
       call self%column%damping%check('damping', messages)
-      if (allocated(self%column%damping%modal)) then
-         call messages%add('damping: modal damping is not followed in frames yet; give mass and '// &
-                           'stiffness (Rayleigh)')
-      end if
       if (allocated(self%drawing)) then
          call messages%add('drawing: a frame has members of several kinds, and no drawing of its own; '// &
                            'remove the groups of the drawing')

@@ -89,6 +89,9 @@ module rbs_structure_structure
       logical :: tangent_damping = .false.
       !> Damping ratios of the modes (first modes, or one for all); not allocated without modal damping
       real(wp), allocatable :: modal_damping(:)
+      !> Where it acts on the unknowns: momenta of the modes times sqrt(2 zeta omega), whose products are the
+      !> damping matrix (unknowns, modes)
+      real(wp), allocatable :: modal_momenta(:, :)
       !> Whether there is damping at all
       logical :: damped = .false.
       !> Number of axial forces that may do second-order work, and of numbers in the work array of
@@ -464,7 +467,7 @@ contains
       if (size(k) < self%tangent_numbers) tangent = 0.0_wp
    end subroutine linearise
 
-   !> Add forces of damping in proportion to stiffness, where it is no damping of the springs one by one.
+   !> Add forces of the damping of modes or stiffness, where it is no damping of the springs one by one.
    subroutine damp(self, v, tangent, g)
       class(structure_type), intent(in) :: self
       !> Velocities of the unknowns (unknowns); see `linearise`

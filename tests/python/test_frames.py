@@ -22,6 +22,7 @@ RULES = [rule for rule in rules("flexure") if rule not in ("layered", "compressi
 E, A, INERTIA = 30e9, 0.16, 2.1e-3
 COLUMN = FrameMember(E, A, INERTIA, yield_moment=250e3, hardening=0.01)
 BEAM = FrameMember(E, 0.15, 2.0e-3, yield_moment=200e3, hardening=0.01)
+ELASTIC = FrameMember(E, A, INERTIA)
 
 
 def three_storeys(**more) -> Frame:
@@ -344,6 +345,87 @@ def test_steps_in_time_converge_and_balance(method):
     )
     once = rbsdem.time_history(frame, t, ground_acceleration=ground, method=method)
     assert rest.displacement == pytest.approx(once.displacement[later], rel=1e-9, abs=1e-12)
+
+
+def test_damping_of_modes_is_that_of_each():
+    """C is diagonal in the modes, and steps are those of Newmark's method on full matrices."""
+    frame = three_storeys(columns=ELASTIC, beams=ELASTIC, damping=0.05)
+    found = rbsdem.matrices(frame)
+    mass, damping = found.mass, found.damping
+    stiffness = found.stiffness + found.geometric
+    heavy = np.diag(mass) > 0
+    root = np.sqrt(np.diag(mass)[heavy])
+    flexible = np.linalg.inv(stiffness)[:, heavy] * root
+    squares, vectors = np.linalg.eigh(flexible[heavy] * root[:, np.newaxis])
+    omega = 1 / np.sqrt(squares[::-1])
+    shapes = flexible @ vectors[:, ::-1] * omega**2
+    damped = shapes.T @ damping @ shapes
+    assert damped == pytest.approx(np.diag(2 * 0.05 * omega), abs=1e-9 * omega.max())
+    first = three_storeys(columns=ELASTIC, beams=ELASTIC, damping=rbsdem.Damping(modal=[0.02, 0.1]))
+    damped = shapes.T @ rbsdem.matrices(first).damping @ shapes
+    ratios = np.r_[0.02, 0.1, np.zeros(len(omega) - 2)]
+    assert damped == pytest.approx(np.diag(2 * ratios * omega), abs=1e-9 * omega.max())
+
+    h, t = 0.01, np.arange(0, 2.005, 0.01)
+    ground = 3 * np.sin(9 * t)
+    run = rbsdem.time_history(frame, t, ground_acceleration=ground, method="newmark", dt=h)
+    along = np.array([name.startswith("x_") for name in found.unknowns], float)
+    u, v = np.zeros((2, len(mass)))
+    a = np.zeros(len(mass))
+    top = [0.0]
+    for now in ground[1:]:
+        ahead = u + h * v + h**2 / 4 * a
+        faster = v + h / 2 * a
+        load = -mass @ along * now - damping @ faster - stiffness @ ahead
+        a = np.linalg.solve(mass + h / 2 * damping + h**2 / 4 * stiffness, load)
+        u, v = ahead + h**2 / 4 * a, faster + h / 2 * a
+        top.append(u[found.unknowns.index("x_N-1-3")])
+    moved = run.displacement - run.displacement[0]
+    assert moved == pytest.approx(np.array(top), abs=1e-9 * np.abs(top).max())
+    assert run.summary["relative_energy_residual"] < 1e-9
+
+
+def test_the_verification_frame_of_seven_storeys():
+    """Periods and displacement that SAP2000 prints (verification manual, example 1-022)."""
+    inch, kip = 0.0254, 4448.2216152605
+    shapes = {
+        "W14X176": (51.7, 2150), "W14X211": (62.1, 2670), "W14X246": (72.3, 3230),
+        "W14X287": (84.4, 3910), "W24X110": (32.5, 3330), "W24X130": (38.3, 4020),
+        "W24X160": (47.1, 5120),
+    }  # fmt: skip
+    modulus = 29500 * kip / inch**2
+    kinds = {
+        name: FrameMember(modulus, area * inch**2, inertia * inch**4)
+        for name, (area, inertia) in shapes.items()
+    }
+    outer = ["W14X246"] * 3 + ["W14X211"] * 2 + ["W14X176"] * 2
+    inner = ["W14X287"] * 3 + ["W14X246"] * 2 + ["W14X211"] * 2
+    beams = ["W24X160"] * 2 + ["W24X130"] * 2 + ["W24X110"] * 3
+    storeys = np.array([162] * 2 + [156] * 5) * inch
+    loads = np.array([2.5, 5, 7.5, 10, 12.5, 15, 20])
+    nodes = [FrameNode(f"N-1-{i + 1}", push_x=load / loads.sum()) for i, load in enumerate(loads)]
+    # The masses have no weight upward: they stand on rollers, held by members without stiffness.
+    nodes += [
+        FrameNode(f"M-{i + 1}", x=-1, y=y, support="roller", mass=0.49 * kip / inch,
+                  moves_with=f"N-1-{i + 1}")
+        for i, y in enumerate(np.cumsum(storeys))
+    ]  # fmt: skip
+    weak = FrameMember(modulus, 1e-9, 1e-14)
+    frame = Frame.grid(
+        storeys,
+        [360 * inch] * 2,
+        columns={(i, s + 1): kinds[(outer, inner)[i == 2][s]] for i in (1, 2, 3) for s in range(7)},
+        beams={(b, s + 1): kinds[beams[s]] for b in (1, 2) for s in range(7)},
+        nodes=nodes,
+        members=[Member(f"M-{i}", f"N-1-{i}", f"M-{i}", kind=weak) for i in range(1, 8)],
+        diaphragm=True,
+        kinematics="small",
+        pattern="nodes",
+    )
+    periods = [1.2732, 0.4313, 0.2420, 0.1602, 0.1190, 0.0951, 0.0795]
+    assert np.round(rbsdem.modes(frame, 7).period, 4).tolist() == periods
+    push = rbsdem.pushover(frame, force=loads.sum() * kip, points=1)
+    assert round(push.displacement[-1] / inch, 5) == 1.45076
 
 
 def test_an_ensemble_takes_frames():

@@ -356,8 +356,9 @@ class Frame:
         Nodes, or what nodes of the grid have in addition.
     members : sequence of Member, optional
         Members between nodes.
-    damping : Damping, optional
-        In proportion to mass and to the stiffness of the members.
+    damping : Damping or float, optional
+        In proportion to mass and to the stiffness of the members, or ratios of the modes under the
+        dead load; a number is the ratio of all.
     panel : Spring, optional
         Rotational spring in every node where columns and beams meet, between them; nodes may have
         one of their own.
@@ -387,7 +388,7 @@ class Frame:
     control: Literal["x", "y"] = "x"
     nodes: Sequence[FrameNode] = ()
     members: Sequence[Member] = ()
-    damping: Damping | None = None
+    damping: Damping | float | None = None
     panel: Spring | None = None
 
     if TYPE_CHECKING:
@@ -421,6 +422,8 @@ class Frame:
             for item in items:
                 _arguments.instance(item, f"frame: {name}", kind)
             put(name, items)
+        if self.damping is not None and not isinstance(self.damping, Damping):
+            put("damping", Damping(modal=_arguments.number(self.damping, "frame: damping")))
         put("_statement", self._state())
         notes = _core.evaluate("check_structure", self._statement).text.splitlines()
         for note in notes if TELLING.get() else ():
@@ -497,7 +500,7 @@ class Frame:
     @property
     def damped(self) -> bool:
         """Whether the frame has viscous damping."""
-        return self.damping is not None and self.damping.acts
+        return isinstance(self.damping, Damping) and self.damping.acts
 
     def kind_of(self, member: str) -> FrameMember:
         """Return the kind of a member by the name of the member."""
@@ -610,7 +613,7 @@ class Frame:
         parts += [member._group(names[with_panel(member.kind, 0.0)]) for member in self.members]
         if self.panel is not None:
             parts.append(self.panel.statement("flexure", panel=_core.Text("all")))
-        if self.damping is not None:
+        if isinstance(self.damping, Damping):
             parts.append(self.damping.statement())
         numbers = [number for part in parts for number in part.numbers]
         return _core.Statement("\n".join(part.text for part in parts if part.text), numbers)

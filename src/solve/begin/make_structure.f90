@@ -6,6 +6,7 @@ module rbs_solve_begin_make_structure
    use rbs_case_case_record, only: case_record
    use rbs_solve_end_state, only: end_state
    use rbs_solve_begin_make_column, only: make_column
+   use rbs_solve_modal_matrices, only: find_modal_momenta
    use rbs_solve_modal_modes, only: modes_type, find_modes
    use rbs_solve_static_dead_load, only: put_dead_load
    use rbs_structure_column_column, only: column_type
@@ -69,6 +70,12 @@ contains
       call check_stable(frame, error)
       if (allocated(error)) return
       call put_dead_load(frame, before, error)
+      if (allocated(error)) return
+      if (allocated(case%column%damping%modal)) then
+         frame%damped = .true.
+         frame%modal_damping = case%column%damping%modal
+         call find_modal_momenta(frame, frame%modal_momenta, error)
+      end if
       if (allocated(error) .or. case%frame%pattern /= 'modal') return
       call find_modes(frame, modes, error, modes_along)
       if (allocated(error)) return

@@ -16,7 +16,7 @@ module rbs_solve_modal_matrices
    implicit none
    private
 
-   public :: matrices_type, assemble_matrices, modal_damping
+   public :: matrices_type, assemble_matrices, modal_damping, find_modal_momenta
 
    type :: matrices_type
       !> Name of each unknown: slip_1, ..., rotation_1, ... [, opening_1, ...], rotations relative to the body
@@ -89,6 +89,10 @@ contains
       call structure%add_damping(1.0_wp, structure%initial_tangent, band)
       call fill(band, matrices%damping)
       matrices%damping = matrices%damping + structure%mass_damping*matrices%mass
+      if (.not. allocated(structure%modal_momenta)) return
+      associate (momenta => structure%modal_momenta)
+         matrices%damping = matrices%damping + matmul(momenta, transpose(momenta))
+      end associate
    end subroutine assemble_bands
 
    !> A symmetric matrix in full from its lower band.
@@ -198,47 +202,53 @@ contains
       end if
    end subroutine accelerations
 
-   !> Damping of the modes of a structure, as a matrix of its springs.
+   !> Damping of the modes of a column, as a matrix of its unknowns (slip, relative rotation and opening).
    subroutine modal_damping(structure, damping, error)
       class(structure_type), intent(in) :: structure
-      !> (springs, springs)
+      !> (unknowns, unknowns)
       real(wp), allocatable, intent(out) :: damping(:, :)
       type(error_type), allocatable, intent(out) :: error
+      real(wp), allocatable :: momenta(:, :)
 
-      select type (structure)
-      class is (column_type)
-         call column_damping(structure, damping, error)
-      class default
-         call fatal_error(error, bad_input, 'damping: ratios of modes are for columns; give damping in '// &
-                          'proportion to mass and stiffness')
-      end select
+      call find_modal_momenta(structure, momenta, error)
+      if (.not. allocated(error)) damping = matmul(momenta, transpose(momenta))
    end subroutine modal_damping
 
-   !> C = sum_j 2 zeta_j omega_j (M s_j) (M s_j)', the modes s_j of the uncracked column.
-   subroutine column_damping(column, damping, error)
-      class(column_type), intent(in) :: column
-      !> Matrix (unknowns, unknowns) in slip, relative rotation and opening
-      real(wp), allocatable, intent(out) :: damping(:, :)
+   !> C = sum_j 2 zeta_j omega_j (M s_j) (M s_j)', the modes s_j of the uncracked structure under its constant
+   !> load: momenta M s_j times sqrt(2 zeta_j omega_j).
+   subroutine find_modal_momenta(structure, momenta, error)
+      class(structure_type), intent(in) :: structure
+      !> (unknowns, modes)
+      real(wp), allocatable, intent(out) :: momenta(:, :)
       type(error_type), allocatable, intent(out) :: error
       type(modes_type) :: modes
-      real(wp), allocatable :: carried(:, :)
-      integer :: given, j, m
+      real(wp), allocatable :: mass(:, :)
+      integer :: given, j
 
-      m = column%unknowns
-      given = size(column%modal_damping)
+      given = size(structure%modal_damping)
       if (given == 1) then
-         call find_modes(column, modes, error)
+         call find_modes(structure, modes, error)
       else
-         call find_modes(column, modes, error, count=given)
+         call find_modes(structure, modes, error, count=given)
       end if
       if (allocated(error)) return
-      allocate (damping(m, m))
-      call symmetric_mass(column, damping)
-      carried = matmul(damping, modes%shapes)
+      if (size(modes%omega) < given) then
+         call fatal_error(error, bad_input, 'damping: modal has '//to_text(given)//' values for '// &
+                          to_text(size(modes%omega))//' modes; give one for all, or one for each of the '// &
+                          'first modes')
+         return
+      end if
+      select type (structure)
+      class is (column_type)
+         allocate (mass(structure%unknowns, structure%unknowns))
+         call symmetric_mass(structure, mass)
+         momenta = matmul(mass, modes%shapes)
+      class default
+         momenta = spread(structure%inertias, 2, size(modes%omega))*modes%shapes
+      end select
       do j = 1, size(modes%omega)
-         carried(:, j) = sqrt(2.0_wp*column%modal_damping(min(j, given))*modes%omega(j))*carried(:, j)
+         momenta(:, j) = sqrt(2.0_wp*structure%modal_damping(min(j, given))*modes%omega(j))*momenta(:, j)
       end do
-      damping = matmul(carried, transpose(carried))
-   end subroutine column_damping
+   end subroutine find_modal_momenta
 
 end module rbs_solve_modal_matrices

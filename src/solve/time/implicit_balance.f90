@@ -130,7 +130,7 @@ contains
       associate (motion => state%motion, structure => state%motion%structure)
          call motion%forces_on_bodies(state%springs, q, w, load, now, g)
          call structure%add_ground(load, g)
-         if (structure%stiffness_damping > 0.0_wp) call structure%damp(v, now%tangent, g)
+         if (structure%damped .and. structure%tangent_numbers > 0) call structure%damp(v, now%tangent, g)
          if (structure%mass_damping > 0.0_wp) g = g - structure%mass_damping*structure%inertias*v
          ! Supports take what acts on them.
          if (structure%has_held) where (structure%is_held) g = 0.0_wp

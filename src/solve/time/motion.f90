@@ -62,7 +62,7 @@ contains
       if (structure%tangent_numbers > 0) self%joint_damping = 0.0_wp
       self%damped = structure%damped
       if (.not. self%damped .and. structure%base_spring > 0) self%base_spring = structure%base_spring
-      if (allocated(structure%modal_damping)) then
+      if (allocated(structure%modal_damping) .and. .not. allocated(structure%modal_momenta)) then
          call modal_damping(structure, self%modal, error)
          if (allocated(error)) return
       end if

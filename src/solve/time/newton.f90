@@ -91,7 +91,7 @@ contains
       converged = .false.
       most = self%most_iterations
       ! Modal damping is not in the tangent: an iteration leaves of its share as much as the damping ratio.
-      if (allocated(state%motion%modal)) most = 10*most
+      if (allocated(state%motion%structure%modal_damping)) most = 10*most
       do iteration = 1, most
          size_before = size_now
          call self%correct(state, h, found)

@@ -5,6 +5,7 @@
 !> bearing, or one of no account, whose deformation is the displacement.
 module rbs_structure_frame_frame
    use rbs_base_error, only: error_type, fatal_error, bad_input
+   use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_channel, only: channel_type, response_type, row_contents
@@ -413,7 +414,7 @@ contains
       end associate
    end subroutine add_product
 
-   !> Damping in proportion to the stiffness of the elements, the initial or the present one.
+   !> Damping of the modes, and in proportion to the stiffness of the elements, initial or present.
    subroutine damp(self, v, tangent, g)
       class(frame_type), intent(in) :: self
       real(wp), intent(in), contiguous :: v(:), tangent(:)
@@ -421,6 +422,12 @@ contains
       real(wp) :: a(9), q(3)
       integer :: i
 
+      if (allocated(self%modal_momenta)) then
+         do i = 1, size(self%modal_momenta, 2)
+            g = g - self%modal_momenta(:, i)*inner_product(size(v), self%modal_momenta(:, i), v)
+         end do
+      end if
+      if (.not. self%stiffness_damping > 0.0_wp) return
       do i = 1, size(self%element)
          call damping_of(self, i, tangent, a)
          q = self%basic(i, v)
@@ -909,7 +916,7 @@ contains
 
       associate (x => result%force)
          call self%forces(d, load, result%axial(:pressing), self%initial_tangent, result%f, x, correction)
-         if (self%stiffness_damping > 0.0_wp) call self%damp(v(self%inside + 1:), self%initial_tangent, x)
+         if (self%damped) call self%damp(v(self%inside + 1:), self%initial_tangent, x)
          call self%add_ground(load, x)
          do i = 1, self%unknowns
             if (self%inertias(i) > 0.0_wp) then
