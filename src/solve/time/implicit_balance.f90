@@ -106,7 +106,10 @@ contains
       self%load = load
       associate (structure => state%motion%structure)
          call end_of_step(m, h, self%beta, self%gamma, self%moved, self%v0, self%a0, self%v1, self%a1)
-         if (state%motion%damped) call structure%spring_rates(self%now%tangent, self%v1, self%w1)
+         ! Where elements damp as wholes, the springs do not by themselves.
+         if (state%motion%damped .and. structure%tangent_numbers == 0) then
+            call structure%spring_rates(self%now%tangent, self%v1, self%w1)
+         end if
          call find_forces(state, self%q1, self%w1, self%v1, load, self%now, self%g1)
          call balance(m, self%alpha_m, self%alpha_f, structure%inertias, self%a0, self%a1, self%g0, self%g1, &
                       self%r)

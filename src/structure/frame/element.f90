@@ -40,6 +40,10 @@ module rbs_structure_frame_element
       integer :: number(6) = 0
       !> Elongation and rotations against the chord from the displacements of the nodes, (x, y, theta) each
       real(wp) :: to_basic(3, 6) = 0.0_wp
+      !> The same, and the rotation of the chord, from the unknowns alone: without branches, zero and the first
+      !> unknown where a support holds a displacement
+      real(wp) :: from_unknowns(3, 6) = 0.0_wp, chord(6) = 0.0_wp
+      integer :: unknown(6) = 1
       !> Springs of the frame before its first; how many bend or slip, and how many open behind these
       integer :: before = 0, bending = 0, opening = 0
       !> Moments of the ends per force of a spring, p, of those that bend, then of the elastic rest
@@ -58,12 +62,29 @@ module rbs_structure_frame_element
       !> Its lowest and its highest layer (2, joints)
       integer, allocatable :: outermost(:, :)
       real(wp), allocatable :: arm(:, :, :), y(:)
+   contains
+      procedure :: leave_out_supports
    end type frame_element
 
    !> Numbers of a joint in a tangent: w and theta of a joint per axial force and moment.
    integer, parameter :: of_joint = 3
 
 contains
+
+   !> What follows from the unknowns alone, when `number`, `to_basic` and `chord` are known.
+   pure subroutine leave_out_supports(self)
+      class(frame_element), intent(inout) :: self
+      integer :: k
+
+      do k = 1, 6
+         if (self%number(k) > 0) then
+            self%unknown(k) = self%number(k)
+            self%from_unknowns(:, k) = self%to_basic(:, k)
+         else
+            self%chord(k) = 0.0_wp
+         end if
+      end do
+   end subroutine leave_out_supports
 
    !> Numbers of a tangent: K (3, 3), dd/dq (3, springs), H of those that bend and of those that open, and the
    !> stiffness of the springs that it belongs to, each with its initial one.

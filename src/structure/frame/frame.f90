@@ -79,7 +79,6 @@ module rbs_structure_frame_frame
       procedure :: take_load_off
       procedure :: set_compression
       procedure :: basic
-      procedure :: gather
       procedure :: drop_round_off
       procedure :: end_forces
       procedure :: add_element
@@ -180,51 +179,19 @@ contains
       end subroutine find_panel
    end subroutine find_tangents
 
-   !> Elongation and rotations of an element from the unknowns, or changes of them.
+   !> Elongation and rotations of an element from the unknowns, or changes of them; of a panel, the rotation of
+   !> its columns against its beams.
    pure function basic(self, element, x) result(q)
       class(frame_type), intent(in) :: self
       integer, intent(in) :: element
-      real(wp), intent(in) :: x(:)
-      real(wp) :: q(3), moved(6)
+      real(wp), intent(in), contiguous :: x(:)
+      real(wp) :: q(3)
 
-      if (element > self%members) then
-         q = [panel_rotation(self, element, x), 0.0_wp, 0.0_wp]
-         return
-      end if
-      call self%gather(element, x, moved)
-      associate (b => self%element(element)%to_basic)
-         q = b(:, 1)*moved(1) + b(:, 2)*moved(2) + b(:, 3)*moved(3) &
-             + b(:, 4)*moved(4) + b(:, 5)*moved(5) + b(:, 6)*moved(6)
+      associate (b => self%element(element)%from_unknowns, at => self%element(element)%unknown)
+         q = b(:, 1)*x(at(1)) + b(:, 2)*x(at(2)) + b(:, 3)*x(at(3)) &
+             + b(:, 4)*x(at(4)) + b(:, 5)*x(at(5)) + b(:, 6)*x(at(6))
       end associate
    end function basic
-
-   !> Rotation of the columns of a node against its beams.
-   pure real(wp) function panel_rotation(frame, element, x) result(turn)
-      type(frame_type), intent(in) :: frame
-      integer, intent(in) :: element
-      real(wp), intent(in) :: x(:)
-
-      associate (number => frame%element(element)%number)
-         turn = -x(number(6))
-         if (number(3) > 0) turn = turn + x(number(3))
-      end associate
-   end function panel_rotation
-
-   !> Displacements of the nodes at the ends of an element, zero where a support holds them.
-   pure subroutine gather(self, element, x, moved)
-      class(frame_type), intent(in) :: self
-      integer, intent(in) :: element
-      real(wp), intent(in) :: x(:)
-      real(wp), intent(out) :: moved(6)
-      integer :: k
-
-      associate (number => self%element(element)%number)
-         do k = 1, 6
-            moved(k) = 0.0_wp
-            if (number(k) > 0) moved(k) = x(number(k))
-         end do
-      end associate
-   end subroutine gather
 
    !> Add what axial force and moments of the ends of an element do on the unknowns.
    pure subroutine add_element(self, element, s, g)
@@ -236,9 +203,8 @@ contains
 
       associate (e => self%element(element))
          do k = 1, 6
-            if (e%number(k) > 0) g(e%number(k)) = g(e%number(k)) + (s(1)*e%to_basic(1, k) &
-                                                                    + s(2)*e%to_basic(2, k) &
-                                                                    + s(3)*e%to_basic(3, k))
+            g(e%unknown(k)) = g(e%unknown(k)) + (s(1)*e%from_unknowns(1, k) + s(2)*e%from_unknowns(2, k) &
+                                                 + s(3)*e%from_unknowns(3, k))
          end do
       end associate
    end subroutine add_element
@@ -477,7 +443,8 @@ contains
          call turn_springs(self%element(i), size(dd), self%tangent_numbers, tangent, q, dd)
       end do
       do i = self%members + 1, size(self%element)
-         dd(self%element(i)%before + 1) = panel_rotation(self, i, dx)
+         q = self%basic(i, dx)
+         dd(self%element(i)%before + 1) = q(1)
       end do
       dd(self%inside + 1:) = dx
    end subroutine spring_rates
@@ -597,11 +564,11 @@ contains
             if (self%axially_loaded) call add_second_order(self, i, x, g)
          end do
          do i = self%members + 1, size(self%element)
-            associate (e => self%element(i), spring => self%element(i)%before + 1)
-               correction(spring) = panel_rotation(self, i, x) - d(spring)
-               s(1) = f(spring) + tangent(e%at)*correction(spring)
-               if (e%number(3) > 0) g(e%number(3)) = g(e%number(3)) - s(1)
-               g(e%number(6)) = g(e%number(6)) + s(1)
+            associate (at => self%element(i)%at, spring => self%element(i)%before + 1)
+               q = self%basic(i, x)
+               correction(spring) = q(1) - d(spring)
+               s = [f(spring) + tangent(at)*correction(spring), 0.0_wp, 0.0_wp]
+               call self%add_element(i, -s, g)
             end associate
          end do
       end associate
@@ -611,23 +578,27 @@ contains
    pure subroutine add_second_order(self, element, x, g)
       type(frame_type), intent(in) :: self
       integer, intent(in) :: element
-      real(wp), intent(in) :: x(:)
-      real(wp), intent(inout) :: g(:)
-      real(wp) :: row(6, 3), press, turn
-      integer :: number(6), i, j
+      real(wp), intent(in), contiguous :: x(:)
+      real(wp), intent(inout), contiguous :: g(:)
+      real(wp) :: turn
+      integer :: j
 
-      call second_order_rows(self, element, row)
-      press = self%compression(element)
-      number = self%element(element)%number
-      do i = 1, 3
+      associate (e => self%element(element), length => self%lengths(:, element), &
+                 press => self%compression(element))
+         do j = 1, 2
+            associate (at => e%number(3*j))
+               if (length(j) > 0.0_wp .and. at > 0) g(at) = g(at) + press*length(j)*x(at)
+            end associate
+         end do
          turn = 0.0_wp
          do j = 1, 6
-            if (number(j) > 0) turn = turn + row(j, i)*x(number(j))
+            turn = turn + e%chord(j)*x(e%unknown(j))
          end do
+         turn = press*length(3)*turn
          do j = 1, 6
-            if (number(j) > 0) g(number(j)) = g(number(j)) + press*self%lengths(i, element)*turn*row(j, i)
+            g(e%unknown(j)) = g(e%unknown(j)) + turn*e%chord(j)
          end do
-      end do
+      end associate
    end subroutine add_second_order
 
    !> Rotations of the rigid ends and of the chord per displacement of the nodes.

@@ -275,6 +275,8 @@ contains
                chord = [-across, -m%rigid(1), across, -m%rigid(2)]/clear
                e%to_basic(2, :) = [0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp] - chord
                e%to_basic(3, :) = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp] - chord
+               e%chord = chord
+               call e%leave_out_supports()
                e%before = before
                e%opening = count(m%kind == axial)
                e%bending = size(m%kind) - e%opening
@@ -316,6 +318,7 @@ contains
             e%node = i
             e%number = [0, 0, frame%number(3, i), 0, 0, frame%beam_rotation(i)]
             e%to_basic(1, :) = [0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, -1.0_wp]
+            call e%leave_out_supports()
             e%before = at - 1
             e%opening = 1
             allocate (e%share(2, 0))
