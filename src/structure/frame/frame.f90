@@ -179,8 +179,8 @@ contains
       end subroutine find_panel
    end subroutine find_tangents
 
-   !> Elongation and rotations of an element from the unknowns, or changes of them; of a panel, the rotation of
-   !> its columns against its beams.
+   !> Elongation and rotations of an element from the unknowns, or changes of them; of a panel, the rotation
+   !> of its columns against its beams.
    pure function basic(self, element, x) result(q)
       class(frame_type), intent(in) :: self
       integer, intent(in) :: element
