@@ -40,8 +40,8 @@ module rbs_structure_frame_element
       integer :: number(6) = 0
       !> Elongation and rotations against the chord from the displacements of the nodes, (x, y, theta) each
       real(wp) :: to_basic(3, 6) = 0.0_wp
-      !> The same, and the rotation of the chord, from the unknowns alone, so that there are no branches: zero and
-      !> the first unknown where a support holds a displacement
+      !> The same, and the rotation of the chord, from the unknowns alone, without branches: zero and the
+      !> first unknown where a support holds a displacement
       real(wp) :: from_unknowns(3, 6) = 0.0_wp, chord(6) = 0.0_wp
       integer :: unknown(6) = 1
       !> Springs of the frame before its first; how many bend or slip, and how many open behind these
