@@ -544,6 +544,16 @@ def test_springs_from_the_ground_and_members_by_name():
     assert table["moment_from_C-2-1_Nm"][0] == member.moment[0, 0]
 
 
+def test_nodes_between_plastic_hinges_do_not_turn_away_in_time():
+    """Their rotations have neither mass nor stiffness then, and what spins would take up energy."""
+    kind = FrameMember(E, A, INERTIA, yield_moment=100e3)
+    frame = Frame.grid([3.0] * 3, columns=kind, floor_mass=30e3, kinematics="pdelta")
+    t = np.arange(0, 3.001, 0.01)
+    run = rbsdem.time_history(frame, t, ground_acceleration=4 * np.sin(8 * t), method="newmark")
+    assert np.abs(run.turn).max() < 1
+    assert run.summary["relative_energy_residual"] < 0.02
+
+
 def test_a_node_between_plastic_hinges_does_not_turn_away():
     """Hinges without hardening on all sides of a node leave its rotation free: it stays."""
     kind = FrameMember(E, A, INERTIA, yield_moment=250e3)

@@ -137,9 +137,10 @@ def _criteria(column: Structure, names: Collection[str]) -> list[Criterion]:
 def _of_joints(frame: Frame, springs: Sequence[FrameSpring], number: int) -> Iterator[Criterion]:
     """Yield where layers yield in tension; they are numbered behind the rotational springs."""
     for own in springs:
-        made = frame.kind_of(own.member).at(own.group, own.place)
-        if not isinstance(made, Layered):
+        if own.rule != "layered":
             continue
+        made = frame.kind_of(own.member).at(own.group, own.place)
+        assert isinstance(made, Layered)
         places: dict[Spring, list[float]] = {}
         for y, layer in made.layers:
             places.setdefault(layer, []).append(y)

@@ -154,7 +154,9 @@ contains
       real(wp), intent(in) :: alpha_m, alpha_f, mass(m), a0(m), a1(m), g0(m), g1(m)
       real(wp), intent(out) :: r(m)
 
-      r = (1.0_wp - alpha_f)*g1 + alpha_f*g0 - mass*((1.0_wp - alpha_m)*a1 + alpha_m*a0)
+      ! What has no mass is in equilibrium at the end of the step, whatever it was at the start.
+      r = (1.0_wp - alpha_f)*g1 + alpha_f*merge(g0, 0.0_wp, mass > 0.0_wp) &
+          - mass*((1.0_wp - alpha_m)*a1 + alpha_m*a0)
    end subroutine balance
 
    !> Largest force of each group at a state: of springs, of inertia and of the loads; and the largest

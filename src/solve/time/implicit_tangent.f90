@@ -2,6 +2,7 @@
 !> in the unknowns of the structure, and its factor.
 module rbs_solve_time_implicit_tangent
    use rbs_base_band_matrix, only: band_matrix
+   use rbs_base_constants, only: no_stiffness
    use rbs_base_kinds, only: wp
    use rbs_solve_time_implicit_balance, only: step_balance
    use rbs_solve_time_state, only: state_type
@@ -11,10 +12,15 @@ module rbs_solve_time_implicit_tangent
 
    public :: step_tangent
 
+   !> A rotation without mass that hinges leave free is held by this share of the initial stiffness.
+   real(wp), parameter :: held_by = 1.0e-9_wp
+
    type :: step_tangent
       !> Diagonal of the tangent (unknowns)
       real(wp), allocatable :: stiffness(:)
       type(band_matrix) :: matrix
+      !> Initial diagonal of unknowns without mass whose elements yield, 0 of the others (unknowns)
+      real(wp), allocatable, private :: initial(:)
       !> What each spring adds (springs)
       real(wp), allocatable, private :: k(:)
       !> Step and lines that the factor belongs to
@@ -34,6 +40,9 @@ contains
 
       allocate (self%stiffness(structure%unknowns), self%k(size(structure%place)), source=0.0_wp)
       call self%matrix%create(structure%unknowns, structure%half_width)
+      if (structure%tangent_numbers == 0) return
+      call structure%add_stiffness(structure%initial_stiffness, structure%initial_tangent, self%matrix%band)
+      self%initial = merge(0.0_wp, self%matrix%band(1, :), structure%inertias > 0.0_wp)
    end subroutine create
 
    !> The correction that takes the residual away as long as no line changes. The tangent is factored anew
@@ -117,9 +126,22 @@ contains
          end if
          self%stiffness = self%matrix%band(1, :)
          call self%matrix%factor()
+         if (allocated(self%initial)) call hold_free(self)
       end associate
       self%factor_step = h
       self%factor_version = state%springs%version
    end subroutine set_tangent
+
+   !> Where the pivot of an unknown without mass is round-off, it stays where it is.
+   subroutine hold_free(self)
+      type(step_tangent), intent(inout) :: self
+
+      associate (inverse => abs(self%matrix%triangle(1, :)), initial => self%initial)
+         if (all(no_stiffness*initial*inverse <= 1.0_wp)) return
+         where (no_stiffness*initial*inverse > 1.0_wp) self%matrix%band(1, :) = self%matrix%band(1, :) &
+                                                                                 + held_by*initial
+         call self%matrix%factor()
+      end associate
+   end subroutine hold_free
 
 end module rbs_solve_time_implicit_tangent
