@@ -273,7 +273,8 @@ def test_label(runs: dict[str, Run]) -> str:
 def one_part(runs: dict[str, Run]) -> Figure:
     """Draw the four panels of one model and drive."""
     panels = plot.four_panels([panel(run) for run in runs.values()], test_label=test_label(runs))
-    return panels[0].figure
+    figure: Figure = panels[0].figure
+    return figure
 
 
 def both_models(drawn: dict[str, Run], paper: dict[str, Run]) -> Figure:
@@ -282,7 +283,7 @@ def both_models(drawn: dict[str, Run], paper: dict[str, Run]) -> Figure:
 
     with plot.style():
         figure = Figure(figsize=(11.0, 5.6), layout="constrained")
-        upper, lower = figure.subfigures(2, 1)
+        upper, lower = figure.subfigures(2, 1, squeeze=False).ravel()
         for row, runs, title in (
             (upper, drawn, "Predicted from the drawings (layered model)"),
             (lower, paper, "Springs of the paper's table 3, driven by the measured force"),

@@ -1,7 +1,6 @@
 """A drift protocol on a column of the paper: the same as case.nml, in Python, with a figure."""
 
 import sys
-from pathlib import Path
 
 import rbsdem
 
@@ -15,7 +14,5 @@ print(f"dissipated energy      {result.energy['spring'][-1] / 1e3:8.1f} kJ")
 print(f"energy residual        {result.summary['relative_energy_residual']:8.0e}")
 
 if "--no-plot" not in sys.argv:
-    axes = rbsdem.plot.loop(result)
-    figure = Path("cyclic_protocol.png")
-    axes.figure.savefig(figure, dpi=150, bbox_inches="tight")
-    print(f"wrote {figure}")
+    rbsdem.plot.save(rbsdem.plot.loop(result), "cyclic_protocol.png")
+    print("wrote cyclic_protocol.png")

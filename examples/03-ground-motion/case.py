@@ -7,7 +7,7 @@ import numpy as np
 
 import rbsdem
 
-hinge = rbsdem.peer.paper_columns()["soesianawati_1"].flexure
+(hinge,) = rbsdem.peer.paper_columns()["soesianawati_1"].joints("flexure")
 elastic = rbsdem.springs.Elastic(3.0e8)
 column = rbsdem.Column(
     height=1.6,

@@ -10,12 +10,14 @@ found = rbsdem.compare_methods(
     case.column,
     case.time,
     ground_acceleration=case.ground_acceleration,
-    setting={"method": case.method, "dt": case.settings["dt"]},
+    setting=case.solver,
     tolerance=1e-3,
     budget=20.0,
 )
 
-reference = found.reference
+reference, physics = found.reference, found.physics
+assert reference is not None  # the budget is large enough
+assert physics is not None
 print(f"reference    {reference.first} and {reference.second}")
 print(f"             agree to {reference.digits:.1f} digits in displacement")
 own = found.rows[0]
@@ -27,11 +29,10 @@ for tolerance in (1e-2, 1e-3, 1e-5, 1e-7):
 print(found.choice)
 
 print("\nchange of     peak %  base moment %  energy %")
-for effect in found.physics.effects:
+for effect in physics.effects:
     changes = f"{100 * effect.peak:8.2f} {100 * effect.moment:14.2f} {100 * effect.energy:9.2f}"
     print(f"{changes}  {'matters' if effect.matters else '       '}  {effect.part}")
 
 if "--no-plot" not in sys.argv:
-    axes = rbsdem.plot.methods(found)
-    axes.figure.savefig("trade.png", dpi=150)
+    rbsdem.plot.save(rbsdem.plot.methods(found), "trade.png")
     print("wrote trade.png")

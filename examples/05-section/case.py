@@ -20,6 +20,7 @@ length, axial_load = 1.6, 744e3
 
 springs = rbsdem.section.springs(section, length, axial_load)
 print(springs.report)
+assert springs.shear is not None  # it is None with shear="none" alone
 
 column = rbsdem.Column(
     length,
@@ -32,10 +33,12 @@ column = rbsdem.Column(
 loop = rbsdem.cyclic(column, displacement=length * rbsdem.protocol([0.005, 0.01, 0.02], cycles=2))
 print(f"\npeak force of the column {loop.summary['peak_force'] / 1e3:.0f} kN")
 
-core = section.confinement
 confined = rbsdem.section.diagram(section, axial_load, ultimate="mander")
+core, ultimate = section.confinement, confined.events.ultimate
+assert core is not None  # it has ties
+assert ultimate is not None  # they fracture
 print(f"core {core.fcc / 1e6:.1f} MPa, hoop fracture at a strain of {core.eps_cu:.4f}")
-print(f"ultimate curvature {1e3 * confined.events.ultimate.curvature:.0f} mrad/m, confined")
+print(f"ultimate curvature {1e3 * ultimate.curvature:.0f} mrad/m, confined")
 lines = confined.idealise("caltrans")
 print(lines, lines.capacity(length), sep="\n")
 

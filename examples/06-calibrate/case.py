@@ -29,7 +29,8 @@ with warnings.catch_warnings(record=True) as notes:  # the report has them too
     )
 print(fit.report)
 
-spring = fit.column.flexure
+(spring,) = fit.column.joints("flexure")
+assert isinstance(spring, rbsdem.springs.Takeda)
 print(f"\nyield moment {spring.k_c * spring.d_c + spring.k_y * (spring.d_y - spring.d_c):.4g} N m")
 
 if "--no-plot" not in sys.argv:

@@ -38,7 +38,9 @@ specimen = peer.Specimen(
     shear_legs=4,
 )
 column = peer.column(specimen)
-print(f"{len(column.flexure[0].layers)} layers of concrete and steel at the foot\n")
+foot = column.joints("flexure")[0]
+assert isinstance(foot, rbsdem.springs.Layered)
+print(f"{len(foot.layers)} layers of concrete and steel at the foot\n")
 
 history = peer.find_history(KEY)
 test = peer.read_peer(history) if history else peer.shipped_reversals(KEY)

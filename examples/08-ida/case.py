@@ -28,6 +28,6 @@ for name, curve in curves.items():
     print(f"{name:10s} theta {curve.theta:5.2f} m/s2  beta {curve.beta:.2f}  {rate:.1e} a year")
 
 if "--no-plot" not in sys.argv:
-    plot.ida(found).figure.savefig("ida.png", dpi=150)
-    plot.fragilities(curves).figure.savefig("fragility.png", dpi=150)
+    plot.save(plot.ida(found), "ida.png")
+    plot.save(plot.fragilities(curves), "fragility.png")
     print("wrote ida.png, fragility.png")

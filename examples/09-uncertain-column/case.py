@@ -26,7 +26,7 @@ from rbsdem import (
 RECORDS, COLUMNS = 5, 8
 
 
-def make(concrete, steel, mass):
+def make(concrete: float, steel: float, mass: float) -> rbsdem.Column:
     """Return the column for strengths [Pa] and a mass on top [kg]."""
     section = RectangularSection(
         0.4,

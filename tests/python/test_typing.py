@@ -1,4 +1,4 @@
-"""A user's program like that of the README passes ``mypy --strict``; slips are found by it."""
+"""Users' programs, as the README and the examples, pass ``mypy --strict``; it finds slips."""
 
 from __future__ import annotations
 
@@ -123,12 +123,19 @@ def mypy(folder: Path, programs: dict[str, str]) -> list[str]:
 
 def test_types_of_a_user_program(tmp_path):
     """Sound programs pass, and slips are found: loads by keyword, words out of a list, names."""
-    readme = (REPOSITORY / "README.md").read_text("utf-8")
-    blocks = re.findall(r"^```python\n(.*?)^```$", readme, re.MULTILINE | re.DOTALL)
-    assert len(blocks) >= 2
+    pages = [REPOSITORY / name for name in ("README.md", "docs/tutorials.md", "docs/frames.md")]
+    text = "\n".join(page.read_text("utf-8") for page in pages)
+    blocks = re.findall(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+    assert len(blocks) >= 12
     head = "import rbsdem\ns = rbsdem.springs.Elastic(1.0)\nc = rbsdem.Column(1.6, 1.0, s, s)\n"
     # One run for all, as most of it goes into reading the package.
     programs = {"program.py": PROGRAM} | {f"block_{i}.py": text for i, text in enumerate(blocks)}
+    # Here, not under `files` of pyproject.toml: scripts of one name cannot be checked in one run.
+    scripts = sorted((REPOSITORY / "examples").glob("*/*.py"))
+    assert len(scripts) >= 11
+    for script in scripts:
+        name = re.sub(r"\W", "_", f"example_{script.parent.name}_{script.stem}")
+        programs[f"{name}.py"] = script.read_text("utf-8")
     slips = head + "".join(f"{slip}\n" for slip, _ in SLIPS)
     said = mypy(tmp_path, programs | {"slips.py": slips})
     assert [line for line in said if not line.startswith("slips.py:")] == []

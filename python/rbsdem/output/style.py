@@ -22,7 +22,6 @@ from rbsdem.errors import InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 #: What functions with several axes return: an array of them, as ``pyplot.subplots`` does.
 AxesArray = NDArray[np.object_]
@@ -152,9 +151,7 @@ def axes_or_new(ax: Axes | None, size: tuple[float, float] = (3.5, 3.0)) -> Iter
         yield new_axes(1, 1, size)[0]
 
 
-def save(
-    figure: Figure | Axes | AxesArray, path: str | os.PathLike[str], *, pdf: bool = False
-) -> list[Path]:
+def save(figure: Any, path: str | os.PathLike[str], *, pdf: bool = False) -> list[Path]:
     """Write a figure as PNG at 300 dpi, and as PDF beside it if asked for.
 
     Parameters

