@@ -320,8 +320,8 @@ MUTANTS = (
     Mutant(
         "units-out-of-si",
         "src/base/units.f90",
-        "if (unit(i:i) == '/') power = -direction",
-        "if (unit(i:i) == '/') power = -1",
+        "      power = direction",
+        "      power = 1",
         "units",
         "test_units",
     ),

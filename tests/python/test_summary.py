@@ -135,3 +135,13 @@ def test_a_response_in_time_tells_its_base_shear():
     pushed = rbsdem.time_history(column(), TIME, force=1e4 * TIME, method="newmark")
     assert pushed.summary["peak_force"] == pytest.approx(1e4 * TIME[-1])
     assert "peak force" in repr(solve("static", column()))
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_peaks_are_the_largest_to_either_side(sign):
+    path = sign * np.array([0.0, 0.01, 0.0, -0.03, 0.0])
+    result = rbsdem.cyclic(column(), displacement=path)
+    largest = np.abs(result.force).argmax()
+    assert result.summary["peak_force"] == result.force[largest]
+    assert result.summary["displacement_at_peak_force"] == result.displacement[largest]
+    assert result.summary["peak_displacement"] == sign * -0.03
