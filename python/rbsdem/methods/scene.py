@@ -282,6 +282,11 @@ def make_scene(
         If the loads do not go together.
     """
     checked_column(column, "compare_methods: ")
+    if not isinstance(initial, Mapping | None):
+        raise InputError(
+            f"compare_methods: initial = {_arguments.shown(initial)} must be a mapping of slips, "
+            "rotations and velocities; the state in which a result ended is for time_history"
+        )
     given = {name: _arguments.finite_vector(values, name) for name, values in loads.items()}
     if time is None:
         if set(given) not in ({"displacement"}, {"force"}):

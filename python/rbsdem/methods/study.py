@@ -246,7 +246,7 @@ class MethodStudy(Tabular):
 
 def compare_methods(
     column: Column,
-    time: ArrayLike | None = None,
+    time: ArrayLike | GroundMotion | None = None,
     *,
     force: ArrayLike | None = None,
     ground_acceleration: ArrayLike | GroundMotion | None = None,
@@ -275,8 +275,9 @@ def compare_methods(
     ----------
     column : Column
         The column. Its kinematics are those of the reference.
-    time : array_like, shape (m,), optional
-        Times of the loading [s]. Without it and without a `GroundMotion` the path is static.
+    time : array_like of shape (m,), or GroundMotion, optional
+        Times of the loading [s], or the motion of the ground. Without times and without a
+        `GroundMotion` the path is static.
     force : array_like, shape (m,), optional
         Lateral force at the top [N]; without time it drives the static path.
     ground_acceleration, vertical_acceleration : array_like or GroundMotion, optional
@@ -284,7 +285,7 @@ def compare_methods(
     axial_load : array_like, shape (m,), optional
         Axial load, in addition to that of the column [N].
     initial : mapping, optional
-        State at the start, as for `rbsdem.time_history`.
+        Slips, rotations and their velocities at the start, as for `rbsdem.time_history`.
     displacement : array_like, shape (m,), optional
         Displacement of the top that drives a static path [m]; the response is then the force.
     methods : sequence of str, optional
