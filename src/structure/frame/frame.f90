@@ -471,7 +471,7 @@ contains
       class(frame_type), intent(in) :: self
       real(wp), intent(in), contiguous :: tangent(:), dx(:)
       real(wp), intent(inout), contiguous :: dd(:)
-      real(wp) :: largest(3)
+      real(wp) :: largest(3), size_of(3)
       integer :: i
 
       largest = 0.0_wp
@@ -480,7 +480,10 @@ contains
       end do
       do i = 1, size(self%element)
          associate (e => self%element(i))
-            call drop_small(e, size(dd), self%tangent_numbers, tangent, max(size_at(e), of_all*largest), dd)
+            size_of = size_at(e)
+            ! The share of a layer in a motion may be as small without being round-off.
+            if (.not. e%layered) size_of = max(size_of, of_all*largest)
+            call drop_small(e, size(dd), self%tangent_numbers, tangent, size_of, dd)
          end associate
       end do
 
