@@ -45,8 +45,8 @@ def settle() -> None:
     ops.algorithm("Newton")
 
 
-def model(storeys: int, bays: int, kinematics: str, load: float) -> int:
-    """Make the same model in OpenSees, under its dead load; return the node of the roof."""
+def nodes_of_model(storeys: int, bays: int) -> int:
+    """Make the nodes in OpenSees, with supports and masses; return how many stand on a floor."""
     ops.wipe()
     ops.model("basic", "-ndm", 2, "-ndf", 3)
     lines = bays + 1
@@ -58,6 +58,12 @@ def model(storeys: int, bays: int, kinematics: str, load: float) -> int:
                 ops.mass(i * lines + j + 1, share, share, 0.0)
             else:
                 ops.fix(j + 1, 1, 1, 1)
+    return lines
+
+
+def model(storeys: int, bays: int, kinematics: str, load: float) -> int:
+    """Make the same model in OpenSees, under its dead load; return the node of the roof."""
+    lines = nodes_of_model(storeys, bays)
     for tag, kind in ((1, COLUMN), (2, BEAM)):
         ops.uniaxialMaterial("Elastic", 10 * tag, E * kind["area"])
         stiffness = E * kind["inertia"]
@@ -170,17 +176,7 @@ def portal_of_fibres(storeys: int, bays: int, load: float) -> rbsdem.Frame:
 
 def model_of_fibres(storeys: int, bays: int, load: float) -> int:
     """Make the same frame in OpenSees, under its dead load; return the node of the roof."""
-    ops.wipe()
-    ops.model("basic", "-ndm", 2, "-ndf", 3)
-    lines = bays + 1
-    for i in range(storeys + 1):
-        for j in range(lines):
-            share = (0.5 if j in (0, bays) else 1.0) * MASS
-            ops.node(i * lines + j + 1, j * BAY, i * HEIGHT)
-            if i:
-                ops.mass(i * lines + j + 1, share, share, 0.0)
-            else:
-                ops.fix(j + 1, 1, 1, 1)
+    lines = nodes_of_model(storeys, bays)
     ops.uniaxialMaterial("Steel01", 1, 0.0012 * E, E, HARDENING)
     ops.section("Fiber", 1)
     for y, area in fibres():
