@@ -11,11 +11,12 @@ from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import MOST_BODIES, Column, Footing, Top, bodies
 from rbsdem.model.frame import FrameMember
 from rbsdem.model.shape import Section, checked_section
-from rbsdem.model.springs import Elastic, Pinching, Spring
+from rbsdem.model.springs import Elastic, Spring
 from rbsdem.section.layered import LayeredColumn, LayeredModel, body_lengths, lumping
 from rbsdem.section.paper_springs import springs
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
 from rbsdem.section.ranges import axial_load_note, column_length
+from rbsdem.section.strength import axial_failure_law
 
 Model: TypeAlias = Literal["layered", "paper"]
 """Name of a model."""
@@ -25,6 +26,9 @@ MODELS: tuple[str, ...] = get_args(Model)
 
 DEFAULT: Model = "layered"
 """The model that is taken if none is named."""
+
+#: Ties that hold less than this share of the axial load hold none of it.
+_LEAST_TIES = 1e-3
 
 CONCRETE_DENSITY = 2400.0
 """Density of reinforced concrete for the mass of a column [kg/m3]."""
@@ -227,7 +231,9 @@ def member(
     cantilever of the layered model: a joint of layers with bar slip at the end, a joint that cracks
     between it and the middle, and a shear spring in series. The axial force is that of the frame;
     `axial_load` only chooses what the model takes from it (length and softening of the hinge,
-    strength in shear). Beams have none. Shear does not decay with the work of the hinges.
+    strength in shear). Beams have none. A member under axial load that has failed in shear loses
+    this load at the drift of `rbsdem.section.strength.axial_failure_drift`
+    (`FrameMember.failure_drift`).
 
     Parameters
     ----------
@@ -256,10 +262,8 @@ def member(
     )
     hinge, above = half.joints("flexure")
     place = bodies(half)[0][0] / length
-    fails, slips = (
-        replace(spring, lambda_h=0.0) if isinstance(spring, Pinching) else spring
-        for spring in half.joints("shear")
-    )
+    fails, slips = half.joints("shear")
+    drift, halves = axial_failure_law(section)
     modulus, area = section.concrete_law["ec"], section.gross_area
     # The hinges shorten by their layers, the rest by this.
     hinges = 2 * modulus * area / sum(layer.k for _, layer in hinge.layers)  # type: ignore[attr-defined]
@@ -271,6 +275,9 @@ def member(
         shear={0.0: fails, 0.5 * place: slips, 1 - 0.5 * place: slips, 1.0: fails},
         between="rigid",
         panel=panel,
+        failure_drift=drift if axial_load > 0 else None,
+        # Without ties any load falls at once.
+        failure_load=max(halves, _LEAST_TIES * axial_load) if axial_load > 0 else None,
         name=name,
     )
 
