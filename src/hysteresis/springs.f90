@@ -424,22 +424,22 @@ contains
       self%version = modulo(self%version + 1, huge(1))
    end subroutine put
 
-   !> Let a spring carry nothing from now on.
-   pure subroutine let_go(self, i)
+   !> Let a spring have a constant force from now on.
+   pure subroutine let_go(self, i, force)
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i
+      real(wp), intent(in) :: force
 
-      call self%put(i, segment(), self%d(i), self%work(i))
+      call self%put(i, segment(f0=force), self%d(i), self%work(i))
    end subroutine let_go
 
-   !> Whether it was let go: no rule has a line without force and without ends.
+   !> Whether it was let go: no rule has a line without stiffness and without ends.
    pure logical function is_released(self, i)
       class(spring_array), intent(in) :: self
       integer, intent(in) :: i
 
-      is_released = .not. (abs(self%k(i)) > 0.0_wp .or. abs(self%f0(i)) > 0.0_wp) .and. &
-                    self%first(i) <= -unbounded .and. self%last(i) >= unbounded .and. &
-                    self%unload_on_reversal(i) == 0
+      is_released = .not. abs(self%k(i)) > 0.0_wp .and. self%first(i) <= -unbounded .and. &
+                    self%last(i) >= unbounded .and. self%unload_on_reversal(i) == 0
    end function is_released
 
    !> Move every spring to a new deformation.

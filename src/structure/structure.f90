@@ -473,7 +473,7 @@ contains
       integer, intent(in) :: member
       type(spring_array), intent(inout) :: springs
 
-      if (.false.) call springs%let_go(member + self%unknowns)
+      if (.false.) call springs%let_go(member, self%height)
    end subroutine let_go
 
    !> What follows from the present stiffness of the springs; nothing, where it is not asked for.

@@ -62,11 +62,11 @@ class FrameMember:
     panel : float, optional
         Rigid length in each node of a grid that the member ends in, half the depth of the other
         member [m]; not at the base.
-    failure_drift, failure_load : float, optional
-        Once a shear spring of it has yielded (`PeakOriented` or `Pinching`), the member loses its
-        axial load P at the drift failure_drift/(1 + P/failure_load) of its clear length, with P [N]
-        of that moment. In time it carries nothing from the next step on; a static path ends there
-        with a message.
+    failure_drift, failure_load, shear_drift : float, optional
+        Once a shear spring of it has yielded (`PeakOriented` or `Pinching`), or its drift is
+        `shear_drift`, the member loses its axial load P at the drift failure_drift/(1 +
+        P/failure_load) of its clear length, with P [N] of that moment. In time it carries nothing
+        from the next step on; a static path ends there with a message.
     name : str, optional
         Name in case files; made up if it is not given.
     """
@@ -84,6 +84,7 @@ class FrameMember:
     panel: float = 0.0
     failure_drift: float | None = None
     failure_load: float | None = None
+    shear_drift: float | None = None
     name: str = field(default="", compare=False)
 
     def __post_init__(self) -> None:
@@ -115,6 +116,7 @@ class FrameMember:
                 "hardening": self.hardening or None,
                 "failure_drift": self.failure_drift,
                 "failure_load": self.failure_load,
+                "shear_drift": self.shear_drift,
                 "between": None if self.between == "elastic" else self.between,
             },
         )

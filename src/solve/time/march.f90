@@ -154,6 +154,7 @@ contains
          member = state%motion%structure%find_lost(state%springs, state%clock)
          if (member == 0) return
          call state%motion%structure%let_go(member, state%springs)
+         state%q = state%springs%d
          stepper%begun = .false.
       end do
    end subroutine let_go

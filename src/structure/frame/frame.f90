@@ -71,7 +71,7 @@ module rbs_structure_frame_frame
       !> Compression of the elements under dead load [N] (elements)
       real(wp), allocatable :: compression(:)
       !> When members are lost, see `frame_member` (members)
-      real(wp), allocatable :: failure_drift(:), failure_load(:), lost_at(:)
+      real(wp), allocatable :: failure_drift(:), failure_load(:), shear_drift(:), lost_at(:)
       logical :: may_lose = .false.
       !> Rigid ends and clear length (3, elements) [m]
       real(wp), allocatable :: lengths(:, :)
@@ -974,9 +974,9 @@ contains
       real(wp) :: drift, s(3)
       integer :: i
 
-      has_failed = .false.
       associate (e => frame%element(member), x => springs%d(frame%inside + 1:))
          drift = abs(sum(e%chord*x(e%unknown)))
+         has_failed = is_given(frame%shear_drift(member)) .and. drift >= abs(frame%shear_drift(member))
          do i = e%before + 1, e%before + e%bending
             if (frame%place(i)%kind /= shear) cycle
             if (springs%rules%list(springs%rules%of(i))%rule%has_yielded(springs%slot(i)%memory)) has_failed &
@@ -1005,19 +1005,31 @@ contains
       end associate
    end subroutine find_ends
 
-   !> What the elastic rest would give back is lost with the member.
+   !> What the elastic rest would give back is lost with the member. Its springs keep what dead load does in
+   !> them where it is carried to the nodes, on which it stays.
    subroutine let_go(self, member, springs)
       class(frame_type), intent(in) :: self
       integer, intent(in) :: member
       type(spring_array), intent(inout) :: springs
-      integer :: i
+      real(wp) :: tangent(self%tangent_numbers), correction(springs%count), s(3), q(3), energy
+      integer :: i, unstable
 
-      associate (e => self%element(member), d => springs%d)
-         springs%work(e%before + 1) = springs%work(e%before + 1) &
-            + energy_of_rest(e, gap_of(self, member, self%basic(member, d(self%inside + 1:)), d, 1.0_wp))
+      tangent = 0.0_wp
+      correction = 0.0_wp
+      associate (e => self%element(member))
+         q = self%basic(member, springs%d(self%inside + 1:))
+         energy = energy_of_rest(e, gap_of(self, member, q, springs%d, 1.0_wp))
          do i = e%before + 1, e%before + e%bending + e%opening
-            call springs%let_go(i)
+            call springs%let_go(i, self%dead_force(i))
          end do
+         call self%linearise(springs%k, tangent, unstable)
+         call self%end_forces(member, q, springs%d, springs%f0 + springs%k*(springs%d - springs%d0), &
+                              1.0_wp, tangent, s, correction)
+         do i = e%before + 1, e%before + e%bending + e%opening
+            call springs%advance_on_branch(i, springs%d(i) + correction(i))
+         end do
+         energy = energy - energy_of_rest(e, gap_of(self, member, q, springs%d, 1.0_wp))
+         springs%work(e%before + 1) = springs%work(e%before + 1) + energy
       end associate
    end subroutine let_go
 

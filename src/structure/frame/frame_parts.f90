@@ -208,9 +208,13 @@ contains
                               'give 0, or '//to_text(least_hardening)//' or more')
          else if (is_given(kind%failure_drift) .neqv. is_given(kind%failure_load)) then
             call messages%add(name//': failure_drift and failure_load belong together; give both, or none')
-         else if (is_given(kind%failure_drift) .and. .not. any(softens(record%spring, kind%name))) then
-            call messages%add(name//': failure_drift is that after a failure in shear; give a shear '// &
-                              "spring of the rule 'peak_oriented' or 'pinching'")
+         else if (is_given(kind%shear_drift) .and. .not. is_given(kind%failure_drift)) then
+            call messages%add(name//': shear_drift does nothing without failure_drift; give that, or '// &
+                              'remove it')
+         else if (is_given(kind%failure_drift) .and. .not. is_given(kind%shear_drift) .and. .not. &
+                  any(softens(record%spring, kind%name))) then
+            call messages%add(name//': failure_drift is that after a failure in shear; give shear_drift, '// &
+                              "or a shear spring of the rule 'peak_oriented' or 'pinching'")
          else if (kind%between == 'rigid' .and. .not. most > least) then
             call messages%add(name//": with between = 'rigid' all bending is in springs; give it two "// &
                               'flexural springs or more, at different places')
@@ -710,6 +714,7 @@ contains
       m%axial = kind%modulus*kind%area
       m%failure_drift = kind%failure_drift
       m%failure_load = kind%failure_load
+      m%shear_drift = kind%shear_drift
       if (is_given(kind%yield_moment) .or. &
           (is_given(m%lost_at) .and. all(spring%kind /= kind%name))) then
          do i = 1, 3

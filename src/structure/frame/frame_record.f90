@@ -38,7 +38,7 @@ module rbs_structure_frame_frame_record
       character(len=name_length) :: name = ''
       real(wp) :: modulus = unset, area = unset, inertia = unset, shear_rigidity = 0.0_wp
       real(wp) :: yield_moment = unset, hardening = 0.0_wp
-      real(wp) :: failure_drift = unset, failure_load = unset
+      real(wp) :: failure_drift = unset, failure_load = unset, shear_drift = unset
       character(len=8) :: between = 'elastic'
    contains
       procedure :: visit => visit_kind
@@ -251,6 +251,8 @@ contains
                  'never', optional=.true.)
       call v%key('failure_load', self%failure_load, 'N', above_zero, 'axial load under which that drift '// &
                  'is half of it', optional=.true.)
+      call v%key('shear_drift', self%shear_drift, '', above_zero, 'drift at which it counts as failed in '// &
+                 'shear, if no shear spring of it has yielded', optional=.true.)
       call v%word('between', self%between, 'what is between springs that are given one by one', &
                   'elastic rigid')
    end subroutine visit_kind

@@ -55,8 +55,9 @@ module rbs_structure_frame_new_frame
       !> Dead load downward per length along x [N/m]
       real(wp) :: load = 0.0_wp
       !> Drift at which it loses a small axial load after shear failure, the load that halves this drift [N],
-      !> and the time from which on it is lost [s]; `unset`: never
-      real(wp) :: failure_drift = unset, failure_load = unset, lost_at = unset
+      !> the drift of shear failure if no shear spring has yielded, and the time from which on it is lost [s];
+      !> `unset`: never
+      real(wp) :: failure_drift = unset, failure_load = unset, shear_drift = unset, lost_at = unset
    end type frame_member
 
 contains
@@ -91,6 +92,7 @@ contains
       frame%members = size(member)
       frame%failure_drift = member%failure_drift
       frame%failure_load = member%failure_load
+      frame%shear_drift = member%shear_drift
       frame%lost_at = member%lost_at
       frame%may_lose = any(is_given(frame%failure_drift) .or. is_given(frame%lost_at))
       frame%inside = count(node%panel%rule /= '')
