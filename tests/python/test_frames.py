@@ -13,7 +13,7 @@ import pytest
 from strategies import between, rules, spring
 
 import rbsdem
-from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties
+from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties, plot
 from rbsdem.frames import Frame, FrameMember, FrameNode, Member
 from rbsdem.model.column import bodies
 from rbsdem.springs import Bilinear, Elastic, PeakOriented, Pinching, Spring, Takeda
@@ -698,6 +698,9 @@ def test_a_column_that_failed_in_shear_sheds_its_load():
     weight = 30e3 * 10.0
     assert run.member_axial[-1, :3].sum() == pytest.approx(weight, rel=1e-9)
     assert whole.member_axial[-1, 1] > 0.5 * weight
+    legend = plot.pushover(run).get_legend().get_texts()
+    assert [text.get_text() for text in legend][-1] == "C-2-1, is lost"
+    assert plot.frame(run).lines[-1].get_label() == "beyond its cap"
     # Nothing of a member that is gone yields.
     assert not [e for e in run.events if e.member == "C-2-1" and e.step > lost.step]
 
