@@ -126,26 +126,34 @@ contains
 
    !> Forces of the ends that are in equilibrium with forces of the springs, and the corrections of their
    !> deformations that this needs.
-   pure subroutine find_forces(m, n, stiffness, rate, bent, opened, gap, f, s, correction)
+   pure subroutine find_forces(m, n, stiffness, rate, bent, opened, gap, f, dead, dead_force, s, correction)
       !> Numbers of springs that bend, and that open
       integer, intent(in) :: m, n
       !> Of `find_tangent`
       real(wp), intent(in) :: stiffness(3, 3), rate(3, m + n), bent(m, m), opened(n, n)
-      !> What the deformations miss to add up to the motion of the ends, and forces without dead load
-      real(wp), intent(in) :: gap(3), f(m + n)
+      !> What the deformations miss to add up to the motion of the ends; forces of the springs, the share of
+      !> the dead load that acts, and what it does in them
+      real(wp), intent(in) :: gap(3), f(m + n), dead, dead_force(m + n)
       real(wp), intent(out) :: s(3), correction(m + n)
-      integer :: j
+      real(wp) :: force
+      integer :: i, j
 
       s = stiffness(:, 1)*gap(1) + stiffness(:, 2)*gap(2) + stiffness(:, 3)*gap(3)
       do j = 1, m + n
-         s = s + rate(:, j)*f(j)
+         s = s + rate(:, j)*(f(j) - dead*dead_force(j))
          correction(j) = rate(1, j)*gap(1) + rate(2, j)*gap(2) + rate(3, j)*gap(3)
       end do
       do j = 1, m
-         correction(:m) = correction(:m) - bent(:, j)*f(j)
+         force = f(j) - dead*dead_force(j)
+         do i = 1, m
+            correction(i) = correction(i) - bent(i, j)*force
+         end do
       end do
       do j = 1, n
-         correction(m + 1:) = correction(m + 1:) - opened(:, j)*f(m + j)
+         force = f(m + j) - dead*dead_force(m + j)
+         do i = 1, n
+            correction(m + i) = correction(m + i) - opened(i, j)*force
+         end do
       end do
    end subroutine find_forces
 

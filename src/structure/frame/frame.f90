@@ -198,8 +198,12 @@ contains
       real(wp) :: q(3)
 
       associate (b => self%element(element)%from_unknowns, at => self%element(element)%unknown)
-         q = b(:, 1)*x(at(1)) + b(:, 2)*x(at(2)) + b(:, 3)*x(at(3)) &
-             + b(:, 4)*x(at(4)) + b(:, 5)*x(at(5)) + b(:, 6)*x(at(6))
+         if (element > self%members) then
+            q = [b(1, 3)*x(at(3)) + b(1, 6)*x(at(6)), 0.0_wp, 0.0_wp]
+         else
+            q = b(:, 1)*x(at(1)) + b(:, 2)*x(at(2)) + b(:, 3)*x(at(3)) &
+                + b(:, 4)*x(at(4)) + b(:, 5)*x(at(5)) + b(:, 6)*x(at(6))
+         end if
       end associate
    end function basic
 
@@ -212,6 +216,11 @@ contains
       integer :: k
 
       associate (e => self%element(element))
+         if (element > self%members) then
+            g(e%unknown(3)) = g(e%unknown(3)) + s(1)*e%from_unknowns(1, 3)
+            g(e%unknown(6)) = g(e%unknown(6)) + s(1)*e%from_unknowns(1, 6)
+            return
+         end if
          do k = 1, 6
             g(e%unknown(k)) = g(e%unknown(k)) + (s(1)*e%from_unknowns(1, k) + s(2)*e%from_unknowns(2, k) &
                                                  + s(3)*e%from_unknowns(3, k))
@@ -286,7 +295,7 @@ contains
          end if
          at = e%at + 9 + 3*(m + n)
          call find_forces(m, n, tangent(e%at), tangent(e%at + 9), tangent(at), tangent(at + m**2), gap, &
-                          f(first:last) - dead*frame%dead_force(first:last), s, correction(first:last))
+                          f(first), dead, frame%dead_force(first:last), s, correction(first))
       end associate
    end subroutine balance_ends
 
