@@ -1,38 +1,24 @@
 !> Nodes and members of a frame from what the user gave: the grid is laid out, names are found, and everything
 !> that is wrong gets a message with its remedy.
 module rbs_structure_frame_frame_parts
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use rbs_base_check, only: is_given
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: list_of, suggestion, to_text
-   use rbs_hysteresis_registry, only: rule_names, suits
-   use rbs_hysteresis_spring_record, only: spring_record
-   use rbs_structure_frame_frame_record, only: frame_record, frame_spring, kind_record, cell_record, &
-                                               name_length
+   use rbs_base_text, only: to_text
+   use rbs_structure_frame_frame_checks, only: check_values, check_reference, group_of
+   use rbs_structure_frame_frame_kinds, only: put_kind, can_be_lost
+   use rbs_structure_frame_frame_record, only: frame_record, frame_spring, cell_record
    use rbs_structure_frame_new_frame, only: frame_node, frame_member, is_beam
-   use rbs_structure_spring_place, only: shear, flexure, axial, layer
    implicit none
    private
 
    public :: frame_parts
-
-   !> Shares of the length in the rule of Gauss and Lobatto with three points.
-   real(wp), parameter :: share(3) = [1.0_wp/6.0_wp, 2.0_wp/3.0_wp, 1.0_wp/6.0_wp]
-   real(wp), parameter :: point(3) = [0.0_wp, 0.5_wp, 1.0_wp]
-
-   !> A mechanism of sections that harden less is known to fewer digits than its energies are checked to.
-   real(wp), parameter :: least_hardening = 1.0e-7_wp
 
    !> Nodes nearer than this share of the size of the frame are at one place.
    real(wp), parameter :: one_place = 1.0e-9_wp
 
    !> The kind of a member of the grid that is not there.
    integer, parameter :: left_out = -1
-
-   !> Groups of springs, in the order of their kinds.
-   character(len=*), parameter :: group_of(3) = [character(len=12) :: 'shear', 'flexure', 'axial_spring']
-   character(len=*), parameter :: place_of(3) = [character(len=8) :: 'shear', 'flexure', 'axial']
 
    type :: frame_parts
       type(frame_node), allocatable :: node(:)
@@ -73,179 +59,6 @@ contains
       call choose_top(self, record, messages)
       call push(self, record, messages)
    end subroutine find
-
-   !> What each group gives by itself.
-   subroutine check_values(record, messages)
-      type(frame_record), intent(inout) :: record
-      type(message_list), intent(inout) :: messages
-      character(len=:), allocatable :: name, from
-      integer :: i, j, known, kind
-      logical :: inside
-
-      call record%check('frame', messages)
-      do i = 1, size(record%floor)
-         call record%floor(i)%check('floor', messages)
-      end do
-      do i = 1, size(record%kind)
-         associate (k => record%kind(i))
-            known = messages%count
-            call k%check("member_kind '"//trim(k%name)//"'", messages)
-            if (messages%count == known) call check_kind(record, k, messages)
-            do j = 1, i - 1
-               if (record%kind(j)%name == k%name) then
-                  call messages%add("member_kind '"//trim(k%name)//"' is given twice; remove one")
-               end if
-            end do
-         end associate
-      end do
-      do i = 1, size(record%column_of)
-         call record%column_of(i)%check('column_of', messages)
-      end do
-      do i = 1, size(record%beam_of)
-         call record%beam_of(i)%check('beam_of', messages)
-      end do
-      do i = 1, size(record%node)
-         if (record%node(i)%name == '') call messages%add('node: the name is missing; give each a name')
-         call record%node(i)%check("node '"//trim(record%node(i)%name)//"'", messages)
-      end do
-      do i = 1, size(record%member)
-         if (record%member(i)%name == '') call messages%add('member: the name is missing; give each a name')
-         call record%member(i)%check("member '"//trim(record%member(i)%name)//"'", messages)
-      end do
-      do i = 1, size(record%loss)
-         call record%loss(i)%check('loss', messages)
-         if (any(record%loss(:i - 1)%member == record%loss(i)%member)) then
-            call messages%add("loss: member '"//trim(record%loss(i)%member)//"' is lost twice; remove one")
-         end if
-      end do
-      do i = 1, size(record%spring)
-         associate (s => record%spring(i))
-            call s%spring%place(from)
-            kind = findloc(group_of == s%group, .true., dim=1)
-            name = from//trim(place_of(kind))//' spring of '
-            if (count([s%kind, s%node, s%panel] /= '') /= 1) then
-               call messages%add(from//'&'//trim(s%group)//': a spring of a frame belongs to a kind of '// &
-                                 'members, stands between a node and the ground, or is in the panel of a '// &
-                                 'node; give kind, node or panel')
-               cycle
-            else if (s%kind /= '') then
-               name = name//"member_kind '"//trim(s%kind)//"'"
-               call check_reference(s%kind, [record%kind%name], name, 'kind', messages)
-            else
-               name = name//"node '"//trim(s%node)//trim(s%panel)//"'"
-            end if
-            if (s%panel /= '' .and. s%group /= 'flexure') then
-               call messages%add(name//': a panel has one spring, which turns; give it as &flexure')
-            end if
-            if (s%spring%rule == 'layered' .and. s%kind == '') then
-               call messages%add(name//': a joint of layers stands in a member; take a rule for the '// &
-                                 'moment alone, such as takeda or peak_oriented')
-               cycle
-            end if
-            call s%spring%validate(name, messages)
-            if (all(rule_names /= s%spring%rule)) then
-               cycle                                ! reported by the spring
-            else if (.not. suits(s%spring%rule, place_of(kind))) then
-               call messages%add(name//" cannot be of the rule '"//trim(s%spring%rule)//"'; it is one of "// &
-                                 list_of(pack(rule_names, suits(rule_names, place_of(kind)))))
-            end if
-            if (s%kind == '' .and. allocated(s%place)) then
-               call messages%add(name//': place is for springs of members; remove it')
-            else if (allocated(s%place)) then
-               inside = all(ieee_is_finite(s%place))
-               if (inside) inside = all(s%place >= 0.0_wp .and. s%place <= 1.0_wp)
-               if (.not. inside) then
-                  call messages%add(name//': place is a share of the clear length, from 0 to 1')
-               end if
-            end if
-         end associate
-      end do
-   end subroutine check_values
-
-   !> A kind is elastic, yields at its points, or has springs of its own.
-   subroutine check_kind(record, kind, messages)
-      type(frame_record), intent(in) :: record
-      type(kind_record), intent(in) :: kind
-      type(message_list), intent(inout) :: messages
-      integer :: i, bending
-      real(wp) :: least, most
-
-      if (kind%name == '') then
-         call messages%add('member_kind: the name is missing; give each a name')
-         return
-      else if (kind%name == 'none') then
-         call messages%add("member_kind 'none': the name means that there is no member; choose another one")
-         return
-      end if
-      bending = 0
-      least = 2.0_wp
-      most = -1.0_wp
-      do i = 1, size(record%spring)
-         associate (s => record%spring(i))
-            if (s%kind /= kind%name .or. s%group == 'axial_spring') cycle
-            ! A slip turns both ends alike, which no spring at an end does.
-            if (s%group == 'shear') most = most + 2.0_wp
-            if (s%group == 'shear') cycle
-            if (.not. allocated(s%place)) then
-               bending = bending + 2
-               least = 0.0_wp
-               most = 1.0_wp
-            else
-               if (.not. all(ieee_is_finite(s%place))) return
-               bending = bending + size(s%place)
-               least = min(least, minval(s%place))
-               most = max(most, maxval(s%place))
-            end if
-         end associate
-      end do
-      associate (name => "member_kind '"//trim(kind%name)//"'")
-         if (is_given(kind%yield_moment) .and. any(record%spring%kind == kind%name)) then
-            call messages%add(name//': it has a yield_moment and springs of its own; keep one of them')
-         else if (abs(kind%hardening) > 0.0_wp .and. .not. is_given(kind%yield_moment)) then
-            call messages%add(name//': hardening does nothing without yield_moment; give one, or remove it')
-         else if (abs(kind%hardening) > 0.0_wp .and. abs(kind%hardening) < least_hardening) then
-            call messages%add(name//': hardening = '//to_text(kind%hardening)//' is lost in round-off; '// &
-                              'give 0, or '//to_text(least_hardening)//' or more')
-         else if (is_given(kind%failure_drift) .neqv. is_given(kind%failure_load)) then
-            call messages%add(name//': failure_drift and failure_load belong together; give both, or none')
-         else if (is_given(kind%shear_drift) .and. .not. is_given(kind%failure_drift)) then
-            call messages%add(name//': shear_drift does nothing without failure_drift; give that, or '// &
-                              'remove it')
-         else if (is_given(kind%failure_drift) .and. .not. is_given(kind%shear_drift) .and. .not. &
-                  any(softens(record%spring, kind%name))) then
-            call messages%add(name//': failure_drift is that after a failure in shear; give shear_drift, '// &
-                              "or a shear spring of the rule 'peak_oriented' or 'pinching'")
-         else if (kind%between == 'rigid' .and. .not. most > least) then
-            call messages%add(name//": with between = 'rigid' all bending is in springs; give it two "// &
-                              'flexural springs or more, at different places')
-         end if
-      end associate
-   end subroutine check_kind
-
-   !> Springs of a kind that may fail in shear.
-   elemental logical function softens(spring, kind)
-      type(frame_spring), intent(in) :: spring
-      character(len=*), intent(in) :: kind
-
-      softens = spring%kind == kind .and. spring%group == 'shear' .and. &
-                (spring%spring%rule == 'peak_oriented' .or. spring%spring%rule == 'pinching')
-   end function softens
-
-   !> A name that must be one of a list.
-   subroutine check_reference(word, names, owner, key, messages)
-      character(len=*), intent(in) :: word, names(:), owner, key
-      type(message_list), intent(inout) :: messages
-
-      if (any(names == word)) return
-      if (size(names) == 0) then
-         call messages%add(owner//': there is no '//key//" '"//trim(word)//"'; give one")
-      else if (word == '') then
-         call messages%add(owner//': '//key//' is missing; it is one of '//list_of(names))
-      else
-         call messages%add(owner//': there is no '//key//" '"//trim(word)//"'; it is one of "// &
-                           list_of(names)//suggestion(word, names))
-      end if
-   end subroutine check_reference
 
    !> Nodes, columns and beams of the grid.
    subroutine lay_grid(self, record, messages)
@@ -701,122 +514,6 @@ contains
          end associate
       end do
    end subroutine put_kinds
-
-   subroutine put_kind(m, kind, spring, clear)
-      type(frame_member), intent(inout) :: m
-      type(kind_record), intent(in) :: kind
-      type(frame_spring), intent(in) :: spring(:)
-      real(wp), intent(in) :: clear
-      type(spring_record) :: one
-      integer :: i, j, k, group
-
-      allocate (m%kind(0), m%joint(0), m%place(0), m%y(0), m%spring(0))
-      m%axial = kind%modulus*kind%area
-      m%failure_drift = kind%failure_drift
-      m%failure_load = kind%failure_load
-      m%shear_drift = kind%shear_drift
-      if (is_given(kind%yield_moment) .or. &
-          (is_given(m%lost_at) .and. all(spring%kind /= kind%name))) then
-         do i = 1, 3
-            one = elastic(kind%modulus*kind%inertia/(share(i)*clear))
-            if (is_given(kind%yield_moment)) then
-               one%rule = 'bilinear'
-               one%value(2:3) = [kind%yield_moment/one%value(1), kind%hardening*one%value(1)]
-            end if
-            call append_spring(m, flexure, point(i), one)
-         end do
-         if (kind%shear_rigidity > 0.0_wp) then
-            call append_spring(m, shear, 0.5_wp, elastic(kind%shear_rigidity/clear))
-         end if
-         call add_opening(m, clear)
-         return
-      end if
-      if (kind%between == 'elastic') then
-         m%bending = kind%modulus*kind%inertia
-         m%sliding = kind%shear_rigidity
-      end if
-      ! Those that open come last.
-      do group = 1, 3
-         do j = 1, size(spring)
-            if (spring(j)%kind /= kind%name .or. spring(j)%group /= group_of(group)) cycle
-            if (allocated(spring(j)%place)) then
-               do k = 1, size(spring(j)%place)
-                  call append_spring(m, group, spring(j)%place(k), spring(j)%spring)
-               end do
-            else if (group == flexure) then
-               call append_spring(m, flexure, 0.0_wp, spring(j)%spring)
-               call append_spring(m, flexure, 1.0_wp, spring(j)%spring)
-            else
-               call append_spring(m, group, 0.5_wp, spring(j)%spring)
-            end if
-         end do
-      end do
-      call add_opening(m, clear)
-   end subroutine put_kind
-
-   !> What carries the axial force of a member that may be lost is a spring.
-   subroutine add_opening(m, clear)
-      type(frame_member), intent(inout) :: m
-      real(wp), intent(in) :: clear
-
-      if (.not. (is_given(m%failure_drift) .or. is_given(m%lost_at))) return
-      if (any(m%kind == layer .or. m%kind == axial)) return
-      call append_spring(m, axial, 0.5_wp, elastic(m%axial/clear))
-      m%axial = 0.0_wp
-   end subroutine add_opening
-
-   type(spring_record) function elastic(stiffness)
-      real(wp), intent(in) :: stiffness
-
-      elastic%rule = 'elastic'
-      elastic%value(1) = stiffness
-   end function elastic
-
-   !> Whether a member without the forces of its springs carries nothing: they bend in two ways, and open.
-   pure logical function can_be_lost(m)
-      type(frame_member), intent(in) :: m
-
-      associate (bends => m%kind == flexure .or. m%kind == layer)
-         can_be_lost = any(m%kind == layer .or. m%kind == axial) .and. any(bends)
-         if (can_be_lost) can_be_lost = any(m%kind == shear) .or. &
-                                        maxval(m%place, mask=bends) > minval(m%place, mask=bends)
-      end associate
-   end function can_be_lost
-
-   !> Append a spring, or the layers of a joint.
-   subroutine append_spring(m, kind, place, spring)
-      type(frame_member), intent(inout) :: m
-      integer, intent(in) :: kind
-      real(wp), intent(in) :: place
-      type(spring_record), intent(in) :: spring
-      type(spring_record), allocatable :: longer(:)
-      integer :: i, joint, layers, n
-
-      n = size(m%kind)
-      joint = 1
-      if (n > 0) joint = m%joint(n) + 1
-      if (spring%rule == 'layered') then
-         layers = size(spring%y)
-         m%kind = [m%kind, spread(layer, 1, layers)]
-         m%y = [m%y, spring%y]
-      else
-         layers = 1
-         m%kind = [m%kind, kind]
-         m%y = [m%y, 0.0_wp]
-      end if
-      m%joint = [m%joint, spread(joint, 1, layers)]
-      m%place = [m%place, spread(place, 1, layers)]
-      allocate (longer(n + layers))
-      longer(:n) = m%spring
-      if (spring%rule == 'layered') then
-         do i = 1, layers
-            longer(n + i) = spring%layer(i)
-         end do
-      else
-         longer(n + 1) = spring
-      end if
-      call move_alloc(longer, m%spring)
-   end subroutine append_spring
 
    !> Nodes at one place, without a member, or all held; members between the same nodes.
    subroutine check_geometry(self, messages)

@@ -1,0 +1,197 @@
+!> What each group of a frame gives by itself, checked with messages and remedies.
+module rbs_structure_frame_frame_checks
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use rbs_base_check, only: is_given
+   use rbs_base_error, only: message_list
+   use rbs_base_kinds, only: wp
+   use rbs_base_text, only: list_of, suggestion, to_text
+   use rbs_hysteresis_registry, only: rule_names, suits
+   use rbs_structure_frame_frame_record, only: frame_record, frame_spring, kind_record
+   implicit none
+   private
+
+   public :: check_values, check_reference, group_of
+
+   !> A mechanism of sections that harden less is known to fewer digits than its energies are checked to.
+   real(wp), parameter :: least_hardening = 1.0e-7_wp
+
+   !> Groups of springs, in the order of their kinds.
+   character(len=*), parameter :: group_of(3) = [character(len=12) :: 'shear', 'flexure', 'axial_spring']
+   character(len=*), parameter :: place_of(3) = [character(len=8) :: 'shear', 'flexure', 'axial']
+
+contains
+
+   !> What each group gives by itself.
+   subroutine check_values(record, messages)
+      type(frame_record), intent(inout) :: record
+      type(message_list), intent(inout) :: messages
+      character(len=:), allocatable :: name, from
+      integer :: i, j, known, kind
+      logical :: inside
+
+      call record%check('frame', messages)
+      do i = 1, size(record%floor)
+         call record%floor(i)%check('floor', messages)
+      end do
+      do i = 1, size(record%kind)
+         associate (k => record%kind(i))
+            known = messages%count
+            call k%check("member_kind '"//trim(k%name)//"'", messages)
+            if (messages%count == known) call check_kind(record, k, messages)
+            do j = 1, i - 1
+               if (record%kind(j)%name == k%name) then
+                  call messages%add("member_kind '"//trim(k%name)//"' is given twice; remove one")
+               end if
+            end do
+         end associate
+      end do
+      do i = 1, size(record%column_of)
+         call record%column_of(i)%check('column_of', messages)
+      end do
+      do i = 1, size(record%beam_of)
+         call record%beam_of(i)%check('beam_of', messages)
+      end do
+      do i = 1, size(record%node)
+         if (record%node(i)%name == '') call messages%add('node: the name is missing; give each a name')
+         call record%node(i)%check("node '"//trim(record%node(i)%name)//"'", messages)
+      end do
+      do i = 1, size(record%member)
+         if (record%member(i)%name == '') call messages%add('member: the name is missing; give each a name')
+         call record%member(i)%check("member '"//trim(record%member(i)%name)//"'", messages)
+      end do
+      do i = 1, size(record%loss)
+         call record%loss(i)%check('loss', messages)
+         if (any(record%loss(:i - 1)%member == record%loss(i)%member)) then
+            call messages%add("loss: member '"//trim(record%loss(i)%member)//"' is lost twice; remove one")
+         end if
+      end do
+      do i = 1, size(record%spring)
+         associate (s => record%spring(i))
+            call s%spring%place(from)
+            kind = findloc(group_of == s%group, .true., dim=1)
+            name = from//trim(place_of(kind))//' spring of '
+            if (count([s%kind, s%node, s%panel] /= '') /= 1) then
+               call messages%add(from//'&'//trim(s%group)//': a spring of a frame belongs to a kind of '// &
+                                 'members, stands between a node and the ground, or is in the panel of a '// &
+                                 'node; give kind, node or panel')
+               cycle
+            else if (s%kind /= '') then
+               name = name//"member_kind '"//trim(s%kind)//"'"
+               call check_reference(s%kind, [record%kind%name], name, 'kind', messages)
+            else
+               name = name//"node '"//trim(s%node)//trim(s%panel)//"'"
+            end if
+            if (s%panel /= '' .and. s%group /= 'flexure') then
+               call messages%add(name//': a panel has one spring, which turns; give it as &flexure')
+            end if
+            if (s%spring%rule == 'layered' .and. s%kind == '') then
+               call messages%add(name//': a joint of layers stands in a member; take a rule for the '// &
+                                 'moment alone, such as takeda or peak_oriented')
+               cycle
+            end if
+            call s%spring%validate(name, messages)
+            if (all(rule_names /= s%spring%rule)) then
+               cycle                                ! reported by the spring
+            else if (.not. suits(s%spring%rule, place_of(kind))) then
+               call messages%add(name//" cannot be of the rule '"//trim(s%spring%rule)//"'; it is one of "// &
+                                 list_of(pack(rule_names, suits(rule_names, place_of(kind)))))
+            end if
+            if (s%kind == '' .and. allocated(s%place)) then
+               call messages%add(name//': place is for springs of members; remove it')
+            else if (allocated(s%place)) then
+               inside = all(ieee_is_finite(s%place))
+               if (inside) inside = all(s%place >= 0.0_wp .and. s%place <= 1.0_wp)
+               if (.not. inside) then
+                  call messages%add(name//': place is a share of the clear length, from 0 to 1')
+               end if
+            end if
+         end associate
+      end do
+   end subroutine check_values
+
+   !> A kind is elastic, yields at its points, or has springs of its own.
+   subroutine check_kind(record, kind, messages)
+      type(frame_record), intent(in) :: record
+      type(kind_record), intent(in) :: kind
+      type(message_list), intent(inout) :: messages
+      integer :: i, bending
+      real(wp) :: least, most
+
+      if (kind%name == '') then
+         call messages%add('member_kind: the name is missing; give each a name')
+         return
+      else if (kind%name == 'none') then
+         call messages%add("member_kind 'none': the name means that there is no member; choose another one")
+         return
+      end if
+      bending = 0
+      least = 2.0_wp
+      most = -1.0_wp
+      do i = 1, size(record%spring)
+         associate (s => record%spring(i))
+            if (s%kind /= kind%name .or. s%group == 'axial_spring') cycle
+            ! A slip turns both ends alike, which no spring at an end does.
+            if (s%group == 'shear') most = most + 2.0_wp
+            if (s%group == 'shear') cycle
+            if (.not. allocated(s%place)) then
+               bending = bending + 2
+               least = 0.0_wp
+               most = 1.0_wp
+            else
+               if (.not. all(ieee_is_finite(s%place))) return
+               bending = bending + size(s%place)
+               least = min(least, minval(s%place))
+               most = max(most, maxval(s%place))
+            end if
+         end associate
+      end do
+      associate (name => "member_kind '"//trim(kind%name)//"'")
+         if (is_given(kind%yield_moment) .and. any(record%spring%kind == kind%name)) then
+            call messages%add(name//': it has a yield_moment and springs of its own; keep one of them')
+         else if (abs(kind%hardening) > 0.0_wp .and. .not. is_given(kind%yield_moment)) then
+            call messages%add(name//': hardening does nothing without yield_moment; give one, or remove it')
+         else if (abs(kind%hardening) > 0.0_wp .and. abs(kind%hardening) < least_hardening) then
+            call messages%add(name//': hardening = '//to_text(kind%hardening)//' is lost in round-off; '// &
+                              'give 0, or '//to_text(least_hardening)//' or more')
+         else if (is_given(kind%failure_drift) .neqv. is_given(kind%failure_load)) then
+            call messages%add(name//': failure_drift and failure_load belong together; give both, or none')
+         else if (is_given(kind%shear_drift) .and. .not. is_given(kind%failure_drift)) then
+            call messages%add(name//': shear_drift does nothing without failure_drift; give that, or '// &
+                              'remove it')
+         else if (is_given(kind%failure_drift) .and. .not. is_given(kind%shear_drift) .and. .not. &
+                  any(softens(record%spring, kind%name))) then
+            call messages%add(name//': failure_drift is that after a failure in shear; give shear_drift, '// &
+                              "or a shear spring of the rule 'peak_oriented' or 'pinching'")
+         else if (kind%between == 'rigid' .and. .not. most > least) then
+            call messages%add(name//": with between = 'rigid' all bending is in springs; give it two "// &
+                              'flexural springs or more, at different places')
+         end if
+      end associate
+   end subroutine check_kind
+
+   !> Springs of a kind that may fail in shear.
+   elemental logical function softens(spring, kind)
+      type(frame_spring), intent(in) :: spring
+      character(len=*), intent(in) :: kind
+
+      softens = spring%kind == kind .and. spring%group == 'shear' .and. &
+                (spring%spring%rule == 'peak_oriented' .or. spring%spring%rule == 'pinching')
+   end function softens
+
+   !> A name that must be one of a list.
+   subroutine check_reference(word, names, owner, key, messages)
+      character(len=*), intent(in) :: word, names(:), owner, key
+      type(message_list), intent(inout) :: messages
+
+      if (any(names == word)) return
+      if (size(names) == 0) then
+         call messages%add(owner//': there is no '//key//" '"//trim(word)//"'; give one")
+      else if (word == '') then
+         call messages%add(owner//': '//key//' is missing; it is one of '//list_of(names))
+      else
+         call messages%add(owner//': there is no '//key//" '"//trim(word)//"'; it is one of "// &
+                           list_of(names)//suggestion(word, names))
+      end if
+   end subroutine check_reference
+
+end module rbs_structure_frame_frame_checks

@@ -1,0 +1,138 @@
+!> What a member is of: its springs, and the elastic rest between them.
+module rbs_structure_frame_frame_kinds
+   use rbs_base_check, only: is_given
+   use rbs_base_kinds, only: wp
+   use rbs_hysteresis_spring_record, only: spring_record
+   use rbs_structure_frame_frame_checks, only: group_of
+   use rbs_structure_frame_frame_record, only: kind_record, frame_spring
+   use rbs_structure_frame_new_frame, only: frame_member
+   use rbs_structure_spring_place, only: shear, flexure, axial, layer
+   implicit none
+   private
+
+   public :: put_kind, can_be_lost
+
+   !> Shares of the length in the rule of Gauss and Lobatto with three points.
+   real(wp), parameter :: share(3) = [1.0_wp/6.0_wp, 2.0_wp/3.0_wp, 1.0_wp/6.0_wp]
+   real(wp), parameter :: point(3) = [0.0_wp, 0.5_wp, 1.0_wp]
+
+contains
+
+   !> Springs of a member of a kind whose clear length is known [m].
+   subroutine put_kind(m, kind, spring, clear)
+      type(frame_member), intent(inout) :: m
+      type(kind_record), intent(in) :: kind
+      type(frame_spring), intent(in) :: spring(:)
+      real(wp), intent(in) :: clear
+      type(spring_record) :: one
+      integer :: i, j, k, group
+
+      allocate (m%kind(0), m%joint(0), m%place(0), m%y(0), m%spring(0))
+      m%axial = kind%modulus*kind%area
+      m%failure_drift = kind%failure_drift
+      m%failure_load = kind%failure_load
+      m%shear_drift = kind%shear_drift
+      if (is_given(kind%yield_moment) .or. &
+          (is_given(m%lost_at) .and. all(spring%kind /= kind%name))) then
+         do i = 1, 3
+            one = elastic(kind%modulus*kind%inertia/(share(i)*clear))
+            if (is_given(kind%yield_moment)) then
+               one%rule = 'bilinear'
+               one%value(2:3) = [kind%yield_moment/one%value(1), kind%hardening*one%value(1)]
+            end if
+            call append_spring(m, flexure, point(i), one)
+         end do
+         if (kind%shear_rigidity > 0.0_wp) then
+            call append_spring(m, shear, 0.5_wp, elastic(kind%shear_rigidity/clear))
+         end if
+         call add_opening(m, clear)
+         return
+      end if
+      if (kind%between == 'elastic') then
+         m%bending = kind%modulus*kind%inertia
+         m%sliding = kind%shear_rigidity
+      end if
+      ! Those that open come last.
+      do group = 1, 3
+         do j = 1, size(spring)
+            if (spring(j)%kind /= kind%name .or. spring(j)%group /= group_of(group)) cycle
+            if (allocated(spring(j)%place)) then
+               do k = 1, size(spring(j)%place)
+                  call append_spring(m, group, spring(j)%place(k), spring(j)%spring)
+               end do
+            else if (group == flexure) then
+               call append_spring(m, flexure, 0.0_wp, spring(j)%spring)
+               call append_spring(m, flexure, 1.0_wp, spring(j)%spring)
+            else
+               call append_spring(m, group, 0.5_wp, spring(j)%spring)
+            end if
+         end do
+      end do
+      call add_opening(m, clear)
+   end subroutine put_kind
+
+   !> What carries the axial force of a member that may be lost is a spring.
+   subroutine add_opening(m, clear)
+      type(frame_member), intent(inout) :: m
+      real(wp), intent(in) :: clear
+
+      if (.not. (is_given(m%failure_drift) .or. is_given(m%lost_at))) return
+      if (any(m%kind == layer .or. m%kind == axial)) return
+      call append_spring(m, axial, 0.5_wp, elastic(m%axial/clear))
+      m%axial = 0.0_wp
+   end subroutine add_opening
+
+   type(spring_record) function elastic(stiffness)
+      real(wp), intent(in) :: stiffness
+
+      elastic%rule = 'elastic'
+      elastic%value(1) = stiffness
+   end function elastic
+
+   !> Whether a member without the forces of its springs carries nothing: they bend in two ways, and open.
+   pure logical function can_be_lost(m)
+      type(frame_member), intent(in) :: m
+
+      associate (bends => m%kind == flexure .or. m%kind == layer)
+         can_be_lost = any(m%kind == layer .or. m%kind == axial) .and. any(bends)
+         if (can_be_lost) can_be_lost = any(m%kind == shear) .or. &
+                                        maxval(m%place, mask=bends) > minval(m%place, mask=bends)
+      end associate
+   end function can_be_lost
+
+   !> Append a spring, or the layers of a joint.
+   subroutine append_spring(m, kind, place, spring)
+      type(frame_member), intent(inout) :: m
+      integer, intent(in) :: kind
+      real(wp), intent(in) :: place
+      type(spring_record), intent(in) :: spring
+      type(spring_record), allocatable :: longer(:)
+      integer :: i, joint, layers, n
+
+      n = size(m%kind)
+      joint = 1
+      if (n > 0) joint = m%joint(n) + 1
+      if (spring%rule == 'layered') then
+         layers = size(spring%y)
+         m%kind = [m%kind, spread(layer, 1, layers)]
+         m%y = [m%y, spring%y]
+      else
+         layers = 1
+         m%kind = [m%kind, kind]
+         m%y = [m%y, 0.0_wp]
+      end if
+      m%joint = [m%joint, spread(joint, 1, layers)]
+      m%place = [m%place, spread(place, 1, layers)]
+      allocate (longer(n + layers))
+      longer(:n) = m%spring
+      if (spring%rule == 'layered') then
+         do i = 1, layers
+            longer(n + i) = spring%layer(i)
+         end do
+      else
+         longer(n + 1) = spring
+      end if
+      call move_alloc(longer, m%spring)
+   end subroutine append_spring
+
+end module rbs_structure_frame_frame_kinds
