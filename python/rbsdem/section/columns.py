@@ -268,7 +268,7 @@ def member(
         area=area * length / max(length - hinges, 0.1 * length),
         inertia=area * section.depth**2 / 12,
         flexure={0.0: hinge, place: above, 1 - place: above.mirrored(), 1.0: hinge},
-        shear={0.0: fails, 0.5 * place: slips, 1 - 0.5 * place: slips, 1.0: fails},
+        shear={0.0: fails, 0.5 * place: slips, 1 - 0.5 * place: slips, 1.0: fails.mirrored()},
         between="rigid",
         panel=panel,
         name=name,
