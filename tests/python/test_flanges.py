@@ -8,6 +8,7 @@ from dataclasses import replace
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+import reference_section as reference
 
 import rbsdem
 from rbsdem import Concrete, InputError, RectangularSection, Steel, Ties, plot
@@ -71,6 +72,25 @@ def test_the_uncracked_section_bends_about_its_centroid(tee):
     centre = sum(y * area for y, area, _ in parts) / sum(area for _, area, _ in parts)
     inertia = sum(own + area * (y - centre) ** 2 for y, area, own in parts)
     assert moment_curvature(tee, 0.0, 1e-5) == pytest.approx(1e-5 * modulus * inertia, rel=2e-5)
+
+
+@pytest.mark.filterwarnings("ignore:axial_load = .* is tension")
+@BOTH_WAYS
+@pytest.mark.parametrize("load", [0.0, 400e3, -150e3])
+def test_a_tee_is_that_of_fibres(tee, load):
+    """An independent program, cracked and past yield, to both sides."""
+    rows = [(1e3 * y, 1e6 * area, 420.0, 620.0) for y, area, _ in tee.bars]
+    edge = 130.0 if tee.flange_in_tension else -130.0
+
+    def width(y: np.ndarray) -> np.ndarray:
+        return np.where((y - edge) * np.sign(edge) > 0, 1200.0, 300.0)
+
+    fibres = reference.Fibres(500.0, width, 30.0, rows)
+    curvature = 0.05 * np.linspace(0.02, 1.0, 12) ** 1.5
+    for way in (1, -1):
+        expected = fibres.moments(load, way * curvature / 1e3) / 1e3
+        moment = moment_curvature(tee, load, way * curvature)
+        np.testing.assert_allclose(moment, expected, rtol=5e-4, atol=2e-4 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("area", [2e-3, 9.5e-3])
