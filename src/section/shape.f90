@@ -42,7 +42,6 @@ module rbs_section_shape
       real(wp) :: flange_width = 0.0_wp, flange_thickness = 0.0_wp
       logical :: flange_in_tension = .false.
    contains
-      procedure :: width_at
       procedure :: area_between
       procedure :: moment_between
       procedure :: area
@@ -108,29 +107,6 @@ contains
 
       y = merge(0.5_wp, -0.5_wp, self%flange_in_tension)*(self%depth - self%flange_thickness)
    end function middle_of_flange
-
-   !> Width at a distance from mid-depth [m]; zero outside.
-   elemental real(wp) function width_at(self, y) result(width)
-      class(shape_type), intent(in) :: self
-      !> [m]
-      real(wp), intent(in) :: y
-
-      width = solid_width(self, y)
-      if (self%hollow) width = width - solid_width(void_of(self), y)
-      if (self%flanged) width = width + solid_width(wings_of(self), y - middle_of_flange(self))
-   end function width_at
-
-   elemental real(wp) function solid_width(self, y) result(width)
-      type(shape_type), intent(in) :: self
-      real(wp), intent(in) :: y
-
-      width = 0.0_wp
-      if (self%round) then
-         width = 2.0_wp*sqrt(max(0.0_wp, (0.5_wp*self%depth)**2 - y**2))
-      else if (abs(y) <= 0.5_wp*self%depth) then
-         width = self%width
-      end if
-   end function solid_width
 
    !> Integral of the width between two distances from mid-depth [m2].
    elemental real(wp) function area_between(self, lo, hi) result(area)
@@ -267,7 +243,7 @@ contains
       leg_share = 0.0_wp
       if (.not. merge(self%depth, self%width, self%round) > 0.0_wp) return
       leg_share = 1.0_wp
-      if (self%round) leg_share = solid_width(self, min(abs(y), 0.5_wp*self%depth))/self%depth
+      if (self%round) leg_share = 2.0_wp*sqrt(max(0.0_wp, (0.5_wp*self%depth)**2 - y**2))/self%depth
    end function leg_share
 
    !> Reduce the sizes, not below zero; a void grows as much as the outside moves inwards.
