@@ -152,6 +152,10 @@ class Section(_Parts, Reported, ABC):
     def _sizes(self) -> dict[str, float]:
         """Return the sizes of the shape, by the names of their keys [m]."""
 
+    def _turned(self) -> dict[str, Any]:
+        """Return what of the concrete is not the same upside down."""
+        return {}
+
     @property
     @abstractmethod
     def effective_depth(self) -> float:
@@ -298,10 +302,6 @@ class Section(_Parts, Reported, ABC):
     @property
     def _wall(self) -> float:
         return float(self.wall or 0.0)
-
-    def _turned(self) -> dict[str, Any]:
-        """Return what of the concrete is not the same upside down."""
-        return {}
 
     @property
     def mirrored(self) -> Self:
