@@ -148,6 +148,7 @@ contains
 
       call case%analysis%validate(messages)
       call case%output%check('output', messages)
+      if (case%analysis%method == 'static') call case%check_static(messages)
       call messages%raise(error)
    end subroutine check_settings
 

@@ -47,6 +47,7 @@ module rbs_case_case_record
       procedure :: visit_group
       procedure :: settle
       procedure :: validate
+      procedure :: check_static
       procedure :: height
    end type case_record
 
@@ -232,10 +233,17 @@ contains
 
    !> Refuse input that a static path cannot take before the path starts, with the message of the solver.
    subroutine check_static(self, messages)
-      type(case_record), intent(in) :: self
+      class(case_record), intent(in) :: self
       type(message_list), intent(inout) :: messages
 
-      if (self%analysis%dynamic() .or. self%column%kinematics /= 'finite') return
+      if (self%analysis%dynamic()) return
+      if (allocated(self%frame)) then
+         if (size(self%frame%loss) > 0) then
+            call messages%add('loss: member '//trim(self%frame%loss(1)%member)//' is lost at a time, and '// &
+                              'a static path has none; use a response in time, or leave the member out')
+         end if
+      end if
+      if (self%column%kinematics /= 'finite') return
       if (.not. (self%column%axial_follows .or. self%column%force_follows)) return
       call messages%add('column: loads that follow the top (axial_follows, force_follows) have no '// &
                         'potential, and a static path could miss the loss of stability; use a '// &

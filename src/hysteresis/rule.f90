@@ -42,6 +42,7 @@ module rbs_hysteresis_rule
       procedure :: take
       procedure :: check_relations
       procedure :: prepare
+      procedure :: has_yielded
       procedure(start_interface), deferred :: start
       procedure(next_interface), deferred :: next
    end type rule_type
@@ -160,6 +161,15 @@ contains
 
       if (.false.) self%uses_flexural_work = .false.
    end subroutine prepare
+
+   !> Whether a spring has yielded so far; told by rules that soften, of others it is not asked.
+   pure logical function has_yielded(self, memory)
+      class(rule_type), intent(in) :: self
+      class(rule_memory), intent(in) :: memory
+
+      has_yielded = .false.
+      if (.false.) has_yielded = memory%flexural_work > self%initial_stiffness
+   end function has_yielded
 
    !> Stiffness times deformation must neither overflow nor vanish.
    subroutine check_product(k, d, name, product_name, messages)

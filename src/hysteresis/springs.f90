@@ -38,8 +38,8 @@ module rbs_hysteresis_springs
       integer, allocatable :: unload_on_reversal(:)
       !> Work done on each spring along its path, exact (count) [J]
       real(wp), allocatable :: work(:)
-      !> The flexural spring whose work a spring decays with, 0: none (count)
-      integer, allocatable :: heard(:)
+      !> First and last of the springs whose work a spring decays with, 0: none (2, count)
+      integer, allocatable :: heard(:, :)
       !> Work from before `work` was counted, where a step counts it from its own start (count) [J]
       real(wp), allocatable :: work_before(:)
       !> Number of lines left so far
@@ -76,6 +76,8 @@ module rbs_hysteresis_springs
       procedure :: load_to
       procedure :: line_of
       procedure :: put
+      procedure :: let_go
+      procedure :: is_released
       procedure :: mark
       procedure :: restore
       procedure :: forget_mark
@@ -96,8 +98,8 @@ contains
       class(spring_array), intent(out) :: self
       !> They stay where they are, and must be there as long as the springs
       type(spring_rules), intent(in), target :: rules
-      !> The flexural spring whose work each spring may decay with, 0: none (count)
-      integer, intent(in) :: told(:)
+      !> First and last of the springs whose work each spring may decay with, 0: none (2, count)
+      integer, intent(in) :: told(:, :)
       !> Axial load that the layers of each spring begin under, compression positive (count) [N]
       real(wp), intent(in) :: axial_load(:)
       type(segment) :: line
@@ -110,7 +112,7 @@ contains
                 self%includes_upper_end(n))
       allocate (self%d(n), self%work(n), self%work_before(n), source=0.0_wp)
       allocate (self%d0(n), self%f0(n), self%k(n), self%first(n), self%last(n))
-      allocate (self%heard(n), source=0)
+      allocate (self%heard(2, n), source=0)
       allocate (self%on_plane(n), source=.false.)
       allocate (self%layered(0))
       do i = 1, n
@@ -123,7 +125,7 @@ contains
                call start_under(rule, axial_load(i), self%slot(i)%memory, line)
             end if
             call put_line(self, i, line)
-            if (rule%uses_flexural_work) self%heard(i) = told(i)
+            if (rule%uses_flexural_work) self%heard(:, i) = told(:, i)
          end associate
          select type (section => self%slot(i)%memory)
          type is (fibre_section)
@@ -160,7 +162,7 @@ contains
       !> Work of the flexural spring of the joint so far [J]; for a spring that decays with it
       real(wp), intent(in) :: flexural_work
 
-      if (self%heard(i) > 0) self%slot(i)%memory%flexural_work = flexural_work
+      if (self%heard(1, i) > 0) self%slot(i)%memory%flexural_work = flexural_work
       call self%rules%list(self%rules%of(i))%rule%next(self%slot(i)%memory, branch, direction)
    end subroutine next_branch
 
@@ -239,8 +241,8 @@ contains
       if (self%unload_on_reversal(i) /= -direction) call advance_on_branch(self, i, &
            merge(line%hi, line%lo, direction > 0))
       flexural_work = 0.0_wp
-      associate (j => self%heard(i))
-         if (j > 0) flexural_work = self%work_before(j) + self%work(j)
+      associate (first => self%heard(1, i), last => self%heard(2, i))
+         if (first > 0) flexural_work = sum(self%work_before(first:last) + self%work(first:last))
       end associate
       call self%next_branch(i, line, direction, flexural_work)
       self%events = self%events + 1
@@ -421,6 +423,24 @@ contains
       if (line%unload_on_reversal < 0) self%last(i) = d
       self%version = modulo(self%version + 1, huge(1))
    end subroutine put
+
+   !> Let a spring have a constant force from now on.
+   pure subroutine let_go(self, i, force)
+      class(spring_array), intent(inout) :: self
+      integer, intent(in) :: i
+      real(wp), intent(in) :: force
+
+      call self%put(i, segment(f0=force), self%d(i), self%work(i))
+   end subroutine let_go
+
+   !> Whether it was let go: no rule has a line without stiffness and without ends.
+   pure logical function is_released(self, i)
+      class(spring_array), intent(in) :: self
+      integer, intent(in) :: i
+
+      is_released = .not. abs(self%k(i)) > 0.0_wp .and. self%first(i) <= -unbounded .and. &
+                    self%last(i) >= unbounded .and. self%unload_on_reversal(i) == 0
+   end function is_released
 
    !> Move every spring to a new deformation.
    subroutine move_all(self, d)
@@ -669,7 +689,7 @@ contains
       integer :: j
 
       call add_rules(rules, [spec], 1)
-      call spring%create(rules, [0], [spec%axial_load])
+      call spring%create(rules, spread([0], 1, 2), [spec%axial_load])
       do j = 1, size(d)
          call spring%advance_to(1, d(j))
          f(j) = spring%force(1)

@@ -16,8 +16,9 @@ module rbs_structure_spring_place
       !> Member, 1 for a column, 0 for the panel of a node, and joint of it from the bottom up;
       !> joint 0 is that of a footing
       integer :: member = 1, joint = 0
-      !> The spring whose work this one may ask for; 0: none
-      integer :: heard = 0
+      !> First and last of the springs whose work this one may ask for: a flexural spring, or the layers of a
+      !> joint; 0: none
+      integer :: heard = 0, heard_last = 0
       !> Number of the joint among those of all members
       integer :: index = 0
       !> Name of the member, or of the node that a spring from the ground belongs to; blank for a column

@@ -138,6 +138,9 @@ module rbs_structure_structure
       procedure :: axial_force
       procedure :: check_loads
       procedure :: check_initial
+      ! Parts that are lost on the way
+      procedure :: find_lost
+      procedure :: let_go
       ! Where deformations follow from the unknowns and the present stiffness of the springs
       procedure :: linearise
       procedure :: damp
@@ -453,6 +456,26 @@ contains
                        to_text(size(self%place))//' springs; give one for each')
    end subroutine check_initial
 
+   !> A member that is to be lost where the springs are now, 0: none.
+   integer function find_lost(self, springs, time) result(member)
+      class(structure_type), intent(in) :: self
+      type(spring_array), intent(in) :: springs
+      !> [s]; on a static path none is lost by time
+      real(wp), intent(in), optional :: time
+
+      member = 0
+      if (.false.) member = springs%count + self%unknowns + merge(1, 0, present(time))
+   end function find_lost
+
+   !> Let a member carry nothing from now on.
+   subroutine let_go(self, member, springs)
+      class(structure_type), intent(in) :: self
+      integer, intent(in) :: member
+      type(spring_array), intent(inout) :: springs
+
+      if (.false.) call springs%let_go(member, self%height)
+   end subroutine let_go
+
    !> What follows from the present stiffness of the springs; nothing, where it is not asked for.
    subroutine linearise(self, k, tangent, unstable)
       class(structure_type), intent(in) :: self
@@ -508,9 +531,10 @@ contains
       type(spring_array), intent(out) :: springs
       !> Compression positive (springs) [N]
       real(wp), intent(in), contiguous :: axial_force(:)
-      integer :: heard(size(axial_force))
+      integer :: heard(2, size(axial_force))
 
-      heard = self%place%heard
+      heard(1, :) = self%place%heard
+      heard(2, :) = self%place%heard_last
       call springs%create(self%rules, heard, axial_force)
    end subroutine create_springs
 

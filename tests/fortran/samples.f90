@@ -48,11 +48,11 @@ contains
       !> As in `create`; without it none is told
       integer, intent(in), optional :: told(:)
       type(spring_rules), pointer :: rules
-      integer :: heard(size(specs))
+      integer :: heard(2, size(specs))
       real(wp) :: axial_load(size(specs))
 
       heard = 0
-      if (present(told)) heard = told
+      if (present(told)) heard = spread(told, 1, 2)
       axial_load = specs%axial_load
       allocate (rules)
       call add_rules(rules, specs, size(specs))

@@ -90,7 +90,7 @@ contains
       !> Stiffness, and forces without deformation
       real(wp), intent(in) :: k(:), f0(:)
       type(spring_array), intent(out) :: springs
-      integer :: heard(size(k))
+      integer :: heard(2, size(k))
       real(wp) :: axial_load(size(k))
 
       heard = 0

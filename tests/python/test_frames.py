@@ -13,10 +13,10 @@ import pytest
 from strategies import between, rules, spring
 
 import rbsdem
-from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties
+from rbsdem import Concrete, Layout, RectangularSection, Steel, Ties, plot
 from rbsdem.frames import Frame, FrameMember, FrameNode, Member
 from rbsdem.model.column import bodies
-from rbsdem.springs import Bilinear, Elastic, PeakOriented, Spring, Takeda
+from rbsdem.springs import Bilinear, Elastic, PeakOriented, Pinching, Spring, Takeda
 
 pytestmark = pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
 
@@ -642,11 +642,136 @@ def test_sudden_loss_of_a_column(moment):
     work = np.concatenate([[0], np.cumsum(np.diff(sunk) * (push.force[1:] + push.force[:-1]) / 2)])
     energy = np.interp(0.0, work[1:] - carried * sunk[1:], sunk[1:])
     assert furthest == pytest.approx(energy, rel=0.01)
+    lost = replace(whole, nodes=[*nodes[:1], replace(held, load_y=0.0)], losses={"C-2-1": 0.1})
+    gone = rbsdem.time_history(lost, 0.1 + t, force=0 * t, method="newmark", dt=2e-4)
+    assert np.abs(gone.displacement - fall.displacement).max() < 1e-9 * furthest
+    assert next(event for event in gone.events if event.what == "lost").step == 0.1
+    assert np.abs(gone.member("C-2-1").axial).max() < 1e-12 * carried
+    # As large as that of steps over yielding.
+    assert gone.summary["relative_energy_residual"] == pytest.approx(
+        fall.summary["relative_energy_residual"], rel=1, abs=1e-12
+    )
     if moment > 1e6:
         still = rbsdem.cyclic(rest, force=[carried])
         assert furthest / (start - still.displacement[-1]) == pytest.approx(2.0, abs=1e-3)
     else:
         assert furthest > 1.2 * 2 * carried * sunk[1] / push.force[1]
+
+
+#: A column between two others, that fails in shear.
+SHEAR = PeakOriented(d_y=2e-3, f_y=60e3, d_cap=0.01, f_cap=61e3, d_pc=0.1)
+BRITTLE = FrameMember(
+    E, A, INERTIA, flexure=Bilinear(k=1e8, d_y=2.5e-3, k_post=1e6), shear=SHEAR, between="rigid",
+    failure_drift=0.1, failure_load=200e3,
+)  # fmt: skip
+
+
+def bent(middle: FrameMember = BRITTLE, **more) -> Frame:
+    given = {"beams": FrameMember(E, 0.15, 4e-3), "beam_load": 30e3, "floor_mass": 60e3}
+    return Frame.grid([3.0], [5.0, 5.0], columns={(0, 1): COLUMN, (2, 1): middle}, **given | more)
+
+
+def test_a_column_that_failed_in_shear_sheds_its_load():
+    """At the drift of its axial load; at rest afterwards the others carry the weight."""
+    frame = bent(damping=rbsdem.Damping(mass=20.0))
+    t = np.arange(0, 9, 0.005)
+    force = np.interp(t, [0, 2, 6, 6.5, 9], [0, 520e3, 520e3, 0, 0])
+    load = {"force": force, "method": "newmark", "dt": 0.005}
+    run = rbsdem.time_history(frame, t, **load)
+    (lost,) = [event for event in run.events if event.what == "lost"]
+    row = int(np.flatnonzero(run.time == lost.step)[0])
+    at = frame.parts.members.index("C-2-1")
+    drift = np.diff(run.x[:, [1, 4]], axis=1)[:, 0] / 3.0
+    limit = 0.1 / (1 + run.member_axial[:, at] / 200e3)
+    assert drift[row - 1] < limit[row - 1]
+    assert drift[row] >= 0.1 / (1 + run.member_axial[row - 1, at] / 200e3) * (1 - 1e-3)
+    assert lost.member == "C-2-1"
+    # What has not failed goes the same way to the bit; then it carries nothing.
+    whole = rbsdem.time_history(
+        bent(replace(BRITTLE, failure_drift=None, failure_load=None), damping=frame.damping),
+        t[: row + 1], **load | {"force": force[: row + 1]},
+    )  # fmt: skip
+    assert (whole.displacement == run.displacement[: row + 1]).all()
+    middle = run.member("C-2-1")
+    assert np.abs(middle.moment[row:]).max() < 1e-6
+    assert np.abs(middle.axial[row:]).max() < 1e-6
+    weight = 30e3 * 10.0
+    assert run.member_axial[-1, :3].sum() == pytest.approx(weight, rel=1e-9)
+    assert whole.member_axial[-1, 1] > 0.5 * weight
+    legend = plot.pushover(run).get_legend().get_texts()
+    assert [text.get_text() for text in legend][-1] == "C-2-1, is lost"
+    assert plot.frame(run).lines[-1].get_label() == "beyond its cap"
+    # Nothing of a member that is gone yields.
+    assert not [e for e in run.events if e.member == "C-2-1" and e.step > lost.step]
+
+
+@pytest.mark.parametrize("columns", [COLUMN, ELASTIC])
+def test_a_loss_that_does_not_come_changes_nothing(columns):
+    """The springs that could be let go are as stiff as what they stand for."""
+    frame = three_storeys(columns=columns)
+    t = np.arange(0, 2, 0.01)
+    ground = {"ground_acceleration": 5 * np.sin(7 * t), "method": "newmark", "dt": 0.01}
+    one = rbsdem.time_history(frame, t, **ground)
+    kept = replace(frame, losses={"C-2-1": 3.0, "B-1-2": 3.0})
+    other = rbsdem.time_history(kept, t, **ground)
+    assert np.abs(one.x - other.x).max() < 1e-9 * np.abs(one.x).max()
+    assert kept.parts.compression == pytest.approx(frame.parts.compression, rel=1e-9)
+    assert not other.lost.any()
+
+
+def test_a_run_goes_on_after_a_loss():
+    """In two parts, cut before or behind it; energy is balanced where no rotation lacks inertia."""
+    heads = [FrameNode(f"N-{line}-1", inertia=1e3) for line in (1, 2, 3)]
+    frame = replace(bent(), losses={"C-2-1": 0.4}, nodes=heads)
+    t = np.arange(0, 1.2, 0.005)
+    ground = {"ground_acceleration": 4 * np.sin(6 * t), "method": "newmark", "dt": 0.005}
+    whole = rbsdem.time_history(frame, t, **ground)
+    for cut in (60, 80, 81, 150):
+        start = {"ground_acceleration": ground["ground_acceleration"][: cut + 1]}
+        first = rbsdem.time_history(frame, t[: cut + 1], **ground | start)
+        end = {"ground_acceleration": ground["ground_acceleration"][cut:]}
+        second = rbsdem.time_history(frame, t[cut:], **ground | end, initial=first)
+        assert np.abs(second.x - whole.x[cut:]).max() < 1e-12 * np.abs(whole.x).max()
+        assert (second.lost == whole.lost[cut:]).all()
+    elastic = replace(frame, columns=ELASTIC, beams=ELASTIC)
+    run = rbsdem.time_history(elastic, t, **ground)
+    assert run.lost[-1].sum() == 1
+    assert run.summary["relative_energy_residual"] < 1e-11
+
+
+def test_a_static_path_ends_where_a_column_loses_its_load():
+    with pytest.raises(rbsdem.SolveError, match="C-2-1 has failed in shear and loses") as caught:
+        rbsdem.pushover(bent(), drift=0.08)
+    path = caught.value.result
+    last, before = path.displacement[-1] / 3.0, path.displacement[-2] / 3.0
+    limits = 0.1 / (1 + path.member_axial[[-2, -1], 1] / 200e3)
+    assert before < limits[0] < 0.08
+    assert last >= limits[1]
+    # In tension, or without failure in shear, nothing is lost.
+    strong = replace(SHEAR, f_y=600e3, f_cap=610e3)
+    rbsdem.pushover(bent(replace(BRITTLE, shear=strong)), drift=0.08)
+
+
+@pytest.mark.parametrize("rule", [PeakOriented, Pinching])
+def test_shear_springs_of_members_hear_the_nearest_hinge(rule):
+    """Strength that decays with the work of the hinge, as in a `Column`."""
+    more = {"kappa_f": 0.3, "kappa_d": 0.6} if rule is Pinching else {}
+    slips = rule(
+        d_y=1e-3, f_y=9e4, d_cap=2e-2, f_cap=9.2e4, d_pc=0.2, lambda_h=3.0, s_min=0.3, **more
+    )
+    turns = Takeda(k_c=3e8, d_c=1e-4, k_y=1e8, d_y=1e-3, k_u=4e6)
+    column = rbsdem.Column(1.5, 1.0, slips, turns)
+    kind = FrameMember(
+        E, 1e3, INERTIA, flexure={0.0: turns, 1.0: Elastic(k=1e15)}, shear={0.0: slips},
+        between="rigid",
+    )  # fmt: skip
+    nodes = [FrameNode("foot", 0, 0, "fixed"), FrameNode("top", 0, 1.5, push_x=1.0)]
+    frame = Frame(nodes=nodes, members=[Member("C", "foot", "top", kind)], pattern="nodes")
+    path = 1.5 * rbsdem.protocol([0.005, 0.01, 0.02], cycles=2)
+    one, other = rbsdem.cyclic(column, displacement=path), rbsdem.cyclic(frame, displacement=path)
+    assert np.abs(other.force - one.force).max() < 1e-11 * np.abs(one.force).max()
+    deaf = rbsdem.cyclic(replace(column, shear=replace(slips, lambda_h=0.0)), displacement=path)
+    assert np.abs(deaf.force - one.force).max() > 0.1 * np.abs(one.force).max()
 
 
 @pytest.mark.parametrize(

@@ -62,6 +62,11 @@ class FrameMember:
     panel : float, optional
         Rigid length in each node of a grid that the member ends in, half the depth of the other
         member [m]; not at the base.
+    failure_drift, failure_load, shear_drift : float, optional
+        Once a shear spring of it has yielded (`PeakOriented` or `Pinching`), or its drift is
+        `shear_drift`, the member loses its axial load P at the drift failure_drift/(1 +
+        P/failure_load) of its clear length, with P [N] of that moment. In time it carries nothing
+        from the next step on; a static path ends there with a message.
     name : str, optional
         Name in case files; made up if it is not given.
     """
@@ -77,6 +82,9 @@ class FrameMember:
     axial_spring: Spring | None = None
     between: Literal["elastic", "rigid"] = "elastic"
     panel: float = 0.0
+    failure_drift: float | None = None
+    failure_load: float | None = None
+    shear_drift: float | None = None
     name: str = field(default="", compare=False)
 
     def __post_init__(self) -> None:
@@ -106,6 +114,9 @@ class FrameMember:
                 "shear_rigidity": self.shear_rigidity or None,
                 "yield_moment": self.yield_moment,
                 "hardening": self.hardening or None,
+                "failure_drift": self.failure_drift,
+                "failure_load": self.failure_load,
+                "shear_drift": self.shear_drift,
                 "between": None if self.between == "elastic" else self.between,
             },
         )
@@ -362,6 +373,10 @@ class Frame:
     panel : Spring, optional
         Rotational spring in every node where columns and beams meet, between them; nodes may have
         one of their own.
+    losses : mapping of str to float, optional
+        Members that are lost during a response in time, and when [s]: from the next step on they
+        carry nothing. Their dead load stays on their nodes. For a frame that begins without a
+        member see `without`.
 
     Raises
     ------
@@ -390,6 +405,7 @@ class Frame:
     members: Sequence[Member] = ()
     damping: Damping | float | None = None
     panel: Spring | None = None
+    losses: Mapping[str, float] | None = None
 
     if TYPE_CHECKING:
         #: Its keys, as the groups of a case file.
@@ -422,6 +438,14 @@ class Frame:
             for item in items:
                 _arguments.instance(item, f"frame: {name}", kind)
             put(name, items)
+        if self.losses is not None:
+            if not isinstance(self.losses, Mapping):
+                raise InputError(
+                    f"frame: losses = {_arguments.shown(self.losses)} must be a mapping from names "
+                    "of members to times"
+                )
+            losses = self.losses.items()
+            put("losses", {k: _arguments.number(v, "frame: losses") for k, v in losses})
         if self.damping is not None and not isinstance(self.damping, Damping):
             put("damping", Damping(modal=_arguments.number(self.damping, "frame: damping")))
         put("_statement", self._state())
@@ -611,6 +635,10 @@ class Frame:
         for node in self.nodes:
             parts += node._groups()
         parts += [member._group(names[with_panel(member.kind, 0.0)]) for member in self.members]
+        parts += [
+            _core.group("loss", {"member": _core.Text(member), "time": time})
+            for member, time in (self.losses or {}).items()
+        ]
         if self.panel is not None:
             parts.append(self.panel.statement("flexure", panel=_core.Text("all")))
         if isinstance(self.damping, Damping):

@@ -34,7 +34,7 @@ _REACHED = 1.0 - 1e-9
 
 
 class FrameEvent(NamedTuple):
-    """A limit state of a spring, where it is reached first.
+    """A limit state of a spring, where it is reached first, or the loss of a member.
 
     Attributes
     ----------
@@ -42,13 +42,13 @@ class FrameEvent(NamedTuple):
         Time [s], or number of the point of a static path with the share of the way.
     member, group : str
         Name of the member, and which of its springs: "flexure", "shear" or "axial_spring"; or name
-        of the node, and "panel".
+        of the node, and "panel"; "member" where it is lost as a whole.
     end : str
         "start", "end", or the place between them in shares of the clear length; "" in a panel.
     what : str
-        "cracking", "yield" or "cap".
+        "cracking", "yield" or "cap", or "lost".
     side : int
-        1 or -1.
+        1 or -1; 0 of a loss.
     displacement : float
         Of the top [m].
     drift : float
@@ -137,6 +137,9 @@ class FrameResult(Reported):
         NaN where a node has no mass along x.
     state : ndarray or None
         The state at the end, for ``initial=``.
+    lost : ndarray, shape (rows, members), or None
+        1 from where a member carries nothing any more, else 0; None if none may be lost
+        (`FrameMember.failure_drift`, `Frame.losses`).
     """
 
     time: Array
@@ -156,6 +159,7 @@ class FrameResult(Reported):
     call: dict[str, Any]
     acceleration: Array | None = None
     state: Array | None = None
+    lost: Array | None = None
     honesty: str = field(default=HONESTY, init=False)
 
     @property
@@ -309,7 +313,9 @@ class FrameResult(Reported):
         """
         forces = self.base_shear if self.dynamic else self.force
         found = []
-        for spring, values, _ in self._springs():
+        for spring, whole, _ in self._springs():
+            # What moves on in a member that is lost reaches nothing.
+            values = whole[: self._lost_at().get(spring.member)]
             points = [
                 (point, self._reached(point, values)) for point in landmarks_of(self.frame, spring)
             ]
@@ -331,7 +337,21 @@ class FrameResult(Reported):
                         float(forces[row]),
                     )
                 )
+        for name, row in self._lost_at().items():
+            top, force = float(self.displacement[row]), float(forces[row])
+            at, drift = float(self.time[row]), top / self.frame.height
+            found.append(FrameEvent(at, name, "member", "", "lost", 0, top, drift, force))
         return tuple(sorted(found, key=lambda event: event.step))
+
+    def _lost_at(self) -> dict[str, int]:
+        """Return members that are lost, and the first row in which they are."""
+        if self.lost is None:
+            return {}
+        return {
+            name: int(column.argmax())
+            for name, column in zip(self.frame.parts.members, self.lost.T, strict=True)
+            if column.any()
+        }
 
     def to_pandas(self) -> pd.DataFrame:
         """Return a DataFrame, a row for each of the result, nodes and members by their names."""
@@ -354,6 +374,8 @@ class FrameResult(Reported):
                 unit = units[channel].replace(" ", "")
                 for i, owner in enumerate(owners):
                     columns[f"{channel}_{owner}_{unit}"] = getattr(self, channel)[:, i]
+        if self.lost is not None:
+            columns |= {f"lost_{one}": self.lost[:, i] for i, one in enumerate(parts.members)}
         for group, pair in _CHANNELS.items():
             for channel in pair:
                 unit = units[channel].replace(" ", "")
@@ -387,6 +409,8 @@ class FrameResult(Reported):
         arrays |= {name: ((along, "node"), getattr(self, name)) for name in ("x", "y", "turn")}
         for name in ("member_axial", "moment_from", "moment_to"):
             arrays[name] = (along, "member"), getattr(self, name)
+        if self.lost is not None:
+            arrays["lost"] = (along, "member"), self.lost
         for group, channels in _CHANNELS.items():
             springs = parts.springs_of(group)
             if springs:
@@ -494,4 +518,5 @@ def frame_result_of(
         call=call,
         acceleration=acceleration,
         state=state,
+        lost=arrays.get("lost"),
     )

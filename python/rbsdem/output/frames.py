@@ -41,6 +41,7 @@ _HINGE: dict[str, Any] = {
 }
 _UNDEFORMED: dict[str, Any] = {"color": "0.75", "linewidth": 0.6, "zorder": 1}
 _MEMBER: dict[str, Any] = {"color": "black", "linewidth": 1.1, "zorder": 3}
+_LOST = {"linestyle": ":", "color": "#c0392b"}
 _NODE: dict[str, Any] = {
     "linestyle": "none",
     "marker": "s",
@@ -55,8 +56,9 @@ _MARKS: dict[str, dict[str, Any]] = {
     "cracking": {"marker": "v", "markerfacecolor": "white"},
     "yield": {"marker": "o", "markerfacecolor": "white"},
     "cap": {"marker": "D", "markerfacecolor": "#c0392b"},
+    "lost": {"marker": "X", "markerfacecolor": "#c0392b", "markersize": 6.0},
 }
-_VERBS = {"cracking": "cracks", "yield": "yields", "cap": "reaches its cap"}
+_VERBS = {"cracking": "cracks", "yield": "yields", "cap": "reaches its cap", "lost": "is lost"}
 
 #: Size of a support and place of a hinge beside its node, in shares of the larger dimension.
 _SYMBOL = 0.022
@@ -107,7 +109,8 @@ def frame(
 
     Members bend as cubic lines between the displacements and rotations of their ends; rotations of
     hinges at the ends are those beyond yield, or the whole of springs that were given one by one.
-    A hinge has the furthest limit state of those that it has reached up to the row.
+    A hinge has the furthest limit state of those that it has reached up to the row. Members that
+    are lost are dotted.
 
     Parameters
     ----------
@@ -147,11 +150,13 @@ def frame(
         if result is not None:
             assert scale is not None
             moved = moved + scale * np.column_stack((result.x[row], result.y[row]))
-            for member in _members(structure):
+            for i, member in enumerate(_members(structure)):
                 bent = _deformed(result, member, row, scale)
-                drawn.plot(*bent.T, **_MEMBER)
+                lost = result.lost is not None and result.lost[row, i] > 0
+                line = _MEMBER | (_LOST if lost else {})
+                drawn.plot(*bent.T, **line)
                 for node, end in ((member.start, bent[0]), (member.end, bent[-1])):
-                    drawn.plot(*np.vstack((moved[node], end)).T, **_MEMBER)
+                    drawn.plot(*np.vstack((moved[node], end)).T, **line)
             drawn.set_title(_heading(result, row, f"Displacements × {scale:g}"))
         drawn.plot(*moved.T, **_NODE)
         _draw_hinges(drawn, structure, result, row, 0.0 if scale is None else scale)
@@ -192,7 +197,7 @@ def pushover(result: FrameResult, *, ax: Axes | None = None, **line: Any) -> Axe
                 1e3 * result.displacement[rows],
                 1e-3 * result.base_shear[rows],
                 **_HINGE | mark,
-                label=f"{first.member}, {first.end}, {_VERBS[what]}{more}",
+                label=", ".join(filter(None, (first.member, first.end, _VERBS[what]))) + more,
             )
         if result.events:
             drawn.legend(loc="best", handletextpad=0.2)
@@ -440,7 +445,7 @@ def _draw_hinges(
     reached: dict[tuple[str, str, str], str] = {}
     order = list(_STATES)
     for event in () if result is None else result.events:
-        if event.step <= result.time[row]:  # type: ignore[union-attr]
+        if event.group != "member" and event.step <= result.time[row]:  # type: ignore[union-attr]
             key = event.member, event.group, event.end
             reached[key] = max(reached.get(key, ""), event.what, key=order.index)
     members = {member.name: member for member in _members(structure)}

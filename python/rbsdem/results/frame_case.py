@@ -43,6 +43,7 @@ def frame_of(groups: Groups) -> Frame:
         ],
         damping=Damping(**_core.typed("damping", damping[-1])) if damping else None,
         panel=next((_spring(own) for own in panels if own["panel"] == "all"), None),
+        losses={own["member"]: own.get("time", 0.0) for own in groups.get("loss", [])} or None,
     )
 
 

@@ -11,11 +11,13 @@ from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import MOST_BODIES, Column, Footing, Top, bodies
 from rbsdem.model.frame import FrameMember
 from rbsdem.model.shape import Section, checked_section
-from rbsdem.model.springs import Elastic, Pinching, Spring
+from rbsdem.model.springs import Elastic, Spring
+from rbsdem.section.curvature import diagram
 from rbsdem.section.layered import LayeredColumn, LayeredModel, body_lengths, lumping
 from rbsdem.section.paper_springs import springs
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
 from rbsdem.section.ranges import axial_load_note, column_length
+from rbsdem.section.strength import axial_failure_law, shear_failure_drift
 
 Model: TypeAlias = Literal["layered", "paper"]
 """Name of a model."""
@@ -25,6 +27,11 @@ MODELS: tuple[str, ...] = get_args(Model)
 
 DEFAULT: Model = "layered"
 """The model that is taken if none is named."""
+
+#: Ties that hold less than this share of the axial load hold none of it.
+_LEAST_TIES = 1e-3
+#: Force at the largest moment over strength in shear, up to which columns fail in flexure.
+_IN_FLEXURE = 0.6
 
 CONCRETE_DENSITY = 2400.0
 """Density of reinforced concrete for the mass of a column [kg/m3]."""
@@ -227,7 +234,10 @@ def member(
     cantilever of the layered model: a joint of layers with bar slip at the end, a joint that cracks
     between it and the middle, and a shear spring in series. The axial force is that of the frame;
     `axial_load` only chooses what the model takes from it (length and softening of the hinge,
-    strength in shear). Beams have none. Shear does not decay with the work of the hinges.
+    strength in shear). Beams have none. A member under axial load that has failed in shear loses
+    this load at the drift of `rbsdem.section.strength.axial_failure_drift`; columns whose hinges
+    yield first, at more than 0.6 of the strength in shear, fail in shear at the drift of
+    `rbsdem.section.strength.shear_failure_drift`.
 
     Parameters
     ----------
@@ -256,10 +266,10 @@ def member(
     )
     hinge, above = half.joints("flexure")
     place = bodies(half)[0][0] / length
-    fails, slips = (
-        replace(spring, lambda_h=0.0) if isinstance(spring, Pinching) else spring
-        for spring in half.joints("shear")
-    )
+    fails, slips = half.joints("shear")
+    drift = load = shear_drift = None
+    if axial_load > 0:
+        drift, load, shear_drift = _failure(section, length, axial_load, fails)
     modulus, area = section.concrete_law["ec"], section.gross_area
     # The hinges shorten by their layers, the rest by this.
     hinges = 2 * modulus * area / sum(layer.k for _, layer in hinge.layers)  # type: ignore[attr-defined]
@@ -272,7 +282,25 @@ def member(
         between="rigid",
         panel=panel,
         name=name,
+        failure_drift=drift,
+        failure_load=load,
+        shear_drift=shear_drift,
     )
+
+
+def _failure(
+    section: Section, length: float, axial_load: float, shear: Spring
+) -> tuple[float, float, float | None]:
+    """Return when a member whose hinges have yielded fails in shear, and loses its axial load."""
+    drift, halves = axial_failure_law(section)
+    peak = diagram(section, axial_load).events.peak
+    assert peak is not None
+    force = 2.0 * peak.moment / length
+    # Below that share of its strength in shear it is flexure that limits a column (ASCE 41-17).
+    critical = force > _IN_FLEXURE * shear.f_y  # type: ignore[attr-defined]
+    # Without ties any load falls at once.
+    load = max(halves, _LEAST_TIES * axial_load)
+    return drift, load, shear_failure_drift(section, force, axial_load) if critical else None
 
 
 def _layered(

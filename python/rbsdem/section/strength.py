@@ -399,12 +399,18 @@ def axial_failure_drift(section: Section, axial_load: float, angle: float = 65.0
     -----
     Elwood, Moehle 2005 (ACI Structural Journal 102(4)): friction along the crack.
     """
+    drift, halves = axial_failure_law(section, angle)
+    load = max(axial_load, 0.0)
+    if not halves > 0.0:
+        return 0.0 if load > 0.0 else drift
+    return drift / (1.0 + load / halves)
+
+
+def axial_failure_law(section: Section, angle: float = 65.0) -> tuple[float, float]:
+    """Return `axial_failure_drift` without axial load, and the load [N] that halves it."""
     if not 0.0 < angle < 90.0:
         raise InputError(f"axial failure: angle = {angle} must be between 0 and 90 degrees")
     sizes = shear_sizes(section)
     tangent = math.tan(math.radians(angle))
-    load = max(axial_load, 0.0)
     ties = sizes.tie_area * sizes.tie_yield * sizes.core_depth / sizes.spacing
-    if not ties > 0.0:
-        return 0.0 if load > 0.0 else 0.04 * (1.0 + tangent**2) / tangent
-    return 0.04 * (1.0 + tangent**2) / (tangent + load / (ties * tangent))
+    return 0.04 * (1.0 + tangent**2) / tangent, ties * tangent**2

@@ -365,7 +365,7 @@ def _of_frame(result: FrameResult) -> Iterator[Sheet]:
         "largest_axial_N": [member.axial.max() for member in members],
         "least_axial_N": [member.axial.min() for member in members],
         "largest_moment_Nm": [np.abs(member.moment).max() for member in members],
-        "ductility": [np.nanmax([np.nan, *member.ductility]) for member in members],
+        "ductility": [np.fmax.reduce([np.nan, *member.ductility]) for member in members],
     }
     yield Sheet("Members", table=data_frame(rows))
     yield Sheet("Rows", table=result.to_pandas(), beside=True)

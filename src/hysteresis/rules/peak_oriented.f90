@@ -36,6 +36,7 @@ module rbs_hysteresis_rules_peak_oriented
       procedure :: visit
       procedure :: prepare
       procedure :: check_relations
+      procedure :: has_yielded
       procedure :: start
       procedure :: next
    end type peak_oriented_rule
@@ -96,6 +97,17 @@ contains
          self%uses_flexural_work = part%hinge_work > 0.0_wp
       end associate
    end subroutine prepare
+
+   pure logical function has_yielded(self, memory)
+      class(peak_oriented_rule), intent(in) :: self
+      class(rule_memory), intent(in) :: memory
+
+      has_yielded = .false.
+      select type (memory)
+      type is (peak_oriented_memory)
+         has_yielded = any(memory%part(:self%parts)%now%yielded)
+      end select
+   end function has_yielded
 
    !> The energy in whose units capacities are given: f_y d_y, the mean of both sides [J].
    pure real(wp) function energy_of(part)

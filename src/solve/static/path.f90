@@ -233,6 +233,7 @@ contains
             if (allocated(failure)) deallocate (failure)
          else if (.not. allocated(failure)) then
             call stand_on_ends(self)
+            call check_members(self, failure)
          end if
          if (may_collapse) then
             task%summary%collapsed = abs(self%displacement)/self%structure%height >= task%collapse_drift
@@ -267,6 +268,23 @@ contains
          end if
       end do
    end subroutine follow
+
+   !> A path ends where a member loses its axial load: what follows is a fall.
+   subroutine check_members(self, failure)
+      class(static_path), intent(in) :: self
+      type(error_type), allocatable, intent(inout) :: failure
+      integer :: member
+
+      member = self%structure%find_lost(self%springs)
+      if (member == 0) return
+      associate (place => self%structure%place)
+         call fatal_error(failure, analysis_failed, 'member '// &
+                          trim(place(findloc(place%member, member, dim=1))%owner)//' has failed in shear '// &
+                          'and loses its axial load here (failure_drift), '//trim(state_of(self))// &
+                          '. Nothing static follows: use a response in time, in which the others take '// &
+                          'the load, or the frame without the member')
+      end associate
+   end subroutine check_members
 
    !> Where a straight line ends, at a row of a curve, and at the end of the path: energies and rotations
    !> belong to the summary, and the point must be a state of the structure. On a straight line forces and

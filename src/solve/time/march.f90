@@ -94,6 +94,7 @@ contains
       next_row = huge(1)
       if (task%every /= unset_integer) next_row = min(task%every, plan%steps)
       step = 0
+      call let_go(state, stepper)
       call balance(state, response%energy, task%summary)
       call keep(state, response, task, error, now)
       if (allocated(error)) return
@@ -123,6 +124,7 @@ contains
                if (ends .and. at < state%clock - same_step*h) state%clock = at
             end associate
             state%time = state%clock - state%begin
+            call let_go(state, stepper)
             call state%see(state%clock)
             ends = ends .or. state%sight%collapsed
             if (task%summary%lost_joint > 0) then
@@ -141,6 +143,21 @@ contains
          end do
       end do
    end subroutine take_steps
+
+   !> Members that are lost carry nothing from the next step on, which begins with other accelerations.
+   subroutine let_go(state, stepper)
+      type(state_type), intent(inout) :: state
+      class(stepper_type), intent(inout) :: stepper
+      integer :: member
+
+      do
+         member = state%motion%structure%find_lost(state%springs, state%clock)
+         if (member == 0) return
+         call state%motion%structure%let_go(member, state%springs)
+         state%q = state%springs%d
+         stepper%begun = .false.
+      end do
+   end subroutine let_go
 
    !> End of an interval between kept times, and the number of its steps.
    pure subroutine interval_of(plan, time, interval, finish, parts)

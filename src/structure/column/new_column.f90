@@ -188,7 +188,7 @@ contains
          column%at(:2, i) = [i, n + i]
          ! A shear spring may ask for the work of the flexural one of its joint.
          joint = merge(i - 1, i, column%footing)
-         column%place(i) = spring_place(shear, 1, joint, n + i, i)
+         column%place(i) = spring_place(shear, 1, joint, n + i, n + i, i)
          column%place(n + i) = spring_place(flexure, 1, joint, index=i)
          if (.not. column%opens) cycle
          column%at(axial, i) = 2*n + i

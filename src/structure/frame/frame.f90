@@ -4,6 +4,7 @@
 !> The springs of the elements come first, then one from the ground to each unknown: soil, a brace, a
 !> bearing, or one of no account, whose deformation is the displacement.
 module rbs_structure_frame_frame
+   use rbs_base_check, only: is_given
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
@@ -23,20 +24,24 @@ module rbs_structure_frame_frame
    !> What rows of a frame hold besides what all structures have: displacements of the nodes along x and
    !> upward and clockwise rotations; axial forces of the members (compression positive) and moments of their
    !> ends; deformations and forces of their springs by kind, in the order of the members; on demand
-   !> accelerations of the nodes along x relative to the ground, and that of the ground.
-   type(channel_type), parameter :: frame_channel(15) = [ &
+   !> accelerations of the nodes along x relative to the ground, and that of the ground; 1 for members that
+   !> were lost, where any may be.
+   type(channel_type), parameter :: frame_channel(16) = [ &
       channel_type('base_shear', 'N'), channel_type('x', 'm'), channel_type('y', 'm'), &
       channel_type('turn', 'rad'), channel_type('member_axial', 'N'), channel_type('moment_from', 'N m'), &
       channel_type('moment_to', 'N m'), channel_type('slip', 'm'), channel_type('shear', 'N'), &
       channel_type('rotation', 'rad'), channel_type('moment', 'N m'), channel_type('opening', 'm'), &
       channel_type('axial_force', 'N'), channel_type('node_acceleration', 'm/s2'), &
-      channel_type('ground_acceleration', 'm/s2')]
+      channel_type('ground_acceleration', 'm/s2'), channel_type('lost', '')]
 
    !> Share of the terms of a rate that it is round-off below.
    real(wp), parameter :: round_off = 1.0e-12_wp
 
    !> Share of the terms of all elements that counts as those of any.
    real(wp), parameter :: of_all = 0.01_wp
+
+   !> Times that differ by less than this share are the same.
+   real(wp), parameter :: same_time = 1.0e-9_wp
 
    type, extends(structure_type) :: frame_type
       type(frame_element), allocatable :: element(:)
@@ -65,6 +70,9 @@ module rbs_structure_frame_frame
       real(wp), allocatable :: dead_rotation(:, :)
       !> Compression of the elements under dead load [N] (elements)
       real(wp), allocatable :: compression(:)
+      !> When members are lost, see `frame_member` (members)
+      real(wp), allocatable :: failure_drift(:), failure_load(:), shear_drift(:), lost_at(:)
+      logical :: may_lose = .false.
       !> Rigid ends and clear length (3, elements) [m]
       real(wp), allocatable :: lengths(:, :)
       !> Height for moments, 1 for forces: what brings them to one unit (unknowns)
@@ -99,6 +107,8 @@ module rbs_structure_frame_frame
       procedure :: base_force
       procedure :: accelerations
       procedure :: check_loads
+      procedure :: find_lost
+      procedure :: let_go
    end type frame_type
 
 contains
@@ -303,13 +313,13 @@ contains
       real(wp) :: s(3), correction(size(d))
       integer :: i
 
-      do i = 1, size(self%element)
+      do i = 1, self%members
          call self%end_forces(i, self%basic(i, d(self%inside + 1:)), d, f, 1.0_wp, self%initial_tangent, s, &
                               correction)
-         if (i > self%members) exit
          self%compression(i) = -s(1)
+         ! Springs that open carry it by the path, not from its begin on.
          associate (e => self%element(i))
-            self%constant_axial(e%before + 1:e%before + e%bending + e%opening) = -s(1)
+            self%constant_axial(e%before + 1:e%before + e%bending) = -s(1)
          end associate
       end do
    end subroutine set_compression
@@ -691,12 +701,8 @@ contains
          g = 0.0_wp
          energy = -sum(self%dead*x) - sum(self%dead_force*d(:self%inside))
          do i = 1, size(self%element)
-            associate (e => self%element(i))
-               gap = gap_of(self, i, self%basic(i, x), d, 1.0_wp)
-               if (allocated(e%rest)) energy = energy + 0.125_wp*(e%rest(1)*(gap(2) + gap(3))**2 &
-                                                                  + e%rest(2)*(gap(2) - gap(3))**2)
-               energy = energy + 0.5_wp*e%rest_along*gap(1)**2
-            end associate
+            gap = gap_of(self, i, self%basic(i, x), d, 1.0_wp)
+            energy = energy + energy_of_rest(self%element(i), gap)
             if (self%axially_loaded .and. i <= self%members) call add_second_order(self, i, x, g)
          end do
          energy = energy - 0.5_wp*sum(g*x)
@@ -726,18 +732,21 @@ contains
       type(row_contents), intent(in) :: contents
       type(channel_type), allocatable, intent(out) :: channel(:)
       logical :: held(size(frame_channel))
-      integer :: kind
+      integer :: kind, m
 
+      m = self%members
       held = .true.
       held(14:15) = contents%motion
+      held(16) = self%may_lose
       channel = frame_channel
       channel(2:4)%count = self%n
-      channel(5:7)%count = self%members
+      channel(5:7)%count = m
       do kind = 1, 3
          held(6 + 2*kind:7 + 2*kind) = self%springs_of(kind) > 0
          channel(6 + 2*kind:7 + 2*kind)%count = self%springs_of(kind)
       end do
       channel(14)%count = self%n
+      channel(16)%count = m
       channel = pack(channel, held)
    end subroutine channels
 
@@ -792,12 +801,18 @@ contains
             at = at + 2*number
          end associate
       end do
-      if (.not. contents%motion) return
-      row(at + 1:) = 0.0_wp
-      do i = 1, self%n
-         if (self%number(1, i) > 0) row(at + i) = response%a(self%inside + self%number(1, i))
+      if (contents%motion) then
+         row(at + 1:at + self%n) = 0.0_wp
+         do i = 1, self%n
+            if (self%number(1, i) > 0) row(at + i) = response%a(self%inside + self%number(1, i))
+         end do
+         at = at + self%n + 1
+         row(at) = response%ground
+      end if
+      if (.not. self%may_lose) return
+      do i = 1, m
+         row(at + i) = merge(1.0_wp, 0.0_wp, is_lost(self, i, springs))
       end do
-      row(at + self%n + 1) = response%ground
    end subroutine fill_row
 
    !> Rotations and moments, or openings and axial forces, of the joints in the order of the members.
@@ -917,5 +932,116 @@ contains
                           'node; choose pattern')
       end if
    end subroutine check_loads
+
+   !> Whether a member carries nothing any more.
+   pure logical function is_lost(frame, member, springs)
+      type(frame_type), intent(in) :: frame
+      integer, intent(in) :: member
+      type(spring_array), intent(in) :: springs
+
+      associate (e => frame%element(member))
+         is_lost = e%bending + e%opening > 0
+         if (is_lost) is_lost = springs%is_released(e%before + 1)
+      end associate
+   end function is_lost
+
+   !> A member whose time has come, or one that has failed in shear and whose drift is that at which its axial
+   !> load is lost: failure_drift/(1 + P/failure_load).
+   integer function find_lost(self, springs, time) result(member)
+      class(frame_type), intent(in) :: self
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(in), optional :: time
+      integer :: i
+
+      member = 0
+      if (.not. self%may_lose) return
+      do i = 1, self%members
+         if (is_lost(self, i, springs)) cycle
+         if (present(time) .and. is_given(self%lost_at(i))) then
+            if (time - self%lost_at(i) >= -same_time*abs(self%lost_at(i))) member = i
+         end if
+         if (is_given(self%failure_drift(i))) then
+            if (has_failed(self, i, springs)) member = i
+         end if
+         if (member > 0) return
+      end do
+   end function find_lost
+
+   logical function has_failed(frame, member, springs)
+      type(frame_type), intent(in) :: frame
+      integer, intent(in) :: member
+      type(spring_array), intent(in) :: springs
+      real(wp) :: drift, s(3)
+      integer :: i
+
+      associate (e => frame%element(member), x => springs%d(frame%inside + 1:))
+         drift = abs(sum(e%chord*x(e%unknown)))
+         has_failed = is_given(frame%shear_drift(member)) .and. drift >= abs(frame%shear_drift(member))
+         do i = e%before + 1, e%before + e%bending
+            if (frame%place(i)%kind /= shear) cycle
+            if (springs%rules%list(springs%rules%of(i))%rule%has_yielded(springs%slot(i)%memory)) has_failed &
+               = .true.
+         end do
+         if (.not. has_failed) return
+         call find_ends(frame, member, springs, s)
+         ! Tension, or no load, does not fall.
+         has_failed = s(1) < 0.0_wp .and. &
+                      drift*(1.0_wp - s(1)/frame%failure_load(member)) >= frame%failure_drift(member)
+      end associate
+   end function has_failed
+
+   !> Axial force, tension positive, and moments of the ends where the springs are.
+   subroutine find_ends(frame, member, springs, s)
+      type(frame_type), intent(in) :: frame
+      integer, intent(in) :: member
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(out) :: s(3)
+      real(wp) :: correction(springs%count)
+
+      associate (d => springs%d)
+         call frame%end_forces(member, frame%basic(member, d(frame%inside + 1:)), d, &
+                               springs%f0 + springs%k*(d - springs%d0), 1.0_wp, frame%initial_tangent, s, &
+                               correction)
+      end associate
+   end subroutine find_ends
+
+   !> What the elastic rest would give back is lost with the member. Its springs keep what dead load does in
+   !> them where it is carried to the nodes, on which it stays.
+   subroutine let_go(self, member, springs)
+      class(frame_type), intent(in) :: self
+      integer, intent(in) :: member
+      type(spring_array), intent(inout) :: springs
+      real(wp) :: tangent(self%tangent_numbers), correction(springs%count), s(3), q(3), energy
+      integer :: i, unstable
+
+      tangent = 0.0_wp
+      correction = 0.0_wp
+      associate (e => self%element(member))
+         q = self%basic(member, springs%d(self%inside + 1:))
+         energy = energy_of_rest(e, gap_of(self, member, q, springs%d, 1.0_wp))
+         do i = e%before + 1, e%before + e%bending + e%opening
+            call springs%let_go(i, self%dead_force(i))
+         end do
+         call self%linearise(springs%k, tangent, unstable)
+         call self%end_forces(member, q, springs%d, springs%f0 + springs%k*(springs%d - springs%d0), &
+                              1.0_wp, tangent, s, correction)
+         do i = e%before + 1, e%before + e%bending + e%opening
+            call springs%advance_on_branch(i, springs%d(i) + correction(i))
+         end do
+         energy = energy - energy_of_rest(e, gap_of(self, member, q, springs%d, 1.0_wp))
+         springs%work(e%before + 1) = springs%work(e%before + 1) + energy
+      end associate
+   end subroutine let_go
+
+   !> Energy of the elastic rest of an element [J].
+   pure real(wp) function energy_of_rest(e, gap) result(energy)
+      type(frame_element), intent(in) :: e
+      !> Its elongation and rotations
+      real(wp), intent(in) :: gap(3)
+
+      energy = 0.5_wp*e%rest_along*gap(1)**2
+      if (allocated(e%rest)) energy = energy + 0.125_wp*(e%rest(1)*(gap(2) + gap(3))**2 &
+                                                         + e%rest(2)*(gap(2) - gap(3))**2)
+   end function energy_of_rest
 
 end module rbs_structure_frame_frame

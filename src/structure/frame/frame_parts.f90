@@ -65,6 +65,7 @@ contains
       end if
       if (messages%count > known) return
       call put_node_springs(self, record, messages)
+      call put_losses(self, record, messages)
       call put_kinds(self, record, messages)
       call hold_idle(self)
       call check_geometry(self, messages)
@@ -110,6 +111,12 @@ contains
       do i = 1, size(record%member)
          if (record%member(i)%name == '') call messages%add('member: the name is missing; give each a name')
          call record%member(i)%check("member '"//trim(record%member(i)%name)//"'", messages)
+      end do
+      do i = 1, size(record%loss)
+         call record%loss(i)%check('loss', messages)
+         if (any(record%loss(:i - 1)%member == record%loss(i)%member)) then
+            call messages%add("loss: member '"//trim(record%loss(i)%member)//"' is lost twice; remove one")
+         end if
       end do
       do i = 1, size(record%spring)
          associate (s => record%spring(i))
@@ -199,12 +206,30 @@ contains
          else if (abs(kind%hardening) > 0.0_wp .and. abs(kind%hardening) < least_hardening) then
             call messages%add(name//': hardening = '//to_text(kind%hardening)//' is lost in round-off; '// &
                               'give 0, or '//to_text(least_hardening)//' or more')
+         else if (is_given(kind%failure_drift) .neqv. is_given(kind%failure_load)) then
+            call messages%add(name//': failure_drift and failure_load belong together; give both, or none')
+         else if (is_given(kind%shear_drift) .and. .not. is_given(kind%failure_drift)) then
+            call messages%add(name//': shear_drift does nothing without failure_drift; give that, or '// &
+                              'remove it')
+         else if (is_given(kind%failure_drift) .and. .not. is_given(kind%shear_drift) .and. .not. &
+                  any(softens(record%spring, kind%name))) then
+            call messages%add(name//': failure_drift is that after a failure in shear; give shear_drift, '// &
+                              "or a shear spring of the rule 'peak_oriented' or 'pinching'")
          else if (kind%between == 'rigid' .and. .not. most > least) then
             call messages%add(name//": with between = 'rigid' all bending is in springs; give it two "// &
                               'flexural springs or more, at different places')
          end if
       end associate
    end subroutine check_kind
+
+   !> Springs of a kind that may fail in shear.
+   elemental logical function softens(spring, kind)
+      type(frame_spring), intent(in) :: spring
+      character(len=*), intent(in) :: kind
+
+      softens = spring%kind == kind .and. spring%group == 'shear' .and. &
+                (spring%spring%rule == 'peak_oriented' .or. spring%spring%rule == 'pinching')
+   end function softens
 
    !> A name that must be one of a list.
    subroutine check_reference(word, names, owner, key, messages)
@@ -625,6 +650,20 @@ contains
       end do
    end function has_member
 
+   !> Members that are lost at a time.
+   subroutine put_losses(self, record, messages)
+      type(frame_parts), intent(inout) :: self
+      type(frame_record), intent(in) :: record
+      type(message_list), intent(inout) :: messages
+      integer :: i, number
+
+      do i = 1, size(record%loss)
+         call check_reference(record%loss(i)%member, [self%member%name], 'loss', 'member', messages)
+         number = findloc(self%member%name == record%loss(i)%member, .true., dim=1)
+         if (number > 0) self%member(number)%lost_at = record%loss(i)%time
+      end do
+   end subroutine put_losses
+
    !> What members are of, where their lengths are known.
    subroutine put_kinds(self, record, messages)
       type(frame_parts), intent(inout) :: self
@@ -654,6 +693,11 @@ contains
                end if
             end associate
             call put_kind(m, record%kind(m%kind_of), record%spring, clear)
+            if (.not. (is_given(m%failure_drift) .or. is_given(m%lost_at))) cycle
+            if (.not. can_be_lost(m)) then
+               call messages%add('member '//trim(m%name)//' cannot be lost, as its springs do not take '// &
+                                 'part in all that it carries; give it flexural springs at both ends')
+            end if
          end associate
       end do
    end subroutine put_kinds
@@ -668,19 +712,23 @@ contains
 
       allocate (m%kind(0), m%joint(0), m%place(0), m%y(0), m%spring(0))
       m%axial = kind%modulus*kind%area
-      if (is_given(kind%yield_moment)) then
+      m%failure_drift = kind%failure_drift
+      m%failure_load = kind%failure_load
+      m%shear_drift = kind%shear_drift
+      if (is_given(kind%yield_moment) .or. &
+          (is_given(m%lost_at) .and. all(spring%kind /= kind%name))) then
          do i = 1, 3
-            associate (k => kind%modulus*kind%inertia/(share(i)*clear))
+            one = elastic(kind%modulus*kind%inertia/(share(i)*clear))
+            if (is_given(kind%yield_moment)) then
                one%rule = 'bilinear'
-               one%value(:3) = [k, kind%yield_moment/k, kind%hardening*k]
-            end associate
+               one%value(2:3) = [kind%yield_moment/one%value(1), kind%hardening*one%value(1)]
+            end if
             call append_spring(m, flexure, point(i), one)
          end do
-         if (.not. kind%shear_rigidity > 0.0_wp) return
-         one = spring_record()
-         one%rule = 'elastic'
-         one%value(1) = kind%shear_rigidity/clear
-         call append_spring(m, shear, 0.5_wp, one)
+         if (kind%shear_rigidity > 0.0_wp) then
+            call append_spring(m, shear, 0.5_wp, elastic(kind%shear_rigidity/clear))
+         end if
+         call add_opening(m, clear)
          return
       end if
       if (kind%between == 'elastic') then
@@ -703,7 +751,37 @@ contains
             end if
          end do
       end do
+      call add_opening(m, clear)
    end subroutine put_kind
+
+   !> What carries the axial force of a member that may be lost is a spring.
+   subroutine add_opening(m, clear)
+      type(frame_member), intent(inout) :: m
+      real(wp), intent(in) :: clear
+
+      if (.not. (is_given(m%failure_drift) .or. is_given(m%lost_at))) return
+      if (any(m%kind == layer .or. m%kind == axial)) return
+      call append_spring(m, axial, 0.5_wp, elastic(m%axial/clear))
+      m%axial = 0.0_wp
+   end subroutine add_opening
+
+   type(spring_record) function elastic(stiffness)
+      real(wp), intent(in) :: stiffness
+
+      elastic%rule = 'elastic'
+      elastic%value(1) = stiffness
+   end function elastic
+
+   !> Whether a member without the forces of its springs carries nothing: they bend in two ways, and open.
+   pure logical function can_be_lost(m)
+      type(frame_member), intent(in) :: m
+
+      associate (bends => m%kind == flexure .or. m%kind == layer)
+         can_be_lost = any(m%kind == layer .or. m%kind == axial) .and. any(bends)
+         if (can_be_lost) can_be_lost = any(m%kind == shear) .or. &
+                                        maxval(m%place, mask=bends) > minval(m%place, mask=bends)
+      end associate
+   end function can_be_lost
 
    !> Append a spring, or the layers of a joint.
    subroutine append_spring(m, kind, place, spring)

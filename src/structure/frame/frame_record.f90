@@ -21,8 +21,8 @@ module rbs_structure_frame_frame_record
    character(len=*), parameter :: support_names = 'free roller pinned fixed'
 
    !> The groups of a frame; all but the first may appear several times.
-   character(len=12), parameter, public :: frame_groups(7) = [character(len=12) :: &
-      'frame', 'floor', 'member_kind', 'column_of', 'beam_of', 'node', 'member']
+   character(len=12), parameter, public :: frame_groups(8) = [character(len=12) :: &
+      'frame', 'floor', 'member_kind', 'column_of', 'beam_of', 'node', 'member', 'loss']
 
    !> Mass and load of floors.
    type, extends(visited_record), public :: floor_record
@@ -38,6 +38,7 @@ module rbs_structure_frame_frame_record
       character(len=name_length) :: name = ''
       real(wp) :: modulus = unset, area = unset, inertia = unset, shear_rigidity = 0.0_wp
       real(wp) :: yield_moment = unset, hardening = 0.0_wp
+      real(wp) :: failure_drift = unset, failure_load = unset, shear_drift = unset
       character(len=8) :: between = 'elastic'
    contains
       procedure :: visit => visit_kind
@@ -74,6 +75,14 @@ module rbs_structure_frame_frame_record
       procedure :: visit => visit_member
    end type member_record
 
+   !> A member that is lost at a time.
+   type, extends(visited_record), public :: loss_record
+      character(len=name_length) :: member = ''
+      real(wp) :: time = 0.0_wp
+   contains
+      procedure :: visit => visit_loss
+   end type loss_record
+
    !> A spring of a kind of members, at places in shares of the clear length, from the ground to a node, or
    !> in the panel of a node, between its columns and its beams.
    type :: frame_spring
@@ -95,6 +104,7 @@ module rbs_structure_frame_frame_record
       type(cell_record), allocatable :: column_of(:), beam_of(:)
       type(node_record), allocatable :: node(:)
       type(member_record), allocatable :: member(:)
+      type(loss_record), allocatable :: loss(:)
       type(frame_spring), allocatable :: spring(:)
    contains
       procedure :: open_group
@@ -114,7 +124,7 @@ contains
 
       if (.not. allocated(self%floor)) then
          allocate (self%floor(0), self%kind(0), self%column_of(0), self%beam_of(0), self%node(0), &
-                   self%member(0), self%spring(0))
+                   self%member(0), self%loss(0), self%spring(0))
       end if
       select case (group)
       case ('floor')
@@ -130,6 +140,8 @@ contains
          self%node = [self%node, node_record()]
       case ('member')
          self%member = [self%member, member_record()]
+      case ('loss')
+         self%loss = [self%loss, loss_record()]
       case default                                  ! the frame itself
       end select
    end subroutine open_group
@@ -152,6 +164,8 @@ contains
          number = size(self%node)
       case ('member')
          number = size(self%member)
+      case ('loss')
+         number = size(self%loss)
       case default
          number = 1
       end select
@@ -181,6 +195,8 @@ contains
          call self%node(i)%visit(v)
       case ('member')
          call self%member(i)%visit(v)
+      case ('loss')
+         call self%loss(i)%visit(v)
       case default
          call self%visit(v)
       end select
@@ -230,6 +246,13 @@ contains
                  'without it and without springs the member stays elastic', optional=.true.)
       call v%key('hardening', self%hardening, '', bound_type(-1.0_wp, 1.0_wp, .true., .true.), &
                  'stiffness after yielding over the one before')
+      call v%key('failure_drift', self%failure_drift, '', above_zero, 'drift at which the member loses '// &
+                 'its axial load, if that is small, once a shear spring of it has yielded; without it: '// &
+                 'never', optional=.true.)
+      call v%key('failure_load', self%failure_load, 'N', above_zero, 'axial load under which that drift '// &
+                 'is half of it', optional=.true.)
+      call v%key('shear_drift', self%shear_drift, '', above_zero, 'drift at which it counts as failed in '// &
+                 'shear, if no shear spring of it has yielded', optional=.true.)
       call v%word('between', self%between, 'what is between springs that are given one by one', &
                   'elastic rigid')
    end subroutine visit_kind
@@ -283,6 +306,14 @@ contains
       call v%key('panel_to', self%panel_to, 'm', not_negative, 'rigid length at its end')
       call v%key('load', self%load, 'N/m', any_number, 'dead load downward, per length along x')
    end subroutine visit_member
+
+   subroutine visit_loss(self, v)
+      class(loss_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
+
+      call v%word('member', self%member, 'name of the member that is lost', required=.true.)
+      call v%key('time', self%time, 's', any_number, 'time of the record from which on it carries nothing')
+   end subroutine visit_loss
 
    !> Height of the grid or of the nodes [m]; what is not given counts as zero.
    pure real(wp) function total_height(self) result(height)

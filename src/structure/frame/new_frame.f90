@@ -1,6 +1,8 @@
 !> A planar frame from its nodes and members: numbers of the unknowns, elements with their springs, and what
 !> dead load does in them.
 module rbs_structure_frame_new_frame
+   use rbs_base_check, only: is_given
+   use rbs_base_constants, only: unset
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_spring_record, only: spring_record, add_rules
    use rbs_structure_frame_element, only: frame_element, tangent_size
@@ -52,6 +54,10 @@ module rbs_structure_frame_new_frame
       type(spring_record), allocatable :: spring(:)
       !> Dead load downward per length along x [N/m]
       real(wp) :: load = 0.0_wp
+      !> Drift at which it loses a small axial load after shear failure, the load that halves this drift [N],
+      !> the drift of shear failure if no shear spring has yielded, and the time from which on it is lost [s];
+      !> `unset`: never
+      real(wp) :: failure_drift = unset, failure_load = unset, shear_drift = unset, lost_at = unset
    end type frame_member
 
 contains
@@ -84,6 +90,11 @@ contains
       frame%total_height = frame%height
       call set_storeys(frame)
       frame%members = size(member)
+      frame%failure_drift = member%failure_drift
+      frame%failure_load = member%failure_load
+      frame%shear_drift = member%shear_drift
+      frame%lost_at = member%lost_at
+      frame%may_lose = any(is_given(frame%failure_drift) .or. is_given(frame%lost_at))
       frame%inside = count(node%panel%rule /= '')
       do i = 1, size(member)
          frame%inside = frame%inside + size(member(i)%kind)
@@ -286,6 +297,7 @@ contains
                   spring(before + j) = m%spring(j)
                   frame%spring_place(before + j) = m%place(j)
                   frame%place(before + j) = spring_place(m%kind(j), i, m%joint(j), index=i, owner=m%name)
+                  if (m%kind(j) == shear) call hear_flexure(m, j, before, frame%place(before + j))
                   frame%heads(before + j) = m%kind(j) == layer .and. findloc(m%joint, m%joint(j), dim=1) == j
                   if (m%kind(j) == flexure) e%share(:, j) = [m%place(j) - 1.0_wp, m%place(j)]
                   if (m%kind(j) == shear) e%share(:, j) = -1.0_wp/clear
@@ -300,6 +312,24 @@ contains
       end do
       frame%tangent_numbers = at
    end subroutine set_elements
+
+   !> A shear spring hears of the work in the nearest flexural spring, or joint of layers, of its member.
+   pure subroutine hear_flexure(m, spring, before, place)
+      type(frame_member), intent(in) :: m
+      !> Number in the member, and of springs before the member
+      integer, intent(in) :: spring, before
+      type(spring_place), intent(inout) :: place
+      integer :: nearest
+
+      associate (bends => m%kind == flexure .or. m%kind == layer)
+         if (.not. any(bends)) return
+         nearest = minloc(abs(m%place - m%place(spring)), dim=1, mask=bends)
+         associate (joint => m%joint == m%joint(nearest))
+            place%heard = before + findloc(joint, .true., dim=1)
+            place%heard_last = before + findloc(joint, .true., dim=1, back=.true.)
+         end associate
+      end associate
+   end subroutine hear_flexure
 
    !> A panel is an element of one spring, which "opens" by the rotation of the columns against the beams.
    subroutine set_panels(frame, node, spring)
