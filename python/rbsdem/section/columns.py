@@ -242,7 +242,7 @@ def member(
     Parameters
     ----------
     section : Section
-        The section.
+        The section; y > 0 is on the left of the way from start to end, which is above in a beam.
     length : float
         Clear length between its ends [m].
     axial_load : float, optional
