@@ -10,11 +10,12 @@ module rbs_section_section_figures
 
    public :: figures_of_section, values_of_point, values_of_shear_point
 
-   !> Area, second moment and shear area of the outline [m2, m4, m2]; law of the plain concrete [Pa]; then the
-   !> confined core with its sizes [m], zero without hoops.
-   character(len=16), parameter, public :: section_figures(18) = [character(len=16) :: &
-      'area', 'inertia', 'shear_area', 'fc', 'ft', 'ec', 'eps0', 'n', 'decay', 'fcc', 'eps_cc', 'r', &
-      'eps_cu', 'effectiveness', 'lateral_stress', 'ratio', 'width', 'depth']
+   !> Area, second moment about the centroid and shear area of the outline [m2, m4, m2], distance of the
+   !> centroid from mid-depth [m]; law of the plain concrete [Pa]; then the confined core with its sizes [m],
+   !> zero without hoops.
+   character(len=16), parameter, public :: section_figures(19) = [character(len=16) :: &
+      'area', 'inertia', 'shear_area', 'centroid', 'fc', 'ft', 'ec', 'eps0', 'n', 'decay', 'fcc', 'eps_cc', &
+      'r', 'eps_cu', 'effectiveness', 'lateral_stress', 'ratio', 'width', 'depth']
 
    !> Points of a moment-curvature diagram [1/m, N m].
    character(len=16), parameter, public :: point_values(4) = [character(len=16) :: &
@@ -35,10 +36,10 @@ contains
 
       figures = 0.0_wp
       associate (shape => section%shape, p => section%plain, c => section%core)
-         figures(:9) = [shape%area(), shape%second_moment(), shape%shear_area(), &
+         figures(:10) = [shape%area(), shape%second_moment(), shape%shear_area(), shape%centroid(), &
                         p%fc, p%ft, p%ec, p%eps0, p%n, p%decay]
          if (section%transverse%kind == no_ties) return
-         figures(10:) = [c%fc, c%eps0, c%n, c%eps_cu, section%effectiveness, section%lateral_stress, &
+         figures(11:) = [c%fc, c%eps0, c%n, c%eps_cu, section%effectiveness, section%lateral_stress, &
                          volumetric_ratio(section), section%core_shape%width, section%core_shape%depth]
       end associate
    end function figures_of_section

@@ -1,8 +1,10 @@
-!> The shape of a section: a rectangle or a circle, or one of them with a void of the same form in its middle.
+!> The shape of a section: a rectangle or a circle, one of them with a void of the same form in its middle, or
+!> a rectangle with a flange at one face.
 !>
 !> y runs from mid-depth. The concrete outline of a section is a shape, and so is the core that its hoops
 !> enclose; where there is a void, the core lies between hoops around the outside and hoops around the void,
-!> with the same cover at both. A hollow figure is the difference of two solid ones.
+!> with the same cover at both. A hollow figure is the difference of two solid ones, one with a flange the sum
+!> of its web and the wings beside it; its hoops are around the web.
 module rbs_section_shape
    use rbs_base_constants, only: pi
    use rbs_base_key_visitor, only: key_visitor
@@ -13,10 +15,11 @@ module rbs_section_shape
 
    public :: shape_type, new_shape, new_core
 
-   character(len=16), parameter, public :: shape_names(4) = [character(len=16) :: &
-      'rectangle', 'circle', 'hollow_rectangle', 'hollow_circle']
+   character(len=16), parameter, public :: shape_names(5) = [character(len=16) :: &
+      'rectangle', 'circle', 'hollow_rectangle', 'hollow_circle', 'tee']
    !> The names as choices of a key
-   character(len=*), parameter, public :: shape_choices = 'rectangle circle hollow_rectangle hollow_circle'
+   character(len=*), parameter, public :: shape_choices = &
+      'rectangle circle hollow_rectangle hollow_circle tee'
 
    !> Sizes of columns [m]: a larger number was given in millimetres.
    type(bound_type), parameter, public :: column_size = &
@@ -28,17 +31,21 @@ module rbs_section_shape
       bound_type(0.0_wp, thickest_bar, least_open=.true., reason='(20 mm is 0.02)')
 
    type :: shape_type
-      !> Sizes of the smallest rectangle around the figure: across and along the direction of loading [m]
+      !> Sizes of the smallest rectangle around the figure: across and along the direction of loading [m]; the
+      !> width is that of the web where there is a flange
       real(wp) :: width = 0.0_wp, depth = 0.0_wp
-      !> Whether it is a circle, else a rectangle; whether there is a void in the middle
-      logical :: round = .false., hollow = .false.
+      !> Whether it is a circle, else a rectangle; whether there is a void in the middle, or a flange
+      logical :: round = .false., hollow = .false., flanged = .false.
       !> Thickness of the walls around the void: at the faces y = +-depth/2, and of the webs [m]
       real(wp) :: wall = 0.0_wp, side_wall = 0.0_wp
+      !> Width of the flange with that of the web, its thickness [m]; whether it is at the face y = depth/2
+      real(wp) :: flange_width = 0.0_wp, flange_thickness = 0.0_wp
+      logical :: flange_in_tension = .false.
    contains
-      procedure :: width_at
       procedure :: area_between
       procedure :: moment_between
       procedure :: area
+      procedure :: centroid
       procedure :: second_moment
       procedure :: shear_area
       procedure :: leg_share
@@ -57,7 +64,8 @@ contains
       type(shape_type), allocatable, intent(out) :: shape
 
       if (all(shape_names /= name)) return
-      shape = shape_type(width, depth, round=index(name, 'circle') > 0, hollow=index(name, 'hollow') > 0)
+      shape = shape_type(width, depth, round=index(name, 'circle') > 0, hollow=index(name, 'hollow') > 0, &
+                         flanged=name == 'tee')
    end subroutine new_shape
 
    !> Make the shape that the hoops of an outline enclose: a round hoop encloses a circle, ties enclose a
@@ -71,6 +79,7 @@ contains
       type(shape_type), allocatable, intent(out) :: core
 
       core = outline
+      core%flanged = .false.
       if (round .and. .not. outline%round) core = shape_type(outline%depth, outline%depth, round=.true.)
       call core%shrink(width_by, depth_by)
    end subroutine new_core
@@ -84,36 +93,33 @@ contains
       void%depth = max(0.0_wp, self%depth - 2.0_wp*self%wall)
    end function void_of
 
-   !> Width at a distance from mid-depth [m]; zero outside.
-   elemental real(wp) function width_at(self, y) result(width)
-      class(shape_type), intent(in) :: self
-      !> [m]
-      real(wp), intent(in) :: y
-
-      width = solid_width(self, y)
-      if (self%hollow) width = width - solid_width(void_of(self), y)
-   end function width_at
-
-   elemental real(wp) function solid_width(self, y) result(width)
+   !> Both wings of the flange beside the web, as one rectangle.
+   elemental type(shape_type) function wings_of(self) result(wings)
       type(shape_type), intent(in) :: self
-      real(wp), intent(in) :: y
 
-      width = 0.0_wp
-      if (self%round) then
-         width = 2.0_wp*sqrt(max(0.0_wp, (0.5_wp*self%depth)**2 - y**2))
-      else if (abs(y) <= 0.5_wp*self%depth) then
-         width = self%width
-      end if
-   end function solid_width
+      wings%width = self%flange_width - self%width
+      wings%depth = self%flange_thickness
+   end function wings_of
+
+   !> Where the middle of the flange is [m].
+   elemental real(wp) function middle_of_flange(self) result(y)
+      type(shape_type), intent(in) :: self
+
+      y = merge(0.5_wp, -0.5_wp, self%flange_in_tension)*(self%depth - self%flange_thickness)
+   end function middle_of_flange
 
    !> Integral of the width between two distances from mid-depth [m2].
    elemental real(wp) function area_between(self, lo, hi) result(area)
       class(shape_type), intent(in) :: self
       !> lo <= hi [m]
       real(wp), intent(in) :: lo, hi
+      real(wp) :: middle
 
       area = solid_area_between(self, lo, hi)
       if (self%hollow) area = area - solid_area_between(void_of(self), lo, hi)
+      if (.not. self%flanged) return
+      middle = middle_of_flange(self)
+      area = area + solid_area_between(wings_of(self), lo - middle, hi - middle)
    end function area_between
 
    elemental real(wp) function solid_area_between(self, lo, hi) result(area)
@@ -136,9 +142,16 @@ contains
    elemental real(wp) function moment_between(self, lo, hi) result(moment)
       class(shape_type), intent(in) :: self
       real(wp), intent(in) :: lo, hi
+      type(shape_type) :: wings
+      real(wp) :: middle
 
       moment = solid_moment_between(self, lo, hi)
       if (self%hollow) moment = moment - solid_moment_between(void_of(self), lo, hi)
+      if (.not. self%flanged) return
+      wings = wings_of(self)
+      middle = middle_of_flange(self)
+      moment = moment + solid_moment_between(wings, lo - middle, hi - middle) + &
+               middle*solid_area_between(wings, lo - middle, hi - middle)
    end function moment_between
 
    elemental real(wp) function solid_moment_between(self, lo, hi) result(moment)
@@ -165,6 +178,7 @@ contains
 
       area = solid_area(self)
       if (self%hollow) area = area - solid_area(void_of(self))
+      if (self%flanged) area = area + solid_area(wings_of(self))
    end function area
 
    elemental real(wp) function solid_area(self)
@@ -173,12 +187,22 @@ contains
       solid_area = merge(0.25_wp*pi*self%depth**2, self%width*self%depth, self%round)
    end function solid_area
 
-   !> Second moment of the area about mid-depth [m4].
+   !> Distance of the centroid from mid-depth [m].
+   elemental real(wp) function centroid(self)
+      class(shape_type), intent(in) :: self
+
+      centroid = 0.0_wp
+      if (self%flanged) centroid = middle_of_flange(self)*solid_area(wings_of(self))/self%area()
+   end function centroid
+
+   !> Second moment of the area about its centroid [m4].
    elemental real(wp) function second_moment(self)
       class(shape_type), intent(in) :: self
 
       second_moment = solid_second_moment(self)
       if (self%hollow) second_moment = second_moment - solid_second_moment(void_of(self))
+      if (self%flanged) second_moment = second_moment + solid_second_moment(wings_of(self)) + &
+         solid_area(wings_of(self))*middle_of_flange(self)*(middle_of_flange(self) - self%centroid())
    end function second_moment
 
    elemental real(wp) function solid_second_moment(self)
@@ -188,8 +212,8 @@ contains
    end function solid_second_moment
 
    !> Area of an elastic section that carries shear [m2]: 5/6 of a rectangle, 0.9 of a circle, 5/6 of the webs
-   !> of a box over the whole depth. From 0.9 to half of the area of a thin ring, as the factor of Cowper
-   !> (1966) falls with the square of the ratio of the radii (no Poisson's ratio).
+   !> of a box or a tee over the whole depth. From 0.9 to half of the area of a thin ring, as the factor of
+   !> Cowper (1966) falls with the square of the ratio of the radii (no Poisson's ratio).
    elemental real(wp) function shear_area(self) result(area)
       class(shape_type), intent(in) :: self
       type(shape_type) :: void
@@ -205,7 +229,7 @@ contains
       else if (self%hollow) then
          area = 5.0_wp/6.0_wp*min(2.0_wp*self%side_wall, self%width)*self%depth
       else
-         area = merge(0.9_wp, 5.0_wp/6.0_wp, self%round)*self%area()
+         area = merge(0.9_wp, 5.0_wp/6.0_wp, self%round)*solid_area(self)
       end if
    end function shear_area
 
@@ -219,7 +243,7 @@ contains
       leg_share = 0.0_wp
       if (.not. merge(self%depth, self%width, self%round) > 0.0_wp) return
       leg_share = 1.0_wp
-      if (self%round) leg_share = solid_width(self, min(abs(y), 0.5_wp*self%depth))/self%depth
+      if (self%round) leg_share = 2.0_wp*sqrt(max(0.0_wp, (0.5_wp*self%depth)**2 - y**2))/self%depth
    end function leg_share
 
    !> Reduce the sizes, not below zero; a void grows as much as the outside moves inwards.
@@ -251,9 +275,15 @@ contains
       else
          call v%key('width', self%width, 'm', column_size, 'width, across the direction of loading')
          call v%key('depth', self%depth, 'm', column_size, 'depth, in the direction of loading')
-         if (.not. self%hollow) return
-         call v%key('wall', self%wall, 'm', column_size, 'thickness of the walls at the faces')
-         call v%key('side_wall', self%side_wall, 'm', column_size, 'thickness of the webs')
+         if (self%hollow) then
+            call v%key('wall', self%wall, 'm', column_size, 'thickness of the walls at the faces')
+            call v%key('side_wall', self%side_wall, 'm', column_size, 'thickness of the webs')
+         else if (self%flanged) then
+            call v%key('flange_width', self%flange_width, 'm', column_size, &
+                       'width of the flange with that of the web')
+            call v%key('flange_thickness', self%flange_thickness, 'm', column_size, 'thickness of the flange')
+            call v%key('flange_in_tension', self%flange_in_tension, 'flange at the face y > 0')
+         end if
       end if
    end subroutine visit
 

@@ -20,6 +20,7 @@ import rbsdem
 from rbsdem import _core
 from rbsdem.model.damping import Damping
 from rbsdem.results.case import Case
+from rbsdem.section.drawing import SHAPES
 from rbsdem.springs import SPRINGS, Elastic, Layered
 
 KEYS = _core.keys()
@@ -177,7 +178,7 @@ def test_tables_of_the_input_reference_are_those_of_the_keys():
     assert KEYS["groups"]["layout"] == KEYS["groups"]["inner_layout"]
     assert shown == (
         set(KEYS["groups"]) - {"flexure", "axial_spring", "inner_layout"}
-        | {f"shape {name}" for name in ("rectangle", "circle", "hollow_rectangle", "hollow_circle")}
+        | {f"shape {name}" for name in SHAPES}
         | {f"rule {name}" for name in RULES if name != "layered"}
         | {"places"}
     )

@@ -130,12 +130,15 @@ def quantities(section: Section, height: float, axial_load: float) -> Quantities
     Raises
     ------
     InputError
-        If a number is refused, or the section is hollow or has no bars near both faces.
+        If a number is refused, or the section is hollow, has a flange, or has no bars near both
+        faces.
     """
     checked_section(section)
     span = column_length(height, "height")
     if section.hollow:
         raise InputError("code values: the formulas are for solid sections; this one is hollow")
+    if section.shape == "tee":
+        raise InputError("code values: the formulas are for columns; this section has a flange")
     if not section.bars:
         raise InputError("code values: the section has no bars; give it some")
     load = carried_load(axial_load, section, tension=False)

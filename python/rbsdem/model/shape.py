@@ -152,6 +152,10 @@ class Section(_Parts, Reported, ABC):
     def _sizes(self) -> dict[str, float]:
         """Return the sizes of the shape, by the names of their keys [m]."""
 
+    def _turned(self) -> dict[str, Any]:
+        """Return what of the concrete is not the same upside down."""
+        return {}
+
     @property
     @abstractmethod
     def effective_depth(self) -> float:
@@ -304,11 +308,11 @@ class Section(_Parts, Reported, ABC):
         """The section upside down: y > 0 is what was y < 0. Itself where that is the same."""
         mirrored = sorted(((-y, area, steel) for y, area, steel in self.bars), key=_place)
         pairs = zip(mirrored, sorted(self.bars, key=_place), strict=True)
-        slack = 1e-9 * self.depth
+        slack, turned = 1e-9 * self.depth, self._turned()
         if all(abs(a[0] - b[0]) <= slack and a[1:] == b[1:] for a, b in pairs):
-            return self
+            return replace(self, **turned) if turned else self
         diameter = float(self.bar_diameter or 0.0)
-        changes: dict[str, Any] = {"bars": mirrored, "bar_diameter": diameter}
+        changes = turned | {"bars": mirrored, "bar_diameter": diameter}
         return replace(self, **changes | {"layout": None, "inner_layout": None})
 
     @property
@@ -323,8 +327,13 @@ class Section(_Parts, Reported, ABC):
 
     @property
     def inertia(self) -> float:
-        """Second moment of area of the concrete about mid-depth [m4]."""
+        """Second moment of area of the concrete about its centroid [m4]."""
         return self._figures["inertia"]
+
+    @property
+    def centroid(self) -> float:
+        """Distance of the centroid of the concrete from mid-depth, along y [m]."""
+        return self._figures["centroid"]
 
     @property
     def shear_area(self) -> float:
@@ -564,6 +573,125 @@ class RectangularSection(Section):
             around = self.width - self.web_width + 2.0 * (inset + bars[-1][1])
             placed += _in_rows(bars[outer:], around, None)
         return placed
+
+
+@dataclass(frozen=True)
+class TeeSection(RectangularSection):
+    """A beam with a slab: a rectangular web with a flange at one face.
+
+    Hoops, cover and `width` are those of the web; the flange is concrete outside the hoops. Bars of
+    the slab are bars at their depth, as far as the flange is effective. An L-section, held upright
+    by its slab, bends as a tee with the same flange.
+
+    Parameters
+    ----------
+    width, depth, concrete, bars, layout, ties, cover, side_cover, bar_diameter, strips
+        As for `RectangularSection`; the depth includes the flange.
+    wall, side_wall, inner_layout
+        Not for a tee.
+    flange_width : float
+        Effective width of the flange with that of the web [m]: `rbsdem.section.flange_width`.
+    flange_thickness : float
+        Thickness of the flange [m].
+    flange_in_tension : bool, optional
+        Whether the flange is at the face y > 0, which a positive curvature pulls. By default it is
+        at the other one, on top in figures of the section; `mirrored` has it where it was not.
+
+    Raises
+    ------
+    InputError
+        With a line for every error.
+
+    Examples
+    --------
+    >>> steel = Steel(420e6, 620e6)
+    >>> beam = rbsdem.frames.TeeSection(
+    ...     0.3,
+    ...     0.5,
+    ...     Concrete(30e6),
+    ...     bars=[(0.2, 1e-3, steel), (-0.2, 1e-3, steel), (-0.19, 0.5e-3, steel)],
+    ...     bar_diameter=0.016,
+    ...     ties=Ties(0.008, 0.1, steel),
+    ...     cover=0.03,
+    ...     flange_width=1.2,
+    ...     flange_thickness=0.12,
+    ... )
+    >>> print(f"{beam.gross_area:.3f} m2, centroid at {1e3 * beam.centroid:.1f} mm")
+    0.258 m2, centroid at -79.5 mm
+    """
+
+    _: KW_ONLY
+    flange_width: float
+    flange_thickness: float
+    flange_in_tension: bool = False
+
+    def __str__(self) -> str:
+        """One line, as for other sections."""
+        flange = f"{1e3 * self.flange_width:g} x {1e3 * self.flange_thickness:g}"
+        return super().__str__().replace(" mm", f" mm with a flange of {flange} mm", 1)
+
+    def _finish(self) -> None:
+        if self.hollow:
+            raise InputError("section: wall is not for a tee; remove it")
+        if not self.flange_width >= self.width:
+            raise InputError(
+                f"section: flange_width = {self.flange_width:g} m must be at least the width of "
+                f"the web, {self.width:g} m, which is part of it"
+            )
+        if not 0.0 < self.flange_thickness < self.depth:
+            raise InputError(
+                f"section: flange_thickness = {self.flange_thickness:g} m must be above 0 and "
+                f"below the depth, {self.depth:g} m"
+            )
+        super()._finish()
+
+    @property
+    def shape(self) -> str:
+        """Name of the shape."""
+        return "tee"
+
+    def _sizes(self) -> dict[str, float]:
+        names = "flange_width", "flange_thickness", "flange_in_tension"
+        return super()._sizes() | {name: getattr(self, name) for name in names}
+
+    def _turned(self) -> dict[str, Any]:
+        wider = self.flange_width > self.width
+        return {"flange_in_tension": not self.flange_in_tension} if wider else {}
+
+    def part(self, depth: float) -> tuple[float, float]:
+        """Return area and first moment about mid-depth of the concrete near the compression face.
+
+        `depth` is measured from that face [m].
+        """
+        area, first = super().part(depth)
+        face = self.depth - self.flange_thickness if self.flange_in_tension else 0.0
+        reached = min(max(depth - face, 0.0), self.flange_thickness)
+        wings = reached * (self.flange_width - self.width)
+        return area + wings, first + wings * (face + 0.5 * reached - 0.5 * self.depth)
+
+    def outline(self) -> Array:
+        """Return the corners of the concrete, x and y [m]."""
+        web, wing, face = 0.5 * self.width, 0.5 * self.flange_width, 0.5 * self.depth
+        inner = self.flange_thickness - face
+        half = np.array([(web, face), (web, inner), (wing, inner), (wing, -face)])
+        whole = np.vstack([half, half[::-1] * [-1, 1]])
+        return whole * [1, -1] if self.flange_in_tension else whole
+
+    def place_bars(self, bars: Sequence[tuple[float, float]]) -> list[tuple[float, float, float]]:
+        """Return where bars stand across the width: those of the slab along the flange.
+
+        They are those at the depth of the flange that would fill more than half of the web.
+        """
+
+        def in_slab(bar: tuple[float, float]) -> bool:
+            y = bar[0] if self.flange_in_tension else -bar[0]
+            beside = sum(d for other, d in bars if abs(other - bar[0]) < 1e-6)
+            return y > 0.5 * self.depth - self.flange_thickness and beside > 0.5 * self.width
+
+        slab = [bar for bar in bars if in_slab(bar)]
+        placed = super().place_bars([bar for bar in bars if bar not in slab])
+        across = self.flange_width - 2.0 * float(self.side_cover or 0.0)
+        return placed + _in_rows(slab, across, self.bar_diameter)
 
 
 @dataclass(frozen=True)

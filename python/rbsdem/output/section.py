@@ -204,8 +204,9 @@ def section(section: Section, *, ax: Axes | None = None) -> Axes:
     from matplotlib.patches import Circle, Polygon  # noqa: PLC0415
 
     with axes_or_new(ax, (2.6, 2.8)) as drawn:
-        w, h = 1e3 * section.width, 1e3 * section.depth
-        drawn.add_patch(Polygon(1e3 * section.outline(), **_OUTLINE))
+        outline = 1e3 * section.outline() * [1, -1]
+        w, h = np.ptp(outline, axis=0)
+        drawn.add_patch(Polygon(outline, **_OUTLINE))
         looks = ((_TIE, 2.0), (_INSIDE, 2.0), (_TIE, 2.2), (_INSIDE, 2.2))
         for line, (look, order) in zip(hoop_lines(section), looks, strict=False):
             drawn.add_patch(Polygon(1e3 * line, zorder=order, **look))
@@ -422,8 +423,8 @@ def _draw_layers(
     half = 0.5e3 * section.depth
     clip = Polygon(1e3 * section.outline(), facecolor="none", edgecolor="black", lw=0.8, zorder=3)
     ax.add_patch(clip)
-    wide = 1e3 * section.width
-    inner = wide - 2e3 * float(section.side_cover or 0.0)
+    wide = 1e3 * np.ptp(section.outline()[:, 0])
+    inner = 1e3 * (section.width - 2 * float(section.side_cover or 0.0))
     for part, span in (("cover", wide), ("core", inner)):
         chosen = np.flatnonzero(parts == part)
         chosen = chosen[np.argsort(places[chosen])]

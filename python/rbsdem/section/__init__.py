@@ -1,12 +1,14 @@
 """What follows from the drawing of a section: diagrams, strengths, springs, its column.
 
-Each function takes a `rbsdem.RectangularSection` or `rbsdem.CircularSection` first. Strains and
-axial loads are positive in compression, y is positive to the face that a positive curvature puts in
-tension.
+Most functions take a `rbsdem.RectangularSection` or `rbsdem.CircularSection` first, or a
+`rbsdem.frames.TeeSection`. Strains and axial loads are positive in compression, y is positive to
+the face that a positive curvature puts in tension.
 """
 
 from rbsdem.section.axial_moment import InteractionDiagram as InteractionDiagram
 from rbsdem.section.axial_moment import interaction as interaction
+from rbsdem.section.beams import flange_width as flange_width
+from rbsdem.section.beams import rigid_ends as rigid_ends
 from rbsdem.section.columns import column as column
 from rbsdem.section.columns import member as member
 from rbsdem.section.curvature import BilinearDiagram as BilinearDiagram

@@ -242,7 +242,7 @@ def member(
     Parameters
     ----------
     section : Section
-        The section.
+        The section; y > 0 is on the left of the way from start to end, which is above in a beam.
     length : float
         Clear length between its ends [m].
     axial_load : float, optional
@@ -278,7 +278,7 @@ def member(
         area=area * length / max(length - hinges, 0.1 * length),
         inertia=area * section.depth**2 / 12,
         flexure={0.0: hinge, place: above, 1 - place: above.mirrored(), 1.0: hinge},
-        shear={0.0: fails, 0.5 * place: slips, 1 - 0.5 * place: slips, 1.0: fails},
+        shear={0.0: fails, 0.5 * place: slips, 1 - 0.5 * place: slips, 1.0: fails.mirrored()},
         between="rigid",
         panel=panel,
         name=name,

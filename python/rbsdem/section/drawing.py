@@ -11,7 +11,7 @@ from rbsdem import _core
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import Column
 from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
-from rbsdem.model.shape import CircularSection, RectangularSection, Section
+from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
 from rbsdem.section.layered import LayeredColumn, LayeredModel
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
 
@@ -24,6 +24,7 @@ SHAPES: dict[str, type[Section]] = {
     "circle": CircularSection,
     "hollow_rectangle": RectangularSection,
     "hollow_circle": CircularSection,
+    "tee": TeeSection,
 }
 
 #: What groups with steels stand for.

@@ -60,7 +60,7 @@ class Strips:
     area : float
         Of the whole section [m2].
     inertia : float
-        Second moment of the whole section [m4].
+        Second moment of the whole section about its centroid [m4].
     shear_area : float
         [m2].
     confining_stress : float
@@ -350,7 +350,8 @@ def hinge_joint(
         )
 
     layers += [(y, bar(area, steel)) for y, area, steel in section.bars]
-    of_bars = sum(steel.es * (area * y**2) for y, area, steel in section.bars)
+    centre = section.centroid
+    of_bars = sum(steel.es * (area * (y - centre) ** 2) for y, area, steel in section.bars)
     moment = _yield_moment(section, axial_load, ratio, yield_stress)
     return HingeJoint(
         unchecked(Layered, layers=tuple(layers)),

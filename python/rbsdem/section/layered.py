@@ -190,7 +190,8 @@ class LayeredModel:
         The column cracks at the moment of a tensile stress of 0.6 sqrt(f'c) (MPa), and stays below
         yield. From a to b below the top its curvature gains in proportion to what the moment is
         above that; where all of the part has cracked, the joint in its middle turns as much if it
-        cracks at 3/4 (a + b)^2/(a^2 + a b + b^2) of the moment.
+        cracks at 3/4 (a + b)^2/(a^2 + a b + b^2) of the moment. Of unlike faces the one further
+        from the centroid counts for both.
         """
         cracked = self.parameters.cracked_above
         if not cracked > 0.0:
@@ -202,7 +203,7 @@ class LayeredModel:
         low = self.n - 1 - number
         high = low - 1
         share = 0.75 * (low + high) ** 2 / (low**2 + low * high + high**2)
-        m_c = share * stress * section.inertia / (0.5 * section.depth)
+        m_c = share * stress * section.inertia / (0.5 * section.depth + abs(section.centroid))
         d_c, k_y = m_c / stiffness, cracked * stiffness
         # More than the hinge carries, so that the joint never yields.
         most = 2.0 * max(self.joint.yield_moment, m_c)

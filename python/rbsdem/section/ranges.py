@@ -183,6 +183,8 @@ def outside(section: Section, height: float, axial_load: float) -> tuple[str, ..
         found["yield stress of the ties times their ratio"] = ratio * ties.steel.fy
         if section.bar_diameter:
             found["tie spacing over bar diameter"] = ties.spacing / section.bar_diameter
+    if section.shape == "tee":
+        remarks.append("the section has a flange; those of the tests had none")
     if section.hollow:
         remarks.append("the section is hollow; those of the tests were solid")
     for name, value in found.items():

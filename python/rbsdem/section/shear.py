@@ -198,9 +198,10 @@ def shear_diagram(
     Raises
     ------
     InputError
-        If a value is refused, or the section cannot carry the axial load.
+        If a value is refused, or the section has a flange or cannot carry the axial load.
     """
-    checked_section(section)
+    if checked_section(section).shape == "tee":
+        raise InputError("shear diagram: the wings of a flange carry no shear; give the web alone")
     if curvature is None:
         points = _arguments.integer(points, "points", least=2, most=MOST_POINTS)
         last = _FURTHEST / section.depth

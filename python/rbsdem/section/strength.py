@@ -88,12 +88,14 @@ def shear_sizes(section: Section) -> ShearSizes:
         tie_yield = ties.steel.fy
         core = section.depth - 2.0 * section.cover - ties.diameter
     spacing = ties.spacing if ties is not None else math.inf
+    # Wings of a flange carry no shear along the depth.
+    whole = section.width * section.depth if section.shape == "tee" else section.gross_area
     return ShearSizes(
         section.concrete_law["fc"],
         section.web_width,
         section.depth,
         section.effective_depth,
-        section.gross_area,
+        whole,
         steel,
         area,
         spacing,
