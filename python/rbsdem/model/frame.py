@@ -503,8 +503,8 @@ class Frame:
 
     @property
     def height(self) -> float:
-        """Height from the lowest to the highest node [m]."""
-        return float(self.parts.y.max() - self.parts.y.min())
+        """Height from the lowest to the highest node, of a beam alone its length [m]."""
+        return float(np.ptp(self.parts.y) or np.ptp(self.parts.x))
 
     @property
     def n(self) -> int:
