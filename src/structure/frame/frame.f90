@@ -43,6 +43,10 @@ module rbs_structure_frame_frame
    !> Times that differ by less than this share are the same.
    real(wp), parameter :: same_time = 1.0e-9_wp
 
+   type :: spring_list
+      integer, allocatable :: spring(:)
+   end type spring_list
+
    type, extends(structure_type) :: frame_type
       type(frame_element), allocatable :: element(:)
       !> Names, floors of the grid (-1 for nodes that are none of it) and places [m] of the nodes (nodes), and
@@ -56,6 +60,8 @@ module rbs_structure_frame_frame
       real(wp), allocatable :: spring_place(:)
       !> Whether a spring is the first layer of a joint (inside)
       logical, allocatable :: heads(:)
+      !> Springs that rows tell, by kind; of a joint of layers the first one where it rotates and opens
+      type(spring_list) :: listed(3)
       !> Number of the unknown of each displacement, 0 where a support holds it (3, nodes)
       integer, allocatable :: number(:, :)
       !> The same of the rotation of the beams, where a panel lets them turn against columns; else 0 (nodes)
@@ -103,7 +109,6 @@ module rbs_structure_frame_frame
       procedure :: acceleration_scale
       procedure :: channels
       procedure :: fill_row
-      procedure :: springs_of
       procedure :: base_force
       procedure :: accelerations
       procedure :: check_loads
@@ -751,23 +756,13 @@ contains
       channel(2:4)%count = self%n
       channel(5:7)%count = m
       do kind = 1, 3
-         held(6 + 2*kind:7 + 2*kind) = self%springs_of(kind) > 0
-         channel(6 + 2*kind:7 + 2*kind)%count = self%springs_of(kind)
+         held(6 + 2*kind:7 + 2*kind) = size(self%listed(kind)%spring) > 0
+         channel(6 + 2*kind:7 + 2*kind)%count = size(self%listed(kind)%spring)
       end do
       channel(14)%count = self%n
       channel(16)%count = m
       channel = pack(channel, held)
    end subroutine channels
-
-   !> Springs of a kind in the members, joints of layers among those that rotate and open.
-   pure integer function springs_of(self, kind)
-      class(frame_type), intent(in) :: self
-      integer, intent(in) :: kind
-
-      springs_of = count(self%place(:self%inside)%kind == kind)
-      ! A joint of layers rotates and opens.
-      if (kind == flexure .or. kind == axial) springs_of = springs_of + count(self%heads)
-   end function springs_of
 
    pure subroutine fill_row(self, contents, response, springs, d, row)
       class(frame_type), intent(in) :: self
@@ -800,14 +795,11 @@ contains
       end do
       at = at + 3*m
       do kind = 1, 3
-         associate (of_kind => self%place(:self%inside)%kind == kind, number => self%springs_of(kind))
-            if (kind /= shear .and. any(self%heads)) then
-               call fill_joints(self, kind, d, f, number, row(at + 1:at + 2*number))
-            else
-               row(at + 1:at + number) = pack(d(:self%inside), of_kind)
-               row(at + number + 1:at + 2*number) = pack(f(:self%inside), of_kind)
-            end if
-            at = at + 2*number
+         associate (of => self%listed(kind)%spring)
+            do j = 1, size(of)
+               call tell_spring(self, kind, of(j), d, f, row(at + j), row(at + size(of) + j))
+            end do
+            at = at + 2*size(of)
          end associate
       end do
       if (contents%motion) then
@@ -824,37 +816,32 @@ contains
       end do
    end subroutine fill_row
 
-   !> Rotations and moments, or openings and axial forces, of the joints in the order of the members.
-   pure subroutine fill_joints(self, kind, d, f, number, row)
+   !> Deformation and force of a spring; rotation and moment, or opening and axial force, of a joint of layers.
+   pure subroutine tell_spring(self, kind, spring, d, f, deformation, force)
       type(frame_type), intent(in) :: self
-      integer, intent(in) :: kind, number
+      !> Kind that is told, and the spring, of a joint its first layer
+      integer, intent(in) :: kind, spring
       real(wp), intent(in), contiguous :: d(:), f(:)
-      real(wp), intent(out) :: row(number, 2)
+      real(wp), intent(out) :: deformation, force
       real(wp) :: z(2)
-      integer :: at, i, j, of, last
+      integer :: j, last
 
-      at = 0
-      do i = 1, size(self%element)
-         associate (e => self%element(i))
-            do j = 1, e%bending + e%opening
-               of = e%before + j
-               if (self%place(of)%kind == kind) then
-                  at = at + 1
-                  row(at, :) = [d(of), f(of)]
-               else if (self%heads(of)) then
-                  at = at + 1
-                  last = e%before + e%first(self%place(of)%joint + 1) - 1
-                  z = joint_motion(e, self%place(of)%joint, size(e%y), d(e%before + 1:e%before + size(e%y)))
-                  if (kind == axial) then
-                     row(at, :) = [z(1), sum(f(of:last))]
-                  else
-                     row(at, :) = [z(2), sum(f(of:last)*e%y(j:j + last - of))]
-                  end if
-               end if
-            end do
-         end associate
-      end do
-   end subroutine fill_joints
+      deformation = d(spring)
+      force = f(spring)
+      if (.not. self%heads(spring)) return
+      associate (e => self%element(self%place(spring)%member), joint => self%place(spring)%joint)
+         z = joint_motion(e, joint, size(e%y), d(e%before + 1:e%before + size(e%y)))
+         last = e%before + e%first(joint + 1) - 1
+         if (kind == axial) then
+            deformation = z(1)
+            force = sum(f(spring:last))
+         else
+            deformation = z(2)
+            j = spring - e%before
+            force = sum(f(spring:last)*e%y(j:j + last - spring))
+         end if
+      end associate
+   end subroutine tell_spring
 
    !> What supports and springs from the ground hold the frame with along x [N].
    pure real(wp) function base_force(self, d, f) result(force)

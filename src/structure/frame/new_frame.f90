@@ -112,6 +112,7 @@ contains
       call set_ground(frame, node, spring)
       call set_elements(frame, node, member, spring)
       call set_panels(frame, node, spring)
+      call list_springs(frame)
       call add_rules(frame%rules, spring, springs)
       frame%initial_stiffness = frame%rules%initial_stiffness()
       allocate (frame%initial_tangent(frame%tangent_numbers), source=0.0_wp)
@@ -360,6 +361,17 @@ contains
          frame%place(at) = spring_place(flexure, 0, 1, index=i, owner=node(i)%name)
       end do
    end subroutine set_panels
+
+   !> The springs of each kind; joints of layers rotate and open.
+   subroutine list_springs(frame)
+      type(frame_type), intent(inout) :: frame
+      integer :: i, kind
+
+      do kind = 1, 3
+         frame%listed(kind)%spring = pack([(i, i=1, frame%inside)], frame%place(:frame%inside)%kind == kind &
+                                          .or. (frame%heads .and. kind /= shear))
+      end do
+   end subroutine list_springs
 
    !> Joints of an element some of which are of layers.
    subroutine set_joints(e, m, clear)
