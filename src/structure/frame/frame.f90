@@ -816,7 +816,7 @@ contains
       end do
    end subroutine fill_row
 
-   !> Deformation and force of a spring; rotation and moment, or opening and axial force, of a joint of layers.
+   !> Deformation and force of a spring; of a joint of layers rotation and moment, or opening and axial force.
    pure subroutine tell_spring(self, kind, spring, d, f, deformation, force)
       type(frame_type), intent(in) :: self
       !> Kind that is told, and the spring, of a joint its first layer
