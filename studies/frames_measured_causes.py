@@ -42,6 +42,10 @@ import rbsdem
 from rbsdem.frames import FrameMember, FrameNode, Panel
 from rbsdem.springs import Layered, Pinching, SteelSpring
 
+#: How bars of columns grow stronger with their range of strain, and wear.
+OF_COLUMNS = {
+    name: getattr(rbsdem.section.parameters(), name) for name in ("isotropic_hardening", "fatigue")
+}
 #: The share of the yield stress that the layered model adds to the measured one.
 ADDED = rbsdem.section.parameters().steel_strength
 
@@ -139,9 +143,11 @@ CHANGES: dict[str, tuple[Callable | None, Callable | None]] = {
         partial(kind, steel_strength=1.0),
         None,
     ),
-    "no isotropic hardening": (partial(kind, isotropic_hardening=0.0), None),
-    "no fatigue of bars": (partial(kind, fatigue=0.0), None),
-    "neither of them": (partial(kind, isotropic_hardening=0.0, fatigue=0.0), None),
+    "bars of beams as those of columns": (partial(kind, **OF_COLUMNS), None),
+    "bars of columns as those of beams": (
+        partial(kind, isotropic_hardening=0.0, fatigue=0.0),
+        None,
+    ),
     "bars as in their test in tension, 1.05": (on_bars(coupon), None),
     "bars as in their test in tension, 1.00": (on_bars(partial(coupon, strength=1.0)), None),
     "members cracked in shear from the first": (cracked_in_shear, None),

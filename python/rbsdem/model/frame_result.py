@@ -291,7 +291,7 @@ class FrameResult(Reported):
             for i, one in enumerate(joints)
             if (one.rule, one.member, one.place) == ("layered", spring.member, spring.place)
         )
-        opening = self.springs["opening"][:, at]
+        opening = self.springs["opening"][: rotation.size, at]
         first: dict[Literal[1, -1], int] = {}
         for y, layer in made.layers:
             for point in layer.landmarks():

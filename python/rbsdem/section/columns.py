@@ -28,6 +28,9 @@ MODELS: tuple[str, ...] = get_args(Model)
 DEFAULT: Model = "layered"
 """The model that is taken if none is named."""
 
+#: What was fitted to columns lets bars grow stronger with their range of strain, and wear: in beams,
+#: where they go much farther, beyond what they have in tension.
+_BARS_OF_BEAMS = {"isotropic_hardening": 0.0, "fatigue": 0.0}
 #: Ties that hold less than this share of the axial load hold none of it.
 _LEAST_TIES = 1e-3
 #: Force at the largest moment over strength in shear, up to which columns fail in flexure.
@@ -248,7 +251,8 @@ def member(
     axial_load : float, optional
         Compression under the dead load [N].
     model_parameters, restrained
-        As for `column`.
+        As for `column`; by default bars of members without axial load neither grow stronger nor
+        wear with their range of strain, as those of columns do.
     panel, name
         As for `FrameMember`.
 
@@ -257,6 +261,8 @@ def member(
     InputError
         If a value is refused, or the section cannot carry the axial load.
     """
+    if model_parameters is None and not axial_load:
+        model_parameters = parameters().with_values(**_BARS_OF_BEAMS)
     half = column(
         section,
         0.5 * column_length(length, "length"),
