@@ -28,8 +28,8 @@ MODELS: tuple[str, ...] = get_args(Model)
 DEFAULT: Model = "layered"
 """The model that is taken if none is named."""
 
-#: What was fitted to columns lets bars grow stronger with their range of strain, and wear: in beams,
-#: where they go much farther, beyond what they have in tension.
+#: What was fitted to columns lets bars grow stronger with their range of strain, and wear; in
+#: beams, where they go much farther, they would have more than their strength in tension.
 _BARS_OF_BEAMS = {"isotropic_hardening": 0.0, "fatigue": 0.0}
 #: Ties that hold less than this share of the axial load hold none of it.
 _LEAST_TIES = 1e-3
