@@ -15,7 +15,7 @@ module rbs_solve_time_implicit
    use rbs_solve_time_implicit_balance, only: step_balance
    use rbs_solve_time_implicit_tangent, only: step_tangent
    use rbs_loading_loads, only: lateral, horizontal
-   use rbs_solve_time_newton, only: newton_stepper, move_springs
+   use rbs_solve_time_newton, only: newton_stepper
    use rbs_solve_time_state, only: state_type
    implicit none
    private
@@ -81,16 +81,12 @@ contains
       type(finite_stepper) :: stepper
 
       stepper%average = method%average
-      stepper%alpha_m = method%step%alpha_m
-      stepper%alpha_f = method%step%alpha_f
-      stepper%beta = method%step%beta
-      stepper%gamma = method%step%gamma
+      stepper%by = method%step%family_type
    end function with_finite_rotations
 
-   !> Once, before the first step.
    subroutine prepare(self, state)
       class(implicit_stepper), intent(inout) :: self
-      type(state_type), intent(in) :: state
+      type(state_type), intent(inout) :: state
 
       call self%step%start(state)
       if (allocated(self%dx)) return
@@ -99,38 +95,33 @@ contains
                 self%dq(size(state%q)), self%mean(size(state%q)), source=0.0_wp)
    end subroutine prepare
 
-   !> Take a step of h, if it converges.
-   subroutine take_step(self, state, h, load, converged, busiest)
+   subroutine take_step(self, state)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4)
-      logical, intent(out) :: converged
-      integer, intent(out) :: busiest
 
+      self%busiest = 0
       if (associated(state%motion%one_body)) then
-         busiest = 0
-         call take_step_of_one_body(self, state, h, load, converged)
-         if (converged) return
+         call take_step_of_one_body(self, state)
+         if (self%converged) return
       end if
-      call solve_step(self, state, h, load, converged, busiest)
-      if (converged) call commit(self, state, h, load)
+      call solve_step(self, state)
+      if (self%converged) call commit(self, state)
    end subroutine take_step
 
-   !> Take a step of h of one body without damping. If it is not found so, nothing has happened.
-   subroutine take_step_of_one_body(self, state, h, load, taken)
+   !> Take a step of one body without damping. If it is not found so, nothing has happened.
+   subroutine take_step_of_one_body(self, state)
       type(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4)
-      logical, intent(out) :: taken
       real(wp) :: mean(2)
 
-      associate (step => self%step, body => self%one_body, motion => state%motion)
+      associate (step => self%step, body => self%one_body, motion => state%motion, h => self%h, &
+                 load => self%load)
          if (abs(h - body%h) > 0.0_wp .or. abs(self%wanted - body%wanted) > 0.0_wp) then
             call fit_one_body(body, step, self%wanted, state, h)
          end if
          call body%take_step(state%springs, state%q, step%v0, step%a0, step%g0, step%largest, &
-                             load(lateral), load(horizontal), taken)
-         if (.not. taken) return
+                             load(lateral), load(horizontal), self%converged)
+         if (.not. self%converged) return
          mean = 0.5_wp*(state%load(:2) + load(:2))
          if (motion%acts(lateral)) then
             state%of_loads = state%of_loads &
@@ -183,72 +174,59 @@ contains
       call body%fit_to(state%springs)
    end subroutine fit_one_body
 
-   !> Find the end of a step of h. If it is not found, the springs are as before.
-   subroutine solve_step(self, state, h, load, converged, busiest)
+   !> Find the end of the step. If it is not found, the springs are as before.
+   subroutine solve_step(self, state)
       type(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4)
-      logical, intent(out) :: converged
-      !> The spring that changed its line last, 0 for none
-      integer, intent(out) :: busiest
-      real(wp) :: size_now
-      logical :: marked
 
-      marked = .false.
-      busiest = 0
-      call state%motion%press(state%springs, load)
-      call begin(self, state, h, load, size_now)
-      call self%iterate(state, h, load, size_now, converged, marked)
-      if (.not. converged .and. marked) then
+      self%marked = .false.
+      call state%motion%press(state%springs, self%load)
+      call begin(self, state)
+      call self%iterate(state)
+      if (.not. self%marked) return
+      if (.not. self%converged) then
          call state%springs%restore()
          ! Joints under an axial load that varies have no lines that the deformations alone could follow.
          if (.not. state%springs%pressed) then
-            call go_by_events(self, state, h, load, converged, busiest)
-            if (.not. converged) call state%springs%restore()
+            call go_by_events(self, state)
+            if (.not. self%converged) call state%springs%restore()
          end if
       end if
-      if (marked) call state%springs%forget_mark()
+      call state%springs%forget_mark()
    end subroutine solve_step
 
    !> The trial at the start of the step.
-   subroutine begin(self, state, h, load, size_now)
+   subroutine begin(self, state)
       type(implicit_stepper), intent(inout) :: self
       type(state_type), intent(in) :: state
-      real(wp), intent(in) :: h, load(4)
-      real(wp), intent(out) :: size_now
 
       self%step%moved = 0.0_wp
       self%step%q1 = state%q
-      call self%step%find_residual(state, h, load, size_now)
+      call self%step%find_residual(state, self%h, self%load, self%residual)
    end subroutine begin
 
-   subroutine correct(self, state, h, found)
+   subroutine correct(self, state)
       class(implicit_stepper), intent(inout) :: self
-      type(state_type), intent(in) :: state
-      real(wp), intent(in) :: h
-      logical, intent(out) :: found
+      type(state_type), intent(inout) :: state
 
-      call self%tangent%find_correction(self%step, state, h, self%dx)
+      call self%tangent%find_correction(self%step, state, self%h, self%dx)
       associate (now => self%step%now)
          call state%motion%structure%spring_rates(now%tangent, self%dx, self%dq)
          if (size(now%correction) > 0) self%dq = self%dq + now%correction
       end associate
-      found = .true.
    end subroutine correct
 
-   subroutine try(self, state, h, load, share, marked, size_now)
+   subroutine try(self, state, share)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4), share
-      logical, intent(inout) :: marked
-      real(wp), intent(out) :: size_now
+      real(wp), intent(in) :: share
       logical :: inside
 
-      size_now = huge(1.0_wp)
+      self%residual = huge(1.0_wp)
       self%step%q1 = self%step%q1 + share*self%dq
       self%step%moved = self%step%moved + share*self%dx
-      call move_springs(state, self%step%q1, marked, inside)
-      if (inside) call self%step%find_residual(state, h, load, size_now)
+      call self%move_springs(state, self%step%q1, inside)
+      if (inside) call self%step%find_residual(state, self%h, self%load, self%residual)
    end subroutine try
 
    real(wp) function work_of_residual(self) result(work)
@@ -257,48 +235,41 @@ contains
       work = inner_product(size(self%step%r), self%step%r, self%dx)
    end function work_of_residual
 
-   logical function is_round_off(self, state, h)
+   logical function is_round_off(self, state)
       class(implicit_stepper), intent(in) :: self
       type(state_type), intent(in) :: state
-      real(wp), intent(in) :: h
 
-      is_round_off = self%step%is_round_off(state%motion%structure, h, self%tangent%stiffness)
+      is_round_off = self%step%is_round_off(state%motion%structure, self%h, self%tangent%stiffness)
    end function is_round_off
 
    !> The step from end to end of the springs' lines, where `iterate` has failed. On the present lines the
    !> tangent step is exact, so the residual decreases in proportion to the way, and no line is taken twice.
-   subroutine go_by_events(self, state, h, load, converged, busiest)
+   subroutine go_by_events(self, state)
       type(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4)
-      logical, intent(out) :: converged
-      integer, intent(out) :: busiest
-      real(wp) :: share, size_now, size_before
+      real(wp) :: share, before
       integer :: iteration, i, way
-      logical :: found
 
-      converged = .false.
-      busiest = 0
-      size_before = huge(1.0_wp)
-      call begin(self, state, h, load, size_now)
+      before = huge(1.0_wp)
+      call begin(self, state)
       do iteration = 1, 100 + 20*state%springs%count
-         call self%correct(state, h, found)
+         call self%correct(state)
          call first_end(state, self%step%q1, self%dq, share, i, way)
          self%step%q1 = self%step%q1 + share*self%dq
          self%step%moved = self%step%moved + share*self%dx
          if (i > 0) then
-            busiest = i
+            self%busiest = i
             call state%springs%carry_to(self%step%q1)
             call state%springs%leave(i, way)
             self%step%q1(i) = state%springs%d(i)
             if (state%springs%stuck) return
-            size_before = huge(1.0_wp)
+            before = huge(1.0_wp)
          end if
-         call self%step%find_residual(state, h, load, size_now)
+         call self%step%find_residual(state, self%h, self%load, self%residual)
          if (i > 0) cycle
-         converged = self%has_converged(state, h, size_now, size_before)
-         if (converged .or. .not. size_now < size_before) return
-         size_before = size_now
+         self%converged = self%has_converged(state, before)
+         if (self%converged .or. .not. self%residual < before) return
+         before = self%residual
       end do
    end subroutine go_by_events
 
@@ -337,14 +308,14 @@ contains
 
    !> The end of the step becomes the state. Works by the trapezoidal rule along the way, which balances
    !> exactly for average acceleration on straight lines.
-   subroutine commit(self, state, h, load)
+   subroutine commit(self, state)
       type(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4)
       real(wp) :: before, after
       integer :: i
 
-      associate (motion => state%motion, mean => 0.5_wp*(state%load + load))
+      associate (motion => state%motion, h => self%h, load => self%load, &
+                 mean => 0.5_wp*(state%load + self%load))
          do i = lateral, horizontal
             if (motion%acts(i)) then
                state%of_loads = state%of_loads + mean(i)*motion%structure%work_of(i, self%step%moved)
@@ -372,8 +343,8 @@ contains
       call state%springs%carry_to(self%step%q1)
       call swap(state%q, self%step%q1)
       call swap(state%v, self%step%w1)
-      state%time = state%time + h
-      state%load = load
+      state%time = state%time + self%h
+      state%load = self%load
       call self%step%go_on()
    end subroutine commit
 

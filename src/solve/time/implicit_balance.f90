@@ -14,14 +14,17 @@ module rbs_solve_time_implicit_balance
    implicit none
    private
 
-   public :: step_balance
+   public :: family_type, step_balance
 
    !> What round-off leaves of the terms of a sum, as a share of the largest.
    real(wp), parameter :: round_off = 32.0_wp*epsilon(1.0_wp)
 
-   type :: step_balance
-      !> Parameters of the method; those of Newmark's average acceleration
+   !> Parameters of the method; those of Newmark's average acceleration.
+   type :: family_type
       real(wp) :: alpha_m = 0.0_wp, alpha_f = 0.0_wp, beta = 0.25_wp, gamma = 0.5_wp
+   end type family_type
+
+   type, extends(family_type) :: step_balance
       !> Velocities, accelerations and forces of the unknowns at the start of a step, and at its end
       !> (unknowns)
       real(wp), allocatable :: v0(:), a0(:), g0(:), v1(:), a1(:), g1(:)

@@ -125,7 +125,7 @@ contains
    !> With a tolerance the length of the next step and the measure of its error depend on the steps before.
    subroutine resume(self, state, stream)
       class(located_stepper), intent(inout) :: self
-      type(state_type), intent(in) :: state
+      type(state_type), intent(inout) :: state
       type(stream_type), intent(inout) :: stream
 
       stream%broken = stream%broken .or. state%lost

@@ -91,7 +91,7 @@ contains
 
    !> The same method goes on with what it remembers, unless a load jumps at the start.
    subroutine resume_steps(state, stepper, before, standing)
-      type(state_type), intent(in) :: state
+      type(state_type), intent(inout) :: state
       class(stepper_type), intent(inout) :: stepper
       type(end_state), intent(inout) :: before
       type(standing_type), intent(in) :: standing

@@ -106,7 +106,7 @@ contains
    !> state alone inherits this procedure.
    subroutine resume(self, state, stream)
       class(stepper_type), intent(inout) :: self
-      type(state_type), intent(in) :: state
+      type(state_type), intent(inout) :: state
       type(stream_type), intent(inout) :: stream
 
       stream%broken = stream%broken .or. self%steps < 0 .or. state%lost
