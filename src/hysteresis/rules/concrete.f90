@@ -81,7 +81,6 @@ module rbs_hysteresis_rules_concrete
       procedure :: visit
       procedure :: prepare
       procedure :: check_relations
-      procedure :: start
       procedure :: next
    end type concrete_rule
 
@@ -111,9 +110,16 @@ contains
 
    subroutine prepare(self)
       class(concrete_rule), intent(inout) :: self
+      type(concrete_state) :: virgin
+      type(segment) :: branch
 
       self%initial_stiffness = self%k
       self%rubs = self%friction > 0.0_wp
+      ! The envelope begins at zero.
+      branch%lo = 0.0_wp
+      call find_branch(self, virgin, branch, -1)
+      self%branch = branch
+      self%memory = concrete_memory(now=virgin)
    end subroutine prepare
 
    subroutine check_relations(self, name, messages)
@@ -131,18 +137,6 @@ contains
       end if
       call check_product(self%k, self%d_peak, name, 'k d_peak', messages)
    end subroutine check_relations
-
-   subroutine start(self, memory, branch)
-      class(concrete_rule), intent(in) :: self
-      class(rule_memory), allocatable, intent(out) :: memory
-      type(segment), intent(out) :: branch
-      type(concrete_state) :: virgin
-
-      ! The envelope begins at zero.
-      branch%lo = 0.0_wp
-      call find_branch(self, virgin, branch, -1)
-      allocate (memory, source=concrete_memory(now=virgin))
-   end subroutine start
 
    subroutine next(self, memory, branch, direction)
       class(concrete_rule), intent(in) :: self

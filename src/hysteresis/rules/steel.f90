@@ -89,7 +89,6 @@ module rbs_hysteresis_rules_steel
       procedure :: visit
       procedure :: check_relations
       procedure :: prepare
-      procedure :: start
       procedure :: next
    end type steel_rule
 
@@ -161,16 +160,6 @@ contains
       end if
    end subroutine check_relations
 
-   subroutine start(self, memory, branch)
-      class(steel_rule), intent(in) :: self
-      class(rule_memory), allocatable, intent(out) :: memory
-      type(segment), intent(out) :: branch
-
-      allocate (memory, source=steel_memory(now=steel_state(rate=self%k_element, highest=self%d_y, &
-                                                            lowest=-self%d_y)))
-      branch = segment(k=self%k, lo=-self%d_y, hi=self%d_y)
-   end subroutine start
-
    !> What follows from the parameters alone.
    subroutine prepare(self)
       class(steel_rule), intent(inout) :: self
@@ -181,6 +170,8 @@ contains
       self%limited = merge(elements, yielding, is_given(self%f_u))
       call make_table(self, self%table)
       self%most_wear = max(1.0_wp, self%endurance/maxval(self%table%y(:self%limited, :self%table%rows)))
+      self%branch = segment(k=self%k, lo=-self%d_y, hi=self%d_y)
+      self%memory = steel_memory(now=steel_state(rate=self%k_element, highest=self%d_y, lowest=-self%d_y))
    end subroutine prepare
 
    subroutine next(self, memory, branch, direction)

@@ -79,7 +79,6 @@ module rbs_hysteresis_rules_takeda
       procedure :: visit
       procedure :: prepare
       procedure :: check_relations
-      procedure :: start
       procedure :: next
    end type takeda_rule
 
@@ -104,6 +103,8 @@ contains
       class(takeda_rule), intent(inout) :: self
 
       self%initial_stiffness = self%k_c
+      self%branch = segment(k=self%k_c, lo=-self%d_c, hi=self%d_c)
+      self%memory = takeda_memory()
       self%f_c = self%k_c*self%d_c
       self%f_y = self%f_c + self%k_y*(self%d_y - self%d_c)
    end subroutine prepare
@@ -127,15 +128,6 @@ contains
       end if
       call check_product(self%k_c, self%d_y, name, 'k_c d_y', messages)
    end subroutine check_relations
-
-   subroutine start(self, memory, branch)
-      class(takeda_rule), intent(in) :: self
-      class(rule_memory), allocatable, intent(out) :: memory
-      type(segment), intent(out) :: branch
-
-      allocate (takeda_memory :: memory)
-      branch = segment(k=self%k_c, lo=-self%d_c, hi=self%d_c)
-   end subroutine start
 
    subroutine next(self, memory, branch, direction)
       class(takeda_rule), intent(in) :: self
