@@ -129,44 +129,60 @@ contains
             call tell_parts(structure, answer)
          end select
       case ('modes')
-         call tell_modes(request, structure, answer)
+         call tell_modes()
       case default
-         call tell_matrices(structure, request%wants('paper'), answer)
+         call tell_matrices(request%wants('paper'))
       end select
-   end subroutine evaluate_structure
 
-   subroutine tell_modes(request, structure, answer)
-      type(request_type), intent(in) :: request
-      class(structure_type), intent(in) :: structure
-      type(answer_type), intent(inout) :: answer
-      type(modes_type) :: modes
-      integer :: i, j
+   contains
 
-      if (size(request%array('count')) > 0) then
-         call find_modes(structure, modes, answer%error, request%whole('count'))
-      else
-         call find_modes(structure, modes, answer%error)
-      end if
-      if (allocated(answer%error)) return
-      answer%text = trim(modes%warning)
-      answer%value = [modes%stable_step, modes%omega]
-      select type (structure)
-      class is (frame_type)
+      subroutine tell_modes()
+         type(modes_type) :: modes
+         integer :: i, j
+
+         if (size(request%array('count')) > 0) then
+            call find_modes(structure, modes, answer%error, request%whole('count'))
+         else
+            call find_modes(structure, modes, answer%error)
+         end if
+         if (allocated(answer%error)) return
+         answer%text = trim(modes%warning)
+         answer%value = [modes%stable_step, modes%omega]
+         select type (structure)
+         class is (frame_type)
          ! Displacements of the nodes, held ones too: along x, upward, rotations; then the mass of each mode.
-         allocate (answer%rows(3*structure%n + 1, size(modes%omega)), source=0.0_c_double)
-         do i = 1, structure%n
-            do j = 1, 3
-               if (structure%number(j, i) == 0) cycle
-               answer%rows((j - 1)*structure%n + i, :) = modes%shapes(structure%number(j, i), :)
+            allocate (answer%rows(3*structure%n + 1, size(modes%omega)), source=0.0_c_double)
+            do i = 1, structure%n
+               do j = 1, 3
+                  if (structure%number(j, i) == 0) cycle
+                  answer%rows((j - 1)*structure%n + i, :) = modes%shapes(structure%number(j, i), :)
+               end do
             end do
+            do i = 1, size(modes%omega)
+               answer%rows(3*structure%n + 1, i) = structure%work_of(horizontal, modes%shapes(:, i))**2
+            end do
+         class default
+            answer%rows = modes%shapes
+         end select
+      end subroutine tell_modes
+
+      subroutine tell_matrices(paper)
+         logical, intent(in) :: paper
+         type(matrices_type) :: matrices
+         integer :: i
+
+         call assemble_matrices(structure, paper, matrices, answer%error)
+         if (allocated(answer%error)) return
+         answer%text = trim(matrices%unknown(1))
+         do i = 2, size(matrices%unknown)
+            answer%text = answer%text//' '//trim(matrices%unknown(i))
          end do
-         do i = 1, size(modes%omega)
-            answer%rows(3*structure%n + 1, i) = structure%work_of(horizontal, modes%shapes(:, i))**2
-         end do
-      class default
-         answer%rows = modes%shapes
-      end select
-   end subroutine tell_modes
+         answer%rows = reshape([transpose(matrices%mass), transpose(matrices%stiffness), &
+                                transpose(matrices%geometric), transpose(matrices%damping)], &
+                               [size(matrices%unknown), 4*size(matrices%unknown)])
+      end subroutine tell_matrices
+
+   end subroutine evaluate_structure
 
    !> Names of nodes, of members and of the springs of members ('C-1-1 flexure bilinear'), a line each with
    !> tabs between. Values: for the nodes x, y and floor; for the members numbers of their nodes, compression
@@ -237,24 +253,6 @@ contains
          end associate
       end associate
    end subroutine find_joint
-
-   subroutine tell_matrices(structure, paper, answer)
-      class(structure_type), intent(in) :: structure
-      logical, intent(in) :: paper
-      type(answer_type), intent(inout) :: answer
-      type(matrices_type) :: matrices
-      integer :: i
-
-      call assemble_matrices(structure, paper, matrices, answer%error)
-      if (allocated(answer%error)) return
-      answer%text = trim(matrices%unknown(1))
-      do i = 2, size(matrices%unknown)
-         answer%text = answer%text//' '//trim(matrices%unknown(i))
-      end do
-      answer%rows = reshape([transpose(matrices%mass), transpose(matrices%stiffness), &
-                             transpose(matrices%geometric), transpose(matrices%damping)], &
-                            [size(matrices%unknown), 4*size(matrices%unknown)])
-   end subroutine tell_matrices
 
    !> Points of a cyclic protocol, the only loading of a case, in the unit of the amplitudes.
    subroutine make_protocol(request, answer)

@@ -75,9 +75,9 @@ contains
          run%task%keeps_end = .true.
          call take_from(request%array('before'), run%task%before)
          if (request%what == 'cyclic') then
-            call run_cyclic(request, run, answer%error)
+            call run_cyclic(answer%error)
          else
-            call run_time_history(request, run, answer%error)
+            call run_time_history(answer%error)
          end if
       end if
       note = ''
@@ -109,26 +109,82 @@ contains
          answer%text = answer%text//trim(figure(i)%name)//' '
       end do
       answer%text = answer%text//line//note
+
+   contains
+
+      !> Static path through the `target`s.
+      subroutine run_cyclic(error)
+         type(error_type), allocatable, intent(out) :: error
+         real(c_double), pointer, contiguous :: target(:)
+
+         run%case%analysis%method = 'static'
+         call check_settings(run%case, error)
+         if (allocated(error)) return
+         target => request%array('target')
+         associate (every => run%case%output%every)
+            run%recorder%corners = request%wants('corners')
+            run%recorder%expected = kept_rows(size(target), every)
+            call run_static(run%structure, request%wants('by_force'), target, run%task, error, &
+                            request%array('axial_load'))
+         end associate
+      end subroutine run_cyclic
+
+      !> Response in time under the excitations that are given.
+      subroutine run_time_history(error)
+         type(error_type), allocatable, intent(out) :: error
+         type(loads_type) :: loads
+         type(initial_state) :: initial
+         type(time_plan) :: plan
+         real(c_double), pointer, contiguous :: time(:), start(:)
+         character(len=:), allocatable :: note
+         integer :: i
+
+         time => request%array('time')
+         do i = 1, signals
+            call take_signal(trim(signal_names(i)), time, loads%signal(i), error)
+         end do
+         if (.not. allocated(error)) call choose_method(run%case, loads, error)
+         if (allocated(error)) return
+         associate (structure => run%structure, analysis => run%case%analysis, output => run%case%output)
+            call plan_dynamic(structure, analysis, time, loads, plan, error)
+            if (allocated(error)) return
+            if (.not. request%wants('told') .and. expected_seconds(structure, plan) >= patience) then
+               call long_run_note(structure, plan, note)
+               call fatal_error(error, long_run, note)
+               return
+            end if
+         ! Deformations, then velocities; none: at rest.
+            start => request%array('initial')
+            if (size(start) > 0) then
+               initial%deformation = start(:size(structure%place))
+               initial%velocity = start(size(structure%place) + 1:)
+               initial%opening_given = request%wants('opening_given')
+            end if
+            run%recorder%expected = plan%rows(output%every)
+            call run_dynamic(structure, analysis, plan, time, loads, initial, run%task, error, run%sight)
+         end associate
+      end subroutine run_time_history
+
+      !> One of the excitations, if it is given.
+      subroutine take_signal(name, time, signal, error)
+         character(len=*), intent(in) :: name
+         real(c_double), intent(in) :: time(:)
+         type(signal_type), intent(inout) :: signal
+         type(error_type), allocatable, intent(inout) :: error
+         real(c_double), pointer, contiguous :: value(:)
+
+         if (allocated(error) .or. index(' '//request%names, ' '//name//':') == 0) return
+         value => request%array(name)
+         if (size(value) /= size(time)) then
+            call fatal_error(error, bad_input, name//': '//to_text(size(value))//' values for '// &
+                             to_text(size(time))//' times; give one for each')
+            return
+         end if
+         signal%time = time
+         signal%value = value
+      end subroutine take_signal
+
    end subroutine run_analysis
-
-   !> Static path through the `target`s.
-   subroutine run_cyclic(request, run, error)
-      type(request_type), intent(in) :: request
-      type(run_type), intent(inout), target :: run
-      type(error_type), allocatable, intent(out) :: error
-      real(c_double), pointer, contiguous :: target(:)
-
-      run%case%analysis%method = 'static'
-      call check_settings(run%case, error)
-      if (allocated(error)) return
-      target => request%array('target')
-      associate (every => run%case%output%every)
-         run%recorder%corners = request%wants('corners')
-         run%recorder%expected = kept_rows(size(target), every)
-         call run_static(run%structure, request%wants('by_force'), target, run%task, error, &
-                         request%array('axial_load'))
-      end associate
-   end subroutine run_cyclic
 
    !> A state from the numbers of the user; empty for none.
    subroutine take_from(numbers, state)
@@ -171,44 +227,6 @@ contains
       end if
    end subroutine choose_method
 
-   !> Response in time under the excitations that are given.
-   subroutine run_time_history(request, run, error)
-      type(request_type), intent(in) :: request
-      type(run_type), intent(inout), target :: run
-      type(error_type), allocatable, intent(out) :: error
-      type(loads_type) :: loads
-      type(initial_state) :: initial
-      type(time_plan) :: plan
-      real(c_double), pointer, contiguous :: time(:), start(:)
-      character(len=:), allocatable :: note
-      integer :: i
-
-      time => request%array('time')
-      do i = 1, signals
-         call take_signal(request, trim(signal_names(i)), time, loads%signal(i), error)
-      end do
-      if (.not. allocated(error)) call choose_method(run%case, loads, error)
-      if (allocated(error)) return
-      associate (structure => run%structure, analysis => run%case%analysis, output => run%case%output)
-         call plan_dynamic(structure, analysis, time, loads, plan, error)
-         if (allocated(error)) return
-         if (.not. request%wants('told') .and. expected_seconds(structure, plan) >= patience) then
-            call long_run_note(structure, plan, note)
-            call fatal_error(error, long_run, note)
-            return
-         end if
-         ! Deformations, then velocities; none: at rest.
-         start => request%array('initial')
-         if (size(start) > 0) then
-            initial%deformation = start(:size(structure%place))
-            initial%velocity = start(size(structure%place) + 1:)
-            initial%opening_given = request%wants('opening_given')
-         end if
-         run%recorder%expected = plan%rows(output%every)
-         call run_dynamic(structure, analysis, plan, time, loads, initial, run%task, error, run%sight)
-      end associate
-   end subroutine run_time_history
-
    !> What to watch for, from the numbers of the user: state, joint, factors of slip, rotation and opening,
    !> threshold of each.
    pure function watches_of(numbers) result(watch)
@@ -223,25 +241,5 @@ contains
          end associate
       end do
    end function watches_of
-
-   !> One of the excitations, if it is given.
-   subroutine take_signal(request, name, time, signal, error)
-      type(request_type), intent(in) :: request
-      character(len=*), intent(in) :: name
-      real(c_double), intent(in) :: time(:)
-      type(signal_type), intent(inout) :: signal
-      type(error_type), allocatable, intent(inout) :: error
-      real(c_double), pointer, contiguous :: value(:)
-
-      if (allocated(error) .or. index(' '//request%names, ' '//name//':') == 0) return
-      value => request%array(name)
-      if (size(value) /= size(time)) then
-         call fatal_error(error, bad_input, name//': '//to_text(size(value))//' values for '// &
-                          to_text(size(time))//' times; give one for each')
-         return
-      end if
-      signal%time = time
-      signal%value = value
-   end subroutine take_signal
 
 end module rbs_bindings_runs

@@ -42,95 +42,138 @@ contains
       type(case_text), intent(inout) :: text
       integer :: i
 
-      call write_record(case, 'case', text)
+      call write_record('case')
       if (allocated(case%frame)) then
-         call write_frame(case, text)
+         call write_frame()
       else
-         call write_record(case, 'column', text)
+         call write_record('column')
       end if
-      call write_record(case, 'damping', text)
+      call write_record('damping')
       if (.not. allocated(case%frame)) call write_all_springs(case%column, text)
-      if (allocated(case%drawing)) call write_drawing(case, text)
+      if (allocated(case%drawing)) call write_drawing()
       do i = 1, case%loadings
-         call write_record(case, 'loading', text, i)
+         call write_record('loading', i)
       end do
-      call write_record(case, 'analysis', text)
-      call write_record(case, 'output', text)
-   end subroutine write_case
+      call write_record('analysis')
+      call write_record('output')
 
-   !> Write the groups of a frame and its springs.
-   subroutine write_frame(case, text)
-      type(case_record), intent(inout) :: case
-      type(case_text), intent(inout) :: text
-      type(spring_entry) :: entry
-      type(entry_list) :: layer_springs
-      integer :: g, i
+   contains
 
-      do g = 1, size(frame_groups)
-         do i = 1, case%frame%count_of(frame_groups(g))
-            call write_record(case, trim(frame_groups(g)), text, i)
+      !> Write the groups of a frame and its springs.
+      subroutine write_frame()
+         type(spring_entry) :: entry
+         type(entry_list) :: layer_springs
+         integer :: g, i
+
+         do g = 1, size(frame_groups)
+            do i = 1, case%frame%count_of(frame_groups(g))
+               call write_record(trim(frame_groups(g)), i)
+            end do
          end do
-      end do
-      do i = 1, size(case%frame%spring)
-         associate (given => case%frame%spring(i))
-            entry = spring_entry(group=given%group, spring=given%spring)
-            entry%kind = given%kind
-            entry%node = given%node
-            entry%panel = given%panel
-            if (allocated(given%place)) entry%place = given%place
-            call write_spring(entry, text)
-            if (allocated(given%spring%y)) call write_layers(entry, layer_springs, text)
-         end associate
-      end do
-   end subroutine write_frame
-
-   !> Write the values of a group that differ from those of a new record.
-   subroutine write_record(case, group, text, number)
-      type(case_record), intent(inout) :: case
-      character(len=*), intent(in) :: group
-      type(case_text), intent(inout) :: text
-      !> Which of several
-      integer, intent(in), optional :: number
-      type(case_record) :: new
-      type(key_visitor) :: v
-
-      call new%open_group(group)
-      if (group == 'section') then
-         call new_shape(case%drawing%section%shape_name, unset, unset, new%drawing%section%shape)
-      end if
-      call v%collect(group)
-      call new%visit_group(group, v)
-      call v%list()
-      call case%visit_group(group, v, number)
-      if (v%listed > 0 .or. any(group == [character(len=7) :: 'column', 'loading', 'frame'])) then
-         call text%group(group, v%entry(:v%listed))
-      end if
-   end subroutine write_record
-
-   !> Write what a column was drawn from.
-   subroutine write_drawing(case, text)
-      type(case_record), intent(inout) :: case
-      type(case_text), intent(inout) :: text
-      integer :: i
-
-      call write_record(case, 'drawing', text)
-      call write_record(case, 'section', text)
-      call write_record(case, 'concrete', text)
-      associate (drawing => case%drawing)
-         do i = 1, size(drawing%section%steels)
-            call write_record(case, 'steel', text, i)
+         do i = 1, size(case%frame%spring)
+            associate (given => case%frame%spring(i))
+               entry = spring_entry(group=given%group, spring=given%spring)
+               entry%kind = given%kind
+               entry%node = given%node
+               entry%panel = given%panel
+               if (allocated(given%place)) entry%place = given%place
+               call write_spring(entry)
+               if (allocated(given%spring%y)) call write_layers(entry, layer_springs)
+            end associate
          end do
-         call write_record(case, 'bars', text)
-         if (allocated(drawing%layout)) call write_record(case, 'layout', text)
-         if (allocated(drawing%inner_layout)) call write_record(case, 'inner_layout', text)
-         if (drawing%section%hoops%kind /= no_ties) then
-            call write_record(case, trim(drawing%section%hoops%name()), text)
+      end subroutine write_frame
+
+      !> Write the values of a group that differ from those of a new record.
+      subroutine write_record(group, number)
+         character(len=*), intent(in) :: group
+         !> Which of several
+         integer, intent(in), optional :: number
+         type(case_record) :: new
+         type(key_visitor) :: v
+
+         call new%open_group(group)
+         if (group == 'section') then
+            call new_shape(case%drawing%section%shape_name, unset, unset, new%drawing%section%shape)
          end if
-         do i = 1, size(drawing%parameters)
-            call write_record(case, 'parameter', text, i)
+         call v%collect(group)
+         call new%visit_group(group, v)
+         call v%list()
+         call case%visit_group(group, v, number)
+         if (v%listed > 0 .or. any(group == [character(len=7) :: 'column', 'loading', 'frame'])) then
+            call text%group(group, v%entry(:v%listed))
+         end if
+      end subroutine write_record
+
+      !> Write what a column was drawn from.
+      subroutine write_drawing()
+         integer :: i
+
+         call write_record('drawing')
+         call write_record('section')
+         call write_record('concrete')
+         associate (drawing => case%drawing)
+            do i = 1, size(drawing%section%steels)
+               call write_record('steel', i)
+            end do
+            call write_record('bars')
+            if (allocated(drawing%layout)) call write_record('layout')
+            if (allocated(drawing%inner_layout)) call write_record('inner_layout')
+            if (drawing%section%hoops%kind /= no_ties) then
+               call write_record(trim(drawing%section%hoops%name()))
+            end if
+            do i = 1, size(drawing%parameters)
+               call write_record('parameter', i)
+            end do
+         end associate
+      end subroutine write_drawing
+
+      !> Write a spring, or the layers of joints.
+      subroutine write_spring(entry)
+         type(spring_entry), intent(inout) :: entry
+         type(spring_entry) :: new
+         type(key_type), allocatable :: keys(:)
+         type(key_visitor) :: v
+
+         call keys_of(entry%spring%rule, keys)
+         new%group = entry%group
+         call v%collect(entry%group)
+         call new%visit(v, keys)
+         call v%list()
+         call entry%visit(v, keys)
+         call text%group(trim(entry%group), v%entry(:v%listed))
+      end subroutine write_spring
+
+      !> Write the springs of layers that have not been written before, then the layers.
+      subroutine write_layers(joint, layer_springs)
+         !> The joints and their layered spring
+         type(spring_entry), intent(in) :: joint
+         !> Springs of layers that have been written before
+         type(entry_list), intent(inout) :: layer_springs
+         type(spring_entry) :: layers
+         type(spring_record) :: layer
+         integer :: i, j
+
+         layers = spring_entry(group='layers', y=joint%spring%y)
+         if (allocated(joint%joint)) layers%joint = joint%joint
+         layers%kind = joint%kind
+         if (allocated(joint%place)) layers%place = joint%place
+         allocate (layers%layer(size(layers%y)))
+         do i = 1, size(layers%y)
+            layer = joint%spring%layer(i)
+            do j = 1, layer_springs%count
+               if (layer_springs%entry(j)%spring%same_as(layer)) exit
+            end do
+            layers%layer(i) = j
+            if (j <= layer_springs%count) cycle
+            call layer_springs%add('layer_spring', '')
+            layer_springs%entry(j)%id = j
+            layer_springs%entry(j)%spring = layer
+            call write_spring(layer_springs%entry(j))
          end do
-      end associate
-   end subroutine write_drawing
+         call write_spring(layers)
+      end subroutine write_layers
+
+   end subroutine write_case
 
    !> Write the springs of a column; equal springs are written once.
    subroutine write_all_springs(column, text)
@@ -177,54 +220,6 @@ contains
       end subroutine write_springs
    end subroutine write_all_springs
 
-   !> Write a spring, or the layers of joints.
-   subroutine write_spring(entry, text)
-      type(spring_entry), intent(inout) :: entry
-      type(case_text), intent(inout) :: text
-      type(spring_entry) :: new
-      type(key_type), allocatable :: keys(:)
-      type(key_visitor) :: v
-
-      call keys_of(entry%spring%rule, keys)
-      new%group = entry%group
-      call v%collect(entry%group)
-      call new%visit(v, keys)
-      call v%list()
-      call entry%visit(v, keys)
-      call text%group(trim(entry%group), v%entry(:v%listed))
-   end subroutine write_spring
-
-   !> Write the springs of layers that have not been written before, then the layers.
-   subroutine write_layers(joint, layer_springs, text)
-      !> The joints and their layered spring
-      type(spring_entry), intent(in) :: joint
-      !> Springs of layers that have been written before
-      type(entry_list), intent(inout) :: layer_springs
-      type(case_text), intent(inout) :: text
-      type(spring_entry) :: layers
-      type(spring_record) :: layer
-      integer :: i, j
-
-      layers = spring_entry(group='layers', y=joint%spring%y)
-      if (allocated(joint%joint)) layers%joint = joint%joint
-      layers%kind = joint%kind
-      if (allocated(joint%place)) layers%place = joint%place
-      allocate (layers%layer(size(layers%y)))
-      do i = 1, size(layers%y)
-         layer = joint%spring%layer(i)
-         do j = 1, layer_springs%count
-            if (layer_springs%entry(j)%spring%same_as(layer)) exit
-         end do
-         layers%layer(i) = j
-         if (j <= layer_springs%count) cycle
-         call layer_springs%add('layer_spring', '')
-         layer_springs%entry(j)%id = j
-         layer_springs%entry(j)%spring = layer
-         call write_spring(layer_springs%entry(j), text)
-      end do
-      call write_spring(layers, text)
-   end subroutine write_layers
-
    !> Add one group.
    subroutine add_group(self, name, entry)
       class(case_text), intent(inout) :: self
@@ -232,10 +227,45 @@ contains
       type(entry_type), intent(in) :: entry(:)
 
       if (self%is_statement) then
-         call statement_group(self, name, entry)
+         call statement_group()
       else
          call namelist_group(self, name, entry)
       end if
+
+   contains
+
+      !> Append `name key key:count key=text`, separated by tabs, and the numbers.
+      subroutine statement_group()
+         character(len=1), parameter :: tab = achar(9)
+         integer :: i
+
+         call self%buffer%append(name)
+         do i = 1, size(entry)
+            call self%buffer%append(tab//trim(entry(i)%name))
+            if (allocated(entry(i)%text)) then
+               call self%buffer%append('='//entry(i)%text)
+               cycle
+            end if
+            if (size(entry(i)%number) /= 1) call self%buffer%append(':'//to_text(size(entry(i)%number)))
+            call add_numbers(entry(i)%number)
+         end do
+         call self%buffer%append(new_line('a'))
+      end subroutine statement_group
+
+      subroutine add_numbers(number)
+         real(wp), intent(in) :: number(:)
+         real(wp), allocatable :: longer(:)
+
+         if (.not. allocated(self%number)) allocate (self%number(256))
+         if (self%count + size(number) > size(self%number)) then
+            allocate (longer(2*(self%count + size(number))))
+            longer(:self%count) = self%number(:self%count)
+            call move_alloc(longer, self%number)
+         end if
+         self%number(self%count + 1:self%count + size(number)) = number
+         self%count = self%count + size(number)
+      end subroutine add_numbers
+
    end subroutine add_group
 
    !> Write `&name key = value, ... /` in lines of limited length.
@@ -307,41 +337,5 @@ contains
          text = exact_text(x)
       end select
    end function value_text
-
-   !> Append `name key key:count key=text`, separated by tabs, and the numbers.
-   subroutine statement_group(self, name, entry)
-      type(case_text), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      type(entry_type), intent(in) :: entry(:)
-      character(len=1), parameter :: tab = achar(9)
-      integer :: i
-
-      call self%buffer%append(name)
-      do i = 1, size(entry)
-         call self%buffer%append(tab//trim(entry(i)%name))
-         if (allocated(entry(i)%text)) then
-            call self%buffer%append('='//entry(i)%text)
-            cycle
-         end if
-         if (size(entry(i)%number) /= 1) call self%buffer%append(':'//to_text(size(entry(i)%number)))
-         call add_numbers(self, entry(i)%number)
-      end do
-      call self%buffer%append(new_line('a'))
-   end subroutine statement_group
-
-   subroutine add_numbers(self, number)
-      type(case_text), intent(inout) :: self
-      real(wp), intent(in) :: number(:)
-      real(wp), allocatable :: longer(:)
-
-      if (.not. allocated(self%number)) allocate (self%number(256))
-      if (self%count + size(number) > size(self%number)) then
-         allocate (longer(2*(self%count + size(number))))
-         longer(:self%count) = self%number(:self%count)
-         call move_alloc(longer, self%number)
-      end if
-      self%number(self%count + 1:self%count + size(number)) = number
-      self%count = self%count + size(number)
-   end subroutine add_numbers
 
 end module rbs_case_writer

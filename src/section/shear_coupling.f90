@@ -49,8 +49,7 @@ contains
       tau = layer_states%tau
       eps0 = state%eps0
       do turn = 1, most_turns
-         call membrane_forces(flow, layers, curvature, eps0, tau, layer_states, concrete_force, &
-                              bar_force, found)
+         call membrane_forces(eps0, layer_states, concrete_force, bar_force, found)
          if (.not. found) return
          load = sum(concrete_force) + sum(bar_force)
          call stresses_of_forces(flow, concrete_force, bar_force, wanted)
@@ -58,8 +57,7 @@ contains
                  maxval(abs(wanted - tau)) <= close_stress*flow%section%plain%fc
          if (found) exit
          trial = layer_states
-         call membrane_forces(flow, layers, curvature, eps0 + small_strain, tau, trial, aside, bar_aside, &
-                              found)
+         call membrane_forces(eps0 + small_strain, trial, aside, bar_aside, found)
          if (.not. found) return
          slope = (sum(aside) + sum(bar_aside) - load)/small_strain
          ! Past the peak of all layers the slope is not positive: a small step towards the axial load.
@@ -72,38 +70,38 @@ contains
       state%eps0 = eps0
       state%moment = -dot_product(concrete_force, flow%section%strips%y) &
                      - dot_product(bar_force, flow%section%bar_y)
+
+   contains
+
+      !> Longitudinal forces of the layers under given shear stresses, and of the bars less the concrete that
+      !> they displace [N].
+      pure subroutine membrane_forces(eps0, layer_states, concrete_force, bar_force, carried)
+         real(wp), intent(in) :: eps0
+         type(layer_state), intent(inout) :: layer_states(:)
+         real(wp), intent(out) :: concrete_force(:), bar_force(:)
+         logical, intent(out) :: carried
+         type(layer_stress) :: stress
+         real(wp) :: displaced, strain
+         integer :: i, layer
+
+         carried = .true.
+         associate (section => flow%section, strips => flow%section%strips)
+            do i = 1, size(layers)
+               call solve_layer(layers(i), curvature*strips%y(i) - eps0, tau(i), layer_states(i), carried)
+               if (.not. carried) return
+               stress = stress_of_state(layers(i), layer_states(i))
+               concrete_force(i) = -stress%sigma_x*strips%area(i)
+            end do
+            do i = 1, size(bar_force)
+               strain = eps0 - curvature*section%bar_y(i)
+               layer = min(size(layers), 1 + int((section%bar_y(i) + 0.5_wp*section%shape%depth)/strips%dy))
+               displaced = concrete_force(layer)/strips%area(layer)
+               bar_force(i) = (steel_stress(section%steels(section%bar_steel(i)), strain) - displaced)* &
+                              section%bar_area(i)
+            end do
+         end associate
+      end subroutine membrane_forces
+
    end subroutine couple
-
-   !> Longitudinal forces of the layers under given shear stresses, and of the bars less the concrete that
-   !> they displace [N].
-   pure subroutine membrane_forces(flow, layers, curvature, eps0, tau, layer_states, concrete_force, &
-                                   bar_force, carried)
-      type(flow_type), intent(in) :: flow
-      type(layer_type), intent(in) :: layers(:)
-      real(wp), intent(in) :: curvature, eps0, tau(:)
-      type(layer_state), intent(inout) :: layer_states(:)
-      real(wp), intent(out) :: concrete_force(:), bar_force(:)
-      logical, intent(out) :: carried
-      type(layer_stress) :: stress
-      real(wp) :: displaced, strain
-      integer :: i, layer
-
-      carried = .true.
-      associate (section => flow%section, strips => flow%section%strips)
-         do i = 1, size(layers)
-            call solve_layer(layers(i), curvature*strips%y(i) - eps0, tau(i), layer_states(i), carried)
-            if (.not. carried) return
-            stress = stress_of_state(layers(i), layer_states(i))
-            concrete_force(i) = -stress%sigma_x*strips%area(i)
-         end do
-         do i = 1, size(bar_force)
-            strain = eps0 - curvature*section%bar_y(i)
-            layer = min(size(layers), 1 + int((section%bar_y(i) + 0.5_wp*section%shape%depth)/strips%dy))
-            displaced = concrete_force(layer)/strips%area(layer)
-            bar_force(i) = (steel_stress(section%steels(section%bar_steel(i)), strain) - displaced)* &
-                           section%bar_area(i)
-         end do
-      end associate
-   end subroutine membrane_forces
 
 end module rbs_section_shear_coupling

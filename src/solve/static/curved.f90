@@ -174,7 +174,7 @@ contains
       do
          limit = self%stride%here%t + self%direction*length
          if (length >= way) limit = self%goal
-         call try_stride(self, limit, cuts, done, near)
+         call try_stride()
          if (done) exit
          cuts = cuts + 1
          self%cuts = self%cuts + 1
@@ -187,141 +187,132 @@ contains
       if (self%standing > 20 + 4*self%moving + merge(2000, 0, self%springs%pressed)) then
          call report_no_way(self, target, error)
       end if
-   end subroutine take_stride
 
-   !> One stride, to a limit or to the first event before it.
-   subroutine try_stride(self, limit, cuts, done, near)
-      class(curved_path), intent(inout) :: self
-      real(wp), intent(in) :: limit
-      !> How often it has been cut
-      integer, intent(in) :: cuts
-      logical, intent(out) :: done
-      !> Whether the way was so short that it is straight, and tells nothing of how far the next stride may
-      !> go. A part of a way that was too long does not count: before a limit point the path bends within any
-      !> distance
-      logical, intent(out) :: near
-      real(wp) :: works(3)
-      logical :: turns
+   contains
 
-      turns = .false.
-      self%stride%there = self%stride%here
-      call self%stride%find_event(self%springs, limit)
-      associate (way => abs(self%stride%there%t - self%stride%here%t))
-         near = (self%stride%spring > 0 .or. .not. abs(self%goal - limit) > 0.0_wp) .and. &
-                way <= close_by*self%extent .and. &
-                way*self%structure%largest_turn(self%stride%here%rate) <= close_by
-      end associate
-      done = near
-      if (.not. near) call self%stride%find_point(self%springs, limit, .true., done)
-      if (done) call set_curve(self)
-      if (done .and. .not. near) then
-         done = self%stride%curve%is_gentle(self%structure)
-         if (done) turns = self%stride%curve%least_rate(self%springs, self%stride%there) < 0.0_wp
-         if (turns) then
-            call self%stride%find_turn(self%springs, done)
-            if (done) call set_curve(self)
-         end if
+      !> One stride, to a limit or to the first event before it.
+      subroutine try_stride()
+         real(wp) :: works(3)
+         logical :: turns
+
+         turns = .false.
+         self%stride%there = self%stride%here
+         call self%stride%find_event(self%springs, limit)
+         associate (way => abs(self%stride%there%t - self%stride%here%t))
+            near = (self%stride%spring > 0 .or. .not. abs(self%goal - limit) > 0.0_wp) .and. &
+                   way <= close_by*self%extent .and. &
+                   way*self%structure%largest_turn(self%stride%here%rate) <= close_by
+         end associate
+         done = near
+         if (.not. near) call self%stride%find_point(self%springs, limit, .true., done)
+         if (done) call set_curve()
+         if (done .and. .not. near) then
+            done = self%stride%curve%is_gentle(self%structure)
+            if (done) turns = self%stride%curve%least_rate(self%springs, self%stride%there) < 0.0_wp
+            if (turns) then
+               call self%stride%find_turn(self%springs, done)
+               if (done) call set_curve()
+            end if
          ! With small rotations the curve is so slight that no layer goes out of its line and back.
-         if (done) done = .not. self%stride%curve%hides_event(self%springs, self%stride%equilibrium%above, &
-                                                              self%structure%kinematics == finite .and. &
-                                                              cuts < most_looks)
-      end if
-      if (.not. done) return
-      call self%stride%find_works(self%springs, self%most_work, cuts < most_cuts_for_work .and. .not. near, &
-                                  works, done)
-      if (done) call accept(self, turns, works)
-   end subroutine try_stride
+            if (done) done = .not. self%stride%curve%hides_event(self%springs, &
+                self%stride%equilibrium%above, self%structure%kinematics == finite .and. cuts < most_looks)
+         end if
+         if (.not. done) return
+         call self%stride%find_works(self%springs, self%most_work, cuts < most_cuts_for_work &
+                                     .and. .not. near, works, done)
+         if (done) call accept(turns, works)
+      end subroutine try_stride
 
-   !> The curve between the present point and the one that is tried.
-   subroutine set_curve(self)
-      class(curved_path), intent(inout) :: self
+      !> The curve between the present point and the one that is tried.
+      subroutine set_curve()
 
-      call self%stride%curve%set(self%structure, self%stride%here, self%stride%there)
-   end subroutine set_curve
+         call self%stride%curve%set(self%structure, self%stride%here, self%stride%there)
+      end subroutine set_curve
 
-   !> Go to the point that was found.
-   subroutine accept(self, turns, works)
-      class(curved_path), intent(inout) :: self
-      !> Whether a motion turns back there
-      logical, intent(in) :: turns
-      !> Of force and axial load on the way [J]
-      real(wp), intent(in) :: works(:)
-      logical :: closed, stands
-      integer :: side
+      !> Go to the point that was found.
+      subroutine accept(turns, works)
+         !> Whether a motion turns back there
+         logical, intent(in) :: turns
+         !> Of force and axial load on the way [J]
+         real(wp), intent(in) :: works(:)
+         logical :: closed, stands
+         integer :: side
 
-      associate (there => self%stride%there, here => self%stride%here, spring => self%stride%spring)
+         associate (there => self%stride%there, here => self%stride%here, spring => self%stride%spring)
          ! An end that is met where the path goes to, but for round-off, is met there: beyond it, the path
          ! would turn back.
-         if (abs(self%goal - there%t) <= on_the_end*abs(self%goal) + round_off*self%extent) then
-            there%t = self%goal
-         end if
-         associate (driven => self%stride%equilibrium%driven(1) + self%stride%equilibrium%driven(2)*there%t)
-            if (self%by_force) then
-               there%force = driven
-            else
-               there%displacement = driven
+            if (abs(self%goal - there%t) <= on_the_end*abs(self%goal) + round_off*self%extent) then
+               there%t = self%goal
             end if
-            self%control = driven
-         end associate
-         self%work = self%work + works(1)
-         self%load_work = self%load_work + works(2)
-         self%most_work = max(self%most_work, abs(self%work))
-         stands = .not. abs(there%t - here%t) > 0.0_wp
-         self%standing = merge(self%standing + 1, 0, stands)
-         if (spring > 0 .and. self%stride%layer == 0) then
-            side = merge(1, -1, self%direction*there%rate(spring) > 0.0_wp)
-            closed = merge(self%springs%includes_upper_end(spring), self%springs%includes_lower_end(spring), &
-                           side > 0)
-            call self%springs%arrive(spring, side)
+            associate (driven => self%stride%equilibrium%driven(1) &
+                       + self%stride%equilibrium%driven(2)*there%t)
+               if (self%by_force) then
+                  there%force = driven
+               else
+                  there%displacement = driven
+               end if
+               self%control = driven
+            end associate
+            self%work = self%work + works(1)
+            self%load_work = self%load_work + works(2)
+            self%most_work = max(self%most_work, abs(self%work))
+            stands = .not. abs(there%t - here%t) > 0.0_wp
+            self%standing = merge(self%standing + 1, 0, stands)
+            if (spring > 0 .and. self%stride%layer == 0) then
+               side = merge(1, -1, self%direction*there%rate(spring) > 0.0_wp)
+               closed = merge(self%springs%includes_upper_end(spring), &
+                        self%springs%includes_lower_end(spring), side > 0)
+               call self%springs%arrive(spring, side)
             ! Where it made no progress its rate is zero and does not show that it goes on. From an open end
             ! it has gone on already.
-            if (closed .and. stands) call self%springs%leave(spring, side)
-         end if
-         call put_springs(self)
+               if (closed .and. stands) call self%springs%leave(spring, side)
+            end if
+            call put_springs()
          ! A motion may have turned by less than the search resolves.
-         if (turns .or. spring > 0 .or. &
-             any(self%springs%unload_on_reversal*self%direction*clean(self%structure, &
-                                                                      there) < 0.0_wp)) self%direction = 0
-      end associate
-      self%force = self%stride%there%force
-      self%displacement = self%stride%there%displacement
-      self%stride%here = self%stride%there
-      self%stride%here%q = self%springs%d
-      call self%stride%equilibrium%remember(self%stride%here%q)
-      if (.not. abs(self%goal - self%stride%here%t) > 0.0_wp) return
-      if (self%stride%equilibrium%varies) then
-         call self%see_corner(self%stride%here%t)
-      else
-         call self%see_corner((self%control - self%way_begin)/(self%goal - self%way_begin))
-      end if
-   end subroutine accept
+            if (turns .or. spring > 0 .or. &
+                any(self%springs%unload_on_reversal*self%direction*clean(self%structure, &
+                                                                         there) < 0.0_wp)) self%direction = 0
+         end associate
+         self%force = self%stride%there%force
+         self%displacement = self%stride%there%displacement
+         self%stride%here = self%stride%there
+         self%stride%here%q = self%springs%d
+         call self%stride%equilibrium%remember(self%stride%here%q)
+         if (.not. abs(self%goal - self%stride%here%t) > 0.0_wp) return
+         if (self%stride%equilibrium%varies) then
+            call self%see_corner(self%stride%here%t)
+         else
+            call self%see_corner((self%control - self%way_begin)/(self%goal - self%way_begin))
+         end if
+      end subroutine accept
 
-   !> Move the springs along their lines; those that come to an open end are put on the next line.
-   subroutine put_springs(self)
-      class(curved_path), intent(inout) :: self
-      real(wp) :: work
-      integer :: i, j, direction
+      !> Move the springs along their lines; those that come to an open end are put on the next line.
+      subroutine put_springs()
+         real(wp) :: work
+         integer :: i, j, direction
 
-      direction = self%direction
-      associate (springs => self%springs, there => self%stride%there)
-         do i = 1, self%moving
-            if (springs%on_plane(i)) cycle
-            call springs%advance_on_branch(i, min(max(there%q(i), springs%first(i)), springs%last(i)))
-            if (.not. is_on_end(springs, i, there%q(i), direction*there%rate(i))) cycle
-            call springs%arrive(i, merge(1, -1, direction*there%rate(i) > 0.0_wp))
-            self%direction = 0
-         end do
-         if (.not. springs%pressed) return
-         do j = 1, size(springs%layered)
-            i = springs%layered(j)
-            work = self%stride%work_of_joint(springs, i)
-            call put_on_plane(springs, i, there%q(i), there%axial_load + self%stride%equilibrium%above(i), &
-                                      there%rate(i), there%axial_rate, &
-                                           merge(self%stride%layer, 0, i == self%stride%spring))
-            springs%work(i) = springs%work(i) + work
-         end do
-      end associate
-   end subroutine put_springs
+         direction = self%direction
+         associate (springs => self%springs, there => self%stride%there)
+            do i = 1, self%moving
+               if (springs%on_plane(i)) cycle
+               call springs%advance_on_branch(i, min(max(there%q(i), springs%first(i)), springs%last(i)))
+               if (.not. is_on_end(springs, i, there%q(i), direction*there%rate(i))) cycle
+               call springs%arrive(i, merge(1, -1, direction*there%rate(i) > 0.0_wp))
+               self%direction = 0
+            end do
+            if (.not. springs%pressed) return
+            do j = 1, size(springs%layered)
+               i = springs%layered(j)
+               work = self%stride%work_of_joint(springs, i)
+               call put_on_plane(springs, i, there%q(i), there%axial_load &
+                                 + self%stride%equilibrium%above(i), there%rate(i), there%axial_rate, &
+                                 merge(self%stride%layer, 0, i == self%stride%spring))
+               springs%work(i) = springs%work(i) + work
+            end do
+         end associate
+      end subroutine put_springs
+
+   end subroutine take_stride
 
    !> Report why the path cannot be continued.
    subroutine report_no_way(self, target, error)

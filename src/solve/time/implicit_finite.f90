@@ -234,61 +234,89 @@ contains
       self%residual = huge(1.0_wp)
       self%moved(:, 1:) = self%moved(:, 1:) + share*self%dx
       self%reaction = self%reaction + share*self%dn
-      call find_changes(self)
+      call find_changes()
       self%q1(:) = state%q + self%change
       call self%move_springs(state, self%q1, inside)
-      if (inside) call find_residual(self, state)
-   end subroutine try
+      if (inside) call find_residual()
 
-   !> Changes of the deformations that follow from what the bodies have moved.
-   subroutine find_changes(self)
-      type(finite_stepper), intent(inout) :: self
-      real(wp) :: change(3)
-      integer :: i
+   contains
 
-      do i = 1, size(self%from)
-         call turn_body(self%from(i), self%moved(3, i), self%turned(i))
-      end do
-      do i = 1, size(self%joint)
-         associate (a => self%joint(i)%lower, b => self%joint(i)%upper)
-            call joint_change(self%turned(a), self%turned(b), self%moved(:, a), self%moved(:, b), &
-                              self%joint(i), change)
+      !> Changes of the deformations that follow from what the bodies have moved.
+      subroutine find_changes()
+         real(wp) :: change(3)
+         integer :: i
+
+         do i = 1, size(self%from)
+            call turn_body(self%from(i), self%moved(3, i), self%turned(i))
+         end do
+         do i = 1, size(self%joint)
+            associate (a => self%joint(i)%lower, b => self%joint(i)%upper)
+               call joint_change(self%turned(a), self%turned(b), self%moved(:, a), self%moved(:, b), &
+                                 self%joint(i), change)
+            end associate
+            call put_joint(self, change, i, self%change)
+            self%gap(i) = change(tension)
+         end do
+      end subroutine find_changes
+
+      !> Residual of the step, and its size relative to the forces. The springs are at the end of the step, or
+      !> still at its start if their lines reach so far.
+      subroutine find_residual()
+
+         associate (by => self%by, h => self%h)
+            if (self%average) then
+               call end_of_step(size(self%moved), h, self%moved, self%v0, self%v1, self%a1)
+               self%seen = self%turned
+               call find_mean_forces()
+               call find_balance(self, 0.5_wp*(state%load + self%load), self%g1)
+               call balance(size(self%r), self%column%mass_damping/h, self%mass, self%moved(:, 1:), &
+                            self%a1(:, 1:), self%g1(:, 1:), self%r)
+            else
+               self%a1 = (self%moved - h*self%v0 - (h**2*(0.5_wp - by%beta))*self%a0)/(by%beta*h**2)
+               self%v1 = self%v0 + h*((1.0_wp - by%gamma)*self%a0 + by%gamma*self%a1)
+               call see_end(self)
+               call find_forces_at(self, state, self%q1, self%w1, self%load, h, self%g1)
+               self%r = (1.0_wp - by%alpha_f)*self%g1(:, 1:) + by%alpha_f*self%g0(:, 1:) &
+                        - self%mass*((1.0_wp - by%alpha_m)*self%a1(:, 1:) + by%alpha_m*self%a0(:, 1:))
+            end if
          end associate
-         call put_joint(self, change, i, self%change)
-         self%gap(i) = change(tension)
-      end do
-   end subroutine find_changes
+         self%scale(1) = max(self%scale(1), maxval(abs(self%mass(:2, :)*self%a1(:2, 1:))))
+         self%scale(2) = max(self%scale(2), maxval(abs(self%mass(3, :)*self%a1(3, 1:))))
+         self%residual = max(maxval(abs(self%r(:2, :)))/max(self%scale(1), self%largest(1), least_scale), &
+                             maxval(abs(self%r(3, :)))/max(self%scale(2), self%largest(2), least_scale))
+         if (self%column%opens) return
+         self%residual = max(self%residual, maxval(abs(self%gap))/maxval(self%column%length))
+      end subroutine find_residual
 
-   !> Residual of the step, and its size relative to the forces. The springs are at the end of the step, or
-   !> still at its start if their lines reach so far.
-   subroutine find_residual(self, state)
-      type(finite_stepper), intent(inout) :: self
-      type(state_type), intent(in) :: state
+      !> Forces of the joints that do exactly the work of springs and damping, and their derivatives.
+      subroutine find_mean_forces()
+         real(wp) :: finish, mean, moved
+         integer :: i
 
-      associate (by => self%by, h => self%h)
-         if (self%average) then
-            call end_of_step(size(self%moved), h, self%moved, self%v0, self%v1, self%a1)
-            self%seen = self%turned
-            call find_mean_forces(self, state)
-            call find_balance(self, 0.5_wp*(state%load + self%load), self%g1)
-            call balance(size(self%r), self%column%mass_damping/h, self%mass, self%moved(:, 1:), &
-                         self%a1(:, 1:), self%g1(:, 1:), self%r)
-         else
-            self%a1 = (self%moved - h*self%v0 - (h**2*(0.5_wp - by%beta))*self%a0)/(by%beta*h**2)
-            self%v1 = self%v0 + h*((1.0_wp - by%gamma)*self%a0 + by%gamma*self%a1)
-            call see_end(self)
-            call find_forces_at(self, state, self%q1, self%w1, self%load, h, self%g1)
-            self%r = (1.0_wp - by%alpha_f)*self%g1(:, 1:) + by%alpha_f*self%g0(:, 1:) &
-                     - self%mass*((1.0_wp - by%alpha_m)*self%a1(:, 1:) + by%alpha_m*self%a0(:, 1:))
-         end if
-      end associate
-      self%scale(1) = max(self%scale(1), maxval(abs(self%mass(:2, :)*self%a1(:2, 1:))))
-      self%scale(2) = max(self%scale(2), maxval(abs(self%mass(3, :)*self%a1(3, 1:))))
-      self%residual = max(maxval(abs(self%r(:2, :)))/max(self%scale(1), self%largest(1), least_scale), &
-                          maxval(abs(self%r(3, :)))/max(self%scale(2), self%largest(2), least_scale))
-      if (self%column%opens) return
-      self%residual = max(self%residual, maxval(abs(self%gap))/maxval(self%column%length))
-   end subroutine find_residual
+         call find_damping(self, state)
+         associate (springs => state%springs, h => self%h)
+            do i = 1, size(self%f)
+               finish = springs%f0(i) + springs%k(i)*(self%q1(i) - springs%d0(i))
+               mean = springs%f0(i) + springs%k(i)*(0.5_wp*(self%q1(i) + state%q(i)) - springs%d0(i))
+               self%k(i) = 0.5_wp*springs%k(i)
+            ! A change that its deformation has no digits for is the one that the spring has made.
+               moved = self%change(i)
+               if (abs(moved) < no_digits*abs(state%q(i))) moved = self%q1(i) - state%q(i)
+            ! Springs with a mark are at the end of the step; their work is counted from its start.
+               if (self%marked .and. abs(moved) > 0.0_wp) then
+                  mean = springs%work(i)/moved
+                  if (abs(finish - mean) > no_change*(abs(finish) + abs(mean))) then
+                     self%k(i) = (finish - mean)/moved
+                  end if
+               end if
+               self%f(i) = mean + self%viscous(i)*self%change(i)/h
+               self%k(i) = self%k(i) + self%viscous(i)/h
+            end do
+         end associate
+         if (allocated(state%motion%modal)) self%f = self%f + matmul(state%motion%modal, self%change)/self%h
+      end subroutine find_mean_forces
+
+   end subroutine try
 
    pure subroutine end_of_step(m, h, moved, v0, v1, a1)
       integer, intent(in) :: m
@@ -320,36 +348,6 @@ contains
          end associate
       end do
    end subroutine see_end
-
-   !> Forces of the joints that do exactly the work of springs and damping, and their derivatives.
-   subroutine find_mean_forces(self, state)
-      type(finite_stepper), intent(inout) :: self
-      type(state_type), intent(in) :: state
-      real(wp) :: finish, mean, moved
-      integer :: i
-
-      call find_damping(self, state)
-      associate (springs => state%springs, h => self%h)
-         do i = 1, size(self%f)
-            finish = springs%f0(i) + springs%k(i)*(self%q1(i) - springs%d0(i))
-            mean = springs%f0(i) + springs%k(i)*(0.5_wp*(self%q1(i) + state%q(i)) - springs%d0(i))
-            self%k(i) = 0.5_wp*springs%k(i)
-            ! A change that its deformation has no digits for is the one that the spring has made.
-            moved = self%change(i)
-            if (abs(moved) < no_digits*abs(state%q(i))) moved = self%q1(i) - state%q(i)
-            ! Springs with a mark are at the end of the step; their work is counted from its start.
-            if (self%marked .and. abs(moved) > 0.0_wp) then
-               mean = springs%work(i)/moved
-               if (abs(finish - mean) > no_change*(abs(finish) + abs(mean))) then
-                  self%k(i) = (finish - mean)/moved
-               end if
-            end if
-            self%f(i) = mean + self%viscous(i)*self%change(i)/h
-            self%k(i) = self%k(i) + self%viscous(i)/h
-         end do
-      end associate
-      if (allocated(state%motion%modal)) self%f = self%f + matmul(state%motion%modal, self%change)/self%h
-   end subroutine find_mean_forces
 
    !> Damping of the joints on their present lines.
    subroutine find_damping(self, state)

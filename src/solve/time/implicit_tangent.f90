@@ -71,11 +71,63 @@ contains
       real(wp) :: relative, load(signals)
 
       if (.not. is_stale(self, state, h)) return
-      call set_tangent(self, step, state, h)
+      call set_tangent()
       ! What lies between the unknowns is condensed by the new tangent.
       if (size(step%now%tangent) == 0) return
       load = step%load
       call step%find_residual(state, h, load, relative)
+
+   contains
+
+      !> Tangent of the step on the present lines, and its factor.
+      subroutine set_tangent()
+         real(wp) :: of_mass, of_damping
+         integer :: i, unstable
+
+         of_damping = (1.0_wp - step%alpha_f)*step%gamma/(step%beta*h)
+         of_mass = (1.0_wp - step%alpha_m)/(step%beta*h**2) + of_damping*state%motion%structure%mass_damping
+         associate (motion => state%motion, springs => state%springs, structure => state%motion%structure)
+            self%k = (1.0_wp - step%alpha_f)*springs%k
+            if (structure%tangent_numbers > 0) then
+               call structure%linearise(self%k, step%now%tangent, unstable)
+            else if (structure%tangent_damping) then
+               self%k = self%k + (of_damping*structure%stiffness_damping)*max(springs%k, 0.0_wp)
+            else if (motion%damped) then
+               self%k = self%k + of_damping*motion%joint_damping
+            end if
+            self%matrix%band = 0.0_wp
+            call structure%add_stiffness(self%k, step%now%tangent, self%matrix%band)
+            if (structure%stiffness_damping > 0.0_wp) then
+               call structure%add_damping(of_damping, step%now%tangent, self%matrix%band)
+            end if
+            if (motion%second_order) then
+               call structure%add_geometric((1.0_wp - step%alpha_f)*step%now%axial, self%matrix%band)
+            end if
+            self%matrix%band(1, :) = self%matrix%band(1, :) + of_mass*structure%inertias
+            if (structure%has_held) then
+               do i = 1, structure%unknowns
+                  if (structure%is_held(i)) call self%matrix%hold(i, of_mass*structure%inertias(i))
+               end do
+            end if
+            self%stiffness = self%matrix%band(1, :)
+            call self%matrix%factor()
+            if (allocated(self%initial)) call hold_free()
+         end associate
+         self%factor_step = h
+         self%factor_version = state%springs%version
+      end subroutine set_tangent
+
+      !> Where the pivot of an unknown without mass is round-off, it stays where it is.
+      subroutine hold_free()
+
+         associate (inverse => abs(self%matrix%triangle(1, :)), initial => self%initial)
+            if (all(no_stiffness*initial*inverse <= 1.0_wp)) return
+            where (no_stiffness*initial*inverse > 1.0_wp) self%matrix%band(1, :) = self%matrix%band(1, :) &
+                                                                                    + held_by*initial
+            call self%matrix%factor()
+         end associate
+      end subroutine hold_free
+
    end subroutine fit
 
    pure logical function is_stale(self, state, h)
@@ -89,59 +141,5 @@ contains
          is_stale = is_stale .or. state%motion%varies
       end if
    end function is_stale
-
-   !> Tangent of the step on the present lines, and its factor.
-   subroutine set_tangent(self, step, state, h)
-      type(step_tangent), intent(inout) :: self
-      type(step_balance), intent(inout) :: step
-      type(state_type), intent(in) :: state
-      real(wp), intent(in) :: h
-      real(wp) :: of_mass, of_damping
-      integer :: i, unstable
-
-      of_damping = (1.0_wp - step%alpha_f)*step%gamma/(step%beta*h)
-      of_mass = (1.0_wp - step%alpha_m)/(step%beta*h**2) + of_damping*state%motion%structure%mass_damping
-      associate (motion => state%motion, springs => state%springs, structure => state%motion%structure)
-         self%k = (1.0_wp - step%alpha_f)*springs%k
-         if (structure%tangent_numbers > 0) then
-            call structure%linearise(self%k, step%now%tangent, unstable)
-         else if (structure%tangent_damping) then
-            self%k = self%k + (of_damping*structure%stiffness_damping)*max(springs%k, 0.0_wp)
-         else if (motion%damped) then
-            self%k = self%k + of_damping*motion%joint_damping
-         end if
-         self%matrix%band = 0.0_wp
-         call structure%add_stiffness(self%k, step%now%tangent, self%matrix%band)
-         if (structure%stiffness_damping > 0.0_wp) then
-            call structure%add_damping(of_damping, step%now%tangent, self%matrix%band)
-         end if
-         if (motion%second_order) then
-            call structure%add_geometric((1.0_wp - step%alpha_f)*step%now%axial, self%matrix%band)
-         end if
-         self%matrix%band(1, :) = self%matrix%band(1, :) + of_mass*structure%inertias
-         if (structure%has_held) then
-            do i = 1, structure%unknowns
-               if (structure%is_held(i)) call self%matrix%hold(i, of_mass*structure%inertias(i))
-            end do
-         end if
-         self%stiffness = self%matrix%band(1, :)
-         call self%matrix%factor()
-         if (allocated(self%initial)) call hold_free(self)
-      end associate
-      self%factor_step = h
-      self%factor_version = state%springs%version
-   end subroutine set_tangent
-
-   !> Where the pivot of an unknown without mass is round-off, it stays where it is.
-   subroutine hold_free(self)
-      type(step_tangent), intent(inout) :: self
-
-      associate (inverse => abs(self%matrix%triangle(1, :)), initial => self%initial)
-         if (all(no_stiffness*initial*inverse <= 1.0_wp)) return
-         where (no_stiffness*initial*inverse > 1.0_wp) self%matrix%band(1, :) = self%matrix%band(1, :) &
-                                                                                 + held_by*initial
-         call self%matrix%factor()
-      end associate
-   end subroutine hold_free
 
 end module rbs_solve_time_implicit_tangent

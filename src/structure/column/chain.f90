@@ -13,7 +13,6 @@
 !> top: B' f. It is M^-1 r of eqs 1-3 without M. Stiffness is a band of half-width 3, band(1 + i - j, j) =
 !> a(i, j) for j <= i <= j + 3; the y are a chain of their own behind the rest.
 module rbs_structure_column_chain
-   use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
    implicit none
    private
@@ -75,7 +74,7 @@ contains
    end subroutine displacements
 
    !> Second-order forces of axial forces, those of the potential -sum a_k th_k^2/2 - sum b_k u_k th_{k-1}: on
-   !> the joints their part in u, on the bodies that in th. Energy, power and stiffness follow from them.
+   !> the joints their part in u, on the bodies that in th. Power and stiffness follow from them.
    pure subroutine second_order_forces(n, axial, d, shear, step, moment)
       integer, intent(in) :: n
       !> a, axial forces times lengths [N m], then b [N]; compression positive (2 n)
@@ -116,14 +115,20 @@ contains
       end do
    end subroutine geometric_forces
 
-   !> Potential of the axial forces [J].
+   !> That potential [J].
    pure real(wp) function second_order_energy(n, axial, d) result(energy)
       integer, intent(in) :: n
       real(wp), intent(in) :: axial(2*n), d(2*n)
-      real(wp) :: g(2*n)
+      real(wp) :: rotation
+      integer :: i
 
-      call geometric_forces(n, axial, d, g)
-      energy = 0.5_wp*inner_product(2*n, d, g)
+      energy = 0.0_wp
+      rotation = 0.0_wp
+      do i = 1, n
+         energy = energy - axial(n + i)*d(i)*rotation
+         rotation = rotation + d(n + i)
+         energy = energy - 0.5_wp*axial(i)*rotation**2
+      end do
    end function second_order_energy
 
    !> Add B' diag(k) B of the springs.

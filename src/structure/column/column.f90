@@ -326,18 +326,28 @@ contains
    pure real(wp) function power_of_loads(self, d, v, load) result(watt)
       class(column_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:), v(:), load(:)
-      real(wp) :: rising, g(2*self%n)
-      integer :: i, n
+      integer :: i
 
       watt = 0.0_wp
       do i = lateral, horizontal
          if (abs(load(i)) > 0.0_wp) watt = watt + self%speed(i, d, v)*load(i)
       end do
-      if (.not. (abs(load(vertical)) > 0.0_wp .or. abs(load(top_axial)) > 0.0_wp)) return
+      if (abs(load(vertical)) > 0.0_wp .or. abs(load(top_axial)) > 0.0_wp) then
+         watt = watt + power_of_axial(self, d, v, load)
+      end if
+   end function power_of_loads
+
+   pure real(wp) function power_of_axial(self, d, v, load) result(watt)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:), load(:)
+      real(wp) :: rising, g(2*self%n)
+      integer :: i, n
+
       n = self%n
+      watt = 0.0_wp
       if (self%kinematics /= small) then
          call geometric_forces(n, added_axial(self, load), d, g)
-         watt = watt - inner_product(2*n, v, g)
+         watt = -inner_product(2*n, v, g)
       end if
       if (.not. self%opens) return
       rising = 0.0_wp
@@ -346,7 +356,7 @@ contains
          watt = watt - self%mass(i)*load(vertical)*rising
       end do
       watt = watt - load(top_axial)*rising
-   end function power_of_loads
+   end function power_of_axial
 
    pure real(wp) function kinetic_energy(self, d, v) result(energy)
       class(column_type), intent(in) :: self
