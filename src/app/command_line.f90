@@ -109,7 +109,7 @@ contains
 
          if (.not. allocated(command%name) .or. help_for(command)) then
             if (all(commands /= word)) then
-               call complain("the command '"//word//"' is not known"// suggestion(word, commands))
+               call complain("the command '"//word//"' is not known"//suggestion(word, commands))
                return
             end if
             if (help_for(command)) then

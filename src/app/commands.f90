@@ -107,10 +107,9 @@ contains
             if (run%case%analysis%dynamic()) text = 'time '//to_text(summary%last_time)//' s'
             if (summary%lost_joint > 0) then
                text = 'axial failure at '//text//': the layers of joint '// &
-                      to_text(run%case%column%joint_number(summary%lost_joint))// &
-                      ' no longer carry the axial load of '//to_text(fall%axial_load)// &
-                      ' N; at that rotation they carry at most '//to_text(fall%capacity)// &
-                      ' N, and the joint would '
+                      to_text(run%case%column%joint_number(summary%lost_joint))//' no longer carry the '// &
+                      'axial load of '//to_text(fall%axial_load)//' N; at that rotation they carry at '// &
+                      'most '//to_text(fall%capacity)//' N, and the joint would '
                if (fall%rests) then
                   text = text//'rest after '//to_text(abs(fall%drop))//' m. The'
                else
@@ -381,9 +380,7 @@ contains
 
       run%path = path
       call load_case(path, run%case, run%history, error)
-      if (.not. allocated(error)) then
-         call make_structure(run%case, run%structure, run%task%before, error)
-      end if
+      if (.not. allocated(error)) call make_structure(run%case, run%structure, run%task%before, error)
    end subroutine prepare
 
    !> A path from the folder of the case.

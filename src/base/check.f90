@@ -35,8 +35,7 @@ contains
    !> The number must be given and finite.
    subroutine check_finite(x, name, unit, messages, ok)
       real(wp), intent(in) :: x
-      character(len=*), intent(in) :: name
-      character(len=*), intent(in) :: unit
+      character(len=*), intent(in) :: name, unit
       type(message_list), intent(inout) :: messages
       logical, intent(out), optional :: ok
       logical :: passed
@@ -61,9 +60,7 @@ contains
 
    !> The word must be one of the valid ones; returns its place among them, 0 if it is not one of them.
    subroutine check_name(word, valid, name, messages, place)
-      character(len=*), intent(in) :: word
-      character(len=*), intent(in) :: valid(:)
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: word, valid(:), name
       type(message_list), intent(inout) :: messages
       integer, intent(out) :: place
 

@@ -29,10 +29,9 @@ module rbs_base_keys
    !> The range that a number must be in.
    type :: bound_type
       real(wp) :: least = -huge(1.0_wp), most = huge(1.0_wp)
-      !> Whether the bound itself is excluded
-      logical :: least_open = .false., most_open = .false.
-      !> Whether numbers may be arbitrarily close to zero, as the values of a history are
-      logical :: tiny = .false.
+      !> Whether the bound itself is excluded; whether numbers may be arbitrarily close to zero, as the values
+      !> of a history are
+      logical :: least_open = .false., most_open = .false., tiny = .false.
       !> A reason that the message adds, such as '(it is a share)'
       character(len=40) :: reason = ''
    end type bound_type
@@ -92,7 +91,7 @@ contains
       if (finite) then
          if (is_within(x, key%bound)) return
          call messages%add(trim(name//': '//trim(key%name)//' = '//trim(value_text())//' '// &
-                           unit_for_message())// ' '//trim(refusal(key%bound)))
+                           unit_for_message())//' '//trim(refusal(key%bound)))
       end if
       ok = .false.
 

@@ -102,8 +102,7 @@ contains
    pure function exact_text(x) result(text)
       !> Finite
       real(wp), intent(in) :: x
-      character(len=longest) :: text
-      character(len=longest) :: buffer, digits
+      character(len=longest) :: text, buffer, digits
       real(wp) :: again
       integer :: count, mark, power, last
 
@@ -186,16 +185,14 @@ contains
 
    !> "; did you mean 'height'?" where a valid name is near to a word by edit distance, else nothing.
    pure function suggestion(word, names) result(text)
-      character(len=*), intent(in) :: word
-      character(len=*), intent(in) :: names(:)
+      character(len=*), intent(in) :: word, names(:)
       character(len=suggestion_length(word, names)) :: text
 
       if (len(text) > 0) text = "; did you mean '"//trim(names(nearest_place(word, names)))//"'?"
    end function suggestion
 
    pure integer function suggestion_length(word, names) result(length)
-      character(len=*), intent(in) :: word
-      character(len=*), intent(in) :: names(:)
+      character(len=*), intent(in) :: word, names(:)
       integer :: place
 
       place = nearest_place(word, names)
@@ -205,8 +202,7 @@ contains
 
    !> Place of the name that is nearest to a word; 0 if a third of the word or more is other.
    pure integer function nearest_place(word, names) result(place)
-      character(len=*), intent(in) :: word
-      character(len=*), intent(in) :: names(:)
+      character(len=*), intent(in) :: word, names(:)
       integer :: i, distance, least
 
       place = 0
@@ -223,9 +219,7 @@ contains
    !> Levenshtein distance: the least number of characters to insert, remove or change.
    pure function edit_distance(a, b) result(distance)
       character(len=*), intent(in) :: a, b
-      integer :: distance
-      integer :: row(0:len(b))
-      integer :: i, j, diagonal, above
+      integer :: distance, row(0:len(b)), i, j, diagonal, above
 
       do j = 0, len(b)
          row(j) = j

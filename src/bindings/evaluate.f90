@@ -53,9 +53,9 @@ contains
          call keys_as_json(buffer)
          answer%text = buffer%text(:buffer%length)
       case ('quantities')
-         call name_quantities(answer)
+         call name_quantities()
       case ('check_spring', 'spring_response')
-         call evaluate_spring(request, answer)
+         call evaluate_spring()
       case ('check_structure', 'frame_parts', 'modes', 'matrices')
          call evaluate_structure(request, answer)
       case ('cyclic', 'time_history')
@@ -71,42 +71,75 @@ contains
       case ('read_history')
          call test_from_file(request%statement, answer)
       case ('protocol')
-         call make_protocol(request, answer)
+         call make_protocol()
       case ('named_protocol')
-         call find_protocol(request, answer)
+         call find_protocol()
       case ('spectrum')
          call find_spectrum(request%array('acceleration'), request%array('dt'), request%array('period'), &
-                            request%array('damping'), answer)
+                            request%array('damping'))
       case default
          call evaluate_section(request, answer)
       end select
+
+   contains
+
+      !> Names of the values that come back, a line each: values of rows with their units, measures of a
+      !> run of an ensemble; then what belongs to a section.
+      subroutine name_quantities()
+         character(len=1), parameter :: line = new_line('a')
+
+         answer%text = trim(channel_units())//line//trim(measure_names())//line//list_of(section_figures)// &
+                       line//list_of(spring_figures)//line//list_of(point_values)//line// &
+                       list_of(shear_values)//line//list_of(profile_values)
+      end subroutine name_quantities
+
+      !> Whether the rule allows a spring, or the forces of a virgin one along a path of deformations.
+      subroutine evaluate_spring()
+         type(spring_record) :: spring
+         real(c_double), pointer, contiguous :: load(:), path(:)
+
+         load => request%array('axial_load')
+         path => request%array('deformation')
+         call spring_from_statements(request%statement, request%number, load(1), spring, answer%error)
+         if (allocated(answer%error)) return
+         allocate (answer%value(size(path)))
+         call follow_path(spring, path, answer%value)
+      end subroutine evaluate_spring
+
+      !> Points of a cyclic protocol, the only loading of a case, in the unit of the amplitudes.
+      subroutine make_protocol()
+         type(case_record) :: case
+         type(message_list) :: messages
+         real(c_double), allocatable :: time(:)
+
+         call case_from_statements(request%statement, request%number, case, answer%error)
+         if (allocated(answer%error)) return
+         call case%loading(1)%validate(.false., messages)
+         call messages%raise(answer%error)
+         if (allocated(answer%error)) return
+         call protocol_values(case%loading(1), 1.0_c_double, time, answer%value, answer%error)
+      end subroutine make_protocol
+
+      !> Amplitudes and cycles of a protocol of the literature.
+      subroutine find_protocol()
+         real(c_double), pointer, contiguous :: limit(:)
+         real(c_double), allocatable :: amplitude(:)
+         integer, allocatable :: cycles(:)
+
+         limit => request%array('reference_and_largest')
+         call named_protocol(request%statement, limit(1), limit(2), amplitude, cycles, answer%error)
+         if (.not. allocated(answer%error)) answer%value = [amplitude, real(cycles, c_double)]
+      end subroutine find_protocol
+
+      !> Peaks of relative displacement, relative velocity and absolute acceleration for each period.
+      subroutine find_spectrum(acceleration, dt, period, damping)
+         real(c_double), intent(in) :: acceleration(:), dt(:), period(:), damping(:)
+
+         allocate (answer%rows(3, size(period)))
+         call response_spectrum(acceleration, dt(1), period, damping(1), answer%rows)
+      end subroutine find_spectrum
+
    end subroutine evaluate
-
-   !> Names of the values that come back, a line each: values of rows with their units, measures of a
-   !> run of an ensemble; then what belongs to a section.
-   subroutine name_quantities(answer)
-      type(answer_type), intent(inout) :: answer
-      character(len=1), parameter :: line = new_line('a')
-
-      answer%text = trim(channel_units())//line//trim(measure_names())//line// &
-                    list_of(section_figures)//line//list_of(spring_figures)//line//list_of(point_values)// &
-                    line//list_of(shear_values)//line//list_of(profile_values)
-   end subroutine name_quantities
-
-   !> Whether the rule allows a spring, or the forces of a virgin one along a path of deformations.
-   subroutine evaluate_spring(request, answer)
-      type(request_type), intent(in) :: request
-      type(answer_type), intent(inout) :: answer
-      type(spring_record) :: spring
-      real(c_double), pointer, contiguous :: load(:), path(:)
-
-      load => request%array('axial_load')
-      path => request%array('deformation')
-      call spring_from_statements(request%statement, request%number, load(1), spring, answer%error)
-      if (allocated(answer%error)) return
-      allocate (answer%value(size(path)))
-      call follow_path(spring, path, answer%value)
-   end subroutine evaluate_spring
 
    !> Notes on a structure that is allowed, a line each; its parts; its modes; or its matrices.
    subroutine evaluate_structure(request, answer)
@@ -253,43 +286,5 @@ contains
          end associate
       end associate
    end subroutine find_joint
-
-   !> Points of a cyclic protocol, the only loading of a case, in the unit of the amplitudes.
-   subroutine make_protocol(request, answer)
-      type(request_type), intent(in) :: request
-      type(answer_type), intent(inout) :: answer
-      type(case_record) :: case
-      type(message_list) :: messages
-      real(c_double), allocatable :: time(:)
-
-      call case_from_statements(request%statement, request%number, case, answer%error)
-      if (allocated(answer%error)) return
-      call case%loading(1)%validate(.false., messages)
-      call messages%raise(answer%error)
-      if (allocated(answer%error)) return
-      call protocol_values(case%loading(1), 1.0_c_double, time, answer%value, answer%error)
-   end subroutine make_protocol
-
-   !> Amplitudes and cycles of a protocol of the literature.
-   subroutine find_protocol(request, answer)
-      type(request_type), intent(in) :: request
-      type(answer_type), intent(inout) :: answer
-      real(c_double), pointer, contiguous :: limit(:)
-      real(c_double), allocatable :: amplitude(:)
-      integer, allocatable :: cycles(:)
-
-      limit => request%array('reference_and_largest')
-      call named_protocol(request%statement, limit(1), limit(2), amplitude, cycles, answer%error)
-      if (.not. allocated(answer%error)) answer%value = [amplitude, real(cycles, c_double)]
-   end subroutine find_protocol
-
-   !> Peaks of relative displacement, relative velocity and absolute acceleration for each period.
-   subroutine find_spectrum(acceleration, dt, period, damping, answer)
-      real(c_double), intent(in) :: acceleration(:), dt(:), period(:), damping(:)
-      type(answer_type), intent(inout) :: answer
-
-      allocate (answer%rows(3, size(period)))
-      call response_spectrum(acceleration, dt(1), period, damping(1), answer%rows)
-   end subroutine find_spectrum
 
 end module rbs_bindings_evaluate

@@ -214,9 +214,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       if (case%analysis%method == 'static') then
-         call fatal_error(error, bad_input, &
-                          "analysis: method = 'static' takes no time; call cyclic, or set "// &
-                          "method = 'auto'")
+         call fatal_error(error, bad_input, "analysis: method = 'static' takes no time; call cyclic, or "// &
+                          "set method = 'auto'")
       else if (case%analysis%method == '' .and. loads%signal(lateral)%acts() .and. .not. &
                (loads%signal(horizontal)%acts() .or. loads%signal(vertical)%acts())) then
          call fatal_error(error, bad_input, 'analysis: a force with time needs a method that is named: '// &

@@ -169,9 +169,8 @@ contains
             place = ignored
             if (all(rule_names /= rule)) return
             place = 0
-            call messages%add_at(where, '&'//trim(self%group)//': '//trim(name)// &
-                                 ' is not used by the rule '//trim(rule)// &
-                                 '; remove it or choose another rule')
+            call messages%add_at(where, '&'//trim(self%group)//': '//trim(name)//' is not used by the '// &
+                                 'rule '//trim(rule)//'; remove it or choose another rule')
             return
          end associate
       end do

@@ -238,10 +238,8 @@ contains
       !> Find the entry of a group for each joint: the one that names it, or the one without joints.
       subroutine assign(group, of_joint, rest)
          character(len=*), intent(in) :: group
-         !> Entries that name the joints, 0: none
-         integer, intent(out) :: of_joint(first:)
-         !> The entry for all others, 0: none
-         integer, intent(out) :: rest
+         !> Entries that name the joints, 0: none; the entry for all others, 0: none
+         integer, intent(out) :: of_joint(first:), rest
          integer :: i, j
 
          of_joint = 0

@@ -118,9 +118,7 @@ contains
             call write_record('bars')
             if (allocated(drawing%layout)) call write_record('layout')
             if (allocated(drawing%inner_layout)) call write_record('inner_layout')
-            if (drawing%section%hoops%kind /= no_ties) then
-               call write_record(trim(drawing%section%hoops%name()))
-            end if
+            if (drawing%section%hoops%kind /= no_ties) call write_record(trim(drawing%section%hoops%name()))
             do i = 1, size(drawing%parameters)
                call write_record('parameter', i)
             end do

@@ -26,10 +26,9 @@ contains
       !> The ends of the line, from below and from above, and whether it unloads on reversal
       real(wp), intent(in) :: ends(2)
       integer, intent(in) :: unload_on_reversal
-      !> Deformation and velocity at the start of the step and at its end
-      real(wp), intent(in) :: d(2), v(2)
-      !> Length of the step [s], and what the last digits of a deformation leave undecided
-      real(wp), intent(in) :: h, digits
+      !> Deformation and velocity at the start of the step and at its end; length of the step [s], and what
+      !> the last digits of a deformation leave undecided
+      real(wp), intent(in) :: d(2), v(2), h, digits
       type(line_exit), intent(out) :: exit
       real(wp) :: turning, furthest, far
       integer :: way

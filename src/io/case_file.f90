@@ -22,10 +22,9 @@ module rbs_io_case_file
    type :: case_history
       !> Common times (m) [s]; for a static path the numbers of its points
       real(wp), allocatable :: time(:)
-      !> The prescribed displacement or force of a static path (m) [m or N]
-      real(wp), allocatable :: target(:)
-      !> The axial load at its points where it varies (m); empty: constant [N]
-      real(wp), allocatable :: axial_load(:)
+      !> The prescribed displacement or force of a static path (m) [m or N]; the axial load at its points
+      !> where it varies (m); empty: constant [N]
+      real(wp), allocatable :: target(:), axial_load(:)
       !> The actions in time
       type(loads_type) :: loads
    end type case_history
@@ -103,9 +102,7 @@ contains
                call join_times(history%time, time)
             end associate
          end do
-         if (case%loadings == 0) then
-            call messages%add('the case has no loading; give it a group &loading')
-         end if
+         if (case%loadings == 0) call messages%add('the case has no loading; give it a group &loading')
       end subroutine load_values
 
       !> End the history at the duration of the user: earlier, or later with the last value held.

@@ -15,8 +15,7 @@ module rbs_io_fields
 
    !> First and last characters of the fields of a line.
    type :: field_list
-      integer :: count = 0
-      integer :: first(most_columns + 1) = 0, last(most_columns + 1) = 0
+      integer :: count = 0, first(most_columns + 1) = 0, last(most_columns + 1) = 0
    end type field_list
 
 contains

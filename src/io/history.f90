@@ -152,9 +152,8 @@ contains
          call read_rows(' ')
          if (allocated(error)) return
          if (history%columns < 2 .or. history%columns > 3) then
-            call fatal_error(error, bad_input, path//': has '// &
-                             to_text(history%columns)//' columns; a PEER '// &
-                             'file has displacement, force and perhaps the axial load')
+            call fatal_error(error, bad_input, path//': has '//to_text(history%columns)//' columns; a '// &
+                             'PEER file has displacement, force and perhaps the axial load')
          else if (history%rows /= declared) then
             call fatal_error(error, bad_input, path//': line 2 declares '//to_text(declared)// &
                              ' pairs, but there are '//to_text(history%rows)//'; the file is cut or '// &
@@ -251,9 +250,8 @@ contains
                allocate (history%values(fields%count, rows))
             else if (fields%count /= history%columns) then
                call fatal_error(error, bad_input, path//' line '//to_text(file%line)//': has '// &
-                                to_text(fields%count)// &
-                                trim(merge(' value ', ' values', fields%count == 1))// &
-                                ', the rows before have '// to_text(history%columns))
+                                to_text(fields%count)//trim(merge(' value ', ' values', &
+                                fields%count == 1))//', the rows before have '//to_text(history%columns))
                return
             end if
             history%rows = history%rows + 1

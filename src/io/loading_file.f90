@@ -75,10 +75,9 @@ contains
          end if
          if (column > 0) then
             if (is_given(spec%interval)) then
-               call fatal_error(error, bad_input, &
-                                path//': interval is given, and the times are in column '// &
-                                to_text(column)//' '// &
-                                trim(history%labels(column))//' as well; remove interval')
+               call fatal_error(error, bad_input, path//': interval is given, and the times are in '// &
+                                'column '//to_text(column)//' '//trim(history%labels(column))// &
+                                ' as well; remove interval')
                return
             end if
             call check_seconds(history%labels(column))

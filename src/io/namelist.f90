@@ -65,9 +65,7 @@ contains
          do pass = 1, 2
             do i = 1, scanned%groups
                if (messages%count > most_messages) return
-               if ((scanned%group(i)%name == 'units') .eqv. (pass == 1)) then
-                  call put_group(scanned%group(i))
-               end if
+               if ((scanned%group(i)%name == 'units') .eqv. (pass == 1)) call put_group(scanned%group(i))
             end do
          end do
          if (allocated(reader%case%frame)) return
@@ -171,9 +169,8 @@ contains
          if (entry%subscript > 0 .and. key%most == 1) then
             call messages%add(place//"'"//trim(entry%name)//"' takes no subscript")
          else if (entry%subscript > 0 .and. total > entry%subscript) then
-            call messages%add(place//"'"//trim(entry%name)//'('//to_text(entry%subscript)// &
-                              ")' takes one value, not "//to_text(entry%total)// &
-                              '; give a list without subscript')
+            call messages%add(place//"'"//trim(entry%name)//'('//to_text(entry%subscript)//")' takes one "// &
+                              'value, not '//to_text(entry%total)//'; give a list without subscript')
          else if (total > key%most) then
             call messages%add(place//"'"//trim(entry%name)//"' has "//to_text(total)// &
                               ' values; it takes '//to_text(key%most)//' at the most')

@@ -32,10 +32,8 @@ module rbs_io_namelist_scan
    !> `name = values` or `name(i) = values`.
    type :: nml_entry
       character(len=32) :: name = ''
-      !> Subscript, 0 without one
-      integer :: subscript = 0
-      !> Line in the file
-      integer :: line = 0
+      !> Subscript, 0 without one; line in the file
+      integer :: subscript = 0, line = 0
       !> Its values are the words `first` to `last` of the scan; how many they are with repeats
       integer :: first = 1, last = 0, total = 0
    end type nml_entry

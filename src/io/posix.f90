@@ -26,8 +26,7 @@ module rbs_io_posix
    !> What `poll` asks and answers for a descriptor.
    type, bind(c) :: poll_type
       integer(c_int) :: descriptor
-      integer(c_short) :: asked
-      integer(c_short) :: answered
+      integer(c_short) :: asked, answered
    end type poll_type
 
    interface

@@ -75,9 +75,7 @@ contains
       if (len(file%text) >= 3) then
          if (file%text(:3) == char(239)//char(187)//char(191)) file%text = file%text(4:)
       end if
-      if (index(file%text, achar(0)) > 0) then
-         call refuse('is not a text file (it has a zero byte)')
-      end if
+      if (index(file%text, achar(0)) > 0) call refuse('is not a text file (it has a zero byte)')
 
    contains
 
@@ -123,8 +121,7 @@ contains
             call refuse('has '//to_text(real(size, wp))//' bytes, more than the '//to_text(limit)// &
                         ' that are read; is it the right file?')
          else if (count == nobody_writes) then
-            call refuse('is a pipe that nobody writes to; start its writer first, or give the path '// &
-                        'of a file')
+            call refuse('is a pipe that nobody writes to; start its writer first, or give the path of a file')
          else if (count < 0_c_size_t) then
             call refuse('cannot be read; check the path and the permissions')
          else if (length == 0) then

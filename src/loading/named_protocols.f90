@@ -60,9 +60,8 @@ contains
          call fatal_error(error, bad_input, who//' needs reference, '//trim(ladder%reference)// &
                           '; give it in the unit of the amplitudes')
       else if (ladder%reference == '' .and. reference > 0.0_wp) then
-         call fatal_error(error, bad_input, &
-                          who//' has amplitudes in drift and takes no reference; leave out '// &
-                          'reference')
+         call fatal_error(error, bad_input, who//' has amplitudes in drift and takes no reference; leave '// &
+                          'out reference')
       else if (ladder%endless .and. .not. largest > 0.0_wp) then
          call fatal_error(error, bad_input, who//' has no end of its own; give the largest amplitude')
       else

@@ -70,10 +70,8 @@ contains
    subroutine advance(section, laws, axial_load, curvature, state, found)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
-      !> [N]
-      real(wp), intent(in) :: axial_load
-      !> [1/m]
-      real(wp), intent(in) :: curvature
+      !> [N]; [1/m]
+      real(wp), intent(in) :: axial_load, curvature
       !> Moves to `curvature`, or to the last one at which the section carries the axial load
       type(state_type), intent(inout) :: state
       logical, intent(out) :: found
@@ -136,10 +134,8 @@ contains
    subroutine follow(section, laws, axial_load, curvature, moment, eps0, error)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
-      !> Compression positive [N]
-      real(wp), intent(in) :: axial_load
-      !> [1/m]
-      real(wp), intent(in) :: curvature(:)
+      !> Compression positive [N]; [1/m]
+      real(wp), intent(in) :: axial_load, curvature(:)
       !> About mid-depth [N m], and strain at mid-depth, compression positive; zero after a failure
       real(wp), intent(out) :: moment(:), eps0(:)
       type(error_type), allocatable, intent(out) :: error

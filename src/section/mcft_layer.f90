@@ -34,8 +34,7 @@ module rbs_section_mcft_layer
    !> State of a layer: its transverse and shear strain under a longitudinal strain and a shear stress [Pa].
    !> Tension is positive.
    type :: layer_state
-      real(wp) :: eps_z = 0.0_wp, gamma = 0.0_wp
-      real(wp) :: eps_x = 0.0_wp, tau = 0.0_wp
+      real(wp) :: eps_z = 0.0_wp, gamma = 0.0_wp, eps_x = 0.0_wp, tau = 0.0_wp
    end type layer_state
 
    !> Stresses [Pa] of a state, tension positive, and slopes by (eps_z, gamma).
@@ -131,10 +130,8 @@ contains
    !> Transverse and shear strain of a layer under longitudinal strain and shear stress.
    pure subroutine solve_layer(layer, eps_x, tau, state, carried)
       type(layer_type), intent(in) :: layer
-      !> Longitudinal strain, tension positive
-      real(wp), intent(in) :: eps_x
-      !> Shear stress [Pa]
-      real(wp), intent(in) :: tau
+      !> Longitudinal strain, tension positive; shear stress [Pa]
+      real(wp), intent(in) :: eps_x, tau
       !> The previous state, at first that of the virgin layer; on return the present one
       type(layer_state), intent(inout) :: state
       !> Whether the layer carries tau; if not, the state is that with the largest stress found

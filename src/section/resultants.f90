@@ -19,10 +19,8 @@ module rbs_section_resultants
    !> Resultants of the stresses: compression positive; moment about mid-depth, positive with a curvature
    !> that puts y > 0 in tension.
    type :: resultants_type
-      !> Axial force [N], moment [N m]
-      real(wp) :: n = 0.0_wp, m = 0.0_wp
-      !> Change of the axial force with the strain at mid-depth [N]
-      real(wp) :: stiffness = 0.0_wp
+      !> Axial force [N], moment [N m]; change of the axial force with the strain at mid-depth [N]
+      real(wp) :: n = 0.0_wp, m = 0.0_wp, stiffness = 0.0_wp
    end type resultants_type
 
 contains
@@ -50,10 +48,8 @@ contains
    pure type(resultants_type) function resultants(section, laws, eps0, curvature) result(sums)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
-      !> Strain at mid-depth, compression positive
-      real(wp), intent(in) :: eps0
-      !> [1/m]
-      real(wp), intent(in) :: curvature
+      !> Strain at mid-depth, compression positive; [1/m]
+      real(wp), intent(in) :: eps0, curvature
       real(wp) :: stress, tangent, stress_core, tangent_core, strain, force, stiffness
       integer :: i, cut
 

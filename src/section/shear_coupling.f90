@@ -30,10 +30,8 @@ contains
    pure subroutine couple(flow, layers, axial_load, curvature, state, layer_states, found)
       type(flow_type), intent(in) :: flow
       type(layer_type), intent(in) :: layers(:)
-      !> Compression positive [N]
-      real(wp), intent(in) :: axial_load
-      !> [1/m]
-      real(wp), intent(in) :: curvature
+      !> Compression positive [N]; [1/m]
+      real(wp), intent(in) :: axial_load, curvature
       !> Strain at mid-depth and moment; on return those at `curvature`
       type(state_type), intent(inout) :: state
       type(layer_state), intent(inout) :: layer_states(:)

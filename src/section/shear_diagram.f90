@@ -218,10 +218,8 @@ contains
 
       !> Halve the step to the last state that the section carries or, with a knee, that is before the knee.
       subroutine halve(above, tolerance, state, stiffness, knee)
-         !> A curvature beyond that state [1/m]
-         real(wp), intent(in) :: above
-         !> Length of the last step, as a share of the curvature
-         real(wp), intent(in) :: tolerance
+         !> A curvature beyond that state [1/m]; length of the last step, as a share of the curvature
+         real(wp), intent(in) :: above, tolerance
          !> A state that is carried; on return the last one
          type(shear_state), intent(inout) :: state
          !> Secant at the knee [N], and the first point found beyond it

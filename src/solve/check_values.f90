@@ -21,9 +21,8 @@ contains
 
       do i = 1, size(values)
          if (.not. ieee_is_finite(values(i))) then
-            call fatal_error(error, bad_input, name//': value '//to_text(i)//' of '// &
-                             to_text(size(values))//' is '//to_text(values(i))// &
-                             '; it must be a finite number')
+            call fatal_error(error, bad_input, name//': value '//to_text(i)//' of '//to_text(size(values))// &
+                             ' is '//to_text(values(i))//'; it must be a finite number')
             return
          else if (abs(values(i)) > beyond_meaning) then
             call fatal_error(error, bad_input, name//': value '//to_text(i)//' of '// &

@@ -220,8 +220,7 @@ contains
       type(fibre_section), intent(inout) :: self
       real(wp), dimension(self%count) :: opening, closing, corner
       real(wp) :: x, best, wanted, at, next_at, slope, value, free, rate
-      integer :: order(self%count)
-      integer :: i, j, m, way, branches
+      integer :: order(self%count), i, j, m, way, branches
       logical :: found
 
       m = 0

@@ -30,16 +30,13 @@ module rbs_hysteresis_rules_backbone_parameters
    type :: backbone_parameters
       !> Cracking point [m], [N]; zero: uncracked from the start, elastic up to yield
       real(wp) :: d_c = unset, f_c = unset
-      !> Yield point [m], [N]
-      real(wp) :: d_y = unset, f_y = unset
-      !> Capping point: the largest force [m], [N]
-      real(wp) :: d_cap = unset, f_cap = unset
+      !> Yield point [m], [N]; capping point: the largest force [m], [N]
+      real(wp) :: d_y = unset, f_y = unset, d_cap = unset, f_cap = unset
       !> Deformation from the cap to the point where the softening line reaches zero force [m]
       real(wp) :: d_pc = unset
-      !> Residual force, at which softening ends [N]
-      real(wp) :: f_res = unset
-      !> Deformation beyond which the force drops to zero [m]; `unset`: none
-      real(wp) :: d_u = unset
+      !> Residual force, at which softening ends [N]; deformation beyond which the force drops to zero [m];
+      !> `unset`: none
+      real(wp) :: f_res = unset, d_u = unset
    contains
       procedure :: visit
       procedure :: completed

@@ -17,10 +17,8 @@ module rbs_hysteresis_rules_bilinear
    public :: bilinear_rule
 
    type, extends(rule_type) :: bilinear_rule
-      !> Initial stiffness [N/m or N m/rad]
-      real(wp) :: k = unset
-      !> Yield deformation [m or rad]
-      real(wp) :: d_y = unset
+      !> Initial stiffness [N/m or N m/rad]; yield deformation [m or rad]
+      real(wp) :: k = unset, d_y = unset
       !> Stiffness after yield [N/m or N m/rad]
       real(wp) :: k_post = unset
    contains

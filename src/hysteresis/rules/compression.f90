@@ -13,10 +13,8 @@ module rbs_hysteresis_rules_compression
    public :: compression_rule
 
    type, extends(rule_type) :: compression_rule
-      !> Stiffness of the closed joint [N/m]
-      real(wp) :: k = unset
-      !> Closing at which it begins to carry [m]
-      real(wp) :: gap = 0.0_wp
+      !> Stiffness of the closed joint [N/m]; closing at which it begins to carry [m]
+      real(wp) :: k = unset, gap = 0.0_wp
    contains
       procedure :: visit
       procedure :: prepare

@@ -59,18 +59,14 @@ module rbs_hysteresis_rules_concrete
    end type concrete_memory
 
    type, extends(rule_type) :: concrete_rule
-      !> Initial stiffness [N/m]
-      real(wp) :: k = unset
-      !> Largest force [N] and the closing there [m]
-      real(wp) :: f_peak = unset, d_peak = unset
-      !> Slope of softening after the peak [N/m], positive, and the residual force [N]
-      real(wp) :: k_soft = unset, f_res = 0.0_wp
-      !> Factor of the plastic closing
-      real(wp) :: plastic = 1.0_wp
-      !> Share of the force at unloading at which a closing crack is fully closed
-      real(wp) :: contact = 0.0_wp
-      !> Share of the widest opening at which its faces touch
-      real(wp) :: misfit = 0.0_wp
+      !> Initial stiffness [N/m]; largest force [N] and the closing there [m]
+      real(wp) :: k = unset, f_peak = unset, d_peak = unset
+      !> Slope of softening after the peak [N/m], positive, and the residual force [N]; factor of the plastic
+      !> closing
+      real(wp) :: k_soft = unset, f_res = 0.0_wp, plastic = 1.0_wp
+      !> Share of the force at unloading at which a closing crack is fully closed; share of the widest opening
+      !> at which its faces touch
+      real(wp) :: contact = 0.0_wp, misfit = 0.0_wp
       !> Share of the strength that an opening takes, after twice the closing at the peak or more
       real(wp) :: wear = 0.0_wp
       !> Share of the force by which the path of opening is below that of closing

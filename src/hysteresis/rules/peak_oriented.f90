@@ -69,9 +69,8 @@ contains
          call v%key('lambda_a', self%lambda(4), '', not_negative, 'the same for the target of reloading')
          call v%key('c', part%deterioration%c, '', bound_type(1.0_wp, 2.0_wp, reason=range_of_source), &
                     'exponent of deterioration')
-         call v%key('lambda_h', self%lambda_h, '', not_negative, &
-                    'energy dissipated in the hinge, in f_y d_y, after which half of what can be lost is '// &
-                    'lost; 0: none')
+         call v%key('lambda_h', self%lambda_h, '', not_negative, 'energy dissipated in the hinge, in f_y '// &
+                    'd_y, after which half of what can be lost is lost; 0: none')
          call v%key('s_min', part%s_min, '', share_below_one, &
                     'share of the strength that stays, whatever the flexural spring has done')
          call v%key('fade', part%deterioration%fade, '', bound_type(0.0_wp, 4.0_wp), &

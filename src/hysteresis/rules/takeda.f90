@@ -65,10 +65,8 @@ module rbs_hysteresis_rules_takeda
    end type takeda_memory
 
    type, extends(rule_type) :: takeda_rule
-      !> Uncracked, cracked and yielded stiffness [N/m or N m/rad]
-      real(wp) :: k_c = unset, k_y = unset, k_u = unset
-      !> Cracking and yield deformation [m or rad]
-      real(wp) :: d_c = unset, d_y = unset
+      !> Uncracked, cracked and yielded stiffness [N/m or N m/rad]; cracking and yield deformation [m or rad]
+      real(wp) :: k_c = unset, k_y = unset, k_u = unset, d_c = unset, d_y = unset
       !> Degradation factors
       real(wp) :: b0 = 0.4_wp, b1 = 1.0_wp
       !> What B1 multiplies, the place of its name among the choices

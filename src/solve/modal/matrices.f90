@@ -46,9 +46,8 @@ contains
          call assemble_column(structure)
       class default
          if (paper) then
-            call fatal_error(error, bad_input, &
-                             "matrices: the paper's form is that of a column; ask for the "// &
-                             'other one')
+            call fatal_error(error, bad_input, "matrices: the paper's form is that of a column; ask for "// &
+                             'the other one')
             return
          end if
          call assemble_bands()
@@ -102,9 +101,8 @@ contains
          n = column%n
          m = column%unknowns
          if (real(m, wp)**2 > most_numbers) then
-            call fatal_error(error, bad_input, 'matrices: those of n = '//to_text(n)// &
-                             ' bodies take too much memory; take '//to_text(int(sqrt(most_numbers))*n/m)// &
-                             ' at the most')
+            call fatal_error(error, bad_input, 'matrices: those of n = '//to_text(n)//' bodies take too '// &
+                             'much memory; take '//to_text(int(sqrt(most_numbers))*n/m)//' at the most')
             return
          end if
          allocate (matrices%mass(m, m))

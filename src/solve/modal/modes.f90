@@ -138,15 +138,14 @@ contains
          if (present(count)) then
             wanted = min(wanted, count)
             if (real(wanted, wp)*column%unknowns > most_numbers) then
-               call fatal_error(error, bad_input, 'modes: the shapes of '// &
-                                to_text(wanted)//' modes of n = '// &
-                                to_text(n)//' bodies take too much memory; ask for '// &
+               call fatal_error(error, bad_input, 'modes: the shapes of '//to_text(wanted)//' modes of n '// &
+                                '= '//to_text(n)//' bodies take too much memory; ask for '// &
                                 to_text(int(most_numbers/column%unknowns))//' at the most')
                return
             end if
          else if (n > most_dense) then
             call fatal_error(error, bad_input, 'modes: all modes are found for up to '// &
-                             to_text(most_dense)// ' bodies, not for n = '// &
+                             to_text(most_dense)//' bodies, not for n = '// &
                              to_text(n)//'; ask for the first ones by count. '// &
                              'A dynamic analysis does not need them, it finds its stable step for any n')
             return
@@ -199,9 +198,8 @@ contains
          share = 1.0_wp/factor
          modes%condition = (1.0_wp + share)/max(1.0_wp - share, epsilon(1.0_wp))
          if (modes%condition < worst_condition) return
-         modes%warning = 'the axial load is '// &
-                         to_text(share)//' of the critical one: a relative error of '// &
-                         'a stiffness or of the load may grow by '//to_text(modes%condition)// &
+         modes%warning = 'the axial load is '//to_text(share)//' of the critical one: a relative error '// &
+                         'of a stiffness or of the load may grow by '//to_text(modes%condition)// &
                          ' in the square of the lowest frequency'
       end subroutine set_condition
 

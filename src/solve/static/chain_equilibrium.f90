@@ -313,14 +313,12 @@ contains
    pure subroutine follow_diagonal(m, arm, initial, k, r, gap, rate, force_rate, correction, &
                                    force_correction, flexible, regular)
       integer, intent(in) :: m
-      !> Arms of the force and initial stiffness of the joints (m)
-      real(wp), intent(in) :: arm(m), initial(m)
-      !> Stiffness of the springs, residual (m), and what is missing from the displacement [m]
-      real(wp), intent(in) :: k(m), r(m), gap
-      !> Change of the deformations per metre, and what takes the residuals away (m)
-      real(wp), intent(out) :: rate(m), correction(m)
-      !> Change of the force [N/m], and of the force with the correction [N]
-      real(wp), intent(out) :: force_rate, force_correction
+      !> Arms of the force and initial stiffness of the joints (m); stiffness of the springs, residual (m),
+      !> and what is missing from the displacement [m]
+      real(wp), intent(in) :: arm(m), initial(m), k(m), r(m), gap
+      !> Change of the deformations per metre, and what takes the residuals away (m); change of the force
+      !> [N/m], and of the force with the correction [N]
+      real(wp), intent(out) :: rate(m), correction(m), force_rate, force_correction
       !> Flexibilities, 0 where there is no stiffness (m)
       real(wp), intent(out) :: flexible(m)
       !> Whether there is a unique solution

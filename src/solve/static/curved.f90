@@ -330,10 +330,9 @@ contains
                           to_text(target)//merge(' N', ' m', self%by_force)//': the column snaps through '// &
                           'or has lost its capacity there'//weakest//'; use a dynamic analysis to go on')
       else if (self%by_force) then
-         call fatal_error(error, analysis_failed, 'the lateral force '//to_text(target)// &
-                          ' N is beyond the capacity of the column: no stable equilibrium was found '// &
-                          'beyond '//place//weakest//'; drive the column by displacement, or stiffen the '// &
-                          'springs')
+         call fatal_error(error, analysis_failed, 'the lateral force '//to_text(target)//' N is beyond '// &
+                          'the capacity of the column: no stable equilibrium was found beyond '//place// &
+                          weakest//'; drive the column by displacement, or stiffen the springs')
       else
          call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//place// &
                           ' on the way to '//to_text(target)//' m: the column snaps back there, or '// &

@@ -47,8 +47,7 @@ contains
    !> Where it turns within the step, in order; 1 where it does not.
    pure function turns(self) result(s)
       class(cubic_type), intent(in) :: self
-      real(wp) :: s(2)
-      real(wp) :: a, half, root, q
+      real(wp) :: s(2), a, half, root, q
 
       s = 1.0_wp
       a = 3.0_wp*self%c(4)

@@ -62,10 +62,9 @@ module rbs_solve_time_implicit_finite
       !> Of joints that do not open: how far they have opened, axial forces, tension positive, and these at
       !> the start of the step (n)
       real(wp), allocatable, private :: gap(:), reaction(:), reaction0(:)
-      !> Derivative of the load on the top body by its rotation
-      real(wp), private :: load_rate(3) = 0.0_wp
-      !> Largest force, moment of the present trial and of all steps so far
-      real(wp), private :: scale(2) = 0.0_wp, largest(2) = 0.0_wp
+      !> Derivative of the load on the top body by its rotation; largest force, moment of the present trial
+      !> and of all steps so far
+      real(wp), private :: load_rate(3) = 0.0_wp, scale(2) = 0.0_wp, largest(2) = 0.0_wp
       !> Correction of the bodies (3, n) and of the axial forces (n)
       real(wp), allocatable, private :: dx(:, :), dn(:)
       real(wp), allocatable, private :: band(:, :), right(:, :)

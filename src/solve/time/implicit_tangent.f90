@@ -137,9 +137,7 @@ contains
 
       is_stale = state%springs%version /= self%factor_version .or. &
                  abs(h - self%factor_step) > 1.0e-14_wp*h
-      if (state%motion%second_order) then
-         is_stale = is_stale .or. state%motion%varies
-      end if
+      if (state%motion%second_order) is_stale = is_stale .or. state%motion%varies
    end function is_stale
 
 end module rbs_solve_time_implicit_tangent

@@ -115,9 +115,7 @@ contains
                state%time = state%clock - state%begin
                call state%see(state%clock)
                ends = ends .or. state%sight%collapsed
-               if (task%summary%lost_joint > 0) then
-                  call fall_of(state%springs, lost, task%summary%fall)
-               end if
+               if (task%summary%lost_joint > 0) call fall_of(state%springs, lost, task%summary%fall)
                if (ends .or. part == parts) call balance(state, response%energy, task%summary)
                if (ends .or. step == next_row .or. (task%every == unset_integer .and. part == parts)) then
                   if (.not. (ends .or. part == parts)) call balance(state, response%energy)

@@ -63,10 +63,9 @@ contains
       lost = state%springs%lost_joint()
       if (lost > 0) then
          call fatal_error(error, analysis_failed, 'initial: the layers of '// &
-                          trim(spring_name(structure%place(lost)))// &
-                          ' cannot carry the axial load of '// &
-                          to_text(structure%axial_force(lost, state%load))// &
-                          ' N in the state that the first analysis ended in; give a smaller axial_load')
+                          trim(spring_name(structure%place(lost)))//' cannot carry the axial load of '// &
+                          to_text(structure%axial_force(lost, state%load))//' N in the state that the '// &
+                          'first analysis ended in; give a smaller axial_load')
          return
       end if
       state%q = state%springs%d

@@ -27,10 +27,8 @@ contains
       integer, intent(in) :: n
       !> Kinds of deformations: 2, or 3 where joints open
       integer, intent(in) :: kinds
-      !> Distances from the centroid to bottom and top (n) [m]
-      real(wp), intent(in) :: lower(n), upper(n)
-      !> (2 n or 3 n)
-      real(wp), intent(in) :: x(kinds*n)
+      !> Distances from the centroid to bottom and top (n) [m]; (2 n or 3 n)
+      real(wp), intent(in) :: lower(n), upper(n), x(kinds*n)
       real(wp), intent(inout) :: d(kinds*n)
       integer :: i
 

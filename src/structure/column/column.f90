@@ -492,10 +492,9 @@ contains
       type(error_type), allocatable, intent(inout) :: error
 
       if (abs(self%axial_force_ratio) > 0.0_wp) then
-         call fatal_error(error, bad_input, &
-                          'column: axial_force_ratio = '//to_text(self%axial_force_ratio)// &
-                          ' belongs to a static path, which has one lateral force; in a dynamic analysis '// &
-                          'give the axial load as a history, axial_load')
+         call fatal_error(error, bad_input, 'column: axial_force_ratio = '// &
+                          to_text(self%axial_force_ratio)//' belongs to a static path, which has one '// &
+                          'lateral force; in a dynamic analysis give the axial load as a history, axial_load')
          return
       end if
       if (self%kinematics /= small .or. self%opens .or. any(self%rules%name == 'layered')) return
