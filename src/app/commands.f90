@@ -188,7 +188,7 @@ contains
             if (.not. allocated(run%case%loading(i)%file)) cycle
             input = beside(run%path, run%case%loading(i)%file)
             if (same_file(file, input)) clash = .true.
-         ! A failed run keeps its rows there.
+            ! A failed run keeps its rows there.
             if (same_file(file//partial, input)) clash = .true.
          end do
          if (clash) then
@@ -231,9 +231,9 @@ contains
          do i = 1, size(figures)
             associate (figure => figures(i))
                if (figure%name == 'lost_joint') exit
-            ! A static path has no steps in time, and an implicit method no stability limit.
+               ! A static path has no steps in time, and an implicit method no stability limit.
                if (figure%unit == 's' .and. .not. figure%value > 0.0_wp) cycle
-            ! Without inertia the base holds the force at the top; in time there mostly is none.
+               ! Without inertia the base holds the force at the top; in time there mostly is none.
                if (figure%name == 'peak_base_shear' .and. .not. dynamic) cycle
                if (index(figure%name, 'peak_force') > 0 .and. dynamic .and. &
                    .not. abs(run%task%summary%peak_force) > 0.0_wp) cycle

@@ -183,7 +183,8 @@ contains
          answer%value = [modes%stable_step, modes%omega]
          select type (structure)
          class is (frame_type)
-         ! Displacements of the nodes, held ones too: along x, upward, rotations; then the mass of each mode.
+            ! Displacements of the nodes, held ones too: along x, upward, rotations; then the mass of each
+            ! mode.
             allocate (answer%rows(3*structure%n + 1, size(modes%omega)), source=0.0_c_double)
             do i = 1, structure%n
                do j = 1, 3
@@ -241,17 +242,15 @@ contains
       call text%append(line)
       allocate (place(0), stiffness(0))
       do i = 1, frame%inside
-         associate (k => frame%initial_stiffness)
-            if (frame%place(i)%kind /= layer) then
-               group = kinds(frame%place(i)%kind)
-               if (i > frame%inside - count(frame%beam_rotation > 0)) group = 'panel'
-               call add_spring(group, trim(frame%rules%name(frame%rules%of(i))), k(i))
-            else if (frame%heads(i)) then
-               call find_joint(frame, i, of_joint)
-               call add_spring(kinds(flexure), 'layered', of_joint(1))
-               call add_spring(kinds(axial), 'layered', of_joint(2))
-            end if
-         end associate
+         if (frame%place(i)%kind /= layer) then
+            group = kinds(frame%place(i)%kind)
+            if (i > frame%inside - count(frame%beam_rotation > 0)) group = 'panel'
+            call add_spring(group, trim(frame%rules%name(frame%rules%of(i))), frame%initial_stiffness(i))
+         else if (frame%heads(i)) then
+            call find_joint(frame, i, of_joint)
+            call add_spring(kinds(flexure), 'layered', of_joint(1))
+            call add_spring(kinds(axial), 'layered', of_joint(2))
+         end if
       end do
       answer%text = text%text(:text%length)
       answer%value = [frame%x, frame%y, real(frame%storey, c_double), &

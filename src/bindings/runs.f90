@@ -121,12 +121,10 @@ contains
          call check_settings(run%case, error)
          if (allocated(error)) return
          target => request%array('target')
-         associate (every => run%case%output%every)
-            run%recorder%corners = request%wants('corners')
-            run%recorder%expected = kept_rows(size(target), every)
-            call run_static(run%structure, request%wants('by_force'), target, run%task, error, &
-                            request%array('axial_load'))
-         end associate
+         run%recorder%corners = request%wants('corners')
+         run%recorder%expected = kept_rows(size(target), run%case%output%every)
+         call run_static(run%structure, request%wants('by_force'), target, run%task, error, &
+                         request%array('axial_load'))
       end subroutine run_cyclic
 
       !> Response in time under the excitations that are given.
@@ -153,7 +151,7 @@ contains
                call fatal_error(error, long_run, note)
                return
             end if
-         ! Deformations, then velocities; none: at rest.
+            ! Deformations, then velocities; none: at rest.
             start => request%array('initial')
             if (size(start) > 0) then
                initial%deformation = start(:size(structure%place))

@@ -81,17 +81,17 @@ contains
             laws = section_laws(section, tension_place(given%tension), given%confined)
             select case (request%what)
             case ('axial_capacity')
-            ! Least and largest axial load without curvature, and the moments that go with them.
+               ! Least and largest axial load without curvature, and the moments that go with them.
                call axial_capacity(section, laws, least, most, strain)
                answer%value = [least%n, most%n, least%m, most%m]
             case ('moment_curvature')
-            ! Curvatures of one sign and increasing magnitude; moments, then strains.
+               ! Curvatures of one sign and increasing magnitude; moments, then strains.
                curvature => request%array('curvature')
                allocate (answer%rows(size(curvature), 2), source=0.0_c_double)
                call follow(section, laws, given%axial_load, curvature, answer%rows(:, 1), answer%rows(:, 2), &
                            answer%error)
             case default
-            ! Cracking, yield, peak, ultimate and the end; whether the axial load is lost there.
+               ! Cracking, yield, peak, ultimate and the end; whether the axial load is lost there.
                call check_rule(given%confined, given%rule(), answer%error)
                if (allocated(answer%error)) return
                call find_events(section, laws, given%axial_load, given%rule(), events, answer%error)

@@ -200,10 +200,8 @@ contains
       integer :: i
 
       do i = 1, list%count
-         associate (spring => list%entry(i))
-            if (spring%group == 'flexure' .and. spring%spring%rule == 'layered' .and. &
-                are_of(list%entry(layers), spring)) return
-         end associate
+         if (list%entry(i)%group == 'flexure' .and. list%entry(i)%spring%rule == 'layered' .and. &
+             are_of(list%entry(layers), list%entry(i))) return
       end do
       call messages%add_at(list%entry(layers)%where, '&layers belong to no &flexure with rule = '// &
                            "'layered' and the same kind and place; give it these, or remove the layers")

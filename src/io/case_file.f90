@@ -73,7 +73,7 @@ contains
                if (own%count > 0) cycle                ! reported already
                select case (spec%source)
                case ('protocol')
-               ! Amplitudes in drift need the height; a wrong height has been reported.
+                  ! Amplitudes in drift need the height; a wrong height has been reported.
                   if (.not. ieee_is_finite(case%height())) cycle
                   if (case%height() <= 0.0_wp) cycle
                   call protocol_values(spec, case%height(), time, value, fault)
@@ -90,7 +90,7 @@ contains
                end if
                signal%time = time
                signal%value = value
-            ! A displacement is not an action in time.
+               ! A displacement is not an action in time.
                do j = 1, signals
                   if (spec%drive == signal_names(j)) history%loads%signal(j) = signal
                end do

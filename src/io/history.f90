@@ -81,7 +81,7 @@ contains
                return
             end if
          end do
-      ! NPTS= 4000, DT= .01 SEC, or in older files: 4000 0.01 NPTS, DT
+         ! NPTS= 4000, DT= .01 SEC, or in older files: 4000 0.01 NPTS, DT
          head = file%text(first:last)
          do i = 1, len(head)
             if (scan(head(i:i), '=,') == 1) head(i:i) = ' '
@@ -191,9 +191,7 @@ contains
          named = .true.
          worded = .false.
          do i = 1, fields%count
-            associate (word => file%text(fields%first(i):fields%last(i)))
-               call read_real(word, value, status)
-            end associate
+            call read_real(file%text(fields%first(i):fields%last(i)), value, status)
             if (status == number_ok) named = .false.
             if (status == number_wrong) worded = .true.
          end do

@@ -113,7 +113,7 @@ contains
                call reader%put_text(place, text, messages)
                return
             end if
-         ! All subscripted values of a name are put together when the first of them is read.
+            ! All subscripted values of a name are put together when the first of them is read.
             if (entry%subscript > 0) call gather(group, i, reader%keys(place), number)
             if (allocated(number)) call reader%put_numbers(place, number)
          end associate

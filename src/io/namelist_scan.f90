@@ -173,7 +173,7 @@ contains
                self%at = begin
                call complain('&'//trim(group%name)//' is not closed; end it with /')
             else if (group_begins()) then
-            ! The next group is scanned all the same: it would otherwise be taken for values of this one.
+               ! The next group is scanned all the same: it would otherwise be taken for values of this one.
                call complain('&'//trim(group%name)//' of line '//to_text(group%line)// &
                              ' is not closed before the next group; end it with /')
                self%failed = .false.
@@ -230,7 +230,7 @@ contains
          subscript = 0
          length = index(self%text(self%at:min(self%at + 11, len(self%text))), ')')
          if (length > 2) then
-         ! Not an associate name: gfortran 12 frees the text of trim(adjustl()) twice.
+            ! Not an associate name: gfortran 12 frees the text of trim(adjustl()) twice.
             word = adjustl(self%text(self%at + 1:self%at + length - 2))
             if (len_trim(word) > 0 .and. len_trim(word) < 8 .and. verify(trim(word), digits) == 0) then
                read (word, '(i8)') subscript

@@ -140,7 +140,7 @@ contains
          if (path == '-') then
             message = 'standard input is closed'
          else if (.not. is_special(path)) then
-         ! Opened once more, since Fortran gives the reason in words.
+            ! Opened once more, since Fortran gives the reason in words.
             open (newunit=unit, file=path, action='read', status='old', iostat=status, iomsg=message)
             if (status == 0) close (unit)
             reason = index(message, "': ", back=.true.)  ! Behind the path

@@ -300,10 +300,8 @@ contains
 
       bar_ratio = -1.0_wp
       do i = 1, size(section%bar_y)
-         associate (steel => section%steels(section%bar_steel(i)))
-            limit = steel_yield_strain(steel)
-            if (at_rupture) limit = steel%eps_u
-         end associate
+         limit = steel_yield_strain(section%steels(section%bar_steel(i)))
+         if (at_rupture) limit = section%steels(section%bar_steel(i))%eps_u
          bar_ratio = max(bar_ratio, (state%curvature*section%bar_y(i) - state%eps0)/limit)
       end do
    end function bar_ratio

@@ -190,7 +190,7 @@ contains
                              ', '//to_text(spring%k_y)//', '//to_text(spring%k_u)//' N m/rad do not fall '// &
                              'from branch to branch; the trilinear line does not apply')
          else
-         ! eq 7: K_r = (M_c + M_y)/(D_c + D_y) (D_y/D_m)^B_0, and B_1 = K_r/K_c.
+            ! eq 7: K_r = (M_c + M_y)/(D_c + D_y) (D_y/D_m)^B_0, and B_1 = K_r/K_c.
             spring%b1 = (m_c + m_y)/(spring%d_c + spring%d_y)*(spring%d_y/spring%d_m)**spring%b0/spring%k_c
          end if
       end subroutine draw_line

@@ -237,7 +237,7 @@ contains
          best = layer_state(eps_x=eps_x)
          do while (below < largest_strain)
             above = max(growth*below, below + 0.02_wp*cracking)
-         ! Both sides of cracking are tried, as the stress drops there.
+            ! Both sides of cracking are tried, as the stress drops there.
             if (below < cracking) above = min(above, cracking)
             if (.not. below < cracking .and. .not. below > cracking) above = nearest(cracking, 1.0_wp)
             call balance(above, eps_2, tau_here, balanced)
@@ -266,7 +266,7 @@ contains
             call balance(middle, eps_2, tau_here, balanced)
             near = state_of(middle, eps_2, tau)
             call iterate(eps_x, tau, near, found)
-         ! Newton's method may have left the interval: only a state inside it is the first.
+            ! Newton's method may have left the interval: only a state inside it is the first.
             if (found) found = in_between(near, bottom, top)
             if (found) state = near
             if (found .or. .not. (middle > below .and. middle < above)) return

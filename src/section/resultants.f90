@@ -97,7 +97,7 @@ contains
             sums%m = sums%m - stress*area*y
             sums%stiffness = sums%stiffness + tangent*area
          end do
-      ! The tip moves by d(eps_0)/phi, and the concrete that it passes returns to f_t.
+         ! The tip moves by d(eps_0)/phi, and the concrete that it passes returns to f_t.
          strain = laws%shell%ft/laws%shell%ec*(1.0_wp + 1.0e-9_wp)
          call concrete_both(laws%shell, -strain, after, tangent)
          sums%stiffness = sums%stiffness - (laws%shell%ft + after)*width/abs(curvature)

@@ -263,14 +263,12 @@ contains
 
          s = -now%side
          now%cracked(s) = .true.
-         associate (left => now%peak(-s))
-            k_r = now%k_r(-s)
-            if (abs(left%d) <= self%d_y) then
-               call follow_backbone(s, d)
-               return
-            end if
-            zero = left%d - left%f/k_r
-         end associate
+         k_r = now%k_r(-s)
+         if (abs(now%peak(-s)%d) <= self%d_y) then
+            call follow_backbone(s, d)
+            return
+         end if
+         zero = now%peak(-s)%d - now%peak(-s)%f/k_r
          now%peak(s) = point(s*self%d_y, s*self%f_y)
          ahead = s*(now%peak(s)%d - d)
          if (self%f_y - self%f_c > k_r*ahead .and. k_r > (1.0_wp + parallel)*self%k_u) then

@@ -116,7 +116,7 @@ contains
          do i = 1, wanted
             associate (from => size(heavy) + 1 - i)
                modes%omega(i) = 1.0_wp/sqrt(max(square(from), tiny(1.0_wp)))
-            ! F M^(1/2) y omega^2 is the shape of all unknowns, with unit modal mass.
+               ! F M^(1/2) y omega^2 is the shape of all unknowns, with unit modal mass.
                modes%shapes(:, i) = matmul(all_of, flexible(:, from))*modes%omega(i)**2
             end associate
             if (structure%work_of(horizontal, modes%shapes(:, i)) > 0.0_wp) then
@@ -150,7 +150,7 @@ contains
                              'A dynamic analysis does not need them, it finds its stable step for any n')
             return
          end if
-      ! This also refuses a column that buckles under its axial load alone.
+         ! This also refuses a column that buckles under its axial load alone.
          call stability_limit(column, modes%stable_step, error)
          if (allocated(error)) return
          call set_condition(column)
@@ -176,7 +176,7 @@ contains
                   shape(column%at(shear, :)) = found(1, :)
                   shape(column%at(flexure, :)) = found(2, :)
                end if
-            ! The top goes to +x or, if it only goes along the column, up.
+               ! The top goes to +x or, if it only goes along the column, up.
                top = dot_product(column%arm, shape) + sum(shape, column%place%kind == axial)
                shape = sign(1.0_wp, top)*shape
             end associate

@@ -222,9 +222,7 @@ contains
                           + (path%structure%constant_axial - path%structure%axial_load)
          if (path%springs%pressed) then
             do i = 1, size(path%springs%layered)
-               associate (place => path%springs%layered(i))
-                  standing%press(place) = path%springs%press_at(place)
-               end associate
+               standing%press(path%springs%layered(i)) = path%springs%press_at(path%springs%layered(i))
             end do
          end if
       end if

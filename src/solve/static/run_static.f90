@@ -84,7 +84,7 @@ contains
                call check_axial_load(column, size(target))
                if (allocated(error)) return
                load = axial_load
-            ! From the state of another analysis the load goes to its first value.
+               ! From the state of another analysis the load goes to its first value.
                varies = varies .or. task%resumes() .or. any(abs(load - load(1)) > same_load*maxval(abs(load)))
                allocate (other, source=column)
                call other%put_under(load(1))

@@ -129,7 +129,7 @@ contains
             if (motion%acts(horizontal)) then
                state%of_loads = state%of_loads - mean(horizontal)*body%mass(1)*body%moved(1)
             end if
-         ! Both elements one by one: the compiler does not know that there are no more.
+            ! Both elements one by one: the compiler does not know that there are no more.
             state%v(1) = body%v1(1) - body%lower*body%v1(2)
             state%v(2) = body%v1(2)
             state%q(1) = body%q(1)
@@ -157,7 +157,7 @@ contains
          if (.not. self%marked) return
          if (.not. self%converged) then
             call state%springs%restore()
-         ! Joints under an axial load that varies have no lines that the deformations alone could follow.
+            ! Joints under an axial load that varies have no lines that the deformations alone could follow.
             if (.not. state%springs%pressed) then
                call go_by_events()
                if (.not. self%converged) call state%springs%restore()
@@ -219,10 +219,10 @@ contains
          way = 0
          associate (springs => state%springs)
             do i = 1, springs%count
-            ! Most springs stay on their lines.
+               ! Most springs stay on their lines.
                if (q(i) + dq(i) >= springs%first(i) .and. q(i) + dq(i) <= springs%last(i)) cycle
                if (dq(i) > 0.0_wp) then
-               ! The rear end of a one-way line is where the spring was put last.
+                  ! The rear end of a one-way line is where the spring was put last.
                   room = springs%end_toward(i, 1) - q(i)
                else
                   room = q(i) - springs%end_toward(i, -1)
@@ -260,7 +260,7 @@ contains
                state%of_damping = state%of_damping &
                                   + h*motion%damping_power(state%springs, self%step%q1, self%mean)
                if (motion%structure%tangent_numbers > 0) then
-               ! Elements damp as wholes; the residual is not needed any more.
+                  ! Elements damp as wholes; the residual is not needed any more.
                   call motion%structure%unknown_rates(self%mean, self%dx)
                   self%step%r = 0.0_wp
                   call motion%structure%damp(self%dx, self%step%now%tangent, self%step%r)
@@ -309,10 +309,8 @@ contains
       type(state_type), intent(inout) :: state
 
       call self%tangent%find_correction(self%step, state, self%h, self%dx)
-      associate (now => self%step%now)
-         call state%motion%structure%spring_rates(now%tangent, self%dx, self%dq)
-         if (size(now%correction) > 0) self%dq = self%dq + now%correction
-      end associate
+      call state%motion%structure%spring_rates(self%step%now%tangent, self%dx, self%dq)
+      if (size(self%step%now%correction) > 0) self%dq = self%dq + self%step%now%correction
    end subroutine correct
 
    subroutine try(self, state, share)

@@ -229,9 +229,7 @@ contains
             end do
             do k = 0, group%count - 1
                i = group%first + k*group%step
-               associate (at => reach(structure%part(i)))
-                  at = at + sqrt(max(stiffness(i), 0.0_wp))*way
-               end associate
+               reach(structure%part(i)) = reach(structure%part(i)) + sqrt(max(stiffness(i), 0.0_wp))*way
             end do
          end associate
       end do

@@ -204,10 +204,8 @@ contains
       real(wp), intent(in) :: opening
       real(wp) :: y(3)
 
-      associate (at => self%column%at)
-         y = [x(at(shear, i)), x(at(flexure, i)), opening]
-         if (self%column%opens) y(tension) = x(at(tension, i))
-      end associate
+      y = [x(self%column%at(shear, i)), x(self%column%at(flexure, i)), opening]
+      if (self%column%opens) y(tension) = x(self%column%at(tension, i))
    end function of_joint
 
    !> Put values of a joint among those of all springs.
@@ -217,11 +215,9 @@ contains
       integer, intent(in) :: i
       real(wp), intent(inout), contiguous :: x(:)
 
-      associate (at => self%column%at)
-         x(at(shear, i)) = y(shear)
-         x(at(flexure, i)) = y(flexure)
-         if (self%column%opens) x(at(tension, i)) = y(tension)
-      end associate
+      x(self%column%at(shear, i)) = y(shear)
+      x(self%column%at(flexure, i)) = y(flexure)
+      if (self%column%opens) x(self%column%at(tension, i)) = y(tension)
    end subroutine put_joint
 
    subroutine try(self, state, share)
@@ -298,10 +294,10 @@ contains
                finish = springs%f0(i) + springs%k(i)*(self%q1(i) - springs%d0(i))
                mean = springs%f0(i) + springs%k(i)*(0.5_wp*(self%q1(i) + state%q(i)) - springs%d0(i))
                self%k(i) = 0.5_wp*springs%k(i)
-            ! A change that its deformation has no digits for is the one that the spring has made.
+               ! A change that its deformation has no digits for is the one that the spring has made.
                moved = self%change(i)
                if (abs(moved) < no_digits*abs(state%q(i))) moved = self%q1(i) - state%q(i)
-            ! Springs with a mark are at the end of the step; their work is counted from its start.
+               ! Springs with a mark are at the end of the step; their work is counted from its start.
                if (self%marked .and. abs(moved) > 0.0_wp) then
                   mean = springs%work(i)/moved
                   if (abs(finish - mean) > no_change*(abs(finish) + abs(mean))) then
@@ -508,9 +504,7 @@ contains
             if (at(j) == 0) cycle
             do l = 1, local
                if (at(l) == 0) cycle
-               associate (place => self%band(main + at(l) - at(j), at(j)))
-                  place = place + tangent(l, j)
-               end associate
+               self%band(main + at(l) - at(j), at(j)) = self%band(main + at(l) - at(j), at(j)) + tangent(l, j)
             end do
          end do
       end associate

@@ -108,7 +108,7 @@ contains
                lost = state%springs%lost_joint()
                if (lost > 0) task%summary%lost_joint = state%motion%structure%place(lost)%index
                ends = task%summary%lost_joint > 0 .or. state%sight%collapsed
-            ! A joint may have lost its axial load, or the column may have collapsed, within the step.
+               ! A joint may have lost its axial load, or the column may have collapsed, within the step.
                associate (at => state%begin + state%time)
                   if (ends .and. at < state%clock - same_step*h) state%clock = at
                end associate

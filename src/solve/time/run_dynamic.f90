@@ -100,7 +100,7 @@ contains
             call stability_limit(structure, plan%limit, error)
             if (allocated(error)) return
             if (method%adaptive) then
-            ! It is explicit too: its steps cannot be much longer than the limit of rk4.
+               ! It is explicit too: its steps cannot be much longer than the limit of rk4.
                call check_length((time(size(time)) - time(1))/plan%limit, plan%limit, error)
                if (allocated(error)) return
             else
@@ -143,7 +143,7 @@ contains
             plan%reason = 'stiff: rk4 would take '//to_text(anint(explicit_steps))//' steps for its '// &
                           'stability, this method takes about '//to_text(anint(implicit_steps))
          else if (structure%kinematics == finite) then
-         ! How fast the column turns, and with it the step that resolves it, is not known in advance.
+            ! How fast the column turns, and with it the step that resolves it, is not known in advance.
             plan%method = 'rk45'
             plan%reason = 'finite rotations: the steps follow from a tolerance'
          else

@@ -390,15 +390,13 @@ contains
       top = cubic_through(value)
       open = .not. self%reached < huge(1.0_wp)
       do i = 1, size(self%watch)
-         associate (watch => self%watch(i))
-            if (.not. open(watch%state)) cycle
-            do j = 1, 4
-               value(j) = value_of(watch, self%inner_q(:, j), self%inner_openings(i, j))
-            end do
-            along = cubic_through(value)
-            share = along%first_at(watch%threshold)
-            if (share <= 1.0_wp) call reach(self, i, clock - (1.0_wp - share)*h, top%at(share))
-         end associate
+         if (.not. open(self%watch(i)%state)) cycle
+         do j = 1, 4
+            value(j) = value_of(self%watch(i), self%inner_q(:, j), self%inner_openings(i, j))
+         end do
+         along = cubic_through(value)
+         share = along%first_at(self%watch(i)%threshold)
+         if (share <= 1.0_wp) call reach(self, i, clock - (1.0_wp - share)*h, top%at(share))
       end do
       call set_bounds(self)
    end subroutine look_within
@@ -477,11 +475,9 @@ contains
       !> When [s], and displacement of the top [m]
       real(wp), intent(in) :: at, top
 
-      associate (state => self%watch(i)%state)
-         if (at >= self%reached(state)) return
-         self%reached(state) = at
-         self%top(state) = top
-      end associate
+      if (at >= self%reached(self%watch(i)%state)) return
+      self%reached(self%watch(i)%state) = at
+      self%top(self%watch(i)%state) = top
    end subroutine reach
 
    !> The bounds of what is still watched for.

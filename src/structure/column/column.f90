@@ -388,10 +388,8 @@ contains
       real(wp), intent(in), contiguous :: d(:)
 
       energy = 0.0_wp
-      associate (n => self%n)
-         if (self%axially_loaded) energy = second_order_energy(n, self%second_order, d)
-         if (self%opens) energy = energy + inner_product(n, self%axial_joint, d(2*n + 1:))
-      end associate
+      if (self%axially_loaded) energy = second_order_energy(self%n, self%second_order, d)
+      if (self%opens) energy = energy + inner_product(self%n, self%axial_joint, d(2*self%n + 1:))
    end function potential_energy
 
    pure real(wp) function top_displacement(self, d) result(x)

@@ -310,7 +310,7 @@ contains
                               to_text(self%joints())//' joints; give one, or one for each joint')
          else
             do i = 1, size(springs)
-            ! Equal springs have equal faults; they are told once.
+               ! Equal springs have equal faults; they are told once.
                if (i > 1) then
                   if (springs(i)%same_as(springs(i - 1))) cycle
                end if

@@ -100,7 +100,7 @@ contains
          end do
          column%total_height = column%joint_height(n + 1)
          column%arm(:n) = 1.0_wp
-      ! Summed from the top down: the lever arm of an upper joint is not a difference of large heights.
+         ! Summed from the top down: the lever arm of an upper joint is not a difference of large heights.
          column%arm(2*n) = column%length(n)
          do i = n - 1, 1, -1
             column%arm(n + i) = column%arm(n + i + 1) + column%length(i)
@@ -162,7 +162,7 @@ contains
          integer :: n
 
          n = column%n
-      ! A body without length does not lean.
+         ! A body without length does not lean.
          column%lifted_body = column%mass_above(2:)
          where (column%length > 0.0_wp)
             column%lifted_body = column%mass*column%lower/column%length + column%mass_above(2:)
@@ -179,7 +179,7 @@ contains
          allocate (column%at(3, n), source=0)
          do i = 1, n
             column%at(:2, i) = [i, n + i]
-         ! A shear spring may ask for the work of the flexural one of its joint.
+            ! A shear spring may ask for the work of the flexural one of its joint.
             joint = merge(i - 1, i, column%footing)
             column%place(i) = spring_place(shear, 1, joint, n + i, i)
             column%place(n + i) = spring_place(flexure, 1, joint, index=i)
@@ -210,7 +210,7 @@ contains
             column%inertias(2*n + i) = column%mass(i)
             column%part(2*n + i) = n + i
          end do
-      ! A column of static paths alone may have none.
+         ! A column of static paths alone may have none.
          allocate (column%inverse_mass(n), column%inverse_inertia(n), source=0.0_wp)
          where (column%mass > 0.0_wp) column%inverse_mass = 1.0_wp/column%mass
          where (column%inertia > 0.0_wp) column%inverse_inertia = 1.0_wp/column%inertia
@@ -226,11 +226,9 @@ contains
          do i = 1, size(column%pattern)
             allocate (column%pattern(i)%force(m), source=0.0_wp)
          end do
-         associate (push => column%pattern(lateral), ground => column%pattern(horizontal))
-            push%force(2*n - 1:2*n) = [1.0_wp, column%upper(n)]
-            if (column%held) push%force(2*n) = 0.0_wp
-            ground%force(1:2*n:2) = -column%mass
-         end associate
+         column%pattern(lateral)%force(2*n - 1:2*n) = [1.0_wp, column%upper(n)]
+         if (column%held) column%pattern(lateral)%force(2*n) = 0.0_wp
+         column%pattern(horizontal)%force(1:2*n:2) = -column%mass
          if (column%opens) then
             column%pattern(vertical)%force(2*n + 1:) = -column%mass
             column%pattern(top_axial)%force(3*n) = -1.0_wp
