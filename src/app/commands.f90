@@ -1,8 +1,7 @@
 !> The commands: from a case file to a csv and a summary.
 module rbs_app_commands
    use, intrinsic :: iso_fortran_env, only: error_unit
-   use rbs_app_progress, only: terminal_progress
-   use rbs_app_say, only: say
+   use rbs_app_progress, only: terminal_progress, say
    use rbs_app_signals, only: remove_if_stopped
    use rbs_base_constants, only: pi
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
@@ -16,8 +15,7 @@ module rbs_app_commands
    use rbs_io_output_file, only: partial
    use rbs_io_state_file, only: read_state, write_state
    use rbs_io_posix, only: is_standard_output, same_file, standard_input
-   use rbs_output_notes, only: drift_note, rotation_note
-   use rbs_output_structure_notes, only: structure_notes
+   use rbs_output_notes, only: drift_note, rotation_note, structure_notes
    use rbs_output_channels, only: new_channels
    use rbs_output_summary, only: figure_type
    use rbs_solve_begin_make_structure, only: make_structure

@@ -7,7 +7,7 @@ module rbs_base_keys
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use rbs_base_kinds, only: wp
    use rbs_base_check, only: is_given, check_finite
-   use rbs_base_constants, only: unset
+   use rbs_base_constants, only: beyond_meaning, unset
    use rbs_base_error, only: message_list
    use rbs_base_text, only: to_text
    implicit none
@@ -83,7 +83,8 @@ contains
 
       if (ieee_is_finite(x)) then
          ! The common case first. A NaN is never compared: builds with floating-point traps would stop.
-         if (x > key%bound%least .and. x < key%bound%most .and. is_ordinary(x)) return
+         if (x > key%bound%least .and. x < key%bound%most .and. &
+             abs(x) > 1.0_wp/beyond_meaning .and. abs(x) < beyond_meaning) return
          if (key%bound%tiny .and. abs(x) < 1.0_wp) return
       end if
       if (key%optional .and. .not. is_given(x)) return
@@ -144,13 +145,6 @@ contains
       end function refusal
 
    end subroutine check_number
-
-   !> Whether a number is neither zero nor extreme; false for NaN and for `unset`.
-   elemental logical function is_ordinary(x)
-      real(wp), intent(in) :: x
-
-      is_ordinary = abs(x) > 1.0e-50_wp .and. abs(x) < 1.0e50_wp
-   end function is_ordinary
 
    elemental logical function is_within(x, bound)
       real(wp), intent(in) :: x

@@ -163,7 +163,7 @@ contains
    !> The names joined by commas, for "valid names are ...".
    pure function list_of(names) result(text)
       character(len=*), intent(in) :: names(:)
-      character(len=list_length(names)) :: text
+      character(len=sum(len_trim(names)) + 2*max(size(names) - 1, 0)) :: text
       integer :: i, at
 
       at = 0
@@ -176,12 +176,6 @@ contains
          at = at + len_trim(names(i))
       end do
    end function list_of
-
-   pure integer function list_length(names)
-      character(len=*), intent(in) :: names(:)
-
-      list_length = sum(len_trim(names)) + 2*max(size(names) - 1, 0)
-   end function list_length
 
    !> "; did you mean 'height'?" where a valid name is near to a word by edit distance, else nothing.
    pure function suggestion(word, names) result(text)

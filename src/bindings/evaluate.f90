@@ -18,7 +18,7 @@ module rbs_bindings_evaluate
    use rbs_loading_named_protocols, only: named_protocol
    use rbs_loading_protocol, only: protocol_values
    use rbs_loading_spectrum, only: response_spectrum
-   use rbs_output_structure_notes, only: structure_notes
+   use rbs_output_notes, only: structure_notes
    use rbs_output_channels, only: channel_units
    use rbs_section_flexural_spring, only: spring_figures
    use rbs_section_section_figures, only: point_values, profile_values, section_figures, shear_values

@@ -9,6 +9,7 @@ module rbs_bindings_runs
    use rbs_bindings_exchange, only: request_type, answer_type
    use rbs_bindings_statements, only: structure_from_statements
    use rbs_case_case_record, only: case_record
+   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, signals, signal_names
    use rbs_loading_signal, only: signal_type
    use rbs_output_channels, only: new_channels
    use rbs_output_notes, only: rotation_note
@@ -19,7 +20,6 @@ module rbs_bindings_runs
    use rbs_solve_static_path, only: kept_rows
    use rbs_solve_task, only: task_type
    use rbs_solve_time_effort, only: expected_seconds, long_run_note, patience
-   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, signals, signal_names
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic
@@ -73,7 +73,12 @@ contains
          run%task%every = run%case%output%every
          run%task%collapse_drift = run%case%analysis%collapse_drift
          run%task%keeps_end = .true.
-         call take_from(request%array('before'), run%task%before)
+         associate (before => request%array('before'))
+            if (size(before) > 0) then
+               run%task%before%stream%value = before
+               run%task%before%stream%count = size(before)
+            end if
+         end associate
          if (request%what == 'cyclic') then
             call run_cyclic(answer%error)
          else
@@ -183,16 +188,6 @@ contains
       end subroutine take_signal
 
    end subroutine run_analysis
-
-   !> A state from the numbers of the user; empty for none.
-   subroutine take_from(numbers, state)
-      real(c_double), intent(in) :: numbers(:)
-      type(end_state), intent(inout) :: state
-
-      if (size(numbers) == 0) return
-      state%stream%value = numbers
-      state%stream%count = size(numbers)
-   end subroutine take_from
 
    !> Validate the case without its column.
    subroutine check_settings(case, error)

@@ -8,7 +8,7 @@ module rbs_bindings_sections
    use rbs_case_group_reader, only: group_reader
    use rbs_section_balance, only: axial_capacity, follow
    use rbs_section_concrete_law, only: concrete_stress, concrete_type, tension_place
-   use rbs_section_cross_section, only: section_type
+   use rbs_section_cross_section, only: section_type, cut_strips, strip_centroids, strips_type
    use rbs_section_events, only: check_rules, events_type, find_events, rule_type
    use rbs_section_flexural_spring, only: fit_flexural_spring, flexural_spring_type
    use rbs_section_resultants, only: laws_type, resultants_type, section_laws
@@ -17,7 +17,6 @@ module rbs_bindings_sections
    use rbs_section_shape, only: shape_type
    use rbs_section_shear_diagram, only: check_curvatures, follow_shear, shear_diagram_type
    use rbs_section_steel_law, only: steel_stress
-   use rbs_section_strips, only: cut_strips, strip_centroids, strips_type
    implicit none
    private
 

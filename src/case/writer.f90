@@ -9,7 +9,6 @@ module rbs_case_writer
    use rbs_case_case_record, only: case_record
    use rbs_case_spring_entry, only: entry_list, spring_entry
    use rbs_case_text_buffer, only: text_buffer
-   use rbs_structure_column_column_record, only: column_record
    use rbs_structure_frame_frame_record, only: frame_groups
    use rbs_hysteresis_registry, only: keys_of
    use rbs_hysteresis_spring_record, only: spring_record
@@ -40,6 +39,8 @@ contains
    subroutine write_case(case, text)
       type(case_record), intent(inout) :: case
       type(case_text), intent(inout) :: text
+      !> Springs of layers that have been written before
+      type(entry_list) :: layer_springs
       integer :: i
 
       call write_record('case')
@@ -49,7 +50,11 @@ contains
          call write_record('column')
       end if
       call write_record('damping')
-      if (.not. allocated(case%frame)) call write_all_springs(case%column, text)
+      if (.not. allocated(case%frame)) then
+         call write_springs('shear', case%column%shear)
+         call write_springs('flexure', case%column%flexure)
+         call write_springs('axial_spring', case%column%axial_spring)
+      end if
       if (allocated(case%drawing)) call write_drawing()
       do i = 1, case%loadings
          call write_record('loading', i)
@@ -62,7 +67,6 @@ contains
       !> Write the groups of a frame and its springs.
       subroutine write_frame()
          type(spring_entry) :: entry
-         type(entry_list) :: layer_springs
          integer :: g, i
 
          do g = 1, size(frame_groups)
@@ -78,7 +82,7 @@ contains
                entry%panel = given%panel
                if (allocated(given%place)) entry%place = given%place
                call write_spring(entry)
-               if (allocated(given%spring%y)) call write_layers(entry, layer_springs)
+               if (allocated(given%spring%y)) call write_layers(entry)
             end associate
          end do
       end subroutine write_frame
@@ -142,11 +146,9 @@ contains
       end subroutine write_spring
 
       !> Write the springs of layers that have not been written before, then the layers.
-      subroutine write_layers(joint, layer_springs)
+      subroutine write_layers(joint)
          !> The joints and their layered spring
          type(spring_entry), intent(in) :: joint
-         !> Springs of layers that have been written before
-         type(entry_list), intent(inout) :: layer_springs
          type(spring_entry) :: layers
          type(spring_record) :: layer
          integer :: i, j
@@ -171,21 +173,7 @@ contains
          call write_spring(layers)
       end subroutine write_layers
 
-   end subroutine write_case
-
-   !> Write the springs of a column; equal springs are written once.
-   subroutine write_all_springs(column, text)
-      type(column_record), intent(in) :: column
-      type(case_text), intent(inout) :: text
-      type(entry_list) :: layer_springs
-
-      call write_springs('shear', column%shear)
-      call write_springs('flexure', column%flexure)
-      call write_springs('axial_spring', column%axial_spring)
-
-   contains
-
-      !> Write the springs of one kind.
+      !> Write the springs of one kind of a column; equal springs are written once.
       subroutine write_springs(group, spring)
          character(len=*), intent(in) :: group
          type(spring_record), intent(in), allocatable :: spring(:)
@@ -196,7 +184,7 @@ contains
          if (.not. allocated(spring)) return
          ! For each joint the first that has the same spring; the lowest joint of a footing has number 0.
          allocate (first(size(spring)))
-         beneath = merge(1, 0, column%footing)
+         beneath = merge(1, 0, case%column%footing)
          do i = 1, size(spring)
             first(i) = i
             do j = 1, i - 1
@@ -212,11 +200,12 @@ contains
             if (any(first /= 1) .or. beneath > 0) then
                entry%joint = pack([(j - beneath, j=1, size(first))], first == i)
             end if
-            call write_spring(entry, text)
-            if (allocated(spring(i)%y)) call write_layers(entry, layer_springs, text)
+            call write_spring(entry)
+            if (allocated(spring(i)%y)) call write_layers(entry)
          end do
       end subroutine write_springs
-   end subroutine write_all_springs
+
+   end subroutine write_case
 
    !> Add one group.
    subroutine add_group(self, name, entry)

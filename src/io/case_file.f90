@@ -7,12 +7,11 @@ module rbs_io_case_file
    use rbs_io_loading_file, only: loading_values
    use rbs_io_namelist, only: read_case
    use rbs_loading_protocol, only: protocol_values
-   use rbs_loading_signal, only: signal_type
-   use rbs_solve_check_values, only: check_values
    use rbs_loading_loads, only: loads_type, signals, signal_names
+   use rbs_loading_signal, only: signal_type
+   use rbs_base_check, only: is_given, check_values
    use rbs_case_analysis_record, only: analysis_record
    use rbs_case_case_record, only: case_record
-   use rbs_base_check, only: is_given
    implicit none
    private
 

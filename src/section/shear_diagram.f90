@@ -16,8 +16,7 @@ module rbs_section_shear_diagram
    use rbs_section_mcft_layer, only: layer_type, layer_state, solve_layer
    use rbs_section_resultants, only: section_laws
    use rbs_section_cross_section, only: section_type, slice
-   use rbs_section_shear_coupling, only: couple
-   use rbs_section_shear_flow, only: flow_type, begin_flow, shear_stresses, transverse_ratio
+   use rbs_section_shear_flow, only: flow_type, begin_flow, shear_stresses, transverse_ratio, couple
    implicit none
    private
 

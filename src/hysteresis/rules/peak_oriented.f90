@@ -8,7 +8,7 @@ module rbs_hysteresis_rules_peak_oriented
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_hysteresis_rules_backbone_parameters, only: backbone_parameters
+   use rbs_hysteresis_rules_backbone, only: backbone_parameters
    use rbs_hysteresis_rules_capped, only: capped_part, capped_memory
    use rbs_hysteresis_rules_deterioration, only: deterioration_type
    use rbs_hysteresis_rule, only: rule_type, rule_memory

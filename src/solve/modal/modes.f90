@@ -373,6 +373,7 @@ contains
       real(wp), intent(in) :: omega, c
       complex(wp) :: root, lambda(2)
       real(wp) :: below, above
+      logical :: stable
       integer :: i
 
       h = 2.0_wp*sqrt(2.0_wp)/max(omega, slowest)
@@ -386,7 +387,11 @@ contains
       above = 4.0_wp/abs(lambda(1))
       do i = 1, 100
          h = 0.5_wp*(below + above)
-         if (all(growth(lambda*h) <= 1.0_wp + 1.0e-12_wp)) then
+         associate (z => lambda*h)
+            stable = all(abs(1.0_wp + z*(1.0_wp + z/2.0_wp*(1.0_wp + z/3.0_wp*(1.0_wp + z/4.0_wp)))) &
+                         <= 1.0_wp + 1.0e-12_wp)
+         end associate
+         if (stable) then
             below = h
          else
             above = h
@@ -394,11 +399,5 @@ contains
       end do
       h = below
    end function stable_step
-
-   elemental real(wp) function growth(z)
-      complex(wp), intent(in) :: z
-
-      growth = abs(1.0_wp + z*(1.0_wp + z/2.0_wp*(1.0_wp + z/3.0_wp*(1.0_wp + z/4.0_wp))))
-   end function growth
 
 end module rbs_solve_modal_modes

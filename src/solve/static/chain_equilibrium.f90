@@ -60,6 +60,7 @@ contains
    subroutine create(self, column)
       class(chain_equilibrium), intent(out) :: self
       class(column_type), intent(in) :: column
+      real(wp) :: stiffness(most_unknowns, most_unknowns)
       integer :: m
 
       m = 2*column%n
@@ -75,22 +76,12 @@ contains
       allocate (self%axial(m), source=0.0_wp)
       if (column%axially_loaded) self%axial(:) = column%second_order
       if (m <= most_unknowns .and. .not. column%held) then
-         call create_few(self, column)
+         call geometric_stiffness(column, stiffness(:m, :m))
+         call self%few%create(stiffness(:m, :m), self%arm)
       else
          call create_band(self, column%length)
       end if
    end subroutine create
-
-   subroutine create_few(self, column)
-      type(chain_equilibrium), intent(inout) :: self
-      class(column_type), intent(in) :: column
-      real(wp) :: stiffness(most_unknowns, most_unknowns)
-
-      associate (m => self%moving)
-         call geometric_stiffness(column, stiffness(:m, :m))
-         call self%few%create(stiffness(:m, :m), self%arm)
-      end associate
-   end subroutine create_few
 
    subroutine create_band(self, length)
       type(chain_equilibrium), intent(inout) :: self

@@ -5,7 +5,7 @@ module rbs_solve_static_run_static
    use rbs_base_text, only: to_text
    use rbs_structure_column_sturm, only: critical_factor
    use rbs_structure_column_column, only: column_type, small, finite
-   use rbs_solve_check_values, only: check_values
+   use rbs_base_check, only: check_values
    use rbs_solve_static_chain_equilibrium, only: chain_equilibrium
    use rbs_solve_static_curved, only: trace_curved
    use rbs_solve_static_frame_equilibrium, only: frame_equilibrium

@@ -12,8 +12,7 @@ module rbs_solve_time_implicit
    use rbs_solve_one_body_implicit_one_body, only: one_body_step
    use rbs_solve_one_body_rk4_one_body, only: softening_of
    use rbs_solve_time_implicit_finite, only: finite_stepper
-   use rbs_solve_time_implicit_balance, only: step_balance
-   use rbs_solve_time_implicit_tangent, only: step_tangent
+   use rbs_solve_time_implicit_balance, only: step_balance, step_tangent
    use rbs_loading_loads, only: lateral, horizontal
    use rbs_solve_time_newton, only: newton_stepper
    use rbs_solve_time_state, only: state_type

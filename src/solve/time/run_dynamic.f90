@@ -6,7 +6,7 @@ module rbs_solve_time_run_dynamic
    use rbs_base_text, only: to_text
    use rbs_case_methods, only: method_type, methods, method_named, responses_tried, usual_tolerance, &
                                usual_rho_infinity
-   use rbs_solve_check_values, only: check_values
+   use rbs_base_check, only: is_given, check_values
    use rbs_solve_task, only: task_type
    use rbs_solve_modal_modes, only: frequency_bounds, stability_limit
    use rbs_solve_time_effort, only: check_effort
@@ -22,7 +22,6 @@ module rbs_solve_time_run_dynamic
    use rbs_solve_time_state, only: stepper_type
    use rbs_structure_structure, only: structure_type, finite
    use rbs_case_analysis_record, only: analysis_record
-   use rbs_base_check, only: is_given
    implicit none
    private
 
