@@ -38,7 +38,7 @@ contains
       integer :: i
 
       if (command_argument_count() == 0) then
-         call complain('no command', error)
+         call complain('no command')
          return
       end if
       i = 0
@@ -46,97 +46,125 @@ contains
          i = i + 1
          word = argument(i)
          if (len(word) > 1 .and. index(word, '-') == 1) then
-            call take_option(command, word, i, error)
+            call take_option()
          else
-            call take_word(command, word, error)
+            call take_word()
          end if
          if (allocated(error)) return
       end do
-      call check_whole(command, error)
-   end subroutine read_command_line
+      call check_whole()
 
-   subroutine take_option(command, word, i, error)
-      type(command_type), intent(inout) :: command
-      character(len=*), intent(in) :: word
-      !> Number of the argument; advanced by one if the next argument is the value of an option
-      integer, intent(inout) :: i
-      type(error_type), allocatable, intent(out) :: error
-      character(len=:), allocatable :: value
-      integer :: mark, status
+   contains
 
-      mark = index(word//'=', '=')
-      select case (word(:mark - 1))
-      case ('-h', '--help')
-         if (allocated(command%name)) command%topic = command%name
-         command%name = 'help'
-      case ('--version')
-         command%name = 'version'
-      case ('-q', '--quiet')
-         command%quiet = .true.
-      case ('--json')
-         command%as_json = .true.
-      case ('--matrices')
-         command%matrices = .true.
-      case ('--count', '-o', '--output')
-         if (mark < len(word)) then
-            value = word(mark + 1:)
-         else if (mark > len(word) .and. i < command_argument_count()) then
-            i = i + 1
-            value = argument(i)
-         end if
-         if (word(:mark - 1) /= '--count') then
-            if (allocated(value)) command%output = value
-            if (.not. allocated(value)) then
-               call complain(word(:mark - 1)//' needs the path of a file after it', error)
+      subroutine take_option()
+         character(len=:), allocatable :: value
+         integer :: mark, status
+
+         mark = index(word//'=', '=')
+         select case (word(:mark - 1))
+         case ('-h', '--help')
+            if (allocated(command%name)) command%topic = command%name
+            command%name = 'help'
+         case ('--version')
+            command%name = 'version'
+         case ('-q', '--quiet')
+            command%quiet = .true.
+         case ('--json')
+            command%as_json = .true.
+         case ('--matrices')
+            command%matrices = .true.
+         case ('--count', '-o', '--output')
+            if (mark < len(word)) then
+               value = word(mark + 1:)
+            else if (mark > len(word) .and. i < command_argument_count()) then
+               i = i + 1
+               value = argument(i)
+            end if
+            if (word(:mark - 1) /= '--count') then
+               if (allocated(value)) command%output = value
+               if (.not. allocated(value)) then
+                  call complain(word(:mark - 1)//' needs the path of a file after it')
+               end if
+               return
+            end if
+            status = 1
+            if (allocated(value)) then
+               if (verify(value, '0123456789') == 0 .and. len(value) < 9) then
+                  read (value, *, iostat=status) command%count
+               end if
+            end if
+            if (status /= 0 .or. command%count < 1) then
+               call complain('--count needs a number of modes above zero')
             end if
             return
-         end if
-         status = 1
-         if (allocated(value)) then
-            if (verify(value, '0123456789') == 0 .and. len(value) < 9) then
-               read (value, *, iostat=status) command%count
-            end if
-         end if
-         if (status /= 0 .or. command%count < 1) then
-            call complain('--count needs a number of modes above zero', error)
-         end if
-         return
-      case default
-         call complain("the option '"//word(:mark - 1)//"' is not known"// &
-                       suggestion(word(:mark - 1), options), error)
-         return
-      end select
-      if (mark <= len(word)) call complain("the option '"//word(:mark - 1)//"' takes no value", error)
-   end subroutine take_option
-
-   subroutine take_word(command, word, error)
-      type(command_type), intent(inout) :: command
-      character(len=*), intent(in) :: word
-      type(error_type), allocatable, intent(out) :: error
-
-      if (.not. allocated(command%name) .or. help_for(command)) then
-         if (all(commands /= word)) then
-            call complain("the command '"//word//"' is not known"// &
-                          suggestion(word, commands), error)
+         case default
+            call complain("the option '"//word(:mark - 1)//"' is not known"// &
+                          suggestion(word(:mark - 1), options))
             return
-         end if
-         if (help_for(command)) then
+         end select
+         if (mark <= len(word)) call complain("the option '"//word(:mark - 1)//"' takes no value")
+      end subroutine take_option
+
+      subroutine take_word()
+
+         if (.not. allocated(command%name) .or. help_for(command)) then
+            if (all(commands /= word)) then
+               call complain("the command '"//word//"' is not known"//suggestion(word, commands))
+               return
+            end if
+            if (help_for(command)) then
+               command%topic = word
+            else
+               command%name = word
+            end if
+         else if (command%name == 'keys' .and. .not. allocated(command%topic)) then
             command%topic = word
+         else if (.not. allocated(command%case)) then
+            if (word == '') then
+               call complain('the path of the case is empty')
+               return
+            end if
+            command%case = word
          else
-            command%name = word
+            call complain("one argument too many: '"//word//"'")
          end if
-      else if (command%name == 'keys' .and. .not. allocated(command%topic)) then
-         command%topic = word
-      else if (.not. allocated(command%case)) then
-         if (word == '') then
-            call complain('the path of the case is empty', error)
+      end subroutine take_word
+
+      subroutine check_whole()
+
+         if (.not. allocated(command%topic)) command%topic = ''
+         if (.not. allocated(command%name)) then
+            call complain('no command')
+         else if (command%name == 'help' .or. command%name == 'version') then
             return
+         else if (command%as_json .and. command%name /= 'keys') then
+            call complain('--json is for keys only')
+         else if ((command%count > 0 .or. command%matrices) .and. command%name /= 'modes') then
+            call complain(trim(merge('--count   ', '--matrices', command%count > 0))//' is for modes only')
+         else if (command%name == 'keys') then
+            if (allocated(command%case)) then
+               call complain("one argument too many: '"//command%case//"'")
+            else if (command%as_json .and. command%topic /= '') then
+               call complain('--json prints all keys; leave '//command%topic//' away')
+            end if
+         else if (.not. allocated(command%case)) then
+            call complain(command%name//' needs the path of a case after it')
+         else if (allocated(command%output)) then
+            if (command%name /= 'run') then
+               call complain('--output is for run only')
+            else if (len_trim(command%output) == 0) then
+               call complain('--output needs the path of a file')
+            end if
          end if
-         command%case = word
-      else
-         call complain("one argument too many: '"//word//"'", error)
-      end if
-   end subroutine take_word
+      end subroutine check_whole
+
+      subroutine complain(what)
+         character(len=*), intent(in) :: what
+
+         call fatal_error(error, bad_input, what//" (try 'rbsdem --help')")
+      end subroutine complain
+
+   end subroutine read_command_line
 
    !> Whether help was asked for, and not yet for which command.
    pure logical function help_for(command)
@@ -145,44 +173,6 @@ contains
       help_for = .false.
       if (allocated(command%name)) help_for = command%name == 'help' .and. .not. allocated(command%topic)
    end function help_for
-
-   subroutine check_whole(command, error)
-      type(command_type), intent(inout) :: command
-      type(error_type), allocatable, intent(out) :: error
-
-      if (.not. allocated(command%topic)) command%topic = ''
-      if (.not. allocated(command%name)) then
-         call complain('no command', error)
-      else if (command%name == 'help' .or. command%name == 'version') then
-         return
-      else if (command%as_json .and. command%name /= 'keys') then
-         call complain('--json is for keys only', error)
-      else if ((command%count > 0 .or. command%matrices) .and. command%name /= 'modes') then
-         call complain(trim(merge('--count   ', '--matrices', command%count > 0))//' is for modes only', &
-                       error)
-      else if (command%name == 'keys') then
-         if (allocated(command%case)) then
-            call complain("one argument too many: '"//command%case//"'", error)
-         else if (command%as_json .and. command%topic /= '') then
-            call complain('--json prints all keys; leave '//command%topic//' away', error)
-         end if
-      else if (.not. allocated(command%case)) then
-         call complain(command%name//' needs the path of a case after it', error)
-      else if (allocated(command%output)) then
-         if (command%name /= 'run') then
-            call complain('--output is for run only', error)
-         else if (len_trim(command%output) == 0) then
-            call complain('--output needs the path of a file', error)
-         end if
-      end if
-   end subroutine check_whole
-
-   subroutine complain(what, error)
-      character(len=*), intent(in) :: what
-      type(error_type), allocatable, intent(out) :: error
-
-      call fatal_error(error, bad_input, what//" (try 'rbsdem --help')")
-   end subroutine complain
 
    function argument(i) result(word)
       integer, intent(in) :: i

@@ -1,8 +1,7 @@
 !> The commands: from a case file to a csv and a summary.
 module rbs_app_commands
    use, intrinsic :: iso_fortran_env, only: error_unit
-   use rbs_app_progress, only: terminal_progress
-   use rbs_app_say, only: say
+   use rbs_app_progress, only: terminal_progress, say
    use rbs_app_signals, only: remove_if_stopped
    use rbs_base_constants, only: pi
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
@@ -16,8 +15,7 @@ module rbs_app_commands
    use rbs_io_output_file, only: partial
    use rbs_io_state_file, only: read_state, write_state
    use rbs_io_posix, only: is_standard_output, same_file, standard_input
-   use rbs_output_notes, only: drift_note, rotation_note
-   use rbs_output_structure_notes, only: structure_notes
+   use rbs_output_notes, only: drift_note, rotation_note, structure_notes
    use rbs_output_channels, only: new_channels
    use rbs_output_summary, only: figure_type
    use rbs_solve_begin_make_structure, only: make_structure
@@ -68,10 +66,10 @@ contains
       character(len=:), allocatable :: file
 
       call prepare(run, path, error)
-      if (.not. allocated(error)) call output_path(run, output, file, error)
-      if (.not. allocated(error)) call check_output(run, file, error)
+      if (.not. allocated(error)) call output_path(file)
+      if (.not. allocated(error)) call check_output()
       if (allocated(error)) return
-      call solve(run, file, quiet, error)
+      call solve()
       call remove_if_stopped('')
       call run%recorder%close(.not. allocated(error), closing)
       if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
@@ -86,44 +84,167 @@ contains
       end if
       ! Among rows on standard output a summary would be in the way.
       if (.not. (quiet .or. is_standard_output(file))) then
-         call print_summary(run, error)
+         call print_summary()
          call structure_notes(run%case, notes)
          call rotation_note(run%structure, run%task%summary, notes)
          call print_notes(notes, error)
       end if
-      if (.not. allocated(error)) call report_end(run, error)
-   end subroutine run_case
+      if (.not. allocated(error)) call report_end()
 
-   !> The error of a run that ended at the user's criterion of collapse, or where a joint lost its axial load;
-   !> the run itself has not failed.
-   subroutine report_end(run, error)
-      type(run_type), intent(in) :: run
-      type(error_type), allocatable, intent(out) :: error
-      character(len=:), allocatable :: text
+   contains
 
-      associate (summary => run%task%summary, fall => run%task%summary%fall)
-         if (summary%status() == 'completed') return
-         text = 'step '//to_text(nint(summary%last_time))
-         if (run%case%analysis%dynamic()) text = 'time '//to_text(summary%last_time)//' s'
-         if (summary%lost_joint > 0) then
-            text = 'axial failure at '//text//': the layers of joint '// &
-                   to_text(run%case%column%joint_number(summary%lost_joint))// &
-                   ' no longer carry the axial load of '//to_text(fall%axial_load)// &
-                   ' N; at that rotation they carry at most '//to_text(fall%capacity)// &
-                   ' N, and the joint would '
-            if (fall%rests) then
-               text = text//'rest after '//to_text(abs(fall%drop))//' m. The'
+      !> The error of a run that ended at the user's criterion of collapse, or where a joint lost its axial
+      !> load;
+      !> the run itself has not failed.
+      subroutine report_end()
+         character(len=:), allocatable :: text
+
+         associate (summary => run%task%summary, fall => run%task%summary%fall)
+            if (summary%status() == 'completed') return
+            text = 'step '//to_text(nint(summary%last_time))
+            if (run%case%analysis%dynamic()) text = 'time '//to_text(summary%last_time)//' s'
+            if (summary%lost_joint > 0) then
+               text = 'axial failure at '//text//': the layers of joint '// &
+                      to_text(run%case%column%joint_number(summary%lost_joint))//' no longer carry the '// &
+                      'axial load of '//to_text(fall%axial_load)//' N; at that rotation they carry at '// &
+                      'most '//to_text(fall%capacity)//' N, and the joint would '
+               if (fall%rests) then
+                  text = text//'rest after '//to_text(abs(fall%drop))//' m. The'
+               else
+                  text = text//'fall without end. The'
+               end if
             else
-               text = text//'fall without end. The'
+               text = 'collapsed at '//text//': the top is at '//to_text(summary%peak_displacement)// &
+                      ' m, beyond collapse_drift = '//to_text(run%case%analysis%collapse_drift)// &
+                      ' of the height; the'
             end if
-         else
-            text = 'collapsed at '//text//': the top is at '//to_text(summary%peak_displacement)// &
-                   ' m, beyond collapse_drift = '//to_text(run%case%analysis%collapse_drift)// &
-                   ' of the height; the'
+         end associate
+         call fatal_error(error, column_collapsed, text//' rows up to there are in '//run%recorder%file%path)
+      end subroutine report_end
+
+      !> Solve the case and write its rows to a csv.
+      subroutine solve()
+         type(terminal_progress), target :: progress
+         type(time_plan) :: plan
+         type(initial_state) :: at_rest
+         character(len=:), allocatable :: note
+
+         plan%method = 'static'
+         associate (case => run%case, structure => run%structure, history => run%history, &
+                    recorder => run%recorder, &
+                    task => run%task)
+            if (allocated(case%analysis%initial)) then
+               task%before = end_state()
+               call read_state(beside(run%path, case%analysis%initial), task%before%stream, error)
+               if (.not. allocated(error)) call task%before%check(structure, error)
+               if (allocated(error)) return
+            end if
+            if (case%analysis%dynamic()) then
+               call plan_dynamic(structure, case%analysis, history%time, history%loads, plan, error)
+               if (allocated(error)) return
+               call long_run_note(structure, plan, note)
+               if (.not. (quiet .or. note == '')) then
+                  write (error_unit, '(a)') 'rbsdem: note: '//note
+                  flush (error_unit)
+               end if
+            end if
+            recorder%units = case%units%system()
+            recorder%channels = new_channels(structure, case%analysis%dynamic(), case%output%openings, &
+                                             case%output%motion)
+            call recorder%open(file, error)
+            if (allocated(error)) return
+            call remove_if_stopped(recorder%file%own)
+            call recorder%write_head(header(case, plan%method), error)
+            if (allocated(error)) return
+            call progress%start(quiet)
+            task%recorder => run%recorder
+            task%progress => progress
+            task%every = case%output%every
+            task%collapse_drift = case%analysis%collapse_drift
+            task%keeps_end = .true.
+            if (case%analysis%dynamic()) then
+               call run_dynamic(structure, case%analysis, plan, history%time, history%loads, at_rest, task, &
+                                error)
+            else
+               call run_static(structure, any(case%loading(:case%loadings)%drive == 'force'), &
+                               history%target, task, error, history%axial_load)
+            end if
+            call progress%finish()
+            if (allocated(error) .or. .not. (allocated(case%output%state) .and. task%after%is_given())) return
+            call write_state(beside(run%path, case%output%state), task%after%stream, error)
+         end associate
+      end subroutine solve
+
+      !> The rows must not go into a file that the case was read from.
+      subroutine check_output()
+         character(len=:), allocatable :: input
+         integer :: i
+         logical :: clash
+
+         clash = same_file(file, standard_input(run%path))
+         do i = 1, run%case%loadings
+            if (.not. allocated(run%case%loading(i)%file)) cycle
+            input = beside(run%path, run%case%loading(i)%file)
+            if (same_file(file, input)) clash = .true.
+            ! A failed run keeps its rows there.
+            if (same_file(file//partial, input)) clash = .true.
+         end do
+         if (clash) then
+            call fatal_error(error, bad_input, 'output: '//file//' is an input of the case and would '// &
+                             'be written over; choose another file with --output')
          end if
-      end associate
-      call fatal_error(error, column_collapsed, text//' rows up to there are in '//run%recorder%file%path)
-   end subroutine report_end
+      end subroutine check_output
+
+      !> Path of the csv: that of the command line, else that of the case, else the case's name with .csv.
+      subroutine output_path(path)
+         character(len=:), allocatable, intent(out) :: path
+         integer :: dot
+
+         if (allocated(output)) then
+            path = output
+         else if (allocated(run%case%output%file)) then
+            path = beside(run%path, run%case%output%file)
+         else if (run%path == '-' .or. index(run%path, '/dev/') == 1 .or. index(run%path, '/proc/') == 1) then
+            call fatal_error(error, bad_input, 'output: a case from '//standard_input(run%path)// &
+                             ' has no name for its rows; give one with --output')
+         else
+            dot = index(run%path, '.', back=.true.)
+            if (dot <= index(run%path, '/', back=.true.) + 1) dot = len(run%path) + 1
+            path = run%path(:dot - 1)//'.csv'
+         end if
+      end subroutine output_path
+
+      !> Print the summary of a run without the values that do not apply to it; its end is reported apart.
+      subroutine print_summary()
+         type(figure_type), allocatable :: figures(:)
+         character(len=28) :: name
+         logical :: dynamic
+         integer :: i
+
+         dynamic = run%case%analysis%dynamic()
+         call run%task%summary%get_figures(figures)
+         if (run%case%title /= '') call say(run%case%title, error)
+         name = 'method'
+         call say('  '//name//'  '//method_text(run%task%summary%method, run%task%summary%reason), error)
+         do i = 1, size(figures)
+            associate (figure => figures(i))
+               if (figure%name == 'lost_joint') exit
+               ! A static path has no steps in time, and an implicit method no stability limit.
+               if (figure%unit == 's' .and. .not. figure%value > 0.0_wp) cycle
+               ! Without inertia the base holds the force at the top; in time there mostly is none.
+               if (figure%name == 'peak_base_shear' .and. .not. dynamic) cycle
+               if (index(figure%name, 'peak_force') > 0 .and. dynamic .and. &
+                   .not. abs(run%task%summary%peak_force) > 0.0_wp) cycle
+               name = figure%name
+               if (figure%unit /= '') name = trim(name)//'_'//figure%unit
+               call say('  '//name//'  '//to_text(figure%value), error)
+            end associate
+         end do
+         name = 'rows in'
+         call say('  '//name//'  '//run%recorder%file%path, error)
+      end subroutine print_summary
+
+   end subroutine run_case
 
    !> rbsdem check: report all errors of the input without solving the case.
    subroutine check_case(path, quiet, error)
@@ -257,68 +378,8 @@ contains
 
       run%path = path
       call load_case(path, run%case, run%history, error)
-      if (.not. allocated(error)) then
-         call make_structure(run%case, run%structure, run%task%before, error)
-      end if
+      if (.not. allocated(error)) call make_structure(run%case, run%structure, run%task%before, error)
    end subroutine prepare
-
-   !> Solve the case and write its rows to a csv.
-   subroutine solve(run, file, quiet, error)
-      type(run_type), intent(inout), target :: run
-      !> Path of the csv
-      character(len=*), intent(in) :: file
-      logical, intent(in) :: quiet
-      type(error_type), allocatable, intent(out) :: error
-      type(terminal_progress), target :: progress
-      type(time_plan) :: plan
-      type(initial_state) :: at_rest
-      character(len=:), allocatable :: note
-
-      plan%method = 'static'
-      associate (case => run%case, structure => run%structure, history => run%history, &
-                 recorder => run%recorder, &
-                 task => run%task)
-         if (allocated(case%analysis%initial)) then
-            task%before = end_state()
-            call read_state(beside(run%path, case%analysis%initial), task%before%stream, error)
-            if (.not. allocated(error)) call task%before%check(structure, error)
-            if (allocated(error)) return
-         end if
-         if (case%analysis%dynamic()) then
-            call plan_dynamic(structure, case%analysis, history%time, history%loads, plan, error)
-            if (allocated(error)) return
-            call long_run_note(structure, plan, note)
-            if (.not. (quiet .or. note == '')) then
-               write (error_unit, '(a)') 'rbsdem: note: '//note
-               flush (error_unit)
-            end if
-         end if
-         recorder%units = case%units%system()
-         recorder%channels = new_channels(structure, case%analysis%dynamic(), case%output%openings, &
-                                          case%output%motion)
-         call recorder%open(file, error)
-         if (allocated(error)) return
-         call remove_if_stopped(recorder%file%own)
-         call recorder%write_head(header(case, plan%method), error)
-         if (allocated(error)) return
-         call progress%start(quiet)
-         task%recorder => run%recorder
-         task%progress => progress
-         task%every = case%output%every
-         task%collapse_drift = case%analysis%collapse_drift
-         task%keeps_end = .true.
-         if (case%analysis%dynamic()) then
-            call run_dynamic(structure, case%analysis, plan, history%time, history%loads, at_rest, task, &
-                             error)
-         else
-            call run_static(structure, any(case%loading(:case%loadings)%drive == 'force'), history%target, &
-                            task, error, history%axial_load)
-         end if
-         call progress%finish()
-         if (allocated(error) .or. .not. (allocated(case%output%state) .and. task%after%is_given())) return
-         call write_state(beside(run%path, case%output%state), task%after%stream, error)
-      end associate
-   end subroutine solve
 
    !> A path from the folder of the case.
    function beside(case_path, path) result(found)
@@ -348,84 +409,6 @@ contains
       lines(3) = 'units: '//units//', in the names of the columns; method: '//trim(method)// &
                  ', kinematics: '//kinematics
    end function header
-
-   !> The rows must not go into a file that the case was read from.
-   subroutine check_output(run, file, error)
-      type(run_type), intent(in) :: run
-      !> File for the rows
-      character(len=*), intent(in) :: file
-      type(error_type), allocatable, intent(out) :: error
-      character(len=:), allocatable :: input
-      integer :: i
-      logical :: clash
-
-      clash = same_file(file, standard_input(run%path))
-      do i = 1, run%case%loadings
-         if (.not. allocated(run%case%loading(i)%file)) cycle
-         input = beside(run%path, run%case%loading(i)%file)
-         if (same_file(file, input)) clash = .true.
-         ! A failed run keeps its rows there.
-         if (same_file(file//partial, input)) clash = .true.
-      end do
-      if (clash) then
-         call fatal_error(error, bad_input, 'output: '//file//' is an input of the case and would '// &
-                          'be written over; choose another file with --output')
-      end if
-   end subroutine check_output
-
-   !> Path of the csv: that of the command line, else that of the case, else the case's name with .csv.
-   subroutine output_path(run, output, path, error)
-      type(run_type), intent(in) :: run
-      character(len=:), allocatable, intent(in) :: output
-      character(len=:), allocatable, intent(out) :: path
-      type(error_type), allocatable, intent(out) :: error
-      integer :: dot
-
-      if (allocated(output)) then
-         path = output
-      else if (allocated(run%case%output%file)) then
-         path = beside(run%path, run%case%output%file)
-      else if (run%path == '-' .or. index(run%path, '/dev/') == 1 .or. index(run%path, '/proc/') == 1) then
-         call fatal_error(error, bad_input, 'output: a case from '//standard_input(run%path)// &
-                          ' has no name for its rows; give one with --output')
-      else
-         dot = index(run%path, '.', back=.true.)
-         if (dot <= index(run%path, '/', back=.true.) + 1) dot = len(run%path) + 1
-         path = run%path(:dot - 1)//'.csv'
-      end if
-   end subroutine output_path
-
-   !> Print the summary of a run without the values that do not apply to it; its end is reported apart.
-   subroutine print_summary(run, error)
-      type(run_type), intent(in) :: run
-      type(error_type), allocatable, intent(inout) :: error
-      type(figure_type), allocatable :: figures(:)
-      character(len=28) :: name
-      logical :: dynamic
-      integer :: i
-
-      dynamic = run%case%analysis%dynamic()
-      call run%task%summary%get_figures(figures)
-      if (run%case%title /= '') call say(run%case%title, error)
-      name = 'method'
-      call say('  '//name//'  '//method_text(run%task%summary%method, run%task%summary%reason), error)
-      do i = 1, size(figures)
-         associate (figure => figures(i))
-            if (figure%name == 'lost_joint') exit
-            ! A static path has no steps in time, and an implicit method no stability limit.
-            if (figure%unit == 's' .and. .not. figure%value > 0.0_wp) cycle
-            ! Without inertia the base holds the force at the top; in time there mostly is none.
-            if (figure%name == 'peak_base_shear' .and. .not. dynamic) cycle
-            if (index(figure%name, 'peak_force') > 0 .and. dynamic .and. &
-                .not. abs(run%task%summary%peak_force) > 0.0_wp) cycle
-            name = figure%name
-            if (figure%unit /= '') name = trim(name)//'_'//figure%unit
-            call say('  '//name//'  '//to_text(figure%value), error)
-         end associate
-      end do
-      name = 'rows in'
-      call say('  '//name//'  '//run%recorder%file%path, error)
-   end subroutine print_summary
 
    !> A method, with the reason if the program chose it.
    function method_text(method, reason) result(text)

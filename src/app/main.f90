@@ -4,7 +4,7 @@ program rbsdem
    use, intrinsic :: iso_fortran_env, only: error_unit
    use rbs_app_command_line, only: command_type, read_command_line
    use rbs_app_commands, only: run_case, check_case, show_modes, show_keys
-   use rbs_app_say, only: say
+   use rbs_app_progress, only: say
    use rbs_app_signals, only: prepare_process
    use rbs_base_error, only: error_type
    use rbs_version, only: version

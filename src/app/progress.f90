@@ -1,13 +1,17 @@
 !> Progress of a long run on a terminal; nothing is written to a pipe.
+!>
+!> Lines on standard output, through C: the Fortran library does not report a full disk.
 module rbs_app_progress
-   use, intrinsic :: iso_c_binding, only: c_int
+   use, intrinsic :: iso_c_binding, only: c_int, c_size_t
    use, intrinsic :: iso_fortran_env, only: error_unit, int64
+   use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
-   use rbs_output_observer, only: observer_type
+   use rbs_io_posix, only: c_write, standard_output
+   use rbs_output_recorder, only: observer_type
    implicit none
    private
 
-   public :: terminal_progress
+   public :: terminal_progress, say
 
    !> Runs shorter than this show no progress; it is also the least time between two updates [s].
    real(wp), parameter :: quiet_time = 1.0_wp, pause = 0.2_wp
@@ -60,8 +64,9 @@ contains
       self%last = now
       self%shown = .true.
       filled = nint(bar_length*share)
-      write (error_unit, '(8a)', advance='no') carriage_return, '[', repeat('#', filled), &
-         repeat('.', bar_length - filled), '] ', percent(share), ' % ', left(share, now - self%begin)
+      write (error_unit, '(5a, i3, a, i0, a)', advance='no') carriage_return, '[', repeat('#', filled), &
+         repeat('.', bar_length - filled), '] ', nint(100.0_wp*share), ' % ', &
+         nint(min((now - self%begin)*(1.0_wp/max(share, 1.0e-6_wp) - 1.0_wp), 1.0e6_wp)), ' s left       '
       flush (error_unit)
    end subroutine update
 
@@ -75,25 +80,32 @@ contains
       self%shown = .false.
    end subroutine finish
 
-   function percent(share) result(text)
-      real(wp), intent(in) :: share
-      character(len=3) :: text
-
-      write (text, '(i3)') nint(100.0_wp*share)
-   end function percent
-
-   function left(share, spent) result(text)
-      real(wp), intent(in) :: share, spent
-      character(len=24) :: text
-
-      write (text, '(i0, a)') nint(min(spent*(1.0_wp/max(share, 1.0e-6_wp) - 1.0_wp), 1.0e6_wp)), ' s left'
-   end function left
-
    real(wp) function seconds()
       integer(int64) :: count, rate
 
       call system_clock(count, rate)
       seconds = real(count, wp)/rate
    end function seconds
+
+   !> Print a line, unless an error has occurred.
+   subroutine say(line, error)
+      character(len=*), intent(in) :: line
+      type(error_type), allocatable, intent(inout) :: error
+      character(len=len(line) + 1) :: text
+      integer(c_size_t) :: written
+      integer :: at
+
+      if (allocated(error)) return
+      text = line//new_line('a')
+      at = 1
+      do while (at <= len(text))
+         written = c_write(standard_output, text(at:), int(len(text) - at + 1, c_size_t))
+         if (written < 1_c_size_t) then
+            call fatal_error(error, analysis_failed, 'standard output cannot be written; is the disk full?')
+            return
+         end if
+         at = at + int(written)
+      end do
+   end subroutine say
 
 end module rbs_app_progress

@@ -132,8 +132,7 @@ contains
       real(wp), intent(out) :: triangle(4, n)
       !> Number of pivots that are not positive
       integer, intent(out) :: negative
-      real(wp) :: pivot, share, l1, l2, l3, below1, below2, below3
-      real(wp) :: r11, r21, r31, r22, r32, r33
+      real(wp) :: pivot, share, l1, l2, l3, below1, below2, below3, r11, r21, r31, r22, r32, r33
       integer :: j
 
       negative = 0

@@ -3,14 +3,14 @@
 module rbs_base_check
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_fortran_env, only: int64
-   use rbs_base_kinds, only: wp
    use rbs_base_constants, only: unset, unset_integer, beyond_meaning
-   use rbs_base_error, only: message_list
+   use rbs_base_error, only: message_list, error_type, fatal_error, bad_input
+   use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text, suggestion, list_of
    implicit none
    private
 
-   public :: is_given, check_finite, check_name
+   public :: is_given, check_finite, check_name, check_values
 
    !> Whether the user has given a number. Lists and texts that are not given are not allocated.
    interface is_given
@@ -35,8 +35,7 @@ contains
    !> The number must be given and finite.
    subroutine check_finite(x, name, unit, messages, ok)
       real(wp), intent(in) :: x
-      character(len=*), intent(in) :: name
-      character(len=*), intent(in) :: unit
+      character(len=*), intent(in) :: name, unit
       type(message_list), intent(inout) :: messages
       logical, intent(out), optional :: ok
       logical :: passed
@@ -61,9 +60,7 @@ contains
 
    !> The word must be one of the valid ones; returns its place among them, 0 if it is not one of them.
    subroutine check_name(word, valid, name, messages, place)
-      character(len=*), intent(in) :: word
-      character(len=*), intent(in) :: valid(:)
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: word, valid(:), name
       type(message_list), intent(inout) :: messages
       integer, intent(out) :: place
 
@@ -78,5 +75,26 @@ contains
                            list_of(valid)//suggestion(word, valid))
       end if
    end subroutine check_name
+
+   !> Refuse values that are not finite, or whose products would not be finite.
+   subroutine check_values(values, name, error)
+      real(wp), intent(in) :: values(:)
+      character(len=*), intent(in) :: name
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, size(values)
+         if (.not. ieee_is_finite(values(i))) then
+            call fatal_error(error, bad_input, name//': value '//to_text(i)//' of '//to_text(size(values))// &
+                             ' is '//to_text(values(i))//'; it must be a finite number')
+            return
+         else if (abs(values(i)) > beyond_meaning) then
+            call fatal_error(error, bad_input, name//': value '//to_text(i)//' of '// &
+                             to_text(size(values))//' is '//to_text(values(i))// &
+                             '; products of it would not be finite: check its exponent and unit')
+            return
+         end if
+      end do
+   end subroutine check_values
 
 end module rbs_base_check

@@ -391,9 +391,8 @@ contains
       if (choice_place(key, word) > 0) return
       self%sound = .false.
       name = [(choice_name(key, i), i=1, size(name))]
-      call self%messages%add(self%group//': '//trim(key%name)//" = '"//trim(word)// &
-                             "' is not known; it is one of "//trim(choice_list(key))// &
-                             suggestion(word, name(:count(name /= ''))))
+      call self%messages%add(self%group//': '//trim(key%name)//" = '"//trim(word)//"' is not known; it "// &
+                             'is one of '//trim(choice_list(key))//suggestion(word, name(:count(name /= ''))))
    end subroutine check_word
 
    pure logical function is_true(choice)

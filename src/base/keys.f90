@@ -7,7 +7,7 @@ module rbs_base_keys
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use rbs_base_kinds, only: wp
    use rbs_base_check, only: is_given, check_finite
-   use rbs_base_constants, only: unset
+   use rbs_base_constants, only: beyond_meaning, unset
    use rbs_base_error, only: message_list
    use rbs_base_text, only: to_text
    implicit none
@@ -29,10 +29,9 @@ module rbs_base_keys
    !> The range that a number must be in.
    type :: bound_type
       real(wp) :: least = -huge(1.0_wp), most = huge(1.0_wp)
-      !> Whether the bound itself is excluded
-      logical :: least_open = .false., most_open = .false.
-      !> Whether numbers may be arbitrarily close to zero, as the values of a history are
-      logical :: tiny = .false.
+      !> Whether the bound itself is excluded; whether numbers may be arbitrarily close to zero, as the values
+      !> of a history are
+      logical :: least_open = .false., most_open = .false., tiny = .false.
       !> A reason that the message adds, such as '(it is a share)'
       character(len=40) :: reason = ''
    end type bound_type
@@ -84,48 +83,68 @@ contains
 
       if (ieee_is_finite(x)) then
          ! The common case first. A NaN is never compared: builds with floating-point traps would stop.
-         if (x > key%bound%least .and. x < key%bound%most .and. is_ordinary(x)) return
+         if (x > key%bound%least .and. x < key%bound%most .and. &
+             abs(x) > 1.0_wp/beyond_meaning .and. abs(x) < beyond_meaning) return
          if (key%bound%tiny .and. abs(x) < 1.0_wp) return
       end if
       if (key%optional .and. .not. is_given(x)) return
-      call check_finite(x, name//': '//trim(key%name), trim(unit_for_message(key)), messages, finite)
+      call check_finite(x, name//': '//trim(key%name), trim(unit_for_message()), messages, finite)
       if (finite) then
          if (is_within(x, key%bound)) return
-         call messages%add(trim(name//': '//trim(key%name)//' = '//trim(value_text(x, key))//' '// &
-                                unit_for_message(key))// &
-                           ' '//trim(refusal(x, key%bound)))
+         call messages%add(trim(name//': '//trim(key%name)//' = '//trim(value_text())//' '// &
+                           unit_for_message())//' '//trim(refusal(key%bound)))
       end if
       ok = .false.
+
+   contains
+
+      !> A whole number without an exponent.
+      function value_text() result(text)
+         character(len=32) :: text
+
+         if (key%kind == integer_kind .and. abs(x) < huge(1)) then
+            text = to_text(nint(x))
+         else
+            text = to_text(x)
+         end if
+      end function value_text
+
+      !> The unit in messages; empty for the dimensions of springs, which are not units.
+      pure function unit_for_message() result(unit)
+         character(len=16) :: unit
+
+         unit = key%unit
+         if (unit == force .or. unit == deformation .or. unit == stiffness) unit = ''
+      end function unit_for_message
+
+      !> Why a number outside its bounds is refused: 'must be above zero'.
+      function refusal(bound) result(text)
+         type(bound_type), intent(in) :: bound
+         character(len=96) :: text
+         logical :: below
+
+         below = x <= bound%least
+         if (bound%least > -huge(1.0_wp) .and. bound%most < huge(1.0_wp) .and. &
+             .not. (bound%least_open .or. bound%most_open)) then
+            text = 'must be from '//to_text(bound%least)//' to '//to_text(bound%most)//' '//bound%reason
+            return
+         else if (below .and. abs(bound%least) > 0.0_wp .and. bound%least_open) then
+            text = 'must be above '//to_text(bound%least)
+         else if (below .and. abs(bound%least) > 0.0_wp) then
+            text = 'must be '//to_text(bound%least)//' or more'
+         else if (below .and. bound%least_open) then
+            text = 'must be above zero'
+         else if (below) then
+            text = 'must not be negative'
+         else if (bound%most_open) then
+            text = 'must be below '//to_text(bound%most)
+         else
+            text = 'must not be above '//to_text(bound%most)
+         end if
+         if (.not. below .or. abs(bound%least) > 0.0_wp) text = trim(text)//' '//bound%reason
+      end function refusal
+
    end subroutine check_number
-
-   !> A whole number without an exponent.
-   function value_text(x, key) result(text)
-      real(wp), intent(in) :: x
-      type(key_type), intent(in) :: key
-      character(len=32) :: text
-
-      if (key%kind == integer_kind .and. abs(x) < huge(1)) then
-         text = to_text(nint(x))
-      else
-         text = to_text(x)
-      end if
-   end function value_text
-
-   !> The unit in messages; empty for the dimensions of springs, which are not units.
-   pure function unit_for_message(key) result(unit)
-      type(key_type), intent(in) :: key
-      character(len=16) :: unit
-
-      unit = key%unit
-      if (unit == force .or. unit == deformation .or. unit == stiffness) unit = ''
-   end function unit_for_message
-
-   !> Whether a number is neither zero nor extreme; false for NaN and for `unset`.
-   elemental logical function is_ordinary(x)
-      real(wp), intent(in) :: x
-
-      is_ordinary = abs(x) > 1.0e-50_wp .and. abs(x) < 1.0e50_wp
-   end function is_ordinary
 
    elemental logical function is_within(x, bound)
       real(wp), intent(in) :: x
@@ -135,34 +154,6 @@ contains
       if (bound%least_open .and. .not. x > bound%least) is_within = .false.
       if (bound%most_open .and. .not. x < bound%most) is_within = .false.
    end function is_within
-
-   !> Why a number outside its bounds is refused: 'must be above zero'.
-   function refusal(x, bound) result(text)
-      real(wp), intent(in) :: x
-      type(bound_type), intent(in) :: bound
-      character(len=96) :: text
-      logical :: below
-
-      below = x <= bound%least
-      if (bound%least > -huge(1.0_wp) .and. bound%most < huge(1.0_wp) .and. &
-          .not. (bound%least_open .or. bound%most_open)) then
-         text = 'must be from '//to_text(bound%least)//' to '//to_text(bound%most)//' '//bound%reason
-         return
-      else if (below .and. abs(bound%least) > 0.0_wp .and. bound%least_open) then
-         text = 'must be above '//to_text(bound%least)
-      else if (below .and. abs(bound%least) > 0.0_wp) then
-         text = 'must be '//to_text(bound%least)//' or more'
-      else if (below .and. bound%least_open) then
-         text = 'must be above zero'
-      else if (below) then
-         text = 'must not be negative'
-      else if (bound%most_open) then
-         text = 'must be below '//to_text(bound%most)
-      else
-         text = 'must not be above '//to_text(bound%most)
-      end if
-      if (.not. below .or. abs(bound%least) > 0.0_wp) text = trim(text)//' '//bound%reason
-   end function refusal
 
    !> A range in the documentation: '> 0', '0 to < 1'; empty where every number is allowed.
    pure function bound_text(bound) result(text)

@@ -102,8 +102,7 @@ contains
    pure function exact_text(x) result(text)
       !> Finite
       real(wp), intent(in) :: x
-      character(len=longest) :: text
-      character(len=longest) :: buffer, digits
+      character(len=longest) :: text, buffer, digits
       real(wp) :: again
       integer :: count, mark, power, last
 
@@ -164,7 +163,7 @@ contains
    !> The names joined by commas, for "valid names are ...".
    pure function list_of(names) result(text)
       character(len=*), intent(in) :: names(:)
-      character(len=list_length(names)) :: text
+      character(len=sum(len_trim(names)) + 2*max(size(names) - 1, 0)) :: text
       integer :: i, at
 
       at = 0
@@ -178,24 +177,16 @@ contains
       end do
    end function list_of
 
-   pure integer function list_length(names)
-      character(len=*), intent(in) :: names(:)
-
-      list_length = sum(len_trim(names)) + 2*max(size(names) - 1, 0)
-   end function list_length
-
    !> "; did you mean 'height'?" where a valid name is near to a word by edit distance, else nothing.
    pure function suggestion(word, names) result(text)
-      character(len=*), intent(in) :: word
-      character(len=*), intent(in) :: names(:)
+      character(len=*), intent(in) :: word, names(:)
       character(len=suggestion_length(word, names)) :: text
 
       if (len(text) > 0) text = "; did you mean '"//trim(names(nearest_place(word, names)))//"'?"
    end function suggestion
 
    pure integer function suggestion_length(word, names) result(length)
-      character(len=*), intent(in) :: word
-      character(len=*), intent(in) :: names(:)
+      character(len=*), intent(in) :: word, names(:)
       integer :: place
 
       place = nearest_place(word, names)
@@ -205,8 +196,7 @@ contains
 
    !> Place of the name that is nearest to a word; 0 if a third of the word or more is other.
    pure integer function nearest_place(word, names) result(place)
-      character(len=*), intent(in) :: word
-      character(len=*), intent(in) :: names(:)
+      character(len=*), intent(in) :: word, names(:)
       integer :: i, distance, least
 
       place = 0
@@ -223,9 +213,7 @@ contains
    !> Levenshtein distance: the least number of characters to insert, remove or change.
    pure function edit_distance(a, b) result(distance)
       character(len=*), intent(in) :: a, b
-      integer :: distance
-      integer :: row(0:len(b))
-      integer :: i, j, diagonal, above
+      integer :: distance, row(0:len(b)), i, j, diagonal, above
 
       do j = 0, len(b)
          row(j) = j

@@ -18,7 +18,7 @@ module rbs_bindings_evaluate
    use rbs_loading_named_protocols, only: named_protocol
    use rbs_loading_protocol, only: protocol_values
    use rbs_loading_spectrum, only: response_spectrum
-   use rbs_output_structure_notes, only: structure_notes
+   use rbs_output_notes, only: structure_notes
    use rbs_output_channels, only: channel_units
    use rbs_section_flexural_spring, only: spring_figures
    use rbs_section_section_figures, only: point_values, profile_values, section_figures, shear_values
@@ -53,9 +53,9 @@ contains
          call keys_as_json(buffer)
          answer%text = buffer%text(:buffer%length)
       case ('quantities')
-         call name_quantities(answer)
+         call name_quantities()
       case ('check_spring', 'spring_response')
-         call evaluate_spring(request, answer)
+         call evaluate_spring()
       case ('check_structure', 'frame_parts', 'modes', 'matrices')
          call evaluate_structure(request, answer)
       case ('cyclic', 'time_history')
@@ -71,42 +71,75 @@ contains
       case ('read_history')
          call test_from_file(request%statement, answer)
       case ('protocol')
-         call make_protocol(request, answer)
+         call make_protocol()
       case ('named_protocol')
-         call find_protocol(request, answer)
+         call find_protocol()
       case ('spectrum')
          call find_spectrum(request%array('acceleration'), request%array('dt'), request%array('period'), &
-                            request%array('damping'), answer)
+                            request%array('damping'))
       case default
          call evaluate_section(request, answer)
       end select
+
+   contains
+
+      !> Names of the values that come back, a line each: values of rows with their units, measures of a
+      !> run of an ensemble; then what belongs to a section.
+      subroutine name_quantities()
+         character(len=1), parameter :: line = new_line('a')
+
+         answer%text = trim(channel_units())//line//trim(measure_names())//line//list_of(section_figures)// &
+                       line//list_of(spring_figures)//line//list_of(point_values)//line// &
+                       list_of(shear_values)//line//list_of(profile_values)
+      end subroutine name_quantities
+
+      !> Whether the rule allows a spring, or the forces of a virgin one along a path of deformations.
+      subroutine evaluate_spring()
+         type(spring_record) :: spring
+         real(c_double), pointer, contiguous :: load(:), path(:)
+
+         load => request%array('axial_load')
+         path => request%array('deformation')
+         call spring_from_statements(request%statement, request%number, load(1), spring, answer%error)
+         if (allocated(answer%error)) return
+         allocate (answer%value(size(path)))
+         call follow_path(spring, path, answer%value)
+      end subroutine evaluate_spring
+
+      !> Points of a cyclic protocol, the only loading of a case, in the unit of the amplitudes.
+      subroutine make_protocol()
+         type(case_record) :: case
+         type(message_list) :: messages
+         real(c_double), allocatable :: time(:)
+
+         call case_from_statements(request%statement, request%number, case, answer%error)
+         if (allocated(answer%error)) return
+         call case%loading(1)%validate(.false., messages)
+         call messages%raise(answer%error)
+         if (allocated(answer%error)) return
+         call protocol_values(case%loading(1), 1.0_c_double, time, answer%value, answer%error)
+      end subroutine make_protocol
+
+      !> Amplitudes and cycles of a protocol of the literature.
+      subroutine find_protocol()
+         real(c_double), pointer, contiguous :: limit(:)
+         real(c_double), allocatable :: amplitude(:)
+         integer, allocatable :: cycles(:)
+
+         limit => request%array('reference_and_largest')
+         call named_protocol(request%statement, limit(1), limit(2), amplitude, cycles, answer%error)
+         if (.not. allocated(answer%error)) answer%value = [amplitude, real(cycles, c_double)]
+      end subroutine find_protocol
+
+      !> Peaks of relative displacement, relative velocity and absolute acceleration for each period.
+      subroutine find_spectrum(acceleration, dt, period, damping)
+         real(c_double), intent(in) :: acceleration(:), dt(:), period(:), damping(:)
+
+         allocate (answer%rows(3, size(period)))
+         call response_spectrum(acceleration, dt(1), period, damping(1), answer%rows)
+      end subroutine find_spectrum
+
    end subroutine evaluate
-
-   !> Names of the values that come back, a line each: values of rows with their units, measures of a
-   !> run of an ensemble; then what belongs to a section.
-   subroutine name_quantities(answer)
-      type(answer_type), intent(inout) :: answer
-      character(len=1), parameter :: line = new_line('a')
-
-      answer%text = trim(channel_units())//line//trim(measure_names())//line// &
-                    list_of(section_figures)//line//list_of(spring_figures)//line//list_of(point_values)// &
-                    line//list_of(shear_values)//line//list_of(profile_values)
-   end subroutine name_quantities
-
-   !> Whether the rule allows a spring, or the forces of a virgin one along a path of deformations.
-   subroutine evaluate_spring(request, answer)
-      type(request_type), intent(in) :: request
-      type(answer_type), intent(inout) :: answer
-      type(spring_record) :: spring
-      real(c_double), pointer, contiguous :: load(:), path(:)
-
-      load => request%array('axial_load')
-      path => request%array('deformation')
-      call spring_from_statements(request%statement, request%number, load(1), spring, answer%error)
-      if (allocated(answer%error)) return
-      allocate (answer%value(size(path)))
-      call follow_path(spring, path, answer%value)
-   end subroutine evaluate_spring
 
    !> Notes on a structure that is allowed, a line each; its parts; its modes; or its matrices.
    subroutine evaluate_structure(request, answer)
@@ -129,44 +162,61 @@ contains
             call tell_parts(structure, answer)
          end select
       case ('modes')
-         call tell_modes(request, structure, answer)
+         call tell_modes()
       case default
-         call tell_matrices(structure, request%wants('paper'), answer)
+         call tell_matrices(request%wants('paper'))
       end select
-   end subroutine evaluate_structure
 
-   subroutine tell_modes(request, structure, answer)
-      type(request_type), intent(in) :: request
-      class(structure_type), intent(in) :: structure
-      type(answer_type), intent(inout) :: answer
-      type(modes_type) :: modes
-      integer :: i, j
+   contains
 
-      if (size(request%array('count')) > 0) then
-         call find_modes(structure, modes, answer%error, request%whole('count'))
-      else
-         call find_modes(structure, modes, answer%error)
-      end if
-      if (allocated(answer%error)) return
-      answer%text = trim(modes%warning)
-      answer%value = [modes%stable_step, modes%omega]
-      select type (structure)
-      class is (frame_type)
-         ! Displacements of the nodes, held ones too: along x, upward, rotations; then the mass of each mode.
-         allocate (answer%rows(3*structure%n + 1, size(modes%omega)), source=0.0_c_double)
-         do i = 1, structure%n
-            do j = 1, 3
-               if (structure%number(j, i) == 0) cycle
-               answer%rows((j - 1)*structure%n + i, :) = modes%shapes(structure%number(j, i), :)
+      subroutine tell_modes()
+         type(modes_type) :: modes
+         integer :: i, j
+
+         if (size(request%array('count')) > 0) then
+            call find_modes(structure, modes, answer%error, request%whole('count'))
+         else
+            call find_modes(structure, modes, answer%error)
+         end if
+         if (allocated(answer%error)) return
+         answer%text = trim(modes%warning)
+         answer%value = [modes%stable_step, modes%omega]
+         select type (structure)
+         class is (frame_type)
+            ! Displacements of the nodes, held ones too: along x, upward, rotations; then the mass of each
+            ! mode.
+            allocate (answer%rows(3*structure%n + 1, size(modes%omega)), source=0.0_c_double)
+            do i = 1, structure%n
+               do j = 1, 3
+                  if (structure%number(j, i) == 0) cycle
+                  answer%rows((j - 1)*structure%n + i, :) = modes%shapes(structure%number(j, i), :)
+               end do
             end do
+            do i = 1, size(modes%omega)
+               answer%rows(3*structure%n + 1, i) = structure%work_of(horizontal, modes%shapes(:, i))**2
+            end do
+         class default
+            answer%rows = modes%shapes
+         end select
+      end subroutine tell_modes
+
+      subroutine tell_matrices(paper)
+         logical, intent(in) :: paper
+         type(matrices_type) :: matrices
+         integer :: i
+
+         call assemble_matrices(structure, paper, matrices, answer%error)
+         if (allocated(answer%error)) return
+         answer%text = trim(matrices%unknown(1))
+         do i = 2, size(matrices%unknown)
+            answer%text = answer%text//' '//trim(matrices%unknown(i))
          end do
-         do i = 1, size(modes%omega)
-            answer%rows(3*structure%n + 1, i) = structure%work_of(horizontal, modes%shapes(:, i))**2
-         end do
-      class default
-         answer%rows = modes%shapes
-      end select
-   end subroutine tell_modes
+         answer%rows = reshape([transpose(matrices%mass), transpose(matrices%stiffness), &
+                                transpose(matrices%geometric), transpose(matrices%damping)], &
+                               [size(matrices%unknown), 4*size(matrices%unknown)])
+      end subroutine tell_matrices
+
+   end subroutine evaluate_structure
 
    !> Names of nodes, of members and of the springs of members ('C-1-1 flexure bilinear'), a line each with
    !> tabs between. Values: for the nodes x, y and floor; for the members numbers of their nodes, compression
@@ -192,17 +242,15 @@ contains
       call text%append(line)
       allocate (place(0), stiffness(0))
       do i = 1, frame%inside
-         associate (k => frame%initial_stiffness)
-            if (frame%place(i)%kind /= layer) then
-               group = kinds(frame%place(i)%kind)
-               if (i > frame%inside - count(frame%beam_rotation > 0)) group = 'panel'
-               call add_spring(group, trim(frame%rules%name(frame%rules%of(i))), k(i))
-            else if (frame%heads(i)) then
-               call find_joint(frame, i, of_joint)
-               call add_spring(kinds(flexure), 'layered', of_joint(1))
-               call add_spring(kinds(axial), 'layered', of_joint(2))
-            end if
-         end associate
+         if (frame%place(i)%kind /= layer) then
+            group = kinds(frame%place(i)%kind)
+            if (i > frame%inside - count(frame%beam_rotation > 0)) group = 'panel'
+            call add_spring(group, trim(frame%rules%name(frame%rules%of(i))), frame%initial_stiffness(i))
+         else if (frame%heads(i)) then
+            call find_joint(frame, i, of_joint)
+            call add_spring(kinds(flexure), 'layered', of_joint(1))
+            call add_spring(kinds(axial), 'layered', of_joint(2))
+         end if
       end do
       answer%text = text%text(:text%length)
       answer%value = [frame%x, frame%y, real(frame%storey, c_double), &
@@ -237,61 +285,5 @@ contains
          end associate
       end associate
    end subroutine find_joint
-
-   subroutine tell_matrices(structure, paper, answer)
-      class(structure_type), intent(in) :: structure
-      logical, intent(in) :: paper
-      type(answer_type), intent(inout) :: answer
-      type(matrices_type) :: matrices
-      integer :: i
-
-      call assemble_matrices(structure, paper, matrices, answer%error)
-      if (allocated(answer%error)) return
-      answer%text = trim(matrices%unknown(1))
-      do i = 2, size(matrices%unknown)
-         answer%text = answer%text//' '//trim(matrices%unknown(i))
-      end do
-      answer%rows = reshape([transpose(matrices%mass), transpose(matrices%stiffness), &
-                             transpose(matrices%geometric), transpose(matrices%damping)], &
-                            [size(matrices%unknown), 4*size(matrices%unknown)])
-   end subroutine tell_matrices
-
-   !> Points of a cyclic protocol, the only loading of a case, in the unit of the amplitudes.
-   subroutine make_protocol(request, answer)
-      type(request_type), intent(in) :: request
-      type(answer_type), intent(inout) :: answer
-      type(case_record) :: case
-      type(message_list) :: messages
-      real(c_double), allocatable :: time(:)
-
-      call case_from_statements(request%statement, request%number, case, answer%error)
-      if (allocated(answer%error)) return
-      call case%loading(1)%validate(.false., messages)
-      call messages%raise(answer%error)
-      if (allocated(answer%error)) return
-      call protocol_values(case%loading(1), 1.0_c_double, time, answer%value, answer%error)
-   end subroutine make_protocol
-
-   !> Amplitudes and cycles of a protocol of the literature.
-   subroutine find_protocol(request, answer)
-      type(request_type), intent(in) :: request
-      type(answer_type), intent(inout) :: answer
-      real(c_double), pointer, contiguous :: limit(:)
-      real(c_double), allocatable :: amplitude(:)
-      integer, allocatable :: cycles(:)
-
-      limit => request%array('reference_and_largest')
-      call named_protocol(request%statement, limit(1), limit(2), amplitude, cycles, answer%error)
-      if (.not. allocated(answer%error)) answer%value = [amplitude, real(cycles, c_double)]
-   end subroutine find_protocol
-
-   !> Peaks of relative displacement, relative velocity and absolute acceleration for each period.
-   subroutine find_spectrum(acceleration, dt, period, damping, answer)
-      real(c_double), intent(in) :: acceleration(:), dt(:), period(:), damping(:)
-      type(answer_type), intent(inout) :: answer
-
-      allocate (answer%rows(3, size(period)))
-      call response_spectrum(acceleration, dt(1), period, damping(1), answer%rows)
-   end subroutine find_spectrum
 
 end module rbs_bindings_evaluate

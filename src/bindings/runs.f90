@@ -9,6 +9,7 @@ module rbs_bindings_runs
    use rbs_bindings_exchange, only: request_type, answer_type
    use rbs_bindings_statements, only: structure_from_statements
    use rbs_case_case_record, only: case_record
+   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, signals, signal_names
    use rbs_loading_signal, only: signal_type
    use rbs_output_channels, only: new_channels
    use rbs_output_notes, only: rotation_note
@@ -19,7 +20,6 @@ module rbs_bindings_runs
    use rbs_solve_static_path, only: kept_rows
    use rbs_solve_task, only: task_type
    use rbs_solve_time_effort, only: expected_seconds, long_run_note, patience
-   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, signals, signal_names
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic
@@ -73,11 +73,16 @@ contains
          run%task%every = run%case%output%every
          run%task%collapse_drift = run%case%analysis%collapse_drift
          run%task%keeps_end = .true.
-         call take_from(request%array('before'), run%task%before)
+         associate (before => request%array('before'))
+            if (size(before) > 0) then
+               run%task%before%stream%value = before
+               run%task%before%stream%count = size(before)
+            end if
+         end associate
          if (request%what == 'cyclic') then
-            call run_cyclic(request, run, answer%error)
+            call run_cyclic(answer%error)
          else
-            call run_time_history(request, run, answer%error)
+            call run_time_history(answer%error)
          end if
       end if
       note = ''
@@ -109,36 +114,80 @@ contains
          answer%text = answer%text//trim(figure(i)%name)//' '
       end do
       answer%text = answer%text//line//note
-   end subroutine run_analysis
 
-   !> Static path through the `target`s.
-   subroutine run_cyclic(request, run, error)
-      type(request_type), intent(in) :: request
-      type(run_type), intent(inout), target :: run
-      type(error_type), allocatable, intent(out) :: error
-      real(c_double), pointer, contiguous :: target(:)
+   contains
 
-      run%case%analysis%method = 'static'
-      call check_settings(run%case, error)
-      if (allocated(error)) return
-      target => request%array('target')
-      associate (every => run%case%output%every)
+      !> Static path through the `target`s.
+      subroutine run_cyclic(error)
+         type(error_type), allocatable, intent(out) :: error
+         real(c_double), pointer, contiguous :: target(:)
+
+         run%case%analysis%method = 'static'
+         call check_settings(run%case, error)
+         if (allocated(error)) return
+         target => request%array('target')
          run%recorder%corners = request%wants('corners')
-         run%recorder%expected = kept_rows(size(target), every)
+         run%recorder%expected = kept_rows(size(target), run%case%output%every)
          call run_static(run%structure, request%wants('by_force'), target, run%task, error, &
                          request%array('axial_load'))
-      end associate
-   end subroutine run_cyclic
+      end subroutine run_cyclic
 
-   !> A state from the numbers of the user; empty for none.
-   subroutine take_from(numbers, state)
-      real(c_double), intent(in) :: numbers(:)
-      type(end_state), intent(inout) :: state
+      !> Response in time under the excitations that are given.
+      subroutine run_time_history(error)
+         type(error_type), allocatable, intent(out) :: error
+         type(loads_type) :: loads
+         type(initial_state) :: initial
+         type(time_plan) :: plan
+         real(c_double), pointer, contiguous :: time(:), start(:)
+         character(len=:), allocatable :: note
+         integer :: i
 
-      if (size(numbers) == 0) return
-      state%stream%value = numbers
-      state%stream%count = size(numbers)
-   end subroutine take_from
+         time => request%array('time')
+         do i = 1, signals
+            call take_signal(trim(signal_names(i)), time, loads%signal(i), error)
+         end do
+         if (.not. allocated(error)) call choose_method(run%case, loads, error)
+         if (allocated(error)) return
+         associate (structure => run%structure, analysis => run%case%analysis, output => run%case%output)
+            call plan_dynamic(structure, analysis, time, loads, plan, error)
+            if (allocated(error)) return
+            if (.not. request%wants('told') .and. expected_seconds(structure, plan) >= patience) then
+               call long_run_note(structure, plan, note)
+               call fatal_error(error, long_run, note)
+               return
+            end if
+            ! Deformations, then velocities; none: at rest.
+            start => request%array('initial')
+            if (size(start) > 0) then
+               initial%deformation = start(:size(structure%place))
+               initial%velocity = start(size(structure%place) + 1:)
+               initial%opening_given = request%wants('opening_given')
+            end if
+            run%recorder%expected = plan%rows(output%every)
+            call run_dynamic(structure, analysis, plan, time, loads, initial, run%task, error, run%sight)
+         end associate
+      end subroutine run_time_history
+
+      !> One of the excitations, if it is given.
+      subroutine take_signal(name, time, signal, error)
+         character(len=*), intent(in) :: name
+         real(c_double), intent(in) :: time(:)
+         type(signal_type), intent(inout) :: signal
+         type(error_type), allocatable, intent(inout) :: error
+         real(c_double), pointer, contiguous :: value(:)
+
+         if (allocated(error) .or. index(' '//request%names, ' '//name//':') == 0) return
+         value => request%array(name)
+         if (size(value) /= size(time)) then
+            call fatal_error(error, bad_input, name//': '//to_text(size(value))//' values for '// &
+                             to_text(size(time))//' times; give one for each')
+            return
+         end if
+         signal%time = time
+         signal%value = value
+      end subroutine take_signal
+
+   end subroutine run_analysis
 
    !> Validate the case without its column.
    subroutine check_settings(case, error)
@@ -159,9 +208,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       if (case%analysis%method == 'static') then
-         call fatal_error(error, bad_input, &
-                          "analysis: method = 'static' takes no time; call cyclic, or set "// &
-                          "method = 'auto'")
+         call fatal_error(error, bad_input, "analysis: method = 'static' takes no time; call cyclic, or "// &
+                          "set method = 'auto'")
       else if (case%analysis%method == '' .and. loads%signal(lateral)%acts() .and. .not. &
                (loads%signal(horizontal)%acts() .or. loads%signal(vertical)%acts())) then
          call fatal_error(error, bad_input, 'analysis: a force with time needs a method that is named: '// &
@@ -171,44 +219,6 @@ contains
          call check_settings(case, error)
       end if
    end subroutine choose_method
-
-   !> Response in time under the excitations that are given.
-   subroutine run_time_history(request, run, error)
-      type(request_type), intent(in) :: request
-      type(run_type), intent(inout), target :: run
-      type(error_type), allocatable, intent(out) :: error
-      type(loads_type) :: loads
-      type(initial_state) :: initial
-      type(time_plan) :: plan
-      real(c_double), pointer, contiguous :: time(:), start(:)
-      character(len=:), allocatable :: note
-      integer :: i
-
-      time => request%array('time')
-      do i = 1, signals
-         call take_signal(request, trim(signal_names(i)), time, loads%signal(i), error)
-      end do
-      if (.not. allocated(error)) call choose_method(run%case, loads, error)
-      if (allocated(error)) return
-      associate (structure => run%structure, analysis => run%case%analysis, output => run%case%output)
-         call plan_dynamic(structure, analysis, time, loads, plan, error)
-         if (allocated(error)) return
-         if (.not. request%wants('told') .and. expected_seconds(structure, plan) >= patience) then
-            call long_run_note(structure, plan, note)
-            call fatal_error(error, long_run, note)
-            return
-         end if
-         ! Deformations, then velocities; none: at rest.
-         start => request%array('initial')
-         if (size(start) > 0) then
-            initial%deformation = start(:size(structure%place))
-            initial%velocity = start(size(structure%place) + 1:)
-            initial%opening_given = request%wants('opening_given')
-         end if
-         run%recorder%expected = plan%rows(output%every)
-         call run_dynamic(structure, analysis, plan, time, loads, initial, run%task, error, run%sight)
-      end associate
-   end subroutine run_time_history
 
    !> What to watch for, from the numbers of the user: state, joint, factors of slip, rotation and opening,
    !> threshold of each.
@@ -224,25 +234,5 @@ contains
          end associate
       end do
    end function watches_of
-
-   !> One of the excitations, if it is given.
-   subroutine take_signal(request, name, time, signal, error)
-      type(request_type), intent(in) :: request
-      character(len=*), intent(in) :: name
-      real(c_double), intent(in) :: time(:)
-      type(signal_type), intent(inout) :: signal
-      type(error_type), allocatable, intent(inout) :: error
-      real(c_double), pointer, contiguous :: value(:)
-
-      if (allocated(error) .or. index(' '//request%names, ' '//name//':') == 0) return
-      value => request%array(name)
-      if (size(value) /= size(time)) then
-         call fatal_error(error, bad_input, name//': '//to_text(size(value))//' values for '// &
-                          to_text(size(time))//' times; give one for each')
-         return
-      end if
-      signal%time = time
-      signal%value = value
-   end subroutine take_signal
 
 end module rbs_bindings_runs

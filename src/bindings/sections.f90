@@ -8,7 +8,7 @@ module rbs_bindings_sections
    use rbs_case_group_reader, only: group_reader
    use rbs_section_balance, only: axial_capacity, follow
    use rbs_section_concrete_law, only: concrete_stress, concrete_type, tension_place
-   use rbs_section_cross_section, only: section_type
+   use rbs_section_cross_section, only: section_type, cut_strips, strip_centroids, strips_type
    use rbs_section_events, only: check_rules, events_type, find_events, rule_type
    use rbs_section_flexural_spring, only: fit_flexural_spring, flexural_spring_type
    use rbs_section_resultants, only: laws_type, resultants_type, section_laws
@@ -17,7 +17,6 @@ module rbs_bindings_sections
    use rbs_section_shape, only: shape_type
    use rbs_section_shear_diagram, only: check_curvatures, follow_shear, shear_diagram_type
    use rbs_section_steel_law, only: steel_stress
-   use rbs_section_strips, only: cut_strips, strip_centroids, strips_type
    implicit none
    private
 
@@ -40,7 +39,7 @@ contains
       if (allocated(answer%error)) return
       select case (request%what)
       case ('concrete_response')
-         call respond_concrete(reader, request%array('strain'), answer)
+         call respond_concrete(request%array('strain'))
          return
       case ('steel_response')
          call reader%case%drawing%section%steels(1)%validate(messages)
@@ -50,7 +49,7 @@ contains
          end if
          return
       case ('section_strips')
-         call cut_section(reader, request%wants('round_core'), request%whole('number'), answer)
+         call cut_section(request%wants('round_core'), request%whole('number'))
          return
       case default                                  ! asks for the section, which is made next
       end select
@@ -60,142 +59,131 @@ contains
       case ('check_section')
          answer%value = figures_of_section(section)
       case ('section_flexure')
-         call fit_spring(section, reader, answer)
+         call fit_spring()
       case ('section_shear')
-         call follow_shear_diagram(section, reader, request%array('curvature'), answer)
+         call follow_shear_diagram(request%array('curvature'))
       case default
-         call bend_section(request, section, reader, answer)
+         call bend_section()
       end select
+
+   contains
+
+      !> Moments and curvatures under an axial load; the settings are those of the group diagram.
+      subroutine bend_section()
+         type(laws_type) :: laws
+         type(resultants_type) :: least, most
+         type(events_type) :: events
+         real(c_double), pointer, contiguous :: curvature(:)
+         real(c_double) :: strain(2)
+
+         associate (given => reader%diagram)
+            laws = section_laws(section, tension_place(given%tension), given%confined)
+            select case (request%what)
+            case ('axial_capacity')
+               ! Least and largest axial load without curvature, and the moments that go with them.
+               call axial_capacity(section, laws, least, most, strain)
+               answer%value = [least%n, most%n, least%m, most%m]
+            case ('moment_curvature')
+               ! Curvatures of one sign and increasing magnitude; moments, then strains.
+               curvature => request%array('curvature')
+               allocate (answer%rows(size(curvature), 2), source=0.0_c_double)
+               call follow(section, laws, given%axial_load, curvature, answer%rows(:, 1), answer%rows(:, 2), &
+                           answer%error)
+            case default
+               ! Cracking, yield, peak, ultimate and the end; whether the axial load is lost there.
+               call check_rule(given%confined, given%rule(), answer%error)
+               if (allocated(answer%error)) return
+               call find_events(section, laws, given%axial_load, given%rule(), events, answer%error)
+               if (allocated(answer%error)) return
+               answer%value = [merge(1.0_wp, 0.0_wp, events%lost)]
+               answer%rows = reshape([values_of_point(events%cracking), values_of_point(events%yield), &
+                                      values_of_point(events%peak), values_of_point(events%ultimate), &
+                                      values_of_point(events%last)], [4, 5])
+            end select
+         end associate
+      end subroutine bend_section
+
+      !> Figures of the flexural spring, and cracking, yield, peak and ultimate.
+      subroutine fit_spring()
+         type(flexural_spring_type) :: spring
+
+         call check_rule(reader%springs%confined, reader%springs%rule(), answer%error)
+         if (.not. allocated(answer%error)) then
+            call fit_flexural_spring(section, reader%springs, spring, answer%error)
+         end if
+         if (allocated(answer%error)) return
+         answer%value = spring%as_array()
+         answer%rows = reshape([values_of_point(spring%cracking), values_of_point(spring%yield), &
+                                values_of_point(spring%peak), values_of_point(spring%ultimate)], [4, 4])
+      end subroutine fit_spring
+
+      !> Points of a shear diagram; then its knee and its last point. Values: whether the knee is found, a
+      !> layer
+      !> sheared, and the axial load is lost, then the profile of the layers at the last point.
+      subroutine follow_shear_diagram(curvature)
+         !> [1/m]
+         real(c_double), intent(in) :: curvature(:)
+         type(shear_diagram_type) :: diagram
+         type(message_list) :: messages
+         integer :: i, count
+
+         call check_curvatures(curvature, messages)
+         call messages%raise(answer%error)
+         if (allocated(answer%error)) return
+         call follow_shear(section, reader%shear, curvature, diagram, answer%error)
+         if (allocated(answer%error)) return
+         count = size(diagram%points)
+         allocate (answer%rows(4, count + 2))
+         do i = 1, count
+            answer%rows(:, i) = values_of_shear_point(diagram%points(i))
+         end do
+         answer%rows(:, count + 1) = values_of_shear_point(diagram%knee)
+         answer%rows(:, count + 2) = values_of_shear_point(diagram%last)
+         answer%value = [merge(1.0_wp, 0.0_wp, [diagram%knee_found, diagram%sheared, diagram%lost]), &
+                        diagram%y, diagram%eps_x, diagram%tau, diagram%gamma, diagram%eps_z]
+      end subroutine follow_shear_diagram
+
+      !> Stresses of unconfined concrete, compression positive; the tension law is that of the group diagram.
+      subroutine respond_concrete(strain)
+         real(c_double), intent(in) :: strain(:)
+         type(concrete_type) :: law
+         type(message_list) :: messages
+
+         call reader%case%drawing%section%concrete%validate(messages)
+         call messages%raise(answer%error)
+         if (allocated(answer%error)) return
+         law = reader%case%drawing%section%concrete%law()
+         law%tension = tension_place(reader%diagram%tension)
+         answer%value = concrete_stress(law, strain)
+      end subroutine respond_concrete
+
+      !> Strips: y of the centroid and area of the core, then of the cover.
+      subroutine cut_section(round_core, number)
+         logical, intent(in) :: round_core
+         integer, intent(in) :: number
+         type(shape_type), allocatable :: inside
+         type(strips_type) :: strips
+
+         call outline_core(reader%case%drawing%section, round_core, inside)
+         call cut_strips(reader%case%drawing%section%shape, inside, number, strips)
+         allocate (answer%rows(4, number))
+         call strip_centroids(reader%case%drawing%section%shape, inside, strips, answer%rows(1, :), &
+                              answer%rows(3, :))
+         answer%rows(2, :) = strips%core_area
+         answer%rows(4, :) = strips%area - strips%core_area
+      end subroutine cut_section
+
+      !> The rules of the named points must apply to the section.
+      subroutine check_rule(confined, rule, error)
+         logical, intent(in) :: confined
+         type(rule_type), intent(in) :: rule
+         type(error_type), allocatable, intent(out) :: error
+         type(message_list) :: messages
+
+         call check_rules(section, confined, rule, messages)
+         call messages%raise(error)
+      end subroutine check_rule
+
    end subroutine evaluate_section
-
-   !> Moments and curvatures under an axial load; the settings are those of the group diagram.
-   subroutine bend_section(request, section, reader, answer)
-      type(request_type), intent(in) :: request
-      type(section_type), intent(in) :: section
-      type(group_reader), intent(in) :: reader
-      type(answer_type), intent(inout) :: answer
-      type(laws_type) :: laws
-      type(resultants_type) :: least, most
-      type(events_type) :: events
-      real(c_double), pointer, contiguous :: curvature(:)
-      real(c_double) :: strain(2)
-
-      associate (given => reader%diagram)
-         laws = section_laws(section, tension_place(given%tension), given%confined)
-         select case (request%what)
-         case ('axial_capacity')
-            ! Least and largest axial load without curvature, and the moments that go with them.
-            call axial_capacity(section, laws, least, most, strain)
-            answer%value = [least%n, most%n, least%m, most%m]
-         case ('moment_curvature')
-            ! Curvatures of one sign and increasing magnitude; moments, then strains.
-            curvature => request%array('curvature')
-            allocate (answer%rows(size(curvature), 2), source=0.0_c_double)
-            call follow(section, laws, given%axial_load, curvature, answer%rows(:, 1), answer%rows(:, 2), &
-                        answer%error)
-         case default
-            ! Cracking, yield, peak, ultimate and the end; whether the axial load is lost there.
-            call check_rule(section, given%confined, given%rule(), answer%error)
-            if (allocated(answer%error)) return
-            call find_events(section, laws, given%axial_load, given%rule(), events, answer%error)
-            if (allocated(answer%error)) return
-            answer%value = [merge(1.0_wp, 0.0_wp, events%lost)]
-            answer%rows = reshape([values_of_point(events%cracking), values_of_point(events%yield), &
-                                   values_of_point(events%peak), values_of_point(events%ultimate), &
-                                   values_of_point(events%last)], [4, 5])
-         end select
-      end associate
-   end subroutine bend_section
-
-   !> Figures of the flexural spring, and cracking, yield, peak and ultimate.
-   subroutine fit_spring(section, reader, answer)
-      type(section_type), intent(in) :: section
-      type(group_reader), intent(in) :: reader
-      type(answer_type), intent(inout) :: answer
-      type(flexural_spring_type) :: spring
-
-      call check_rule(section, reader%springs%confined, reader%springs%rule(), answer%error)
-      if (.not. allocated(answer%error)) then
-         call fit_flexural_spring(section, reader%springs, spring, answer%error)
-      end if
-      if (allocated(answer%error)) return
-      answer%value = spring%as_array()
-      answer%rows = reshape([values_of_point(spring%cracking), values_of_point(spring%yield), &
-                             values_of_point(spring%peak), values_of_point(spring%ultimate)], [4, 4])
-   end subroutine fit_spring
-
-   !> Points of a shear diagram; then its knee and its last point. Values: whether the knee is found, a layer
-   !> sheared, and the axial load is lost, then the profile of the layers at the last point.
-   subroutine follow_shear_diagram(section, reader, curvature, answer)
-      type(section_type), intent(in) :: section
-      type(group_reader), intent(in) :: reader
-      !> [1/m]
-      real(c_double), intent(in) :: curvature(:)
-      type(answer_type), intent(inout) :: answer
-      type(shear_diagram_type) :: diagram
-      type(message_list) :: messages
-      integer :: i, count
-
-      call check_curvatures(curvature, messages)
-      call messages%raise(answer%error)
-      if (allocated(answer%error)) return
-      call follow_shear(section, reader%shear, curvature, diagram, answer%error)
-      if (allocated(answer%error)) return
-      count = size(diagram%points)
-      allocate (answer%rows(4, count + 2))
-      do i = 1, count
-         answer%rows(:, i) = values_of_shear_point(diagram%points(i))
-      end do
-      answer%rows(:, count + 1) = values_of_shear_point(diagram%knee)
-      answer%rows(:, count + 2) = values_of_shear_point(diagram%last)
-      answer%value = [merge(1.0_wp, 0.0_wp, [diagram%knee_found, diagram%sheared, diagram%lost]), diagram%y, &
-                      diagram%eps_x, diagram%tau, diagram%gamma, diagram%eps_z]
-   end subroutine follow_shear_diagram
-
-   !> Stresses of unconfined concrete, compression positive; the tension law is that of the group diagram.
-   subroutine respond_concrete(reader, strain, answer)
-      type(group_reader), intent(inout) :: reader
-      real(c_double), intent(in) :: strain(:)
-      type(answer_type), intent(inout) :: answer
-      type(concrete_type) :: law
-      type(message_list) :: messages
-
-      call reader%case%drawing%section%concrete%validate(messages)
-      call messages%raise(answer%error)
-      if (allocated(answer%error)) return
-      law = reader%case%drawing%section%concrete%law()
-      law%tension = tension_place(reader%diagram%tension)
-      answer%value = concrete_stress(law, strain)
-   end subroutine respond_concrete
-
-   !> Strips: y of the centroid and area of the core, then of the cover.
-   subroutine cut_section(reader, round_core, number, answer)
-      type(group_reader), intent(in) :: reader
-      logical, intent(in) :: round_core
-      integer, intent(in) :: number
-      type(answer_type), intent(inout) :: answer
-      type(shape_type), allocatable :: inside
-      type(strips_type) :: strips
-
-      call outline_core(reader%case%drawing%section, round_core, inside)
-      call cut_strips(reader%case%drawing%section%shape, inside, number, strips)
-      allocate (answer%rows(4, number))
-      call strip_centroids(reader%case%drawing%section%shape, inside, strips, answer%rows(1, :), &
-                           answer%rows(3, :))
-      answer%rows(2, :) = strips%core_area
-      answer%rows(4, :) = strips%area - strips%core_area
-   end subroutine cut_section
-
-   !> The rules of the named points must apply to the section.
-   subroutine check_rule(section, confined, rule, error)
-      type(section_type), intent(in) :: section
-      logical, intent(in) :: confined
-      type(rule_type), intent(in) :: rule
-      type(error_type), allocatable, intent(out) :: error
-      type(message_list) :: messages
-
-      call check_rules(section, confined, rule, messages)
-      call messages%raise(error)
-   end subroutine check_rule
 
 end module rbs_bindings_sections

@@ -36,61 +36,55 @@ contains
       do while (first <= len(text))
          last = index(text(first:), new_line('a'))
          if (last == 0) last = len(text) - first + 2
-         if (last > 1) call put_group(text(first:first + last - 2), number, at, setter, messages)
+         if (last > 1) call put_group(text(first:first + last - 2))
          if (messages%count > 0) return
          first = first + last
       end do
       call setter%finish(messages)
-   end subroutine put_statements
 
-   !> Set one group.
-   subroutine put_group(line, number, at, setter, messages)
-      character(len=*), intent(in) :: line
-      real(c_double), intent(in), contiguous :: number(:)
-      !> Index of the last number that was taken
-      integer, intent(inout) :: at
-      type(group_reader), intent(inout) :: setter
-      type(message_list), intent(inout) :: messages
-      integer :: first, last
-      logical :: ok
+   contains
 
-      last = index(line, tab)
-      if (last == 0) last = len(line) + 1
-      call setter%open(line(:last - 1), '', messages, ok)
-      do while (ok .and. last <= len(line))
-         first = last + 1
-         last = index(line(first:), tab)
-         if (last == 0) last = len(line) - first + 2
-         last = first + last - 1
-         call put_item(line(first:last - 1), number, at, setter, messages)
-      end do
-   end subroutine put_group
+      !> Set one group.
+      subroutine put_group(line)
+         character(len=*), intent(in) :: line
+         integer :: first, last
+         logical :: ok
 
-   !> Set one key to its value.
-   subroutine put_item(item, number, at, setter, messages)
-      character(len=*), intent(in) :: item
-      real(c_double), intent(in), contiguous :: number(:)
-      integer, intent(inout) :: at
-      type(group_reader), intent(inout) :: setter
-      type(message_list), intent(inout) :: messages
-      integer :: mark, place, count
+         last = index(line, tab)
+         if (last == 0) last = len(line) + 1
+         call setter%open(line(:last - 1), '', messages, ok)
+         do while (ok .and. last <= len(line))
+            first = last + 1
+            last = index(line(first:), tab)
+            if (last == 0) last = len(line) - first + 2
+            last = first + last - 1
+            call put_item(line(first:last - 1))
+         end do
+      end subroutine put_group
 
-      mark = scan(item, '=:')
-      if (mark == 0) mark = len(item) + 1
-      call setter%find(item(:mark - 1), '', place, messages)
-      if (place == 0) return
-      if (mark <= len(item)) then
-         if (item(mark:mark) == '=') then
-            call setter%put_text(place, item(mark + 1:), messages)
-            return
+      !> Set one key to its value.
+      subroutine put_item(item)
+         character(len=*), intent(in) :: item
+         integer :: mark, place, count
+
+         mark = scan(item, '=:')
+         if (mark == 0) mark = len(item) + 1
+         call setter%find(item(:mark - 1), '', place, messages)
+         if (place == 0) return
+         if (mark <= len(item)) then
+            if (item(mark:mark) == '=') then
+               call setter%put_text(place, item(mark + 1:), messages)
+               return
+            end if
+            read (item(mark + 1:), *) count
+         else
+            count = 1
          end if
-         read (item(mark + 1:), *) count
-      else
-         count = 1
-      end if
-      call setter%put_numbers(place, number(at + 1:at + count))
-      at = at + count
-   end subroutine put_item
+         call setter%put_numbers(place, number(at + 1:at + count))
+         at = at + count
+      end subroutine put_item
+
+   end subroutine put_statements
 
    !> Set a case from its text and numbers, without validation.
    subroutine case_from_statements(text, number, case, error)

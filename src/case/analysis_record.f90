@@ -29,9 +29,7 @@ module rbs_case_analysis_record
       !> End of the analysis [s]; `unset`: the end of the loading
       real(wp) :: duration = unset
       character(len=20) :: events = ''
-      real(wp) :: tolerance = unset
-      real(wp) :: rho_infinity = unset
-      real(wp) :: collapse_drift = unset
+      real(wp) :: tolerance = unset, rho_infinity = unset, collapse_drift = unset
       logical :: allow_unstable = .false.
       !> A run in time that is expected to take longer is not begun [s]; `unset`: five minutes
       real(wp) :: max_seconds = unset
@@ -49,10 +47,9 @@ module rbs_case_analysis_record
       !> Path of the csv; not allocated: the case file's name with .csv
       character(len=:), allocatable :: file
       integer :: every = unset_integer
-      !> Whether the rows hold the openings of layered joints
-      logical :: openings = .false.
-      !> Whether the rows of an analysis in time hold how the top moves
-      logical :: motion = .false.
+      !> Whether the rows hold the openings of layered joints; whether the rows of an analysis in time hold
+      !> how the top moves
+      logical :: openings = .false., motion = .false.
       !> Path for the state at the end; not allocated: it is not written
       character(len=:), allocatable :: state
    contains

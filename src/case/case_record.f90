@@ -176,7 +176,7 @@ contains
       if (messages%count > known) return
       call self%settle()
       if (allocated(self%frame)) then
-         call validate_frame(self, messages)
+         call validate_frame()
       else
          call self%column%validate(messages)
       end if
@@ -191,34 +191,59 @@ contains
          if (.not. self%analysis%known()) exit
          call self%loading(i)%validate(self%analysis%dynamic(), messages)
       end do
-      call check_together(self, messages)
+      call check_together()
       call self%analysis%validate(messages)
-      call check_static(self, messages)
+      call self%check_static(messages)
       call self%output%check('output', messages)
       if (self%output%motion .and. self%analysis%known() .and. .not. self%analysis%dynamic()) then
          call messages%add('output: motion = .true. has no meaning in a static path, where nothing '// &
-                           'moves; '// &
-                           "remove it, or set method = 'auto' in the group analysis")
+                           'moves; '//"remove it, or set method = 'auto' in the group analysis")
       end if
+
+   contains
+
+      !> What is wrong with the frame, and what belongs to columns alone.
+      subroutine validate_frame()
+         type(frame_parts) :: parts
+
+         call parts%find(self%frame, messages)
+         call self%column%damping%check('damping', messages)
+         if (allocated(self%drawing)) then
+            call messages%add('drawing: a frame has members of several kinds, and no drawing of its own; '// &
+                              'remove the groups of the drawing')
+         end if
+         if (any(self%loading(:self%loadings)%drive == 'axial_load')) then
+            call messages%add("loading: drive = 'axial_load' is for columns; in a frame they carry the "// &
+                              'dead load of floors, beams and nodes')
+         end if
+      end subroutine validate_frame
+
+      !> Refuse loadings that cannot act together.
+      subroutine check_together()
+         integer :: i
+
+         if (self%loadings == 0) return
+         if (.not. self%analysis%dynamic()) then
+            if (all(self%loading(:self%loadings)%drive == 'axial_load')) then
+               call messages%add("loading: drive = 'axial_load' alone does not drive a static path; "// &
+                                 "give a displacement or a force too, or set method = 'auto' in the "// &
+                                 'group analysis')
+               return
+            end if
+            if (count(self%loading(:self%loadings)%drive /= 'axial_load') > 1) then
+               call messages%add('loading: several loadings need a dynamic analysis; with method = '// &
+                                 "'static' give one displacement or force, and the axial load if it varies")
+               return
+            end if
+         end if
+         do i = 2, self%loadings
+            if (all(self%loading(:i - 1)%drive /= self%loading(i)%drive)) cycle
+            call messages%add("loading: two loadings with drive = '"//trim(self%loading(i)%drive)// &
+                              "'; give each drive once")
+         end do
+      end subroutine check_together
+
    end subroutine validate
-
-   !> What is wrong with the frame, and what belongs to columns alone.
-   subroutine validate_frame(self, messages)
-      class(case_record), intent(inout) :: self
-      type(message_list), intent(inout) :: messages
-      type(frame_parts) :: parts
-
-      call parts%find(self%frame, messages)
-      call self%column%damping%check('damping', messages)
-      if (allocated(self%drawing)) then
-         call messages%add('drawing: a frame has members of several kinds, and no drawing of its own; '// &
-                           'remove the groups of the drawing')
-      end if
-      if (any(self%loading(:self%loadings)%drive == 'axial_load')) then
-         call messages%add("loading: drive = 'axial_load' is for columns; in a frame they carry the dead "// &
-                           'load of floors, beams and nodes')
-      end if
-   end subroutine validate_frame
 
    !> What drifts are in proportion to: the height of the column or of the frame [m].
    pure real(wp) function height(self)
@@ -249,31 +274,5 @@ contains
                         'potential, and a static path could miss the loss of stability; use a '// &
                         'dynamic analysis')
    end subroutine check_static
-
-   !> Refuse loadings that cannot act together.
-   subroutine check_together(self, messages)
-      type(case_record), intent(in) :: self
-      type(message_list), intent(inout) :: messages
-      integer :: i
-
-      if (self%loadings == 0) return
-      if (.not. self%analysis%dynamic()) then
-         if (all(self%loading(:self%loadings)%drive == 'axial_load')) then
-            call messages%add("loading: drive = 'axial_load' alone does not drive a static path; give a "// &
-                              "displacement or a force too, or set method = 'auto' in the group analysis")
-            return
-         end if
-         if (count(self%loading(:self%loadings)%drive /= 'axial_load') > 1) then
-            call messages%add('loading: several loadings need a dynamic analysis; with method = '// &
-                              "'static' give one displacement or force, and the axial load if it varies")
-            return
-         end if
-      end if
-      do i = 2, self%loadings
-         if (all(self%loading(:i - 1)%drive /= self%loading(i)%drive)) cycle
-         call messages%add("loading: two loadings with drive = '"//trim(self%loading(i)%drive)// &
-                           "'; give each drive once")
-      end do
-   end subroutine check_together
 
 end module rbs_case_case_record

@@ -25,10 +25,8 @@ module rbs_case_drawing_record
    type, extends(visited_record) :: layout_record
       integer :: number = unset_integer
       real(wp) :: diameter = unset
-      !> Number of their steel
-      integer :: steel = unset_integer
-      !> Bars on the tension face
-      integer :: face = unset_integer
+      !> Number of their steel; bars on the tension face
+      integer :: steel = unset_integer, face = unset_integer
       !> Bars between the corners, where they differ
       real(wp) :: between_diameter = unset
       integer :: between_steel = unset_integer

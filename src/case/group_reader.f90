@@ -169,9 +169,8 @@ contains
             place = ignored
             if (all(rule_names /= rule)) return
             place = 0
-            call messages%add_at(where, '&'//trim(self%group)//': '//trim(name)// &
-                                 ' is not used by the rule '//trim(rule)// &
-                                 '; remove it or choose another rule')
+            call messages%add_at(where, '&'//trim(self%group)//': '//trim(name)//' is not used by the '// &
+                                 'rule '//trim(rule)//'; remove it or choose another rule')
             return
          end associate
       end do
@@ -194,14 +193,12 @@ contains
       real(wp), allocatable, target :: si(:)
 
       if (place == ignored) return
-      associate (key => self%keys(place))
-         if (self%units%is_si()) then
-            call self%visitor%put(key%name, number=number)
-         else
-            si = self%units%into_si(number, unit_in_group(key%unit, self%group))
-            call self%visitor%put(key%name, number=si)
-         end if
-      end associate
+      if (self%units%is_si()) then
+         call self%visitor%put(self%keys(place)%name, number=number)
+      else
+         si = self%units%into_si(number, unit_in_group(self%keys(place)%unit, self%group))
+         call self%visitor%put(self%keys(place)%name, number=si)
+      end if
       call self%visit_open()
    end subroutine put_numbers
 

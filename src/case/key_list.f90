@@ -218,8 +218,7 @@ contains
          default = default_of(keys(i))
          bound = bound_text(keys(i)%bound)
          if (keys(i)%kind == word_kind) bound = 'see meaning'
-         call buffer%append('  '//name//kind//' '//unit(:12)//bound(:18)//default(:12)// &
-                            trim(keys(i)%meaning))
+         call buffer%append('  '//name//kind//' '//unit(:12)//bound(:18)//default(:12)//trim(keys(i)%meaning))
          if (keys(i)%kind == word_kind .and. keys(i)%choices /= '') then
             call buffer%append(': '//trim(keys(i)%choices))
          end if

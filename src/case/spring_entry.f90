@@ -200,10 +200,8 @@ contains
       integer :: i
 
       do i = 1, list%count
-         associate (spring => list%entry(i))
-            if (spring%group == 'flexure' .and. spring%spring%rule == 'layered' .and. &
-                are_of(list%entry(layers), spring)) return
-         end associate
+         if (list%entry(i)%group == 'flexure' .and. list%entry(i)%spring%rule == 'layered' .and. &
+             are_of(list%entry(layers), list%entry(i))) return
       end do
       call messages%add_at(list%entry(layers)%where, '&layers belong to no &flexure with rule = '// &
                            "'layered' and the same kind and place; give it these, or remove the layers")
@@ -225,7 +223,7 @@ contains
       range = to_text(first)//' to '//trim(merge('n + 1', 'n    ', column%top == 'fixed'))//' = '// &
               to_text(last)
       known = messages%count
-      call refuse_frame(list, messages)
+      call refuse_frame()
       call check_ids(list, messages)
       numbered = messages%count == known
       call place_group('shear', column%shear)
@@ -238,10 +236,8 @@ contains
       !> Find the entry of a group for each joint: the one that names it, or the one without joints.
       subroutine assign(group, of_joint, rest)
          character(len=*), intent(in) :: group
-         !> Entries that name the joints, 0: none
-         integer, intent(out) :: of_joint(first:)
-         !> The entry for all others, 0: none
-         integer, intent(out) :: rest
+         !> Entries that name the joints, 0: none; the entry for all others, 0: none
+         integer, intent(out) :: of_joint(first:), rest
          integer :: i, j
 
          of_joint = 0
@@ -250,7 +246,7 @@ contains
             associate (entry => list%entry(i))
                if (entry%group /= group) cycle
                if (.not. allocated(entry%joint)) then
-                  if (rest > 0) call twice(entry, list%entry(rest), group, messages)
+                  if (rest > 0) call twice(entry, list%entry(rest), group)
                   rest = i
                   cycle
                end if
@@ -259,7 +255,7 @@ contains
                      call messages%add_at(entry%where, '&'//group//' has joint = '// &
                                           to_text(entry%joint(j))//'; joints are '//trim(range))
                   else if (of_joint(entry%joint(j)) > 0) then
-                     call twice(entry, list%entry(of_joint(entry%joint(j))), group, messages, entry%joint(j))
+                     call twice(entry, list%entry(of_joint(entry%joint(j))), group, entry%joint(j))
                   else
                      of_joint(entry%joint(j)) = i
                   end if
@@ -333,23 +329,40 @@ contains
                                  "rule = 'layered'; remove them, or choose that rule for the spring")
          end do
       end subroutine place_layers
+
+      !> Keys that only springs of frames have.
+      subroutine refuse_frame()
+         integer :: i
+
+         do i = 1, list%count
+            associate (entry => list%entry(i))
+               if (entry%kind == '' .and. entry%node == '' .and. entry%panel == '' .and. &
+                   .not. allocated(entry%place)) cycle
+               call messages%add_at(entry%where, '&'//trim(entry%group)//': kind, place, node and panel '// &
+                                    'belong to springs of a frame; give joint, or a group &frame')
+            end associate
+         end do
+      end subroutine refuse_frame
+
+      !> Report two springs for one joint.
+      subroutine twice(entry, first, group, joint)
+         type(spring_entry), intent(in) :: entry, first
+         character(len=*), intent(in) :: group
+         integer, intent(in), optional :: joint
+         character(len=:), allocatable :: text
+
+         text = '&'//group
+         if (present(joint)) then
+            text = text//' for joint = '//to_text(joint)
+         else
+            text = text//' without joint'
+         end if
+         text = text//' appears twice'
+         if (first%where /= '') text = text//', first at '//first%where(:len_trim(first%where) - 1)
+         call messages%add_at(entry%where, text//'; remove one')
+      end subroutine twice
+
    end subroutine place_springs
-
-   !> Keys that only springs of frames have.
-   subroutine refuse_frame(list, messages)
-      type(entry_list), intent(in) :: list
-      type(message_list), intent(inout) :: messages
-      integer :: i
-
-      do i = 1, list%count
-         associate (entry => list%entry(i))
-            if (entry%kind == '' .and. entry%node == '' .and. entry%panel == '' .and. &
-                .not. allocated(entry%place)) cycle
-            call messages%add_at(entry%where, '&'//trim(entry%group)//': kind, place, node and panel '// &
-                                 'belong to springs of a frame; give joint, or a group &frame')
-         end associate
-      end do
-   end subroutine refuse_frame
 
    !> Whether a spring is given for joint 0, beneath a footing.
    pure logical function any_beneath(list)
@@ -389,25 +402,6 @@ contains
          end do
       end do
    end subroutine check_ids
-
-   !> Report two springs for one joint.
-   subroutine twice(entry, first, group, messages, joint)
-      type(spring_entry), intent(in) :: entry, first
-      character(len=*), intent(in) :: group
-      type(message_list), intent(inout) :: messages
-      integer, intent(in), optional :: joint
-      character(len=:), allocatable :: text
-
-      text = '&'//group
-      if (present(joint)) then
-         text = text//' for joint = '//to_text(joint)
-      else
-         text = text//' without joint'
-      end if
-      text = text//' appears twice'
-      if (first%where /= '') text = text//', first at '//first%where(:len_trim(first%where) - 1)
-      call messages%add_at(entry%where, text//'; remove one')
-   end subroutine twice
 
    !> Copy the layers into a spring.
    subroutine set_layers(list, spring, layers, messages)

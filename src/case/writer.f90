@@ -9,7 +9,6 @@ module rbs_case_writer
    use rbs_case_case_record, only: case_record
    use rbs_case_spring_entry, only: entry_list, spring_entry
    use rbs_case_text_buffer, only: text_buffer
-   use rbs_structure_column_column_record, only: column_record
    use rbs_structure_frame_frame_record, only: frame_groups
    use rbs_hysteresis_registry, only: keys_of
    use rbs_hysteresis_spring_record, only: spring_record
@@ -40,111 +39,141 @@ contains
    subroutine write_case(case, text)
       type(case_record), intent(inout) :: case
       type(case_text), intent(inout) :: text
+      !> Springs of layers that have been written before
+      type(entry_list) :: layer_springs
       integer :: i
 
-      call write_record(case, 'case', text)
+      call write_record('case')
       if (allocated(case%frame)) then
-         call write_frame(case, text)
+         call write_frame()
       else
-         call write_record(case, 'column', text)
+         call write_record('column')
       end if
-      call write_record(case, 'damping', text)
-      if (.not. allocated(case%frame)) call write_all_springs(case%column, text)
-      if (allocated(case%drawing)) call write_drawing(case, text)
+      call write_record('damping')
+      if (.not. allocated(case%frame)) then
+         call write_springs('shear', case%column%shear)
+         call write_springs('flexure', case%column%flexure)
+         call write_springs('axial_spring', case%column%axial_spring)
+      end if
+      if (allocated(case%drawing)) call write_drawing()
       do i = 1, case%loadings
-         call write_record(case, 'loading', text, i)
+         call write_record('loading', i)
       end do
-      call write_record(case, 'analysis', text)
-      call write_record(case, 'output', text)
-   end subroutine write_case
-
-   !> Write the groups of a frame and its springs.
-   subroutine write_frame(case, text)
-      type(case_record), intent(inout) :: case
-      type(case_text), intent(inout) :: text
-      type(spring_entry) :: entry
-      type(entry_list) :: layer_springs
-      integer :: g, i
-
-      do g = 1, size(frame_groups)
-         do i = 1, case%frame%count_of(frame_groups(g))
-            call write_record(case, trim(frame_groups(g)), text, i)
-         end do
-      end do
-      do i = 1, size(case%frame%spring)
-         associate (given => case%frame%spring(i))
-            entry = spring_entry(group=given%group, spring=given%spring)
-            entry%kind = given%kind
-            entry%node = given%node
-            entry%panel = given%panel
-            if (allocated(given%place)) entry%place = given%place
-            call write_spring(entry, text)
-            if (allocated(given%spring%y)) call write_layers(entry, layer_springs, text)
-         end associate
-      end do
-   end subroutine write_frame
-
-   !> Write the values of a group that differ from those of a new record.
-   subroutine write_record(case, group, text, number)
-      type(case_record), intent(inout) :: case
-      character(len=*), intent(in) :: group
-      type(case_text), intent(inout) :: text
-      !> Which of several
-      integer, intent(in), optional :: number
-      type(case_record) :: new
-      type(key_visitor) :: v
-
-      call new%open_group(group)
-      if (group == 'section') then
-         call new_shape(case%drawing%section%shape_name, unset, unset, new%drawing%section%shape)
-      end if
-      call v%collect(group)
-      call new%visit_group(group, v)
-      call v%list()
-      call case%visit_group(group, v, number)
-      if (v%listed > 0 .or. any(group == [character(len=7) :: 'column', 'loading', 'frame'])) then
-         call text%group(group, v%entry(:v%listed))
-      end if
-   end subroutine write_record
-
-   !> Write what a column was drawn from.
-   subroutine write_drawing(case, text)
-      type(case_record), intent(inout) :: case
-      type(case_text), intent(inout) :: text
-      integer :: i
-
-      call write_record(case, 'drawing', text)
-      call write_record(case, 'section', text)
-      call write_record(case, 'concrete', text)
-      associate (drawing => case%drawing)
-         do i = 1, size(drawing%section%steels)
-            call write_record(case, 'steel', text, i)
-         end do
-         call write_record(case, 'bars', text)
-         if (allocated(drawing%layout)) call write_record(case, 'layout', text)
-         if (allocated(drawing%inner_layout)) call write_record(case, 'inner_layout', text)
-         if (drawing%section%hoops%kind /= no_ties) then
-            call write_record(case, trim(drawing%section%hoops%name()), text)
-         end if
-         do i = 1, size(drawing%parameters)
-            call write_record(case, 'parameter', text, i)
-         end do
-      end associate
-   end subroutine write_drawing
-
-   !> Write the springs of a column; equal springs are written once.
-   subroutine write_all_springs(column, text)
-      type(column_record), intent(in) :: column
-      type(case_text), intent(inout) :: text
-      type(entry_list) :: layer_springs
-
-      call write_springs('shear', column%shear)
-      call write_springs('flexure', column%flexure)
-      call write_springs('axial_spring', column%axial_spring)
+      call write_record('analysis')
+      call write_record('output')
 
    contains
 
-      !> Write the springs of one kind.
+      !> Write the groups of a frame and its springs.
+      subroutine write_frame()
+         type(spring_entry) :: entry
+         integer :: g, i
+
+         do g = 1, size(frame_groups)
+            do i = 1, case%frame%count_of(frame_groups(g))
+               call write_record(trim(frame_groups(g)), i)
+            end do
+         end do
+         do i = 1, size(case%frame%spring)
+            associate (given => case%frame%spring(i))
+               entry = spring_entry(group=given%group, spring=given%spring)
+               entry%kind = given%kind
+               entry%node = given%node
+               entry%panel = given%panel
+               if (allocated(given%place)) entry%place = given%place
+               call write_spring(entry)
+               if (allocated(given%spring%y)) call write_layers(entry)
+            end associate
+         end do
+      end subroutine write_frame
+
+      !> Write the values of a group that differ from those of a new record.
+      subroutine write_record(group, number)
+         character(len=*), intent(in) :: group
+         !> Which of several
+         integer, intent(in), optional :: number
+         type(case_record) :: new
+         type(key_visitor) :: v
+
+         call new%open_group(group)
+         if (group == 'section') then
+            call new_shape(case%drawing%section%shape_name, unset, unset, new%drawing%section%shape)
+         end if
+         call v%collect(group)
+         call new%visit_group(group, v)
+         call v%list()
+         call case%visit_group(group, v, number)
+         if (v%listed > 0 .or. any(group == [character(len=7) :: 'column', 'loading', 'frame'])) then
+            call text%group(group, v%entry(:v%listed))
+         end if
+      end subroutine write_record
+
+      !> Write what a column was drawn from.
+      subroutine write_drawing()
+         integer :: i
+
+         call write_record('drawing')
+         call write_record('section')
+         call write_record('concrete')
+         associate (drawing => case%drawing)
+            do i = 1, size(drawing%section%steels)
+               call write_record('steel', i)
+            end do
+            call write_record('bars')
+            if (allocated(drawing%layout)) call write_record('layout')
+            if (allocated(drawing%inner_layout)) call write_record('inner_layout')
+            if (drawing%section%hoops%kind /= no_ties) call write_record(trim(drawing%section%hoops%name()))
+            do i = 1, size(drawing%parameters)
+               call write_record('parameter', i)
+            end do
+         end associate
+      end subroutine write_drawing
+
+      !> Write a spring, or the layers of joints.
+      subroutine write_spring(entry)
+         type(spring_entry), intent(inout) :: entry
+         type(spring_entry) :: new
+         type(key_type), allocatable :: keys(:)
+         type(key_visitor) :: v
+
+         call keys_of(entry%spring%rule, keys)
+         new%group = entry%group
+         call v%collect(entry%group)
+         call new%visit(v, keys)
+         call v%list()
+         call entry%visit(v, keys)
+         call text%group(trim(entry%group), v%entry(:v%listed))
+      end subroutine write_spring
+
+      !> Write the springs of layers that have not been written before, then the layers.
+      subroutine write_layers(joint)
+         !> The joints and their layered spring
+         type(spring_entry), intent(in) :: joint
+         type(spring_entry) :: layers
+         type(spring_record) :: layer
+         integer :: i, j
+
+         layers = spring_entry(group='layers', y=joint%spring%y)
+         if (allocated(joint%joint)) layers%joint = joint%joint
+         layers%kind = joint%kind
+         if (allocated(joint%place)) layers%place = joint%place
+         allocate (layers%layer(size(layers%y)))
+         do i = 1, size(layers%y)
+            layer = joint%spring%layer(i)
+            do j = 1, layer_springs%count
+               if (layer_springs%entry(j)%spring%same_as(layer)) exit
+            end do
+            layers%layer(i) = j
+            if (j <= layer_springs%count) cycle
+            call layer_springs%add('layer_spring', '')
+            layer_springs%entry(j)%id = j
+            layer_springs%entry(j)%spring = layer
+            call write_spring(layer_springs%entry(j))
+         end do
+         call write_spring(layers)
+      end subroutine write_layers
+
+      !> Write the springs of one kind of a column; equal springs are written once.
       subroutine write_springs(group, spring)
          character(len=*), intent(in) :: group
          type(spring_record), intent(in), allocatable :: spring(:)
@@ -155,7 +184,7 @@ contains
          if (.not. allocated(spring)) return
          ! For each joint the first that has the same spring; the lowest joint of a footing has number 0.
          allocate (first(size(spring)))
-         beneath = merge(1, 0, column%footing)
+         beneath = merge(1, 0, case%column%footing)
          do i = 1, size(spring)
             first(i) = i
             do j = 1, i - 1
@@ -171,59 +200,12 @@ contains
             if (any(first /= 1) .or. beneath > 0) then
                entry%joint = pack([(j - beneath, j=1, size(first))], first == i)
             end if
-            call write_spring(entry, text)
-            if (allocated(spring(i)%y)) call write_layers(entry, layer_springs, text)
+            call write_spring(entry)
+            if (allocated(spring(i)%y)) call write_layers(entry)
          end do
       end subroutine write_springs
-   end subroutine write_all_springs
 
-   !> Write a spring, or the layers of joints.
-   subroutine write_spring(entry, text)
-      type(spring_entry), intent(inout) :: entry
-      type(case_text), intent(inout) :: text
-      type(spring_entry) :: new
-      type(key_type), allocatable :: keys(:)
-      type(key_visitor) :: v
-
-      call keys_of(entry%spring%rule, keys)
-      new%group = entry%group
-      call v%collect(entry%group)
-      call new%visit(v, keys)
-      call v%list()
-      call entry%visit(v, keys)
-      call text%group(trim(entry%group), v%entry(:v%listed))
-   end subroutine write_spring
-
-   !> Write the springs of layers that have not been written before, then the layers.
-   subroutine write_layers(joint, layer_springs, text)
-      !> The joints and their layered spring
-      type(spring_entry), intent(in) :: joint
-      !> Springs of layers that have been written before
-      type(entry_list), intent(inout) :: layer_springs
-      type(case_text), intent(inout) :: text
-      type(spring_entry) :: layers
-      type(spring_record) :: layer
-      integer :: i, j
-
-      layers = spring_entry(group='layers', y=joint%spring%y)
-      if (allocated(joint%joint)) layers%joint = joint%joint
-      layers%kind = joint%kind
-      if (allocated(joint%place)) layers%place = joint%place
-      allocate (layers%layer(size(layers%y)))
-      do i = 1, size(layers%y)
-         layer = joint%spring%layer(i)
-         do j = 1, layer_springs%count
-            if (layer_springs%entry(j)%spring%same_as(layer)) exit
-         end do
-         layers%layer(i) = j
-         if (j <= layer_springs%count) cycle
-         call layer_springs%add('layer_spring', '')
-         layer_springs%entry(j)%id = j
-         layer_springs%entry(j)%spring = layer
-         call write_spring(layer_springs%entry(j), text)
-      end do
-      call write_spring(layers, text)
-   end subroutine write_layers
+   end subroutine write_case
 
    !> Add one group.
    subroutine add_group(self, name, entry)
@@ -232,10 +214,45 @@ contains
       type(entry_type), intent(in) :: entry(:)
 
       if (self%is_statement) then
-         call statement_group(self, name, entry)
+         call statement_group()
       else
          call namelist_group(self, name, entry)
       end if
+
+   contains
+
+      !> Append `name key key:count key=text`, separated by tabs, and the numbers.
+      subroutine statement_group()
+         character(len=1), parameter :: tab = achar(9)
+         integer :: i
+
+         call self%buffer%append(name)
+         do i = 1, size(entry)
+            call self%buffer%append(tab//trim(entry(i)%name))
+            if (allocated(entry(i)%text)) then
+               call self%buffer%append('='//entry(i)%text)
+               cycle
+            end if
+            if (size(entry(i)%number) /= 1) call self%buffer%append(':'//to_text(size(entry(i)%number)))
+            call add_numbers(entry(i)%number)
+         end do
+         call self%buffer%append(new_line('a'))
+      end subroutine statement_group
+
+      subroutine add_numbers(number)
+         real(wp), intent(in) :: number(:)
+         real(wp), allocatable :: longer(:)
+
+         if (.not. allocated(self%number)) allocate (self%number(256))
+         if (self%count + size(number) > size(self%number)) then
+            allocate (longer(2*(self%count + size(number))))
+            longer(:self%count) = self%number(:self%count)
+            call move_alloc(longer, self%number)
+         end if
+         self%number(self%count + 1:self%count + size(number)) = number
+         self%count = self%count + size(number)
+      end subroutine add_numbers
+
    end subroutine add_group
 
    !> Write `&name key = value, ... /` in lines of limited length.
@@ -307,41 +324,5 @@ contains
          text = exact_text(x)
       end select
    end function value_text
-
-   !> Append `name key key:count key=text`, separated by tabs, and the numbers.
-   subroutine statement_group(self, name, entry)
-      type(case_text), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      type(entry_type), intent(in) :: entry(:)
-      character(len=1), parameter :: tab = achar(9)
-      integer :: i
-
-      call self%buffer%append(name)
-      do i = 1, size(entry)
-         call self%buffer%append(tab//trim(entry(i)%name))
-         if (allocated(entry(i)%text)) then
-            call self%buffer%append('='//entry(i)%text)
-            cycle
-         end if
-         if (size(entry(i)%number) /= 1) call self%buffer%append(':'//to_text(size(entry(i)%number)))
-         call add_numbers(self, entry(i)%number)
-      end do
-      call self%buffer%append(new_line('a'))
-   end subroutine statement_group
-
-   subroutine add_numbers(self, number)
-      type(case_text), intent(inout) :: self
-      real(wp), intent(in) :: number(:)
-      real(wp), allocatable :: longer(:)
-
-      if (.not. allocated(self%number)) allocate (self%number(256))
-      if (self%count + size(number) > size(self%number)) then
-         allocate (longer(2*(self%count + size(number))))
-         longer(:self%count) = self%number(:self%count)
-         call move_alloc(longer, self%number)
-      end if
-      self%number(self%count + 1:self%count + size(number)) = number
-      self%count = self%count + size(number)
-   end subroutine add_numbers
 
 end module rbs_case_writer

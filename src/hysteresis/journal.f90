@@ -14,10 +14,9 @@ module rbs_hysteresis_journal
       logical :: open = .false.
       !> Deformations and works at the start (count) [m or rad, J]
       real(wp), allocatable :: d(:), work(:)
-      !> Number of branches left at the start
-      integer :: events = 0
-      !> Number of springs that have changed their branches since, and which (changed)
-      integer :: changed = 0
+      !> Number of branches left at the start; number of springs that have changed their branches since, and
+      !> which (changed)
+      integer :: events = 0, changed = 0
       integer, allocatable :: spring(:)
       !> Whether each spring is among them (count)
       logical, allocatable :: is_kept(:)

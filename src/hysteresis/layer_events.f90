@@ -53,10 +53,9 @@ contains
    pure subroutine first_layer_exit(springs, i, rotation, axial_load, turn, press, h, layer, exit)
       type(spring_array), intent(in) :: springs
       integer, intent(in) :: i
-      !> Rotation and axial load at the end of the step
-      real(wp), intent(in) :: rotation, axial_load
-      !> Rates of the rotation at the start of the step and at its end, and of the axial load
-      real(wp), intent(in) :: turn(2), press
+      !> Rotation and axial load at the end of the step; rates of the rotation at the start of the step and at
+      !> its end, and of the axial load
+      real(wp), intent(in) :: rotation, axial_load, turn(2), press
       !> Length of the step [s]
       real(wp), intent(in) :: h
       !> The layer, 0 for none

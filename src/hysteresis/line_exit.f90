@@ -26,10 +26,9 @@ contains
       !> The ends of the line, from below and from above, and whether it unloads on reversal
       real(wp), intent(in) :: ends(2)
       integer, intent(in) :: unload_on_reversal
-      !> Deformation and velocity at the start of the step and at its end
-      real(wp), intent(in) :: d(2), v(2)
-      !> Length of the step [s], and what the last digits of a deformation leave undecided
-      real(wp), intent(in) :: h, digits
+      !> Deformation and velocity at the start of the step and at its end; length of the step [s], and what
+      !> the last digits of a deformation leave undecided
+      real(wp), intent(in) :: d(2), v(2), h, digits
       type(line_exit), intent(out) :: exit
       real(wp) :: turning, furthest, far
       integer :: way
@@ -42,7 +41,8 @@ contains
          if (is_beyond(furthest, way)) then
             ! It passes the end and comes back within the step.
             far = end_of(way) - d(1)
-            exit = line_exit(way, .false., time_to(far, v(1), turning), turning)
+            exit = line_exit(way, .false., turning*(1.0_wp - sqrt(max(1.0_wp - 2.0_wp*far/(v(1)*turning), &
+                                                                      0.0_wp))), turning)
             return
          else if (unload_on_reversal == way) then
             exit = line_exit(-way, .true., turning, h)
@@ -88,12 +88,5 @@ contains
       if (x > 0.0_wp) direction_of = 1
       if (x < 0.0_wp) direction_of = -1
    end function direction_of
-
-   !> Time in which a decelerated motion, which would turn after `turning`, covers a distance.
-   pure real(wp) function time_to(way, v, turning) result(t)
-      real(wp), intent(in) :: way, v, turning
-
-      t = turning*(1.0_wp - sqrt(max(1.0_wp - 2.0_wp*way/(v*turning), 0.0_wp)))
-   end function time_to
 
 end module rbs_hysteresis_line_exit

@@ -38,12 +38,15 @@ module rbs_hysteresis_rule
       real(wp) :: initial_stiffness = 0.0_wp
       !> Whether the spring decays with the work of the flexural spring of its joint
       logical :: uses_flexural_work = .false.
+      !> The memory of a virgin spring, not allocated where its branch says all, and its branch
+      class(rule_memory), allocatable :: memory
+      type(segment) :: branch
    contains
       procedure :: take
       procedure :: check_relations
       procedure :: prepare
       procedure :: has_yielded
-      procedure(start_interface), deferred :: start
+      procedure :: start
       procedure(next_interface), deferred :: next
    end type rule_type
 
@@ -68,15 +71,6 @@ module rbs_hysteresis_rule
    end type spring_rules
 
    abstract interface
-      !> The memory of a virgin spring, and its branch.
-      subroutine start_interface(self, memory, branch)
-         import :: rule_type, rule_memory, segment
-         implicit none
-         class(rule_type), intent(in) :: self
-         class(rule_memory), allocatable, intent(out) :: memory
-         type(segment), intent(out) :: branch
-      end subroutine start_interface
-
       !> The branch that follows when the motion leaves the present one: at `hi` going up (direction = +1)
       !> or at `lo` going down (direction = -1). Where a branch unloads on reversal, its rear end is the point
       !> where the motion turned back.
@@ -170,6 +164,20 @@ contains
       has_yielded = .false.
       if (.false.) has_yielded = memory%flexural_work > self%initial_stiffness
    end function has_yielded
+
+   !> The memory of a virgin spring, and its branch.
+   subroutine start(self, memory, branch)
+      class(rule_type), intent(in) :: self
+      class(rule_memory), allocatable, intent(out) :: memory
+      type(segment), intent(out) :: branch
+
+      branch = self%branch
+      if (allocated(self%memory)) then
+         allocate (memory, source=self%memory)
+      else
+         allocate (memory)
+      end if
+   end subroutine start
 
    !> Stiffness times deformation must neither overflow nor vanish.
    subroutine check_product(k, d, name, product_name, messages)

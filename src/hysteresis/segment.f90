@@ -14,10 +14,8 @@ module rbs_hysteresis_segment
    !> The force is always computed from the fixed anchor (d0, f0), never by adding increments, so that
    !> it does not depend on the steps of a path.
    type :: segment
-      !> Anchor: deformation [m or rad] and force [N or N m] of one point of the line
-      real(wp) :: d0 = 0.0_wp, f0 = 0.0_wp
-      !> Slope [N/m or N m/rad]
-      real(wp) :: k = 0.0_wp
+      !> Anchor: deformation [m or rad] and force [N or N m] of one point of the line; slope [N/m or N m/rad]
+      real(wp) :: d0 = 0.0_wp, f0 = 0.0_wp, k = 0.0_wp
       !> Ends: least and largest deformation
       real(wp) :: lo = -unbounded, hi = unbounded
       !> Whether the point at the end still belongs to this line. An open end belongs to the line that

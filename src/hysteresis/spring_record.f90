@@ -273,8 +273,7 @@ contains
       type(spring_record), intent(in) :: spring(:)
       integer, intent(in) :: count
       type(rule_slot), allocatable :: list(:)
-      integer :: first(count), of(count)
-      integer :: before, i, j, n
+      integer :: first(count), of(count), before, i, j, n
 
       if (.not. allocated(rules%list)) allocate (rules%list(0), rules%name(0), rules%of(0))
       before = size(rules%list)

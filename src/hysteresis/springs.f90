@@ -25,10 +25,8 @@ module rbs_hysteresis_springs
    type :: spring_array
       !> Number of springs
       integer :: count = 0
-      !> Present deformation (count) [m or rad]
-      real(wp), allocatable :: d(:)
-      !> Present line: anchor and slope (count)
-      real(wp), allocatable :: d0(:), f0(:), k(:)
+      !> Present deformation (count) [m or rad]; present line: anchor and slope (count)
+      real(wp), allocatable :: d(:), d0(:), f0(:), k(:)
       !> First and last deformation that belong to the present line (count). Where the end itself does not
       !> belong to it, they are the numbers next to it.
       real(wp), allocatable :: first(:), last(:)
@@ -266,8 +264,7 @@ contains
    !> Put a spring exactly on the end of its line in a direction; from an open end it goes to the next line.
    subroutine arrive(self, i, direction)
       class(spring_array), intent(inout) :: self
-      integer, intent(in) :: i
-      integer, intent(in) :: direction
+      integer, intent(in) :: i, direction
       logical :: closed
 
       closed = merge(self%includes_upper_end(i), self%includes_lower_end(i), direction > 0)

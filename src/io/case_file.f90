@@ -7,12 +7,11 @@ module rbs_io_case_file
    use rbs_io_loading_file, only: loading_values
    use rbs_io_namelist, only: read_case
    use rbs_loading_protocol, only: protocol_values
-   use rbs_loading_signal, only: signal_type
-   use rbs_solve_check_values, only: check_values
    use rbs_loading_loads, only: loads_type, signals, signal_names
+   use rbs_loading_signal, only: signal_type
+   use rbs_base_check, only: is_given, check_values
    use rbs_case_analysis_record, only: analysis_record
    use rbs_case_case_record, only: case_record
-   use rbs_base_check, only: is_given
    implicit none
    private
 
@@ -22,10 +21,9 @@ module rbs_io_case_file
    type :: case_history
       !> Common times (m) [s]; for a static path the numbers of its points
       real(wp), allocatable :: time(:)
-      !> The prescribed displacement or force of a static path (m) [m or N]
-      real(wp), allocatable :: target(:)
-      !> The axial load at its points where it varies (m); empty: constant [N]
-      real(wp), allocatable :: axial_load(:)
+      !> The prescribed displacement or force of a static path (m) [m or N]; the axial load at its points
+      !> where it varies (m); empty: constant [N]
+      real(wp), allocatable :: target(:), axial_load(:)
       !> The actions in time
       type(loads_type) :: loads
    end type case_history
@@ -51,64 +49,78 @@ contains
          call messages%raise(error)
          return
       end if
-      if (understood) call load_values(case, path(:index(path, '/', back=.true.)), history, messages)
+      if (understood) call load_values(path(:index(path, '/', back=.true.)))
       call messages%raise(error)
-      if (.not. allocated(error)) call cut_duration(case%analysis, history, error)
+      if (.not. allocated(error)) call cut_duration(case%analysis)
+
+   contains
+
+      !> Make the values of every loading that has no error of its own.
+      subroutine load_values(folder)
+         character(len=*), intent(in) :: folder
+         type(error_type), allocatable :: fault
+         type(message_list) :: own
+         type(signal_type) :: signal
+         real(wp), allocatable :: time(:), value(:)
+         integer :: i, j
+
+         allocate (history%axial_load(0))
+         do i = 1, case%loadings
+            associate (spec => case%loading(i))
+               own = message_list()
+               call spec%validate(case%analysis%dynamic(), own)
+               if (own%count > 0) cycle                ! reported already
+               select case (spec%source)
+               case ('protocol')
+                  ! Amplitudes in drift need the height; a wrong height has been reported.
+                  if (.not. ieee_is_finite(case%height())) cycle
+                  if (case%height() <= 0.0_wp) cycle
+                  call protocol_values(spec, case%height(), time, value, fault)
+               case ('values')
+                  call spec%inline_values(time, value)
+               case default
+                  call loading_values(spec, folder, case%analysis%dynamic(), .not. case%analysis%named, &
+                                      time, value, fault)
+               end select
+               if (.not. allocated(fault)) call check_values(value, 'loading: '//trim(spec%drive), fault)
+               if (allocated(fault)) then
+                  call messages%add(fault%message)
+                  cycle
+               end if
+               signal%time = time
+               signal%value = value
+               ! A displacement is not an action in time.
+               do j = 1, signals
+                  if (spec%drive == signal_names(j)) history%loads%signal(j) = signal
+               end do
+               if (spec%drive == 'axial_load') then
+                  history%axial_load = value
+               else
+                  call move_alloc(value, history%target)
+               end if
+               call join_times(history%time, time)
+            end associate
+         end do
+         if (case%loadings == 0) call messages%add('the case has no loading; give it a group &loading')
+      end subroutine load_values
+
+      !> End the history at the duration of the user: earlier, or later with the last value held.
+      subroutine cut_duration(spec)
+         type(analysis_record), intent(in) :: spec
+         real(wp) :: finish
+
+         if (.not. spec%dynamic() .or. .not. is_given(spec%duration)) return
+         finish = history%time(1) + spec%duration
+         if (.not. finish > history%time(1)) then
+            call fatal_error(error, bad_input, 'analysis: duration = '//to_text(spec%duration)// &
+                             ' s is too short to change the time of the start, '//to_text(history%time(1))// &
+                             ' s; give a longer one')
+            return
+         end if
+         history%time = [pack(history%time, history%time < finish), finish]
+      end subroutine cut_duration
+
    end subroutine load_case
-
-   !> Make the values of every loading that has no error of its own.
-   subroutine load_values(case, folder, history, messages)
-      type(case_record), intent(inout) :: case
-      character(len=*), intent(in) :: folder
-      type(case_history), intent(inout) :: history
-      type(message_list), intent(inout) :: messages
-      type(error_type), allocatable :: fault
-      type(message_list) :: own
-      type(signal_type) :: signal
-      real(wp), allocatable :: time(:), value(:)
-      integer :: i, j
-
-      allocate (history%axial_load(0))
-      do i = 1, case%loadings
-         associate (spec => case%loading(i))
-            own = message_list()
-            call spec%validate(case%analysis%dynamic(), own)
-            if (own%count > 0) cycle                ! reported already
-            select case (spec%source)
-            case ('protocol')
-               ! Amplitudes in drift need the height; a wrong height has been reported.
-               if (.not. ieee_is_finite(case%height())) cycle
-               if (case%height() <= 0.0_wp) cycle
-               call protocol_values(spec, case%height(), time, value, fault)
-            case ('values')
-               call spec%inline_values(time, value)
-            case default
-               call loading_values(spec, folder, case%analysis%dynamic(), .not. case%analysis%named, time, &
-                                   value, fault)
-            end select
-            if (.not. allocated(fault)) call check_values(value, 'loading: '//trim(spec%drive), fault)
-            if (allocated(fault)) then
-               call messages%add(fault%message)
-               cycle
-            end if
-            signal%time = time
-            signal%value = value
-            ! A displacement is not an action in time.
-            do j = 1, signals
-               if (spec%drive == signal_names(j)) history%loads%signal(j) = signal
-            end do
-            if (spec%drive == 'axial_load') then
-               history%axial_load = value
-            else
-               call move_alloc(value, history%target)
-            end if
-            call join_times(history%time, time)
-         end associate
-      end do
-      if (case%loadings == 0) then
-         call messages%add('the case has no loading; give it a group &loading')
-      end if
-   end subroutine load_values
 
    !> Merge the times of two loadings into one ascending list. Times that differ by round-off are merged.
    subroutine join_times(all_times, more)
@@ -145,23 +157,5 @@ contains
       end do
       all_times = joined(:n)
    end subroutine join_times
-
-   !> End the history at the duration of the user: earlier, or later with the last value held.
-   subroutine cut_duration(spec, history, error)
-      type(analysis_record), intent(in) :: spec
-      type(case_history), intent(inout) :: history
-      type(error_type), allocatable, intent(out) :: error
-      real(wp) :: finish
-
-      if (.not. spec%dynamic() .or. .not. is_given(spec%duration)) return
-      finish = history%time(1) + spec%duration
-      if (.not. finish > history%time(1)) then
-         call fatal_error(error, bad_input, 'analysis: duration = '//to_text(spec%duration)// &
-                          ' s is too short to change the time of the start, '//to_text(history%time(1))// &
-                          ' s; give a longer one')
-         return
-      end if
-      history%time = [pack(history%time, history%time < finish), finish]
-   end subroutine cut_duration
 
 end module rbs_io_case_file

@@ -1,15 +1,26 @@
 !> History files: the text format of the PEER database, and csv.
+!>
+!> A line of a file of rows, cut into its fields.
 module rbs_io_history
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_io_fields, only: field_list, most_columns, split, separator_of, is_blank, plain, snippet, &
-                            report_number
-   use rbs_io_text_file, only: text_file, load_text, read_real, is_integer, number_ok, number_wrong
+   use rbs_io_text_file, only: text_file, load_text, read_real, is_integer, number_ok, number_wrong, &
+                               number_not_finite
    implicit none
    private
 
    public :: history_type, read_history
+
+   !> Most fields of a line.
+   integer, parameter :: most_columns = 64
+
+   character(len=1), parameter :: tab = achar(9)
+
+   !> First and last characters of the fields of a line.
+   type :: field_list
+      integer :: count = 0, first(most_columns + 1) = 0, last(most_columns + 1) = 0
+   end type field_list
 
    !> Largest file that is read [bytes].
    integer, parameter :: most_bytes = 2000000000
@@ -49,16 +60,222 @@ contains
       if (.not. history%peer) then
          if (is_at2(file)) then
             call file%go_back()
-            call read_at2(file, path, history, error)
+            call read_at2()
             return
          end if
          call file%go_back()
       end if
       if (history%peer) then
-         call read_peer(file, path, history, error)
+         call read_peer()
       else
-         call read_csv(file, path, history, error)
+         call read_csv()
       end if
+
+   contains
+
+      !> Accelerations, a few in a line: rows of time [s] and acceleration [g].
+      subroutine read_at2()
+         type(field_list) :: fields
+         character(len=:), allocatable :: head
+         real(wp) :: numbers(2), value
+         integer :: first, last, i, count, rows, status
+         logical :: found
+
+         history%name = path(index(path, '/', back=.true.) + 1:)
+         do i = 1, at2_head
+            call file%next_line(first, last, found)
+            if (i /= at2_head - 1) cycle
+            if (index(file%text(first:last), 'ACCEL') == 0 .or. index(file%text(first:last), ' G') == 0) then
+               call fatal_error(error, bad_input, path//" line 3: '"//snippet(file%text(first:last))// &
+                                "' of an AT2 file must say ACCELERATION ... IN UNITS OF G; convert other "// &
+                                'files to csv with the columns time_s, acceleration_g')
+               return
+            end if
+         end do
+         ! NPTS= 4000, DT= .01 SEC, or in older files: 4000 0.01 NPTS, DT
+         head = file%text(first:last)
+         do i = 1, len(head)
+            if (scan(head(i:i), '=,') == 1) head(i:i) = ' '
+         end do
+         call split(head, 1, ' ', fields)
+         count = 0
+         do i = 1, fields%count
+            call read_real(head(fields%first(i):fields%last(i)), value, status)
+            if (status /= number_ok .or. count == 2) cycle
+            count = count + 1
+            numbers(count) = value
+         end do
+         if (count < 2) numbers = 0.0_wp
+         if (.not. (numbers(1) > 1.0_wp .and. numbers(1) < 1.0e8_wp .and. numbers(2) > 0.0_wp)) then
+            call fatal_error(error, bad_input, path//" line 4: '"//snippet(file%text(first:last))// &
+                             "' must give the number of values, NPTS, and the time step in s, DT")
+            return
+         end if
+         history%columns = 2
+         history%labels = [character(len=len(history%labels)) :: 'time_s', 'acceleration_g']
+         allocate (history%values(2, nint(numbers(1))))
+         rows = 0
+         do
+            call file%next_line(first, last, found)
+            if (.not. found) exit
+            call split(file%text(:last), first, ' ', fields)
+            do i = 1, fields%count
+               associate (word => file%text(fields%first(i):fields%last(i)))
+                  call read_real(word, value, status)
+                  if (status /= number_ok) then
+                     call report_number(path, file%line, i, word, status, error)
+                     return
+                  end if
+               end associate
+               rows = rows + 1
+               if (rows > nint(numbers(1))) exit
+               history%values(1, rows) = (rows - 1)*numbers(2)
+               history%values(2, rows) = value
+            end do
+            if (rows > nint(numbers(1))) exit
+         end do
+         history%rows = nint(numbers(1))
+         if (rows /= history%rows) then
+            call fatal_error(error, bad_input, path//': line 4 declares '//to_text(history%rows)// &
+                             ' values, but there are '//trim(merge('more ', 'fewer', rows > history%rows))// &
+                             '; the file is cut or mixed up')
+         end if
+      end subroutine read_at2
+
+      !> Name, count, then displacement [mm], force [kN] and in some files the axial load [kN].
+      subroutine read_peer()
+         character(len=12), parameter :: labels(3) = ['displacement', 'force       ', 'axial_load  ']
+         character(len=3), parameter :: units(3) = ['_mm', '_kN', '_kN']
+         integer :: first, last, declared, i
+         logical :: found
+
+         call file%next_line(first, last, found)
+         history%name = plain(file%text(first:last))
+         call file%next_line(first, last, found)
+         declared = -1
+         if (found) declared = count_of(file%text(first:last))
+         if (declared < 0) then
+            call fatal_error(error, bad_input, path//" line 2: '"//snippet(file%text(first:last))// &
+                             "' is not the number of pairs that a PEER file has there; check the file, "// &
+                             "or set format = 'csv'")
+            return
+         end if
+         call read_rows(' ')
+         if (allocated(error)) return
+         if (history%columns < 2 .or. history%columns > 3) then
+            call fatal_error(error, bad_input, path//': has '//to_text(history%columns)//' columns; a '// &
+                             'PEER file has displacement, force and perhaps the axial load')
+         else if (history%rows /= declared) then
+            call fatal_error(error, bad_input, path//': line 2 declares '//to_text(declared)// &
+                             ' pairs, but there are '//to_text(history%rows)//'; the file is cut or '// &
+                             "mixed up, or the number wants correcting (if it is a csv, set format = 'csv')")
+         else
+            allocate (history%labels(history%columns))
+            do i = 1, history%columns
+               history%labels(i) = trim(labels(i))//units(i)
+            end do
+         end if
+      end subroutine read_peer
+
+      !> Comments with #, perhaps a line of names, then numbers.
+      subroutine read_csv()
+         type(field_list) :: fields
+         character(len=1) :: separator
+         integer :: begin(2)
+         real(wp) :: value
+         integer :: first, last, status, i
+         logical :: found, named, worded
+
+         history%name = path(index(path, '/', back=.true.) + 1:)
+         do
+            begin = file%place()
+            call file%next_line(first, last, found)
+            if (.not. found) exit
+            if (.not. is_blank(file%text(first:last))) exit
+         end do
+         if (.not. found) then
+            call fatal_error(error, bad_input, path//': has no rows of numbers')
+            return
+         end if
+         separator = separator_of(file%text(first:last))
+         call split(file%text(:last), first, separator, fields)
+         named = .true.
+         worded = .false.
+         do i = 1, fields%count
+            call read_real(file%text(fields%first(i):fields%last(i)), value, status)
+            if (status == number_ok) named = .false.
+            if (status == number_wrong) worded = .true.
+         end do
+         named = named .and. worded
+         allocate (history%labels(fields%count))
+         history%labels = ''
+         if (named) then
+            do i = 1, fields%count
+               history%labels(i) = plain(file%text(fields%first(i):fields%last(i)))
+            end do
+         else
+            call file%go_back(begin)
+         end if
+         call read_rows(separator)
+         if (allocated(error)) return
+         if (size(history%labels) /= history%columns) then
+            call fatal_error(error, bad_input, path//': has '//to_text(size(history%labels))// &
+                             ' names of columns for '//to_text(history%columns)//' columns; make them equal')
+         end if
+      end subroutine read_csv
+
+      !> Read rows of numbers to the end of the file; every row must be as long as the first.
+      subroutine read_rows(separator)
+         character(len=1), intent(in) :: separator
+         type(field_list) :: fields
+         integer :: first, last, rows, i, status, begin(2)
+         logical :: found
+
+         begin = file%place()
+         rows = 0
+         do
+            call file%next_line(first, last, found)
+            if (.not. found) exit
+            if (.not. is_blank(file%text(first:last))) rows = rows + 1
+         end do
+         call file%go_back(begin)
+         if (rows == 0) then
+            call fatal_error(error, bad_input, path//': has no rows of numbers')
+            return
+         end if
+         history%rows = 0
+         do
+            call file%next_line(first, last, found)
+            if (.not. found) exit
+            if (is_blank(file%text(first:last))) cycle
+            call split(file%text(:last), first, separator, fields)
+            if (fields%count > most_columns) then
+               call fatal_error(error, bad_input, path//' line '//to_text(file%line)//': has more than '// &
+                                to_text(most_columns)//' columns; is it a history?')
+               return
+            end if
+            if (history%rows == 0) then
+               history%columns = fields%count
+               allocate (history%values(fields%count, rows))
+            else if (fields%count /= history%columns) then
+               call fatal_error(error, bad_input, path//' line '//to_text(file%line)//': has '// &
+                                to_text(fields%count)//trim(merge(' value ', ' values', &
+                                fields%count == 1))//', the rows before have '//to_text(history%columns))
+               return
+            end if
+            history%rows = history%rows + 1
+            do i = 1, fields%count
+               associate (word => file%text(fields%first(i):fields%last(i)))
+                  call read_real(word, history%values(i, history%rows), status)
+                  if (status /= number_ok) then
+                     call report_number(path, file%line, i, word, status, error)
+                     return
+                  end if
+               end associate
+            end do
+         end do
+      end subroutine read_rows
+
    end subroutine read_history
 
    !> A PEER file has a name, a count (perhaps followed by 0), and then at least two numbers per line.
@@ -108,79 +325,6 @@ contains
       if (is_at2) is_at2 = index(file%text(first:last), 'DT') > 0
    end function is_at2
 
-   !> Accelerations, a few in a line: rows of time [s] and acceleration [g].
-   subroutine read_at2(file, path, history, error)
-      type(text_file), intent(inout) :: file
-      character(len=*), intent(in) :: path
-      type(history_type), intent(inout) :: history
-      type(error_type), allocatable, intent(out) :: error
-      type(field_list) :: fields
-      character(len=:), allocatable :: head
-      real(wp) :: numbers(2), value
-      integer :: first, last, i, count, rows, status
-      logical :: found
-
-      history%name = path(index(path, '/', back=.true.) + 1:)
-      do i = 1, at2_head
-         call file%next_line(first, last, found)
-         if (i /= at2_head - 1) cycle
-         if (index(file%text(first:last), 'ACCEL') == 0 .or. index(file%text(first:last), ' G') == 0) then
-            call fatal_error(error, bad_input, path//" line 3: '"//snippet(file%text(first:last))// &
-                             "' of an AT2 file must say ACCELERATION ... IN UNITS OF G; convert other "// &
-                             'files to csv with the columns time_s, acceleration_g')
-            return
-         end if
-      end do
-      ! NPTS= 4000, DT= .01 SEC, or in older files: 4000 0.01 NPTS, DT
-      head = file%text(first:last)
-      do i = 1, len(head)
-         if (scan(head(i:i), '=,') == 1) head(i:i) = ' '
-      end do
-      call split(head, 1, ' ', fields)
-      count = 0
-      do i = 1, fields%count
-         call read_real(head(fields%first(i):fields%last(i)), value, status)
-         if (status /= number_ok .or. count == 2) cycle
-         count = count + 1
-         numbers(count) = value
-      end do
-      if (count < 2) numbers = 0.0_wp
-      if (.not. (numbers(1) > 1.0_wp .and. numbers(1) < 1.0e8_wp .and. numbers(2) > 0.0_wp)) then
-         call fatal_error(error, bad_input, path//" line 4: '"//snippet(file%text(first:last))// &
-                          "' must give the number of values, NPTS, and the time step in s, DT")
-         return
-      end if
-      history%columns = 2
-      history%labels = [character(len=len(history%labels)) :: 'time_s', 'acceleration_g']
-      allocate (history%values(2, nint(numbers(1))))
-      rows = 0
-      do
-         call file%next_line(first, last, found)
-         if (.not. found) exit
-         call split(file%text(:last), first, ' ', fields)
-         do i = 1, fields%count
-            associate (word => file%text(fields%first(i):fields%last(i)))
-               call read_real(word, value, status)
-               if (status /= number_ok) then
-                  call report_number(path, file%line, i, word, status, error)
-                  return
-               end if
-            end associate
-            rows = rows + 1
-            if (rows > nint(numbers(1))) exit
-            history%values(1, rows) = (rows - 1)*numbers(2)
-            history%values(2, rows) = value
-         end do
-         if (rows > nint(numbers(1))) exit
-      end do
-      history%rows = nint(numbers(1))
-      if (rows /= history%rows) then
-         call fatal_error(error, bad_input, path//': line 4 declares '//to_text(history%rows)// &
-                          ' values, but there are '//trim(merge('more ', 'fewer', rows > history%rows))// &
-                          '; the file is cut or mixed up')
-      end if
-   end subroutine read_at2
-
    !> The count on the second line of a PEER file, alone or followed by one 0; -1 if the line is not a count.
    integer function count_of(line)
       character(len=*), intent(in) :: line
@@ -197,153 +341,159 @@ contains
       end associate
    end function count_of
 
-   !> Name, count, then displacement [mm], force [kN] and in some files the axial load [kN].
-   subroutine read_peer(file, path, history, error)
-      type(text_file), intent(inout) :: file
-      character(len=*), intent(in) :: path
-      type(history_type), intent(inout) :: history
+   !> A field that is not a number, as an error.
+   subroutine report_number(path, line, column, word, status, error)
+      character(len=*), intent(in) :: path, word
+      integer, intent(in) :: line, column, status
       type(error_type), allocatable, intent(out) :: error
-      character(len=12), parameter :: labels(3) = ['displacement', 'force       ', 'axial_load  ']
-      character(len=3), parameter :: units(3) = ['_mm', '_kN', '_kN']
-      integer :: first, last, declared, i
-      logical :: found
+      character(len=:), allocatable :: remedy
 
-      call file%next_line(first, last, found)
-      history%name = plain(file%text(first:last))
-      call file%next_line(first, last, found)
-      declared = -1
-      if (found) declared = count_of(file%text(first:last))
-      if (declared < 0) then
-         call fatal_error(error, bad_input, path//" line 2: '"//snippet(file%text(first:last))// &
-                          "' is not the number of pairs that a PEER file has there; check the file, "// &
-                          "or set format = 'csv'")
-         return
-      end if
-      call read_rows(file, path, ' ', history, error)
-      if (allocated(error)) return
-      if (history%columns < 2 .or. history%columns > 3) then
-         call fatal_error(error, bad_input, path//': has '//to_text(history%columns)//' columns; a PEER '// &
-                          'file has displacement, force and perhaps the axial load')
-      else if (history%rows /= declared) then
-         call fatal_error(error, bad_input, path//': line 2 declares '//to_text(declared)// &
-                          ' pairs, but there are '//to_text(history%rows)//'; the file is cut or '// &
-                          "mixed up, or the number wants correcting (if it is a csv, set format = 'csv')")
-      else
-         allocate (history%labels(history%columns))
-         do i = 1, history%columns
-            history%labels(i) = trim(labels(i))//units(i)
-         end do
-      end if
-   end subroutine read_peer
+      remedy = 'is not a number'
+      if (status == number_not_finite) remedy = 'is not a finite number'
+      if (word == '') remedy = 'is empty'
+      call fatal_error(error, bad_input, path//' line '//to_text(line)//', value '//to_text(column)// &
+                       ": '"//snippet(word)//"' "//remedy//'; correct the file')
+   end subroutine report_number
 
-   !> Comments with #, perhaps a line of names, then numbers.
-   subroutine read_csv(file, path, history, error)
-      type(text_file), intent(inout) :: file
-      character(len=*), intent(in) :: path
-      type(history_type), intent(inout) :: history
-      type(error_type), allocatable, intent(out) :: error
-      type(field_list) :: fields
-      character(len=1) :: separator
-      integer :: begin(2)
-      real(wp) :: value
-      integer :: first, last, status, i
-      logical :: found, named, worded
-
-      history%name = path(index(path, '/', back=.true.) + 1:)
-      do
-         begin = file%place()
-         call file%next_line(first, last, found)
-         if (.not. found) exit
-         if (.not. is_blank(file%text(first:last))) exit
-      end do
-      if (.not. found) then
-         call fatal_error(error, bad_input, path//': has no rows of numbers')
-         return
-      end if
-      separator = separator_of(file%text(first:last))
-      call split(file%text(:last), first, separator, fields)
-      named = .true.
-      worded = .false.
-      do i = 1, fields%count
-         associate (word => file%text(fields%first(i):fields%last(i)))
-            call read_real(word, value, status)
-         end associate
-         if (status == number_ok) named = .false.
-         if (status == number_wrong) worded = .true.
-      end do
-      named = named .and. worded
-      allocate (history%labels(fields%count))
-      history%labels = ''
-      if (named) then
-         do i = 1, fields%count
-            history%labels(i) = plain(file%text(fields%first(i):fields%last(i)))
-         end do
-      else
-         call file%go_back(begin)
-      end if
-      call read_rows(file, path, separator, history, error)
-      if (allocated(error)) return
-      if (size(history%labels) /= history%columns) then
-         call fatal_error(error, bad_input, path//': has '//to_text(size(history%labels))// &
-                          ' names of columns for '//to_text(history%columns)//' columns; make them equal')
-      end if
-   end subroutine read_csv
-
-   !> Read rows of numbers to the end of the file; every row must be as long as the first.
-   subroutine read_rows(file, path, separator, history, error)
-      type(text_file), intent(inout) :: file
-      character(len=*), intent(in) :: path
+   !> Cut a line into at most `most_columns` + 1 fields. If the separator is a blank, any run of blanks and
+   !> tabs separates two fields.
+   subroutine split(line, first, separator, fields)
+      character(len=*), intent(in) :: line
+      !> Where the line begins in the text, which ends with it
+      integer, intent(in) :: first
       character(len=1), intent(in) :: separator
-      type(history_type), intent(inout) :: history
-      type(error_type), allocatable, intent(out) :: error
-      type(field_list) :: fields
-      integer :: first, last, rows, i, status, begin(2)
-      logical :: found
+      type(field_list), intent(out) :: fields
+      integer :: at, last, stop_at
 
-      begin = file%place()
-      rows = 0
-      do
-         call file%next_line(first, last, found)
-         if (.not. found) exit
-         if (.not. is_blank(file%text(first:last))) rows = rows + 1
+      at = first
+      last = len(line)
+      ! Spreadsheets may write separators at the end of every line.
+      do while (last >= first)
+         if (scan(line(last:last), ' '//tab) == 0) exit
+         last = last - 1
       end do
-      call file%go_back(begin)
-      if (rows == 0) then
-         call fatal_error(error, bad_input, path//': has no rows of numbers')
-         return
+      do while (at <= last .and. fields%count <= most_columns)
+         if (separator == ' ') then
+            stop_at = verify(line(at:last), ' '//tab)
+            if (stop_at == 0) exit
+            at = at + stop_at - 1
+            stop_at = scan(line(at:last), ' '//tab)
+         else
+            stop_at = end_of_field(line(at:last), separator)
+         end if
+         fields%count = fields%count + 1
+         fields%first(fields%count) = at
+         fields%last(fields%count) = merge(last, at + stop_at - 2, stop_at == 0)
+         call trim_field(line, fields%first(fields%count), fields%last(fields%count))
+         if (stop_at == 0) exit
+         at = at + stop_at
+         if (at > last .and. separator /= ' ') then
+            fields%count = min(fields%count + 1, most_columns + 1)
+            fields%first(fields%count) = last + 1
+            fields%last(fields%count) = last
+         end if
+      end do
+   end subroutine split
+
+   !> Place of the separator that ends the first field of a line, 0 if it is the last field; separators
+   !> between quotes are not counted.
+   pure integer function end_of_field(line, separator) result(place)
+      character(len=*), intent(in) :: line
+      character(len=1), intent(in) :: separator
+      integer :: quote
+
+      place = index(line, separator)
+      if (place == 0) return
+      quote = index(line(:place), '"')
+      if (quote == 0) return
+      if (verify(line(:quote - 1), ' ') > 0) return
+      quote = quote + index(line(quote + 1:), '"')
+      place = index(line(quote + 1:), separator)
+      if (place > 0) place = place + quote
+   end function end_of_field
+
+   !> Remove the blanks around a field, and quotes that enclose it.
+   pure subroutine trim_field(line, first, last)
+      character(len=*), intent(in) :: line
+      integer, intent(inout) :: first, last
+
+      call trim_blanks(line, first, last)
+      if (last <= first) return
+      if (line(first:first) /= '"' .or. line(last:last) /= '"') return
+      first = first + 1
+      last = last - 1
+      call trim_blanks(line, first, last)
+   end subroutine trim_field
+
+   pure subroutine trim_blanks(line, first, last)
+      character(len=*), intent(in) :: line
+      integer, intent(inout) :: first, last
+
+      do while (first <= last)
+         if (line(first:first) /= ' ' .and. line(first:first) /= tab) exit
+         first = first + 1
+      end do
+      do while (last >= first)
+         if (line(last:last) /= ' ' .and. line(last:last) /= tab) exit
+         last = last - 1
+      end do
+   end subroutine trim_blanks
+
+   !> The separator of a csv: semicolon, comma, tab or blanks.
+   character(len=1) function separator_of(line)
+      character(len=*), intent(in) :: line
+
+      separator_of = ' '
+      if (index(line, ';') > 0) then
+         separator_of = ';'
+      else if (index(line, ',') > 0) then
+         separator_of = ','
+      else if (index(trim(line), tab) > 0) then
+         separator_of = tab
       end if
-      history%rows = 0
-      do
-         call file%next_line(first, last, found)
-         if (.not. found) exit
-         if (is_blank(file%text(first:last))) cycle
-         call split(file%text(:last), first, separator, fields)
-         if (fields%count > most_columns) then
-            call fatal_error(error, bad_input, path//' line '//to_text(file%line)//': has more than '// &
-                             to_text(most_columns)//' columns; is it a history?')
-            return
-         end if
-         if (history%rows == 0) then
-            history%columns = fields%count
-            allocate (history%values(fields%count, rows))
-         else if (fields%count /= history%columns) then
-            call fatal_error(error, bad_input, path//' line '//to_text(file%line)//': has '// &
-                             to_text(fields%count)//trim(merge(' value ', ' values', fields%count == 1))// &
-                             ', the rows before have '// &
-                             to_text(history%columns))
-            return
-         end if
-         history%rows = history%rows + 1
-         do i = 1, fields%count
-            associate (word => file%text(fields%first(i):fields%last(i)))
-               call read_real(word, history%values(i, history%rows), status)
-               if (status /= number_ok) then
-                  call report_number(path, file%line, i, word, status, error)
-                  return
-               end if
-            end associate
-         end do
+   end function separator_of
+
+   logical function is_blank(line)
+      character(len=*), intent(in) :: line
+      integer :: at
+
+      at = verify(line, ' '//tab)
+      is_blank = at == 0
+      if (at > 0) is_blank = line(at:at) == '#'
+   end function is_blank
+
+   !> A text without blanks, tabs and quotes around it.
+   pure function plain(text)
+      character(len=*), intent(in) :: text
+      character(len=plain_length(text)) :: plain
+      integer :: first, last
+
+      first = 1
+      last = len(text)
+      call trim_field(text, first, last)
+      plain = text(first:last)
+   end function plain
+
+   pure integer function plain_length(text)
+      character(len=*), intent(in) :: text
+      integer :: first, last
+
+      first = 1
+      last = len(text)
+      call trim_field(text, first, last)
+      plain_length = last - first + 1
+   end function plain_length
+
+   !> A short piece of a text for a message, without control characters.
+   function snippet(text)
+      character(len=*), intent(in) :: text
+      character(len=min(len(text), 40)) :: snippet
+      integer :: i
+
+      snippet = text
+      do i = 1, len(snippet)
+         if (iachar(snippet(i:i)) < 32 .or. iachar(snippet(i:i)) > 126) snippet(i:i) = '?'
       end do
-   end subroutine read_rows
+   end function snippet
 
 end module rbs_io_history

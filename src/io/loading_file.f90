@@ -56,7 +56,61 @@ contains
          time = [(real(i - 1, wp), i=1, history%rows)]
          return
       end if
-      call find_times(history, path, spec, time, error)
+      call find_times()
+
+   contains
+
+      !> Take the times from their column, or from the interval between rows.
+      subroutine find_times()
+         integer :: column, i
+
+         column = 0
+         if (spec%time_column /= '') then
+            call find_column(history, path, 'time', spec%time_column, 'time_column', column, error)
+            if (allocated(error)) return
+         else
+            do i = history%columns, 1, -1
+               if (is_time(history%labels(i))) column = i
+            end do
+         end if
+         if (column > 0) then
+            if (is_given(spec%interval)) then
+               call fatal_error(error, bad_input, path//': interval is given, and the times are in '// &
+                                'column '//to_text(column)//' '//trim(history%labels(column))// &
+                                ' as well; remove interval')
+               return
+            end if
+            call check_seconds(history%labels(column))
+            if (allocated(error)) return
+            time = history%values(column, :)
+            call check_range(time, path, column, 1.0e100_wp, error)
+            if (allocated(error)) return
+            do i = 2, size(time)
+               if (time(i) > time(i - 1)) cycle
+               call fatal_error(error, bad_input, path//': row '//to_text(i)//' of the times, '// &
+                                to_text(time(i))//' s, does not come after the row before, '// &
+                                to_text(time(i - 1))//' s; times must ascend strictly')
+               return
+            end do
+         else if (is_given(spec%interval)) then
+            time = [((i - 1)*spec%interval, i=1, history%rows)]
+         else
+            call fatal_error(error, bad_input, path//': has no column with the time; give the time from '// &
+                             'row to row with interval, in s, or name the column with time_column')
+         end if
+      end subroutine find_times
+
+      !> Times are in seconds: a column whose name ends with another unit is refused.
+      subroutine check_seconds(label)
+         character(len=*), intent(in) :: label
+         character(len=8), parameter :: seconds(5) = ['        ', 's       ', 'sec     ', 'second  ', &
+                                                      'seconds ']
+
+         if (any(seconds == lower(unit_of(label)))) return
+         call fatal_error(error, bad_input, path//': the times of column '//trim(label)// &
+                          ' are not in seconds; convert them and name the column time_s')
+      end subroutine check_seconds
+
    end subroutine loading_values
 
    !> Read the displacements [m] and forces [N] of a measured test.
@@ -189,50 +243,6 @@ contains
                        '; give the right one with unit')
    end subroutine convert
 
-   !> Take the times from their column, or from the interval between rows.
-   subroutine find_times(history, path, spec, time, error)
-      type(history_type), intent(in) :: history
-      character(len=*), intent(in) :: path
-      type(loading_record), intent(in) :: spec
-      real(wp), allocatable, intent(out) :: time(:)
-      type(error_type), allocatable, intent(out) :: error
-      integer :: column, i
-
-      column = 0
-      if (spec%time_column /= '') then
-         call find_column(history, path, 'time', spec%time_column, 'time_column', column, error)
-         if (allocated(error)) return
-      else
-         do i = history%columns, 1, -1
-            if (is_time(history%labels(i))) column = i
-         end do
-      end if
-      if (column > 0) then
-         if (is_given(spec%interval)) then
-            call fatal_error(error, bad_input, path//': interval is given, and the times are in column '// &
-                             to_text(column)//' '//trim(history%labels(column))//' as well; remove interval')
-            return
-         end if
-         call check_seconds(history%labels(column), path, error)
-         if (allocated(error)) return
-         time = history%values(column, :)
-         call check_range(time, path, column, 1.0e100_wp, error)
-         if (allocated(error)) return
-         do i = 2, size(time)
-            if (time(i) > time(i - 1)) cycle
-            call fatal_error(error, bad_input, path//': row '//to_text(i)//' of the times, '// &
-                             to_text(time(i))//' s, does not come after the row before, '// &
-                             to_text(time(i - 1))//' s; times must ascend strictly')
-            return
-         end do
-      else if (is_given(spec%interval)) then
-         time = [((i - 1)*spec%interval, i=1, history%rows)]
-      else
-         call fatal_error(error, bad_input, path//': has no column with the time; give the time from '// &
-                          'row to row with interval, in s, or name the column with time_column')
-      end if
-   end subroutine find_times
-
    !> Values must be small enough that conversion, scale and squares do not overflow.
    subroutine check_range(value, path, column, largest, error)
       real(wp), intent(in) :: value(:)
@@ -250,18 +260,6 @@ contains
          return
       end do
    end subroutine check_range
-
-   !> Times are in seconds: a column whose name ends with another unit is refused.
-   subroutine check_seconds(label, path, error)
-      character(len=*), intent(in) :: label, path
-      type(error_type), allocatable, intent(out) :: error
-      character(len=8), parameter :: seconds(5) = ['        ', 's       ', 'sec     ', 'second  ', &
-                                                   'seconds ']
-
-      if (any(seconds == lower(unit_of(label)))) return
-      call fatal_error(error, bad_input, path//': the times of column '//trim(label)// &
-                       ' are not in seconds; convert them and name the column time_s')
-   end subroutine check_seconds
 
    !> The unit at the end of a column's name: `_mm`, ` (mm)`, `[mm]`, `/mm`, `-mm`, ` mm`.
    pure function unit_of(label) result(unit)

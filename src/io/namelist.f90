@@ -47,87 +47,175 @@ contains
       end if
       call scan_namelist(file, path(index(path, '/', back=.true.) + 1:), scanned, messages)
       if (messages%count > known) return
-      call put_groups(scanned, reader, messages)
+      call put_groups()
       ! Values that were not understood would also be reported as missing, which would mislead.
       understood = messages%count == known
       if (understood) call reader%finish(messages)
       understood = messages%count == known
       case = reader%case
       if (understood) call case%validate(messages)
-   end subroutine read_case
 
-   !> Read all groups; &units first, as the numbers of the others depend on it.
-   subroutine put_groups(scanned, reader, messages)
-      type(nml_scan), intent(in) :: scanned
-      type(group_reader), intent(inout) :: reader
-      type(message_list), intent(inout) :: messages
-      character(len=8), parameter :: required(3) = ['column  ', 'shear   ', 'flexure ']
-      integer :: i, pass
+   contains
 
-      do pass = 1, 2
-         do i = 1, scanned%groups
-            if (messages%count > most_messages) return
-            if ((scanned%group(i)%name == 'units') .eqv. (pass == 1)) then
-               call put_group(scanned, scanned%group(i), reader, messages)
-            end if
+      !> Read all groups; &units first, as the numbers of the others depend on it.
+      subroutine put_groups()
+         character(len=8), parameter :: required(3) = ['column  ', 'shear   ', 'flexure ']
+         integer :: i, pass
+
+         do pass = 1, 2
+            do i = 1, scanned%groups
+               if (messages%count > most_messages) return
+               if ((scanned%group(i)%name == 'units') .eqv. (pass == 1)) call put_group(scanned%group(i))
+            end do
          end do
-      end do
-      if (allocated(reader%case%frame)) return
-      do i = 1, size(required)
-         if (any(scanned%group(:scanned%groups)%name == required(i))) cycle
-         call messages%add(scanned%path//': the group &'//trim(required(i))//' is missing')
-      end do
-   end subroutine put_groups
-
-   !> Read one group; first the rule of a spring and the shape of a section, which bring keys.
-   subroutine put_group(scanned, group, reader, messages)
-      type(nml_scan), intent(in) :: scanned
-      type(nml_group), intent(in) :: group
-      type(group_reader), intent(inout) :: reader
-      type(message_list), intent(inout) :: messages
-      integer :: i, pass
-      logical :: ok
-
-      call reader%open(group%name, scanned%location(group%line), messages, ok)
-      if (.not. ok) return
-      do pass = 1, 2
-         do i = group%first, group%last
-            if (messages%count > most_messages) return
-            if (any(scanned%entry(i)%name == [character(len=5) :: 'rule', 'shape']) .eqv. (pass == 1)) then
-               call put_entry(scanned, group, i, reader, messages)
-            end if
+         if (allocated(reader%case%frame)) return
+         do i = 1, size(required)
+            if (any(scanned%group(:scanned%groups)%name == required(i))) cycle
+            call messages%add(scanned%path//': the group &'//trim(required(i))//' is missing')
          end do
-      end do
-   end subroutine put_group
+      end subroutine put_groups
 
-   !> Read one entry, `name = values` or `name(i) = value`.
-   subroutine put_entry(scanned, group, i, reader, messages)
-      type(nml_scan), intent(in) :: scanned
-      type(nml_group), intent(in) :: group
-      !> Number of the entry
-      integer, intent(in) :: i
-      type(group_reader), intent(inout) :: reader
-      type(message_list), intent(inout) :: messages
-      character(len=:), allocatable :: text
-      real(wp), allocatable :: number(:)
-      integer :: place, known
+      !> Read one group; first the rule of a spring and the shape of a section, which bring keys.
+      subroutine put_group(group)
+         type(nml_group), intent(in) :: group
+         integer :: i, pass
+         logical :: ok
 
-      known = messages%count
-      associate (entry => scanned%entry(i))
-         call reader%find(entry%name, scanned%location(entry%line), place, messages)
-         if (messages%count > known .or. place == ignored) return
-         call check_twice(scanned, group, i, messages)
-         call read_values(scanned, entry, reader%keys(place), number, text, messages)
-         if (messages%count > known) return
-         if (is_text(reader%keys(place))) then
-            call reader%put_text(place, text, messages)
-            return
+         call reader%open(group%name, scanned%location(group%line), messages, ok)
+         if (.not. ok) return
+         do pass = 1, 2
+            do i = group%first, group%last
+               if (messages%count > most_messages) return
+               if (any(scanned%entry(i)%name == [character(len=5) :: 'rule', 'shape']) .eqv. (pass == 1)) then
+                  call put_entry(group, i)
+               end if
+            end do
+         end do
+      end subroutine put_group
+
+      !> Read one entry, `name = values` or `name(i) = value`.
+      subroutine put_entry(group, i)
+         type(nml_group), intent(in) :: group
+         !> Number of the entry
+         integer, intent(in) :: i
+         character(len=:), allocatable :: text
+         real(wp), allocatable :: number(:)
+         integer :: place, known
+
+         known = messages%count
+         associate (entry => scanned%entry(i))
+            call reader%find(entry%name, scanned%location(entry%line), place, messages)
+            if (messages%count > known .or. place == ignored) return
+            call check_twice(group, i)
+            call read_values(entry, reader%keys(place), number, text)
+            if (messages%count > known) return
+            if (is_text(reader%keys(place))) then
+               call reader%put_text(place, text, messages)
+               return
+            end if
+            ! All subscripted values of a name are put together when the first of them is read.
+            if (entry%subscript > 0) call gather(group, i, reader%keys(place), number)
+            if (allocated(number)) call reader%put_numbers(place, number)
+         end associate
+      end subroutine put_entry
+
+      !> A name (with its subscript) must not appear twice in a group.
+      subroutine check_twice(group, i)
+         type(nml_group), intent(in) :: group
+         integer, intent(in) :: i
+         integer :: j
+
+         associate (entry => scanned%entry)
+            do j = group%first, i - 1
+               if (entry(j)%name /= entry(i)%name) cycle
+               if (entry(j)%subscript /= entry(i)%subscript .and. &
+                   min(entry(j)%subscript, entry(i)%subscript) > 0) cycle
+               call messages%add(scanned%location(entry(i)%line)//" '"//trim(entry(i)%name)// &
+                                 "' appears twice in &"//trim(group%name)//', first on line '// &
+                                 to_text(entry(j)%line)//'; remove one')
+               return
+            end do
+         end associate
+      end subroutine check_twice
+
+      !> Read the values of an entry, which must be of the kind of the key and not too many.
+      subroutine read_values(entry, key, number, text)
+         type(nml_entry), intent(in) :: entry
+         type(key_type), intent(in) :: key
+         !> The values; for a word or a text the first one without its quotes
+         real(wp), allocatable, intent(out) :: number(:)
+         character(len=:), allocatable, intent(out) :: text
+         character(len=:), allocatable :: place, what
+         real(wp) :: value
+         integer :: i, times, total
+
+         place = scanned%location(entry%line)//' '
+         allocate (number(min(entry%total, key%most)))
+         total = 0
+         do i = entry%first, entry%last
+            associate (word => scanned%text(scanned%word(i)%first:scanned%word(i)%last))
+               call read_value(word, key%kind, value, what)
+               if (allocated(what)) then
+                  call messages%add(place//trim(entry%name)//' = '//word(:min(len(word), 40))//' '//what)
+                  return
+               end if
+               if (i == entry%first .and. is_text(key)) call unquote(word, text)
+            end associate
+            times = min(scanned%word(i)%times, size(number) - total)
+            number(total + 1:total + times) = value
+            total = total + times
+         end do
+         total = min(entry%total, huge(1) - entry%subscript) + max(entry%subscript - 1, 0)
+         if (entry%subscript > 0 .and. key%most == 1) then
+            call messages%add(place//"'"//trim(entry%name)//"' takes no subscript")
+         else if (entry%subscript > 0 .and. total > entry%subscript) then
+            call messages%add(place//"'"//trim(entry%name)//'('//to_text(entry%subscript)//")' takes one "// &
+                              'value, not '//to_text(entry%total)//'; give a list without subscript')
+         else if (total > key%most) then
+            call messages%add(place//"'"//trim(entry%name)//"' has "//to_text(total)// &
+                              ' values; it takes '//to_text(key%most)//' at the most')
          end if
-         ! All subscripted values of a name are put together when the first of them is read.
-         if (entry%subscript > 0) call gather(scanned, group, i, reader%keys(place), number, messages)
-         if (allocated(number)) call reader%put_numbers(place, number)
-      end associate
-   end subroutine put_entry
+      end subroutine read_values
+
+      !> The values of all subscripted entries with one name, for the first of them; not allocated for the
+      !> other entries, or if values are missing.
+      subroutine gather(group, i, key, number)
+         type(nml_group), intent(in) :: group
+         !> Number of the entry
+         integer, intent(in) :: i
+         type(key_type), intent(in) :: key
+         real(wp), allocatable, intent(out) :: number(:)
+         character(len=:), allocatable :: what
+         logical, allocatable :: there(:)
+         integer :: j, last
+
+         associate (entry => scanned%entry)
+            last = 0
+            do j = group%first, group%last
+               if (entry(j)%name /= entry(i)%name) cycle
+               if (j < i) return
+               last = max(last, entry(j)%subscript)
+            end do
+            if (last > key%most) return                ! is reported with its entry
+            allocate (number(last), there(last))
+            there = .false.
+            do j = i, group%last
+               if (entry(j)%name /= entry(i)%name .or. entry(j)%subscript == 0) cycle
+               associate (word => scanned%word(entry(j)%first))
+                  call read_value(scanned%text(word%first:word%last), key%kind, number(entry(j)%subscript), &
+                                  what)
+               end associate
+               there(entry(j)%subscript) = .true.
+            end do
+         end associate
+         j = findloc(there, .false., dim=1)
+         if (j == 0) return
+         call messages%add(scanned%path//': '//trim(group%name)//': '//trim(key%name)//'('//to_text(j)// &
+                           ') is missing before '//trim(key%name)//'('//to_text(last)//'); give them all')
+         deallocate (number)
+      end subroutine gather
+
+   end subroutine read_case
 
    !> Whether the value of a key is a text in quotes.
    pure logical function is_text(key)
@@ -135,69 +223,6 @@ contains
 
       is_text = key%kind == text_kind .or. key%kind == word_kind
    end function is_text
-
-   !> A name (with its subscript) must not appear twice in a group.
-   subroutine check_twice(scanned, group, i, messages)
-      type(nml_scan), intent(in) :: scanned
-      type(nml_group), intent(in) :: group
-      integer, intent(in) :: i
-      type(message_list), intent(inout) :: messages
-      integer :: j
-
-      associate (entry => scanned%entry)
-         do j = group%first, i - 1
-            if (entry(j)%name /= entry(i)%name) cycle
-            if (entry(j)%subscript /= entry(i)%subscript .and. &
-                min(entry(j)%subscript, entry(i)%subscript) > 0) cycle
-            call messages%add(scanned%location(entry(i)%line)//" '"//trim(entry(i)%name)// &
-                              "' appears twice in &"//trim(group%name)//', first on line '// &
-                              to_text(entry(j)%line)//'; remove one')
-            return
-         end do
-      end associate
-   end subroutine check_twice
-
-   !> Read the values of an entry, which must be of the kind of the key and not too many.
-   subroutine read_values(scanned, entry, key, number, text, messages)
-      type(nml_scan), intent(in) :: scanned
-      type(nml_entry), intent(in) :: entry
-      type(key_type), intent(in) :: key
-      !> The values; for a word or a text the first one without its quotes
-      real(wp), allocatable, intent(out) :: number(:)
-      character(len=:), allocatable, intent(out) :: text
-      type(message_list), intent(inout) :: messages
-      character(len=:), allocatable :: place, what
-      real(wp) :: value
-      integer :: i, times, total
-
-      place = scanned%location(entry%line)//' '
-      allocate (number(min(entry%total, key%most)))
-      total = 0
-      do i = entry%first, entry%last
-         associate (word => scanned%text(scanned%word(i)%first:scanned%word(i)%last))
-            call read_value(word, key%kind, value, what)
-            if (allocated(what)) then
-               call messages%add(place//trim(entry%name)//' = '//word(:min(len(word), 40))//' '//what)
-               return
-            end if
-            if (i == entry%first .and. is_text(key)) call unquote(word, text)
-         end associate
-         times = min(scanned%word(i)%times, size(number) - total)
-         number(total + 1:total + times) = value
-         total = total + times
-      end do
-      total = min(entry%total, huge(1) - entry%subscript) + max(entry%subscript - 1, 0)
-      if (entry%subscript > 0 .and. key%most == 1) then
-         call messages%add(place//"'"//trim(entry%name)//"' takes no subscript")
-      else if (entry%subscript > 0 .and. total > entry%subscript) then
-         call messages%add(place//"'"//trim(entry%name)//'('//to_text(entry%subscript)// &
-                           ")' takes one value, not "//to_text(entry%total)// &
-                           '; give a list without subscript')
-      else if (total > key%most) then
-         call messages%add(place//"'"//trim(entry%name)//"' has "//to_text(total)// &
-                           ' values; it takes '//to_text(key%most)//' at the most')
-      end if
-   end subroutine read_values
 
    !> The value of a word, or the reason why it is refused.
    subroutine read_value(word, kind, value, what)
@@ -279,44 +304,5 @@ contains
       end do
       text = text(:length)
    end subroutine unquote
-
-   !> The values of all subscripted entries with one name, for the first of them; not allocated for the
-   !> other entries, or if values are missing.
-   subroutine gather(scanned, group, i, key, number, messages)
-      type(nml_scan), intent(in) :: scanned
-      type(nml_group), intent(in) :: group
-      !> Number of the entry
-      integer, intent(in) :: i
-      type(key_type), intent(in) :: key
-      real(wp), allocatable, intent(out) :: number(:)
-      type(message_list), intent(inout) :: messages
-      character(len=:), allocatable :: what
-      logical, allocatable :: there(:)
-      integer :: j, last
-
-      associate (entry => scanned%entry)
-         last = 0
-         do j = group%first, group%last
-            if (entry(j)%name /= entry(i)%name) cycle
-            if (j < i) return
-            last = max(last, entry(j)%subscript)
-         end do
-         if (last > key%most) return                ! is reported with its entry
-         allocate (number(last), there(last))
-         there = .false.
-         do j = i, group%last
-            if (entry(j)%name /= entry(i)%name .or. entry(j)%subscript == 0) cycle
-            associate (word => scanned%word(entry(j)%first))
-               call read_value(scanned%text(word%first:word%last), key%kind, number(entry(j)%subscript), what)
-            end associate
-            there(entry(j)%subscript) = .true.
-         end do
-      end associate
-      j = findloc(there, .false., dim=1)
-      if (j == 0) return
-      call messages%add(scanned%path//': '//trim(group%name)//': '//trim(key%name)//'('//to_text(j)// &
-                        ') is missing before '//trim(key%name)//'('//to_text(last)//'); give them all')
-      deallocate (number)
-   end subroutine gather
 
 end module rbs_io_namelist

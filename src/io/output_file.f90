@@ -172,10 +172,8 @@ contains
    !> earlier file with the final name is untouched.
    subroutine close_file(self, whole, worth, error)
       class(output_file), intent(inout) :: self
-      !> Whether the file is whole
-      logical, intent(in) :: whole
-      !> Whether an unfinished file is worth keeping
-      logical, intent(in) :: worth
+      !> Whether the file is whole; whether an unfinished file is worth keeping
+      logical, intent(in) :: whole, worth
       type(error_type), allocatable, intent(inout) :: error
       integer(c_int) :: status
 

@@ -26,8 +26,7 @@ module rbs_io_posix
    !> What `poll` asks and answers for a descriptor.
    type, bind(c) :: poll_type
       integer(c_int) :: descriptor
-      integer(c_short) :: asked
-      integer(c_short) :: answered
+      integer(c_short) :: asked, answered
    end type poll_type
 
    interface
@@ -266,17 +265,10 @@ contains
    !> The path of standard input, of which `-` is short.
    pure function standard_input(path) result(long)
       character(len=*), intent(in) :: path
-      character(len=long_length(path)) :: long
+      character(len=merge(len(standard_input_path), len(path), path == '-')) :: long
 
       long = path
       if (path == '-') long = standard_input_path
    end function standard_input
-
-   pure integer function long_length(path)
-      character(len=*), intent(in) :: path
-
-      long_length = len(path)
-      if (path == '-') long_length = len(standard_input_path)
-   end function long_length
 
 end module rbs_io_posix

@@ -31,39 +31,39 @@ contains
          call fatal_error(error, bad_input, 'analysis: initial: '//path//' cannot be read; check the path')
          return
       end if
-      call read_numbers(unit, stream, understood)
+      call read_numbers()
       close (unit)
       if (understood) return
       call fatal_error(error, bad_input, 'analysis: initial: '//path//' is no state of rbsdem, or it is '// &
                        'damaged; the key state of the group output writes one')
-   end subroutine read_state
 
-   subroutine read_numbers(unit, stream, understood)
-      integer, intent(in) :: unit
-      type(stream_type), intent(inout) :: stream
-      logical, intent(out) :: understood
-      character(len=80) :: line
-      integer :: status, i, count
+   contains
 
-      understood = .false.
-      read (unit, '(a)', iostat=status) line
-      if (status /= 0 .or. line /= first_line) return
-      do
+      subroutine read_numbers()
+         character(len=80) :: line
+         integer :: status, i, count
+
+         understood = .false.
          read (unit, '(a)', iostat=status) line
-         if (status /= 0) return
-         if (line(1:1) /= '#') exit
-      end do
-      read (line, *, iostat=status) count
-      if (status /= 0 .or. count < 1 .or. count > most_numbers) return
-      if (allocated(stream%value)) deallocate (stream%value)
-      allocate (stream%value(count))
-      do i = 1, count
-         read (unit, *, iostat=status) stream%value(i)
-         if (status /= 0) return
-      end do
-      understood = .true.
-      stream%count = count
-   end subroutine read_numbers
+         if (status /= 0 .or. line /= first_line) return
+         do
+            read (unit, '(a)', iostat=status) line
+            if (status /= 0) return
+            if (line(1:1) /= '#') exit
+         end do
+         read (line, *, iostat=status) count
+         if (status /= 0 .or. count < 1 .or. count > most_numbers) return
+         if (allocated(stream%value)) deallocate (stream%value)
+         allocate (stream%value(count))
+         do i = 1, count
+            read (unit, *, iostat=status) stream%value(i)
+            if (status /= 0) return
+         end do
+         understood = .true.
+         stream%count = count
+      end subroutine read_numbers
+
+   end subroutine read_state
 
    !> Write the numbers of a state, whole or not at all.
    subroutine write_state(path, stream, error)

@@ -57,7 +57,7 @@ contains
       integer(c_int) :: descriptor, status
 
       if (is_folder(path)) then
-         call refuse(path, 'is a folder; give the path of a file', error)
+         call refuse('is a folder; give the path of a file')
          return
       end if
       if (path == '-') then
@@ -66,77 +66,97 @@ contains
          descriptor = c_open(path//c_null_char, to_read + without_waiting)
       end if
       if (descriptor < 0_c_int) then
-         call report_open(path, error)
+         call report_open()
          return
       end if
-      call read_all(file, path, descriptor, most, error)
+      call read_all()
       status = c_close(descriptor)
       if (allocated(error)) return
       if (len(file%text) >= 3) then
          if (file%text(:3) == char(239)//char(187)//char(191)) file%text = file%text(4:)
       end if
-      if (index(file%text, achar(0)) > 0) then
-         call refuse(path, 'is not a text file (it has a zero byte)', error)
-      end if
-   end subroutine load_text
+      if (index(file%text, achar(0)) > 0) call refuse('is not a text file (it has a zero byte)')
 
-   !> Read from a descriptor to the end.
-   subroutine read_all(file, path, descriptor, most, error)
-      type(text_file), intent(inout) :: file
-      character(len=*), intent(in) :: path
-      integer(c_int), intent(in) :: descriptor
-      integer, intent(in) :: most
-      type(error_type), allocatable, intent(inout) :: error
-      character(len=:), allocatable :: longer
-      character(len=1) :: one
-      integer(c_size_t) :: count
-      integer(int64) :: size
-      integer :: length, room, limit, status
+   contains
 
-      ! The size of a file is known, that of a pipe is not.
-      size = 0
-      if (path /= '-') inquire (file=path, size=size)
-      limit = most
-      if (size < 1_int64) limit = min(most, most_of_pipe)
-      room = int(min(size, int(limit, int64)))
-      if (size < 1_int64) room = first_of_pipe
-      allocate (character(len=room) :: file%text, stat=status)
-      length = 0
-      count = 0_c_size_t
-      do while (status == 0 .and. max(size, int(length, int64)) <= int(limit, int64))
-         if (length < room) then
-            count = read_some(descriptor, file%text(length + 1:room), length == 0)
-         else
-            count = read_some(descriptor, one, .false.)
+      !> Read from a descriptor to the end.
+      subroutine read_all()
+         character(len=:), allocatable :: longer
+         character(len=1) :: one
+         integer(c_size_t) :: count
+         integer(int64) :: size
+         integer :: length, room, limit, status
+
+         ! The size of a file is known, that of a pipe is not.
+         size = 0
+         if (path /= '-') inquire (file=path, size=size)
+         limit = most
+         if (size < 1_int64) limit = min(most, most_of_pipe)
+         room = int(min(size, int(limit, int64)))
+         if (size < 1_int64) room = first_of_pipe
+         allocate (character(len=room) :: file%text, stat=status)
+         length = 0
+         count = 0_c_size_t
+         do while (status == 0 .and. max(size, int(length, int64)) <= int(limit, int64))
+            if (length < room) then
+               count = read_some(descriptor, file%text(length + 1:room), length == 0)
+            else
+               count = read_some(descriptor, one, .false.)
+            end if
+            if (count <= 0_c_size_t) exit
+            length = length + int(count)
+            if (length <= room .or. length > limit) cycle
+            room = int(min(2*int(room, int64), int(limit, int64)))
+            allocate (character(len=room) :: longer, stat=status)
+            if (status /= 0) exit
+            longer(:length - 1) = file%text
+            longer(length:length) = one
+            call move_alloc(longer, file%text)
+         end do
+         size = max(size, int(length, int64))
+         if (status /= 0) then
+            call refuse('there is not enough memory to read it; raise the limit of the process or '// &
+                        'make the file shorter')
+         else if (size > int(limit, int64)) then
+            call refuse('has '//to_text(real(size, wp))//' bytes, more than the '//to_text(limit)// &
+                        ' that are read; is it the right file?')
+         else if (count == nobody_writes) then
+            call refuse('is a pipe that nobody writes to; start its writer first, or give the path of a file')
+         else if (count < 0_c_size_t) then
+            call refuse('cannot be read; check the path and the permissions')
+         else if (length == 0) then
+            call refuse('is empty')
+         else if (length < room) then
+            file%text = file%text(:length)
          end if
-         if (count <= 0_c_size_t) exit
-         length = length + int(count)
-         if (length <= room .or. length > limit) cycle
-         room = int(min(2*int(room, int64), int(limit, int64)))
-         allocate (character(len=room) :: longer, stat=status)
-         if (status /= 0) exit
-         longer(:length - 1) = file%text
-         longer(length:length) = one
-         call move_alloc(longer, file%text)
-      end do
-      size = max(size, int(length, int64))
-      if (status /= 0) then
-         call refuse(path, 'there is not enough memory to read it; raise the limit of the process or '// &
-                     'make the file shorter', error)
-      else if (size > int(limit, int64)) then
-         call refuse(path, 'has '//to_text(real(size, wp))//' bytes, more than the '//to_text(limit)// &
-                     ' that are read; is it the right file?', error)
-      else if (count == nobody_writes) then
-         call refuse(path, 'is a pipe that nobody writes to; start its writer first, or give the path '// &
-                     'of a file', error)
-      else if (count < 0_c_size_t) then
-         call refuse(path, 'cannot be read; check the path and the permissions', error)
-      else if (length == 0) then
-         call refuse(path, 'is empty', error)
-      else if (length < room) then
-         file%text = file%text(:length)
-      end if
-   end subroutine read_all
+      end subroutine read_all
+
+      !> Why a path cannot be opened.
+      subroutine report_open()
+         character(len=256) :: message
+         integer :: unit, status, reason
+
+         message = 'it cannot be opened'
+         if (path == '-') then
+            message = 'standard input is closed'
+         else if (.not. is_special(path)) then
+            ! Opened once more, since Fortran gives the reason in words.
+            open (newunit=unit, file=path, action='read', status='old', iostat=status, iomsg=message)
+            if (status == 0) close (unit)
+            reason = index(message, "': ", back=.true.)  ! Behind the path
+            if (reason > 0) message = message(reason + 3:)
+         end if
+         call refuse('cannot be opened ('//trim(message)//'); check the path and the permissions')
+      end subroutine report_open
+
+      !> Report why a file is not read.
+      subroutine refuse(reason)
+         character(len=*), intent(in) :: reason
+
+         call fatal_error(error, bad_input, path//': '//reason)
+      end subroutine refuse
+
+   end subroutine load_text
 
    !> Read what is there, and wait if there is nothing yet: the number of bytes, 0 at the end, or
    !> `nobody_writes` or `cannot_read`.
@@ -171,34 +191,6 @@ contains
          end if
       end do
    end function read_some
-
-   !> Why a path cannot be opened.
-   subroutine report_open(path, error)
-      character(len=*), intent(in) :: path
-      type(error_type), allocatable, intent(inout) :: error
-      character(len=256) :: message
-      integer :: unit, status, reason
-
-      message = 'it cannot be opened'
-      if (path == '-') then
-         message = 'standard input is closed'
-      else if (.not. is_special(path)) then
-         ! Opened once more, since Fortran gives the reason in words.
-         open (newunit=unit, file=path, action='read', status='old', iostat=status, iomsg=message)
-         if (status == 0) close (unit)
-         reason = index(message, "': ", back=.true.)  ! Behind the path
-         if (reason > 0) message = message(reason + 3:)
-      end if
-      call refuse(path, 'cannot be opened ('//trim(message)//'); check the path and the permissions', error)
-   end subroutine report_open
-
-   !> Report why a file is not read.
-   subroutine refuse(path, reason, error)
-      character(len=*), intent(in) :: path, reason
-      type(error_type), allocatable, intent(inout) :: error
-
-      call fatal_error(error, bad_input, path//': '//reason)
-   end subroutine refuse
 
    !> First and last character of the next line in `text`; lines end with LF, CR or both. `found` is false
    !> after the last line.

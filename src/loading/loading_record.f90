@@ -32,18 +32,15 @@ module rbs_loading_loading_record
       character(len=16) :: source = ''
       character(len=:), allocatable :: file
       character(len=16) :: format = 'auto'
-      character(len=64) :: column = ''
-      character(len=64) :: time_column = ''
+      character(len=64) :: column = '', time_column = ''
       character(len=16) :: unit = ''
-      real(wp) :: scale = 1.0_wp
-      real(wp) :: interval = unset
+      real(wp) :: scale = 1.0_wp, interval = unset
       !> A protocol of the literature, and what its amplitudes are counted in and go up to
       character(len=16) :: protocol = ''
       real(wp) :: reference = unset, largest = unset
       real(wp), allocatable :: amplitudes(:), negative_amplitudes(:)
       integer, allocatable :: cycles(:)
-      integer :: repeats = 1
-      integer :: points = 25
+      integer :: repeats = 1, points = 25
       real(wp) :: period = unset
       real(wp), allocatable :: time(:), values(:)
    contains
@@ -166,7 +163,7 @@ contains
          call messages%add("loading: drive = 'displacement' needs the static analysis; set "// &
                            "method = 'static' in the group analysis, or drive = 'force'")
       end if
-      if (drive > 0) call check_unit(self, messages)
+      if (drive > 0) call check_unit()
       if (count([allocated(self%file), allocated(self%amplitudes), self%protocol /= '', &
                  allocated(self%values)]) > 1) then
          call messages%add('loading: more than one of file, amplitudes, '// &
@@ -178,105 +175,94 @@ contains
             call messages%add('loading: file is missing; give the path of the history')
          end if
       case ('protocol')
-         call validate_protocol(self, dynamic, messages)
+         call validate_protocol()
       case ('values')
-         call validate_values(self, dynamic, messages)
+         call validate_values()
       case default                                  ! reported already
       end select
+
+   contains
+
+      !> The unit must be one of the drive's; a protocol of displacements may also be in drift.
+      subroutine check_unit()
+         type(unit_type), allocatable :: units(:)
+         character(len=8), allocatable :: names(:)
+         integer :: place
+
+         if (self%unit == '') return
+         units = units_of(self%drive)
+         names = units%name
+         if (self%drive == 'displacement' .and. self%source == 'protocol') names = ['drift   ', names]
+         call check_name(self%unit, names, 'loading of '//trim(self%drive)//': unit', messages, place)
+      end subroutine check_unit
+
+      subroutine validate_protocol()
+
+         if (self%protocol /= '') then
+            call validate_named()
+         else if (.not. allocated(self%amplitudes)) then
+            call messages%add('loading: amplitudes are missing; give one for each step, '// &
+                              'or the name of a protocol')
+            return
+         else
+            call validate_amplitudes()
+         end if
+         if (dynamic .and. .not. is_given(self%period)) then
+            call messages%add('loading: period is missing; give it a value in s')
+         end if
+      end subroutine validate_protocol
+
+      !> What does not go with a protocol of the literature; what it lacks is found where it is made.
+      subroutine validate_named()
+
+         if (allocated(self%cycles) .or. allocated(self%negative_amplitudes)) then
+            call messages%add("loading: protocol = '"//trim(self%protocol)// &
+                              "' has its own cycles and amplitudes; "// &
+                              'leave out cycles and negative_amplitudes, or give amplitudes in its place')
+         end if
+         if (counted_in_drift(self%protocol) .and. &
+             (self%drive /= 'displacement' .or. (self%unit /= '' .and. self%unit /= 'drift'))) then
+            call messages%add("loading: protocol = '"//trim(self%protocol)//"' has amplitudes in drift; "// &
+                              "it goes with drive = 'displacement' and no other unit")
+         end if
+      end subroutine validate_named
+
+      subroutine validate_amplitudes()
+
+         if (is_given(self%reference) .or. is_given(self%largest)) then
+            call messages%add('loading: reference and largest belong to a protocol of the literature; '// &
+                              'leave them out, or give protocol in place of amplitudes')
+         end if
+         if (allocated(self%negative_amplitudes)) then
+            if (size(self%negative_amplitudes) /= size(self%amplitudes)) then
+               call messages%add('loading: negative_amplitudes has '// &
+                                 to_text(size(self%negative_amplitudes))//' values for '// &
+                                 to_text(size(self%amplitudes))//' amplitudes; give one for each')
+            end if
+         end if
+         if (allocated(self%cycles)) then
+            if (size(self%cycles) /= 1 .and. size(self%cycles) /= size(self%amplitudes)) then
+               call messages%add('loading: cycles has '//to_text(size(self%cycles))//' values for '// &
+                                 to_text(size(self%amplitudes))//' amplitudes; give one, or one for each')
+            end if
+         end if
+      end subroutine validate_amplitudes
+
+      subroutine validate_values()
+
+         if (.not. allocated(self%values)) then
+            call messages%add('loading: values are missing; give one for each point')
+         else if (allocated(self%time)) then
+            if (size(self%time) /= size(self%values)) then
+               call messages%add('loading: '//to_text(size(self%values))//' values for '// &
+                                 to_text(size(self%time))//' times; give one for each')
+            end if
+         else if (dynamic .and. .not. is_given(self%interval)) then
+            call messages%add('loading: a dynamic analysis needs the times of the values; give time, one '// &
+                              'for each value, or interval')
+         end if
+      end subroutine validate_values
+
    end subroutine validate
-
-   !> The unit must be one of the drive's; a protocol of displacements may also be in drift.
-   subroutine check_unit(self, messages)
-      type(loading_record), intent(in) :: self
-      type(message_list), intent(inout) :: messages
-      type(unit_type), allocatable :: units(:)
-      character(len=8), allocatable :: names(:)
-      integer :: place
-
-      if (self%unit == '') return
-      units = units_of(self%drive)
-      names = units%name
-      if (self%drive == 'displacement' .and. self%source == 'protocol') names = ['drift   ', names]
-      call check_name(self%unit, names, 'loading of '//trim(self%drive)//': unit', &
-                      messages, place)
-   end subroutine check_unit
-
-   subroutine validate_protocol(self, dynamic, messages)
-      type(loading_record), intent(in) :: self
-      logical, intent(in) :: dynamic
-      type(message_list), intent(inout) :: messages
-
-      if (self%protocol /= '') then
-         call validate_named(self, messages)
-      else if (.not. allocated(self%amplitudes)) then
-         call messages%add('loading: amplitudes are missing; give one for each step, '// &
-                           'or the name of a protocol')
-         return
-      else
-         call validate_amplitudes(self, messages)
-      end if
-      if (dynamic .and. .not. is_given(self%period)) then
-         call messages%add('loading: period is missing; give it a value in s')
-      end if
-   end subroutine validate_protocol
-
-   !> What does not go with a protocol of the literature; what it lacks is found where it is made.
-   subroutine validate_named(self, messages)
-      type(loading_record), intent(in) :: self
-      type(message_list), intent(inout) :: messages
-
-      if (allocated(self%cycles) .or. allocated(self%negative_amplitudes)) then
-         call messages%add("loading: protocol = '"//trim(self%protocol)// &
-                           "' has its own cycles and amplitudes; "// &
-                           'leave out cycles and negative_amplitudes, or give amplitudes in its place')
-      end if
-      if (counted_in_drift(self%protocol) .and. &
-          (self%drive /= 'displacement' .or. (self%unit /= '' .and. self%unit /= 'drift'))) then
-         call messages%add("loading: protocol = '"//trim(self%protocol)// &
-                           "' has amplitudes in drift; it goes "// &
-                           "with drive = 'displacement' and no other unit")
-      end if
-   end subroutine validate_named
-
-   subroutine validate_amplitudes(self, messages)
-      type(loading_record), intent(in) :: self
-      type(message_list), intent(inout) :: messages
-
-      if (is_given(self%reference) .or. is_given(self%largest)) then
-         call messages%add('loading: reference and largest belong to a protocol of the literature; leave '// &
-                           'them out, or give protocol in place of amplitudes')
-      end if
-      if (allocated(self%negative_amplitudes)) then
-         if (size(self%negative_amplitudes) /= size(self%amplitudes)) then
-            call messages%add('loading: negative_amplitudes has '//to_text(size(self%negative_amplitudes))// &
-                              ' values for '//to_text(size(self%amplitudes))//' amplitudes; '// &
-                              'give one for each')
-         end if
-      end if
-      if (allocated(self%cycles)) then
-         if (size(self%cycles) /= 1 .and. size(self%cycles) /= size(self%amplitudes)) then
-            call messages%add('loading: cycles has '//to_text(size(self%cycles))//' values for '// &
-                              to_text(size(self%amplitudes))//' amplitudes; give one, or one for each')
-         end if
-      end if
-   end subroutine validate_amplitudes
-
-   subroutine validate_values(self, dynamic, messages)
-      type(loading_record), intent(in) :: self
-      logical, intent(in) :: dynamic
-      type(message_list), intent(inout) :: messages
-
-      if (.not. allocated(self%values)) then
-         call messages%add('loading: values are missing; give one for each point')
-      else if (allocated(self%time)) then
-         if (size(self%time) /= size(self%values)) then
-            call messages%add('loading: '//to_text(size(self%values))//' values for '// &
-                              to_text(size(self%time))//' times; give one for each')
-         end if
-      else if (dynamic .and. .not. is_given(self%interval)) then
-         call messages%add('loading: a dynamic analysis needs the times of the values; give time, one '// &
-                           'for each value, or interval')
-      end if
-   end subroutine validate_values
 
 end module rbs_loading_loading_record

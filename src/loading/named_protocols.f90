@@ -60,9 +60,8 @@ contains
          call fatal_error(error, bad_input, who//' needs reference, '//trim(ladder%reference)// &
                           '; give it in the unit of the amplitudes')
       else if (ladder%reference == '' .and. reference > 0.0_wp) then
-         call fatal_error(error, bad_input, &
-                          who//' has amplitudes in drift and takes no reference; leave out '// &
-                          'reference')
+         call fatal_error(error, bad_input, who//' has amplitudes in drift and takes no reference; leave '// &
+                          'out reference')
       else if (ladder%endless .and. .not. largest > 0.0_wp) then
          call fatal_error(error, bad_input, who//' has no end of its own; give the largest amplitude')
       else
@@ -70,8 +69,56 @@ contains
             ladder%amplitude = ladder%amplitude*reference
             ladder%rise = ladder%rise*reference
          end if
-         call climb(who, ladder, largest, amplitudes, cycles, error)
+         call climb()
       end if
+
+   contains
+
+      !> The steps of a ladder up to the largest amplitude, trailing cycles as steps of their own.
+      subroutine climb()
+         real(wp) :: amplitude, most, top
+         integer :: step, last, count, trailing
+
+         last = size(ladder%amplitude)
+         top = ladder%amplitude(last)
+         most = largest*(1.0_wp + 1e-9_wp)
+         if (.not. largest > 0.0_wp) most = top
+         if (most < ladder%amplitude(1)) then
+            call fatal_error(error, bad_input, who//' begins at '//to_text(ladder%amplitude(1))// &
+                             ', beyond largest = '//to_text(largest)//'; give a larger one')
+            return
+         else if (most > top .and. .not. ladder%rise > 0.0_wp .and. largest > top*(1.0_wp + 1e-9_wp)) then
+            call fatal_error(error, bad_input, who//' ends at '//to_text(top)//', before largest = '// &
+                             to_text(largest)//'; leave largest out, or give amplitudes')
+            return
+         else if (most > top*(1.0_wp + 1e-9_wp) + most_steps*ladder%rise) then
+            call fatal_error(error, bad_input, who//' has more than '//to_text(most_steps)// &
+                             ' steps up to largest = '//to_text(largest)//'; give a smaller one')
+            return
+         end if
+         allocate (amplitudes(0), cycles(0))
+         step = 0
+         do
+            step = step + 1
+            if (step > last .and. .not. ladder%rise > 0.0_wp) exit
+            amplitude = top + (step - last)*ladder%rise
+            count = ladder%further_cycles
+            trailing = ladder%further_trailing
+            if (step <= last) then
+               amplitude = ladder%amplitude(step)
+               count = ladder%cycles(step)
+               trailing = 0
+               if (allocated(ladder%trailing)) trailing = ladder%trailing(step)
+            end if
+            if (amplitude > most) exit
+            amplitudes = [amplitudes, amplitude]
+            cycles = [cycles, count]
+            if (trailing == 0) cycle
+            amplitudes = [amplitudes, ladder%trailing_factor*amplitude]
+            cycles = [cycles, trailing]
+         end do
+      end subroutine climb
+
    end subroutine named_protocol
 
    !> Whether the amplitudes of a protocol are drifts, and not multiples of its reference.
@@ -135,56 +182,5 @@ contains
       case default                                  ! no amplitudes
       end select
    end subroutine make_ladder
-
-   !> The steps of a ladder up to the largest amplitude, trailing cycles as steps of their own.
-   subroutine climb(who, ladder, largest, amplitudes, cycles, error)
-      character(len=*), intent(in) :: who
-      type(ladder_type), intent(in) :: ladder
-      real(wp), intent(in) :: largest
-      real(wp), allocatable, intent(out) :: amplitudes(:)
-      integer, allocatable, intent(out) :: cycles(:)
-      type(error_type), allocatable, intent(out) :: error
-      real(wp) :: amplitude, most, top
-      integer :: step, last, count, trailing
-
-      last = size(ladder%amplitude)
-      top = ladder%amplitude(last)
-      most = largest*(1.0_wp + 1e-9_wp)
-      if (.not. largest > 0.0_wp) most = top
-      if (most < ladder%amplitude(1)) then
-         call fatal_error(error, bad_input, who//' begins at '//to_text(ladder%amplitude(1))// &
-                          ', beyond largest = '//to_text(largest)//'; give a larger one')
-         return
-      else if (most > top .and. .not. ladder%rise > 0.0_wp .and. largest > top*(1.0_wp + 1e-9_wp)) then
-         call fatal_error(error, bad_input, who//' ends at '//to_text(top)//', before largest = '// &
-                          to_text(largest)//'; leave largest out, or give amplitudes')
-         return
-      else if (most > top*(1.0_wp + 1e-9_wp) + most_steps*ladder%rise) then
-         call fatal_error(error, bad_input, who//' has more than '//to_text(most_steps)// &
-                          ' steps up to largest = '//to_text(largest)//'; give a smaller one')
-         return
-      end if
-      allocate (amplitudes(0), cycles(0))
-      step = 0
-      do
-         step = step + 1
-         if (step > last .and. .not. ladder%rise > 0.0_wp) exit
-         amplitude = top + (step - last)*ladder%rise
-         count = ladder%further_cycles
-         trailing = ladder%further_trailing
-         if (step <= last) then
-            amplitude = ladder%amplitude(step)
-            count = ladder%cycles(step)
-            trailing = 0
-            if (allocated(ladder%trailing)) trailing = ladder%trailing(step)
-         end if
-         if (amplitude > most) exit
-         amplitudes = [amplitudes, amplitude]
-         cycles = [cycles, count]
-         if (trailing == 0) cycle
-         amplitudes = [amplitudes, ladder%trailing_factor*amplitude]
-         cycles = [cycles, trailing]
-      end do
-   end subroutine climb
 
 end module rbs_loading_named_protocols

@@ -23,10 +23,8 @@ module rbs_loading_spectrum
    !> The exact step in units of its own length: z' = A z - (0, a0 + (a1 - a0) tau), 0 <= tau <= 1, where z
    !> holds displacement and velocity times the step, and accelerations are times the step squared.
    type :: exact_step
-      !> Circular frequency times the step, squared
-      real(wp) :: square
-      !> Damping term 2 zeta theta
-      real(wp) :: c
+      !> Circular frequency times the step, squared; damping term 2 zeta theta
+      real(wp) :: square, c
       !> exp(A), and the weights of a0 and of a1 - a0
       real(wp) :: e(2, 2), constant(2), linear(2)
    end type exact_step
@@ -36,10 +34,8 @@ contains
    !> Largest relative displacement, relative velocity and absolute acceleration of oscillators that are at
    !> rest at first.
    pure subroutine response_spectrum(acceleration, dt, period, damping, peak)
-      !> Acceleration of the ground (m) [m/s2], at equal steps
-      real(wp), intent(in) :: acceleration(:)
-      !> Step [s]
-      real(wp), intent(in) :: dt
+      !> Acceleration of the ground (m) [m/s2], at equal steps; step [s]
+      real(wp), intent(in) :: acceleration(:), dt
       !> Natural periods (n) [s]; 0 is a rigid oscillator
       real(wp), intent(in) :: period(:)
       !> Damping ratio

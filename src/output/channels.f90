@@ -40,10 +40,9 @@ contains
    !> The channels of a run.
    pure function new_channels(structure, in_time, with_openings, with_motion) result(list)
       class(structure_type), intent(in) :: structure
-      !> Whether the analysis is one in time
-      logical, intent(in) :: in_time
-      !> Whether openings of layered joints, and how the top moves, are to be kept
-      logical, intent(in) :: with_openings, with_motion
+      !> Whether the analysis is one in time; whether openings of layered joints, and how the top moves, are
+      !> to be kept
+      logical, intent(in) :: in_time, with_openings, with_motion
       type(channel_list) :: list
       type(channel_type), allocatable :: channel(:)
 

@@ -1,13 +1,31 @@
 !> Notes on a run: what is allowed but perhaps not intended.
+!>
+!> Notes on the structure of a case: what is allowed but perhaps not intended.
 module rbs_output_notes
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
-   use rbs_structure_structure, only: structure_type, small, finite
+   use rbs_base_text, only: to_text
+   use rbs_case_case_record, only: case_record
    use rbs_output_summary, only: summary_type
+   use rbs_structure_column_column_notes, only: column_notes
+   use rbs_structure_frame_frame_record, only: frame_record
+   use rbs_structure_structure, only: structure_type, small, finite
    implicit none
    private
 
-   public :: drift_note, rotation_note
+   public :: drift_note, rotation_note, structure_notes
+
+   !> Storeys and bays outside of these are in another unit, or none of a building [m].
+   real(wp), parameter :: lowest_storey = 1.0_wp, widest_bay = 60.0_wp
+
+   !> Young's moduli of building materials [Pa].
+   real(wp), parameter :: least_modulus = 1.0e8_wp, largest_modulus = 1.0e12_wp
+
+   !> Radii of gyration above are those of no member [m].
+   real(wp), parameter :: largest_radius = 10.0_wp
+
+   !> Masses [kg] and loads [N/m] below are those of no floor of storeys as high as that [m].
+   real(wp), parameter :: least_mass = 200.0_wp, least_load = 100.0_wp, low_storey = 2.0_wp
 
    !> Rotations larger than this are not small [rad].
    real(wp), parameter :: largest_small = 0.1_wp
@@ -61,5 +79,80 @@ contains
                      'drifts are parts of the height (2 per cent is 0.02), forces are in N; if it is '// &
                      "meant, use kinematics = 'finite'")
    end subroutine drift_note
+
+   subroutine structure_notes(case, notes)
+      !> Validated
+      type(case_record), intent(in) :: case
+      type(message_list), intent(inout) :: notes
+
+      if (allocated(case%frame)) then
+         call frame_notes(case%frame, notes)
+      else
+         call column_notes(case%column, notes)
+      end if
+   end subroutine structure_notes
+
+   !> Sizes in a wrong unit, and masses without weight.
+   subroutine frame_notes(frame, notes)
+      type(frame_record), intent(in) :: frame
+      type(message_list), intent(inout) :: notes
+      integer :: i
+      logical :: heavy, loaded
+
+      if (allocated(frame%storeys)) call check_lengths('storeys', frame%storeys)
+      if (allocated(frame%bays)) call check_lengths('bays', frame%bays)
+      do i = 1, size(frame%kind)
+         associate (modulus => frame%kind(i)%modulus)
+            if (modulus >= least_modulus .and. modulus <= largest_modulus) cycle
+            call notes%add("member_kind '"//trim(frame%kind(i)%name)//"': modulus = "//to_text(modulus)// &
+                           ' Pa is that of no building material; 30 GPa is 30e9')
+         end associate
+      end do
+      do i = 1, size(frame%kind)
+         associate (radius => sqrt(frame%kind(i)%inertia/frame%kind(i)%area))
+            if (radius <= largest_radius) cycle
+            call notes%add("member_kind '"//trim(frame%kind(i)%name)//"': inertia and area make a radius "// &
+                           'of gyration of '//to_text(radius)//' m; they are in m4 and m2, and '// &
+                           '1e12 mm4 are 1, 1e6 mm2 are 1')
+         end associate
+      end do
+      if (allocated(frame%storeys)) then
+         do i = 1, size(frame%floor)
+            call check_floor('mass', frame%floor(i)%mass, least_mass, 'kg', '40 t is 40e3')
+            call check_floor('load', frame%floor(i)%load, least_load, 'N/m', '10 kN/m is 10e3')
+         end do
+      end if
+      heavy = any(frame%floor%mass > 0.0_wp) .or. any(frame%node%mass > 0.0_wp)
+      loaded = any(abs(frame%floor%load) > 0.0_wp) .or. any(abs(frame%node%load_y) > 0.0_wp) .or. &
+               any(abs(frame%member%load) > 0.0_wp)
+      if (heavy .and. .not. loaded) then
+         call notes%add('frame: it has mass and no dead load; the weight of masses acts as far as it is '// &
+                        'given as load of beams or load_y of nodes')
+      end if
+      if (frame%kinematics == 'pdelta' .and. .not. loaded) then
+         call notes%add("frame: kinematics = 'pdelta' does nothing without dead load; give some")
+      end if
+
+   contains
+
+      subroutine check_lengths(name, length)
+         character(len=*), intent(in) :: name
+         real(wp), intent(in) :: length(:)
+
+         if (minval(length) >= lowest_storey .and. maxval(length) <= widest_bay) return
+         call notes%add('frame: '//name//' has lengths of '//to_text(minval(length))//' to '// &
+                        to_text(maxval(length))//' m; lengths are in m, and 3200 mm is 3.2')
+      end subroutine check_lengths
+
+      !> Models for a shaking table have low storeys.
+      subroutine check_floor(name, value, least, unit, meant)
+         character(len=*), intent(in) :: name, unit, meant
+         real(wp), intent(in) :: value, least
+
+         if (.not. value > 0.0_wp .or. value >= least .or. minval(frame%storeys) < low_storey) return
+         call notes%add('floor: '//name//' = '//to_text(value)//' '//unit//' is that of no floor of a '// &
+                        'building; '//meant)
+      end subroutine check_floor
+   end subroutine frame_notes
 
 end module rbs_output_notes

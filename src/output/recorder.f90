@@ -10,7 +10,13 @@ module rbs_output_recorder
    implicit none
    private
 
-   public :: recorder_type, array_recorder
+   public :: recorder_type, array_recorder, observer_type
+
+   !> An observer of a long run, which is told now and then what share has been completed.
+   type, abstract :: observer_type
+   contains
+      procedure(update_interface), deferred :: update
+   end type observer_type
 
    type, abstract :: recorder_type
       !> What a row holds; where this is not set no rows are kept
@@ -24,6 +30,14 @@ module rbs_output_recorder
    end type recorder_type
 
    abstract interface
+      subroutine update_interface(self, share)
+         import :: observer_type, wp
+         implicit none
+         class(observer_type), intent(inout) :: self
+         !> Share of the run that has been completed, 0 to 1
+         real(wp), intent(in) :: share
+      end subroutine update_interface
+
       !> Take one row, in the order of the channels.
       subroutine record_interface(self, row, error)
          import :: recorder_type, error_type, wp
@@ -38,6 +52,7 @@ module rbs_output_recorder
    type, extends(recorder_type) :: array_recorder
       !> Rows kept so far, and how many there will be as far as known
       integer :: count = 0, expected = 0
+      integer, private :: room = 0
       !> One row a column (values of a row, rows kept and room for others)
       real(wp), allocatable :: rows(:, :)
    contains
@@ -69,18 +84,11 @@ contains
       type(error_type), allocatable, intent(inout) :: error
 
       if (allocated(error)) return
-      if (is_full(self)) call make_room(self, size(row), error)
+      if (self%count == self%room) call make_room(self, size(row), error)
       if (allocated(error)) return
       self%count = self%count + 1
       self%rows(:, self%count) = row
    end subroutine record
-
-   pure logical function is_full(self)
-      type(array_recorder), intent(in) :: self
-
-      is_full = .not. allocated(self%rows)
-      if (.not. is_full) is_full = self%count == size(self%rows, 2)
-   end function is_full
 
    !> Room for all rows that are expected, then for twice as many: how many corners a path has is not known
    !> before.
@@ -98,6 +106,7 @@ contains
                           to_text(width)//' numbers; keep fewer of them with every')
          return
       end if
+      self%room = most
       if (self%count > 0) larger(:, :self%count) = self%rows
       call move_alloc(larger, self%rows)
    end subroutine make_room

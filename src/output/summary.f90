@@ -22,10 +22,9 @@ module rbs_output_summary
       !> Largest displacement and force in size, with sign [m, N], and the displacement where the force
       !> is largest [m]; of a static path the force where it has the sign of the displacement
       real(wp) :: peak_displacement = 0.0_wp, peak_force = 0.0_wp, displacement_at_peak = 0.0_wp
-      !> Largest shear force at the base in size, with sign [N]
-      real(wp) :: peak_base_shear = 0.0_wp
-      !> Largest absolute rotation of a body, in size [rad]
-      real(wp) :: peak_rotation = 0.0_wp
+      !> Largest shear force at the base in size, with sign [N]; largest absolute rotation of a body, in size
+      !> [rad]
+      real(wp) :: peak_base_shear = 0.0_wp, peak_rotation = 0.0_wp
       !> Largest absolute acceleration of the top, in size [m/s2]; negative where it is not looked at
       real(wp) :: peak_floor_acceleration = -1.0_wp
       !> Drift ratios of the storeys, the last ones and the largest in size (storeys); not allocated without

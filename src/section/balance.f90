@@ -70,10 +70,8 @@ contains
    subroutine advance(section, laws, axial_load, curvature, state, found)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
-      !> [N]
-      real(wp), intent(in) :: axial_load
-      !> [1/m]
-      real(wp), intent(in) :: curvature
+      !> [N]; [1/m]
+      real(wp), intent(in) :: axial_load, curvature
       !> Moves to `curvature`, or to the last one at which the section carries the axial load
       type(state_type), intent(inout) :: state
       logical, intent(out) :: found
@@ -89,20 +87,55 @@ contains
          next = state
          next%curvature = curvature
          if (i < steps) next%curvature = first + i*(curvature - first)/steps
-         call find_strain(section, laws, axial_load, state, next, found)
+         call find_strain(state)
          if (.not. found) return
          state = next
       end do
+
+   contains
+
+      !> Equilibrium at next%curvature, starting from `last`: Newton's method from the extrapolated strain; if
+      !> it
+      !> does not converge nearby, the search of `settle`.
+      subroutine find_strain(last)
+         type(state_type), intent(in) :: last
+         type(resultants_type) :: sums
+         real(wp) :: residual, near, guess, limit, turn
+         integer :: i
+
+         turn = next%curvature - last%curvature
+         guess = last%eps0 + last%trend*turn
+         near = 2.0e-5_wp + 0.3_wp*abs(turn)*section%shape%depth
+         limit = tolerance*force_scale(section)
+         next%eps0 = guess
+         found = .false.
+         do i = 1, most_newton
+            sums = resultants(section, laws, next%eps0, next%curvature)
+            if (.not. sums%stiffness > 0.0_wp) exit
+            residual = sums%n - axial_load
+            if (abs(residual) <= limit) then
+               found = .true.
+               next%moment = sums%m
+               exit
+            end if
+            next%eps0 = next%eps0 - residual/sums%stiffness
+            if (abs(next%eps0 - guess) > near) exit
+         end do
+         if (.not. found) then
+            next%eps0 = last%eps0
+            call settle(section, laws, axial_load, next%curvature, next, found)
+         end if
+         if (found .and. abs(turn) > 0.0_wp) next%trend = (next%eps0 - last%eps0)/turn
+      end subroutine find_strain
+
    end subroutine advance
 
    !> Moments for curvatures of one sign and increasing magnitude.
    subroutine follow(section, laws, axial_load, curvature, moment, eps0, error)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
-      !> Compression positive [N]
-      real(wp), intent(in) :: axial_load
-      !> [1/m]
-      real(wp), intent(in) :: curvature(:)
+      !> Compression positive [N]; [1/m]
+      real(wp), intent(in) :: axial_load, curvature(:)
       !> About mid-depth [N m], and strain at mid-depth, compression positive; zero after a failure
       real(wp), intent(out) :: moment(:), eps0(:)
       type(error_type), allocatable, intent(out) :: error
@@ -127,44 +160,6 @@ contains
          eps0(i) = state%eps0
       end do
    end subroutine follow
-
-   !> Equilibrium at next%curvature, starting from `last`: Newton's method from the extrapolated strain; if it
-   !> does not converge nearby, the search of `settle`.
-   subroutine find_strain(section, laws, axial_load, last, next, found)
-      type(section_type), intent(in) :: section
-      type(laws_type), intent(in) :: laws
-      real(wp), intent(in) :: axial_load
-      type(state_type), intent(in) :: last
-      type(state_type), intent(inout) :: next
-      logical, intent(out) :: found
-      type(resultants_type) :: sums
-      real(wp) :: residual, near, guess, limit, turn
-      integer :: i
-
-      turn = next%curvature - last%curvature
-      guess = last%eps0 + last%trend*turn
-      near = 2.0e-5_wp + 0.3_wp*abs(turn)*section%shape%depth
-      limit = tolerance*force_scale(section)
-      next%eps0 = guess
-      found = .false.
-      do i = 1, most_newton
-         sums = resultants(section, laws, next%eps0, next%curvature)
-         if (.not. sums%stiffness > 0.0_wp) exit
-         residual = sums%n - axial_load
-         if (abs(residual) <= limit) then
-            found = .true.
-            next%moment = sums%m
-            exit
-         end if
-         next%eps0 = next%eps0 - residual/sums%stiffness
-         if (abs(next%eps0 - guess) > near) exit
-      end do
-      if (.not. found) then
-         next%eps0 = last%eps0
-         call settle(section, laws, axial_load, next%curvature, next, found)
-      end if
-      if (found .and. abs(turn) > 0.0_wp) next%trend = (next%eps0 - last%eps0)/turn
-   end subroutine find_strain
 
    !> Move from state%eps0 in the direction of the unbalanced axial load to the first equilibrium.
    subroutine settle(section, laws, axial_load, curvature, state, found)
@@ -192,7 +187,7 @@ contains
          if (abs(next) > furthest) exit
          there = resultants(section, laws, next, curvature)
          if ((there%n - axial_load)*direction >= 0.0_wp) then
-            call close_in(section, laws, axial_load, curvature, at, here, next, there, state)
+            call close_in(at, here, next, there)
             return
          end if
          at = next
@@ -200,59 +195,59 @@ contains
          step = min(longest_search + search_share*abs(curvature)*section%shape%depth, search_growth*step)
       end do
       found = .false.
+
+   contains
+
+      !> Equilibrium between two strains with residuals of opposite sign: the Illinois form of regula falsi,
+      !> with
+      !> a bisection at every third step. Where the force jumps because a bar breaks, equilibrium lies within
+      !> the jump.
+      subroutine close_in(first, at_first, second, at_second)
+         !> The two strains and the forces at them
+         real(wp), intent(in) :: first, second
+         type(resultants_type), intent(in) :: at_first, at_second
+         type(resultants_type) :: a_sums, b_sums, sums
+         real(wp) :: a, b, at, weight_a, weight_b, limit, share
+         integer :: i, kept
+
+         a = first
+         b = second
+         kept = 0
+         a_sums = at_first
+         b_sums = at_second
+         weight_a = a_sums%n - axial_load
+         weight_b = b_sums%n - axial_load
+         limit = tolerance*force_scale(section)
+         do i = 1, most_bisections
+            at = 0.5_wp*(a + b)
+            if (mod(i, 3) /= 0) at = b - weight_b*(b - a)/(weight_b - weight_a)
+            sums = resultants(section, laws, at, curvature)
+            if (abs(sums%n - axial_load) <= limit) then
+               state%eps0 = at
+               state%moment = sums%m
+               return
+            end if
+            if ((sums%n - axial_load)*(b_sums%n - axial_load) > 0.0_wp) then
+               if (kept > 0) weight_a = 0.5_wp*weight_a
+               kept = 1
+               b = at
+               b_sums = sums
+               weight_b = sums%n - axial_load
+            else
+               if (kept < 0) weight_b = 0.5_wp*weight_b
+               kept = -1
+               a = at
+               a_sums = sums
+               weight_a = sums%n - axial_load
+            end if
+            if (abs(b - a) <= 4.0_wp*spacing(max(abs(a), abs(b)))) exit
+         end do
+         share = (axial_load - a_sums%n)/(b_sums%n - a_sums%n)
+         state%eps0 = b
+         state%moment = a_sums%m + share*(b_sums%m - a_sums%m)
+      end subroutine close_in
+
    end subroutine settle
-
-   !> Equilibrium between two strains with residuals of opposite sign: the Illinois form of regula falsi, with
-   !> a bisection at every third step. Where the force jumps because a bar breaks, equilibrium lies within
-   !> the jump.
-   subroutine close_in(section, laws, axial_load, curvature, first, at_first, second, at_second, state)
-      type(section_type), intent(in) :: section
-      type(laws_type), intent(in) :: laws
-      real(wp), intent(in) :: axial_load, curvature
-      !> The two strains and the forces at them
-      real(wp), intent(in) :: first, second
-      type(resultants_type), intent(in) :: at_first, at_second
-      type(state_type), intent(inout) :: state
-      type(resultants_type) :: a_sums, b_sums, sums
-      real(wp) :: a, b, at, weight_a, weight_b, limit, share
-      integer :: i, kept
-
-      a = first
-      b = second
-      kept = 0
-      a_sums = at_first
-      b_sums = at_second
-      weight_a = a_sums%n - axial_load
-      weight_b = b_sums%n - axial_load
-      limit = tolerance*force_scale(section)
-      do i = 1, most_bisections
-         at = 0.5_wp*(a + b)
-         if (mod(i, 3) /= 0) at = b - weight_b*(b - a)/(weight_b - weight_a)
-         sums = resultants(section, laws, at, curvature)
-         if (abs(sums%n - axial_load) <= limit) then
-            state%eps0 = at
-            state%moment = sums%m
-            return
-         end if
-         if ((sums%n - axial_load)*(b_sums%n - axial_load) > 0.0_wp) then
-            if (kept > 0) weight_a = 0.5_wp*weight_a
-            kept = 1
-            b = at
-            b_sums = sums
-            weight_b = sums%n - axial_load
-         else
-            if (kept < 0) weight_b = 0.5_wp*weight_b
-            kept = -1
-            a = at
-            a_sums = sums
-            weight_a = sums%n - axial_load
-         end if
-         if (abs(b - a) <= 4.0_wp*spacing(max(abs(a), abs(b)))) exit
-      end do
-      share = (axial_load - a_sums%n)/(b_sums%n - a_sums%n)
-      state%eps0 = b
-      state%moment = a_sums%m + share*(b_sums%m - a_sums%m)
-   end subroutine close_in
 
    !> Strain at which the last bar breaks; 0.1 without bars.
    pure real(wp) function largest_opening(section)

@@ -35,10 +35,9 @@ module rbs_section_concrete_law
 
    !> What is given of a concrete.
    type, extends(visited_record) :: concrete_record
-      !> Cylinder strength, tensile strength, modulus of elasticity [Pa]
-      real(wp) :: fc = unset, ft = unset, ec = unset
-      !> Strain at the peak; strain at which a cover has spalled
-      real(wp) :: eps0 = unset, eps_spall = 0.006_wp
+      !> Cylinder strength, tensile strength, modulus of elasticity [Pa]; strain at the peak; strain at which
+      !> a cover has spalled
+      real(wp) :: fc = unset, ft = unset, ec = unset, eps0 = unset, eps_spall = 0.006_wp
    contains
       procedure :: visit
       procedure :: validate
@@ -63,10 +62,8 @@ contains
    !> Concrete without confinement. Values that are not given follow from the strength:
    !> E_c = 3320 sqrt(f'c) + 6900, f_t = 0.45 f'c^0.4, n = 0.8 + f'c/17 (MPa), eps_0 = f'c/E_c n/(n - 1).
    elemental type(concrete_type) function plain_concrete(fc, ft, ec, eps0) result(law)
-      !> Cylinder strength [Pa]
-      real(wp), intent(in) :: fc
-      !> Tensile strength, modulus [Pa] and strain at the peak, or `unset`
-      real(wp), intent(in) :: ft, ec, eps0
+      !> Cylinder strength [Pa]; tensile strength, modulus [Pa] and strain at the peak, or `unset`
+      real(wp), intent(in) :: fc, ft, ec, eps0
       real(wp) :: strength
 
       strength = fc/mpa
@@ -88,10 +85,8 @@ contains
    !> The same concrete under lateral stress (Mander, Priestley, Park 1988).
    elemental type(concrete_type) function confined_concrete(plain, lateral, eps_cu) result(law)
       type(concrete_type), intent(in) :: plain
-      !> Effective lateral stress f_l [Pa]
-      real(wp), intent(in) :: lateral
-      !> Strain at hoop fracture
-      real(wp), intent(in) :: eps_cu
+      !> Effective lateral stress f_l [Pa]; strain at hoop fracture
+      real(wp), intent(in) :: lateral, eps_cu
       real(wp) :: share, eps_co
 
       law = plain

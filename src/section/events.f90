@@ -133,7 +133,7 @@ contains
             exit
          end if
          if (in_peak .and. here%moment < events%peak%moment) then
-            call refine_peak(section, laws, axial_load, before_peak, here%curvature, events%peak)
+            call refine_peak(before_peak, here%curvature, events%peak)
          end if
          in_peak = .false.
          if (here%moment > events%peak%moment) then
@@ -167,6 +167,47 @@ contains
          if (beyond(section, laws, rule, what, level, here) < 0.0_wp) return
          call locate(section, laws, axial_load, rule, what, level, last, here, point)
       end subroutine catch
+
+      !> Golden-section search, as the diagram may have a corner at its peak.
+      subroutine refine_peak(first, end, peak)
+         !> The state before the largest moment of the march, and the curvature after it [1/m]
+         type(state_type), intent(in) :: first
+         real(wp), intent(in) :: end
+         type(point_type), intent(inout) :: peak
+         real(wp), parameter :: golden = 0.6180339887498949_wp
+         type(state_type) :: state
+         real(wp) :: a, b, x(2), m(2)
+         logical :: found
+         integer :: i, k
+
+         a = first%curvature
+         b = end
+         x = [b - golden*(b - a), a + golden*(b - a)]
+         do k = 1, 2
+            state = first
+            call advance(section, laws, axial_load, x(k), state, found)
+            if (.not. found) return
+            m(k) = state%moment
+         end do
+         do i = 1, 20
+            if (m(1) > m(2)) then
+               b = x(2)
+               x = [b - golden*(b - a), x(1)]
+               m(2) = m(1)
+               k = 1
+            else
+               a = x(1)
+               x = [x(2), a + golden*(b - a)]
+               m(1) = m(2)
+               k = 2
+            end if
+            state = first
+            call advance(section, laws, axial_load, x(k), state, found)
+            if (.not. found) return
+            m(k) = state%moment
+            if (m(k) > peak%moment) peak = as_point(state)
+         end do
+      end subroutine refine_peak
 
    end subroutine find_events
 
@@ -259,10 +300,8 @@ contains
 
       bar_ratio = -1.0_wp
       do i = 1, size(section%bar_y)
-         associate (steel => section%steels(section%bar_steel(i)))
-            limit = steel_yield_strain(steel)
-            if (at_rupture) limit = steel%eps_u
-         end associate
+         limit = steel_yield_strain(section%steels(section%bar_steel(i)))
+         if (at_rupture) limit = section%steels(section%bar_steel(i))%eps_u
          bar_ratio = max(bar_ratio, (state%curvature*section%bar_y(i) - state%eps0)/limit)
       end do
    end function bar_ratio
@@ -314,50 +353,6 @@ contains
       end do
       point = as_point(low)
    end subroutine locate
-
-   !> Golden-section search, as the diagram may have a corner at its peak.
-   subroutine refine_peak(section, laws, axial_load, first, end, peak)
-      type(section_type), intent(in) :: section
-      type(laws_type), intent(in) :: laws
-      real(wp), intent(in) :: axial_load
-      !> The state before the largest moment of the march, and the curvature after it [1/m]
-      type(state_type), intent(in) :: first
-      real(wp), intent(in) :: end
-      type(point_type), intent(inout) :: peak
-      real(wp), parameter :: golden = 0.6180339887498949_wp
-      type(state_type) :: state
-      real(wp) :: a, b, x(2), m(2)
-      logical :: found
-      integer :: i, k
-
-      a = first%curvature
-      b = end
-      x = [b - golden*(b - a), a + golden*(b - a)]
-      do k = 1, 2
-         state = first
-         call advance(section, laws, axial_load, x(k), state, found)
-         if (.not. found) return
-         m(k) = state%moment
-      end do
-      do i = 1, 20
-         if (m(1) > m(2)) then
-            b = x(2)
-            x = [b - golden*(b - a), x(1)]
-            m(2) = m(1)
-            k = 1
-         else
-            a = x(1)
-            x = [x(2), a + golden*(b - a)]
-            m(1) = m(2)
-            k = 2
-         end if
-         state = first
-         call advance(section, laws, axial_load, x(k), state, found)
-         if (.not. found) return
-         m(k) = state%moment
-         if (m(k) > peak%moment) peak = as_point(state)
-      end do
-   end subroutine refine_peak
 
    elemental type(point_type) function as_point(state)
       type(state_type), intent(in) :: state

@@ -51,10 +51,8 @@ module rbs_section_flexural_spring
    type :: flexural_spring_type
       !> Stiffnesses [N m/rad] and rotations [rad] of the trilinear line
       real(wp) :: k_c = 0.0_wp, d_c = 0.0_wp, k_y = 0.0_wp, d_y = 0.0_wp, k_u = 0.0_wp
-      !> Degradation factors
-      real(wp) :: b0 = 0.0_wp, b1 = 0.0_wp
-      !> Stiffness after yield before it was raised to zero [N m/rad]
-      real(wp) :: k_u_found = 0.0_wp
+      !> Degradation factors; stiffness after yield before it was raised to zero [N m/rad]
+      real(wp) :: b0 = 0.0_wp, b1 = 0.0_wp, k_u_found = 0.0_wp
       !> Length of the hinge [m], rotation D_m of eq 7 [rad]
       real(wp) :: hinge_length = 0.0_wp, d_m = 0.0_wp
       !> The points of the diagram that the line goes through, and the largest moment
@@ -116,96 +114,88 @@ contains
       spring%yield = without%yield
       spring%ultimate = without%ultimate
       spring%peak = without%peak
-      call check_points(section, hinge%axial_load, spring, error)
+      call check_points(hinge%axial_load)
       if (allocated(error)) return
-      if (hinge%yield_rule == 'B') call stiffen_yield(section, stiffened, hinge, spring, error)
+      if (hinge%yield_rule == 'B') call stiffen_yield(stiffened)
       if (allocated(error)) return
-      call draw_line(section, hinge, spring, error)
+      call draw_line()
+
+   contains
+
+      !> The three points must exist, in this order.
+      subroutine check_points(axial_load)
+         real(wp), intent(in) :: axial_load
+
+         if (size(section%bar_y) == 0) then
+            call fatal_error(error, bad_input, 'flexural spring: the section has no bars, so nothing '// &
+                             'yields; give it bars or a layout')
+         else if (.not. spring%yield%found) then
+            call fatal_error(error, bad_input, 'flexural spring: no bar yields in tension before the '// &
+                             "section fails (controlled by compression); take yield = 'first', or give "// &
+                             'the spring by hand')
+         else if (.not. spring%ultimate%found) then
+            call fatal_error(error, bad_input, 'flexural spring: the diagram ends before the ultimate '// &
+                             'point '//"of this rule; take ultimate = 'drop'")
+         else if (.not. (spring%cracking%found .and. spring%cracking%curvature > 0.0_wp)) then
+            call fatal_error(error, bad_input, 'flexural spring: the axial load alone cracks the '// &
+                             'section: '//to_text(axial_load)//' N, compression positive; the trilinear '// &
+                             'line has no first branch, reduce the tension')
+         else if (spring%ultimate%curvature <= spring%yield%curvature) then
+            call fatal_error(error, bad_input, 'flexural spring: the ultimate curvature '// &
+                             to_text(spring%ultimate%curvature)//' 1/m is not beyond the yield curvature '// &
+                             to_text(spring%yield%curvature)//' 1/m (controlled by compression); take '// &
+                             "yield = 'first', or give the spring by hand")
+         else if (spring%yield%curvature <= spring%cracking%curvature) then
+            call fatal_error(error, bad_input, 'flexural spring: the section yields at '// &
+                             to_text(spring%yield%curvature)//' 1/m, before it cracks at '// &
+                             to_text(spring%cracking%curvature)//' 1/m; the trilinear line does not apply')
+         end if
+      end subroutine check_points
+
+      !> Yield rule B: the yield moment of the bare diagram on the one with tension stiffening.
+      subroutine stiffen_yield(laws)
+         type(laws_type), intent(in) :: laws
+         type(point_type) :: point
+
+         call reach_moment(section, laws, hinge%axial_load, spring%yield%moment, point, error)
+         if (allocated(error)) return
+         if (point%found) spring%yield = point
+      end subroutine stiffen_yield
+
+      !> The line through the three points, in rotations.
+      subroutine draw_line()
+         real(wp) :: m_c, m_y, m_u, l_p
+
+         l_p = hinge%hinge_length
+         if (.not. is_given(l_p)) l_p = hinge_length(section, hinge%length)
+         m_c = spring%cracking%moment
+         m_y = hinge%moment_factor*spring%yield%moment
+         m_u = hinge%moment_factor*spring%ultimate%moment
+         spring%hinge_length = l_p
+         spring%d_c = spring%cracking%curvature*l_p
+         spring%d_y = spring%yield%curvature*l_p
+         spring%k_c = m_c/spring%d_c
+         spring%k_y = (m_y - m_c)/(spring%d_y - spring%d_c)
+         spring%k_u_found = (m_u - m_y)/((spring%ultimate%curvature - spring%yield%curvature)*l_p)
+         spring%k_u = max(0.0_wp, spring%k_u_found)
+         spring%b0 = hinge%b0
+         spring%d_m = hinge%d_m
+         if (.not. is_given(hinge%d_m)) spring%d_m = spring%ultimate%curvature*l_p
+         if (m_y <= m_c) then
+            call fatal_error(error, bad_input, 'flexural spring: the yield moment '//to_text(m_y)// &
+                             ' N m is not above the cracking moment '//to_text(m_c)//' N m (lightly '// &
+                             'reinforced); the trilinear line does not apply')
+         else if (spring%k_u > spring%k_y .or. spring%k_y >= spring%k_c) then
+            call fatal_error(error, bad_input, 'flexural spring: the stiffnesses '//to_text(spring%k_c)// &
+                             ', '//to_text(spring%k_y)//', '//to_text(spring%k_u)//' N m/rad do not fall '// &
+                             'from branch to branch; the trilinear line does not apply')
+         else
+            ! eq 7: K_r = (M_c + M_y)/(D_c + D_y) (D_y/D_m)^B_0, and B_1 = K_r/K_c.
+            spring%b1 = (m_c + m_y)/(spring%d_c + spring%d_y)*(spring%d_y/spring%d_m)**spring%b0/spring%k_c
+         end if
+      end subroutine draw_line
+
    end subroutine fit_flexural_spring
-
-   !> The three points must exist, in this order.
-   subroutine check_points(section, axial_load, spring, error)
-      type(section_type), intent(in) :: section
-      real(wp), intent(in) :: axial_load
-      type(flexural_spring_type), intent(in) :: spring
-      type(error_type), allocatable, intent(out) :: error
-
-      if (size(section%bar_y) == 0) then
-         call fatal_error(error, bad_input, 'flexural spring: the section has no bars, so nothing '// &
-                          'yields; give it bars or a layout')
-      else if (.not. spring%yield%found) then
-         call fatal_error(error, bad_input, 'flexural spring: no bar yields in tension before the '// &
-                          "section fails (controlled by compression); take yield = 'first', or give the "// &
-                          'spring by hand')
-      else if (.not. spring%ultimate%found) then
-         call fatal_error(error, bad_input, 'flexural spring: the diagram ends before the ultimate point '// &
-                          "of this rule; take ultimate = 'drop'")
-      else if (.not. (spring%cracking%found .and. spring%cracking%curvature > 0.0_wp)) then
-         call fatal_error(error, bad_input, 'flexural spring: the axial load alone cracks the section: '// &
-                          to_text(axial_load)//' N, compression positive; the trilinear line has '// &
-                          'no first branch, reduce the tension')
-      else if (spring%ultimate%curvature <= spring%yield%curvature) then
-         call fatal_error(error, bad_input, 'flexural spring: the ultimate curvature '// &
-                          to_text(spring%ultimate%curvature)//' 1/m is not beyond the yield curvature '// &
-                          to_text(spring%yield%curvature)//' 1/m (controlled by compression); take '// &
-                          "yield = 'first', or give the spring by hand")
-      else if (spring%yield%curvature <= spring%cracking%curvature) then
-         call fatal_error(error, bad_input, 'flexural spring: the section yields at '// &
-                          to_text(spring%yield%curvature)//' 1/m, before it cracks at '// &
-                          to_text(spring%cracking%curvature)//' 1/m; the trilinear line does not apply')
-      end if
-   end subroutine check_points
-
-   !> Yield rule B: the yield moment of the bare diagram on the one with tension stiffening.
-   subroutine stiffen_yield(section, laws, hinge, spring, error)
-      type(section_type), intent(in) :: section
-      type(laws_type), intent(in) :: laws
-      type(hinge_record), intent(in) :: hinge
-      type(flexural_spring_type), intent(inout) :: spring
-      type(error_type), allocatable, intent(out) :: error
-      type(point_type) :: point
-
-      call reach_moment(section, laws, hinge%axial_load, spring%yield%moment, point, error)
-      if (allocated(error)) return
-      if (point%found) spring%yield = point
-   end subroutine stiffen_yield
-
-   !> The line through the three points, in rotations.
-   subroutine draw_line(section, hinge, spring, error)
-      type(section_type), intent(in) :: section
-      type(hinge_record), intent(in) :: hinge
-      type(flexural_spring_type), intent(inout) :: spring
-      type(error_type), allocatable, intent(out) :: error
-      real(wp) :: m_c, m_y, m_u, l_p
-
-      l_p = hinge%hinge_length
-      if (.not. is_given(l_p)) l_p = hinge_length(section, hinge%length)
-      m_c = spring%cracking%moment
-      m_y = hinge%moment_factor*spring%yield%moment
-      m_u = hinge%moment_factor*spring%ultimate%moment
-      spring%hinge_length = l_p
-      spring%d_c = spring%cracking%curvature*l_p
-      spring%d_y = spring%yield%curvature*l_p
-      spring%k_c = m_c/spring%d_c
-      spring%k_y = (m_y - m_c)/(spring%d_y - spring%d_c)
-      spring%k_u_found = (m_u - m_y)/((spring%ultimate%curvature - spring%yield%curvature)*l_p)
-      spring%k_u = max(0.0_wp, spring%k_u_found)
-      spring%b0 = hinge%b0
-      spring%d_m = hinge%d_m
-      if (.not. is_given(hinge%d_m)) spring%d_m = spring%ultimate%curvature*l_p
-      if (m_y <= m_c) then
-         call fatal_error(error, bad_input, 'flexural spring: the yield moment '//to_text(m_y)// &
-                          ' N m is not above the cracking moment '//to_text(m_c)//' N m (lightly '// &
-                          'reinforced); the trilinear line does not apply')
-      else if (spring%k_u > spring%k_y .or. spring%k_y >= spring%k_c) then
-         call fatal_error(error, bad_input, 'flexural spring: the stiffnesses '//to_text(spring%k_c)//', '// &
-                          to_text(spring%k_y)//', '//to_text(spring%k_u)//' N m/rad do not fall from '// &
-                          'branch to branch; the trilinear line does not apply')
-      else
-         ! eq 7: K_r = (M_c + M_y)/(D_c + D_y) (D_y/D_m)^B_0, and B_1 = K_r/K_c.
-         spring%b1 = (m_c + m_y)/(spring%d_c + spring%d_y)*(spring%d_y/spring%d_m)**spring%b0/spring%k_c
-      end if
-   end subroutine draw_line
 
    !> l_p = 0.08 L + 0.022 f_y d_b [m]; f_y (MPa) of the bar farthest on the tension side.
    pure real(wp) function hinge_length(section, length)

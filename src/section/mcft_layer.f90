@@ -34,8 +34,7 @@ module rbs_section_mcft_layer
    !> State of a layer: its transverse and shear strain under a longitudinal strain and a shear stress [Pa].
    !> Tension is positive.
    type :: layer_state
-      real(wp) :: eps_z = 0.0_wp, gamma = 0.0_wp
-      real(wp) :: eps_x = 0.0_wp, tau = 0.0_wp
+      real(wp) :: eps_z = 0.0_wp, gamma = 0.0_wp, eps_x = 0.0_wp, tau = 0.0_wp
    end type layer_state
 
    !> Stresses [Pa] of a state, tension positive, and slopes by (eps_z, gamma).
@@ -131,10 +130,8 @@ contains
    !> Transverse and shear strain of a layer under longitudinal strain and shear stress.
    pure subroutine solve_layer(layer, eps_x, tau, state, carried)
       type(layer_type), intent(in) :: layer
-      !> Longitudinal strain, tension positive
-      real(wp), intent(in) :: eps_x
-      !> Shear stress [Pa]
-      real(wp), intent(in) :: tau
+      !> Longitudinal strain, tension positive; shear stress [Pa]
+      real(wp), intent(in) :: eps_x, tau
       !> The previous state, at first that of the virgin layer; on return the present one
       type(layer_state), intent(inout) :: state
       !> Whether the layer carries tau; if not, the state is that with the largest stress found
@@ -145,143 +142,201 @@ contains
       if (tau < 0.0_wp .neqv. state%tau < 0.0_wp) trial = layer_state()
       trial%gamma = abs(trial%gamma)
       trial%tau = abs(trial%tau)
-      call iterate(layer, eps_x, abs(tau), trial, carried)
-      if (.not. carried) call go_in_parts(layer, eps_x, abs(tau), trial, carried)
-      if (.not. carried) call search(layer, eps_x, abs(tau), trial, carried)
+      call iterate(eps_x, abs(tau), trial, carried)
+      if (.not. carried) call go_in_parts(abs(tau), trial, carried)
+      if (.not. carried) call search(abs(tau), trial, carried)
       state = trial
       if (tau < 0.0_wp) then
          state%gamma = -state%gamma
          state%tau = -state%tau
       end if
-   end subroutine solve_layer
 
-   !> Newton's method; a step that does not reduce the residual is halved. A state at which the stress falls
-   !> with the strain is not accepted. Without success the state is unchanged.
-   pure subroutine iterate(layer, eps_x, tau, state, found)
-      type(layer_type), intent(in) :: layer
-      real(wp), intent(in) :: eps_x, tau
-      type(layer_state), intent(inout) :: state
-      logical, intent(out) :: found
-      type(layer_stress) :: stress, ahead
-      type(layer_state) :: here, trial
-      real(wp) :: residual, determinant, share
-      integer :: step, halving
+   contains
 
-      found = .false.
-      here = layer_state(state%eps_z, state%gamma, eps_x, tau)
-      stress = stress_of_state(layer, here)
-      residual = max(abs(stress%sigma_z), abs(stress%tau - tau))
-      do step = 1, most_steps
-         determinant = stress%z_by_z*stress%tau_by_gamma - stress%z_by_gamma*stress%tau_by_z
-         if (.not. determinant > 0.0_wp .or. .not. stress%z_by_z > 0.0_wp) return
-         found = residual <= tolerance*layer%concrete%fc .and. here%gamma >= 0.0_wp
-         if (found) then
-            state = here
-            return
-         end if
-         share = 1.0_wp
-         do halving = 0, most_halvings
-            trial = here
-            trial%eps_z = here%eps_z - share/determinant* &
-                          (stress%tau_by_gamma*stress%sigma_z - stress%z_by_gamma*(stress%tau - tau))
-            trial%gamma = here%gamma - share/determinant* &
-                          (stress%z_by_z*(stress%tau - tau) - stress%tau_by_z*stress%sigma_z)
-            ahead = stress_of_state(layer, trial)
-            if (max(abs(ahead%sigma_z), abs(ahead%tau - tau)) < residual) exit
-            share = 0.5_wp*share
-         end do
-         if (halving > most_halvings) return
-         here = trial
-         stress = ahead
+      !> Newton's method; a step that does not reduce the residual is halved. A state at which the stress
+      !> falls
+      !> with the strain is not accepted. Without success the state is unchanged.
+      pure subroutine iterate(eps_x, tau, state, found)
+         real(wp), intent(in) :: eps_x, tau
+         type(layer_state), intent(inout) :: state
+         logical, intent(out) :: found
+         type(layer_stress) :: stress, ahead
+         type(layer_state) :: here, trial
+         real(wp) :: residual, determinant, share
+         integer :: step, halving
+
+         found = .false.
+         here = layer_state(state%eps_z, state%gamma, eps_x, tau)
+         stress = stress_of_state(layer, here)
          residual = max(abs(stress%sigma_z), abs(stress%tau - tau))
-      end do
-   end subroutine iterate
+         do step = 1, most_steps
+            determinant = stress%z_by_z*stress%tau_by_gamma - stress%z_by_gamma*stress%tau_by_z
+            if (.not. determinant > 0.0_wp .or. .not. stress%z_by_z > 0.0_wp) return
+            found = residual <= tolerance*layer%concrete%fc .and. here%gamma >= 0.0_wp
+            if (found) then
+               state = here
+               return
+            end if
+            share = 1.0_wp
+            do halving = 0, most_halvings
+               trial = here
+               trial%eps_z = here%eps_z - share/determinant* &
+                             (stress%tau_by_gamma*stress%sigma_z - stress%z_by_gamma*(stress%tau - tau))
+               trial%gamma = here%gamma - share/determinant* &
+                             (stress%z_by_z*(stress%tau - tau) - stress%tau_by_z*stress%sigma_z)
+               ahead = stress_of_state(layer, trial)
+               if (max(abs(ahead%sigma_z), abs(ahead%tau - tau)) < residual) exit
+               share = 0.5_wp*share
+            end do
+            if (halving > most_halvings) return
+            here = trial
+            stress = ahead
+            residual = max(abs(stress%sigma_z), abs(stress%tau - tau))
+         end do
+      end subroutine iterate
 
-   !> Newton's method in several steps along a straight path from the previous state.
-   pure subroutine go_in_parts(layer, eps_x, tau, state, arrived)
-      type(layer_type), intent(in) :: layer
-      real(wp), intent(in) :: eps_x, tau
-      type(layer_state), intent(inout) :: state
-      logical, intent(out) :: arrived
-      type(layer_state) :: from
-      real(wp) :: gone, part
-      logical :: found
+      !> Newton's method in several steps along a straight path from the previous state.
+      pure subroutine go_in_parts(tau, state, arrived)
+         real(wp), intent(in) :: tau
+         type(layer_state), intent(inout) :: state
+         logical, intent(out) :: arrived
+         type(layer_state) :: from
+         real(wp) :: gone, part
+         logical :: found
 
-      from = state
-      gone = 0.0_wp
-      part = 0.25_wp
-      do
-         call iterate(layer, from%eps_x + (gone + part)*(eps_x - from%eps_x), &
-                      from%tau + (gone + part)*(tau - from%tau), state, found)
-         arrived = found .and. gone + part >= 1.0_wp
-         if (arrived) return
-         if (found) then
-            gone = gone + part
-            part = min(2.0_wp*part, 1.0_wp - gone)
-         else
-            part = 0.5_wp*part
-            if (part < smallest_part) return
-         end if
-      end do
-   end subroutine go_in_parts
+         from = state
+         gone = 0.0_wp
+         part = 0.25_wp
+         do
+            call iterate(from%eps_x + (gone + part)*(eps_x - from%eps_x), from%tau &
+                         + (gone + part)*(tau - from%tau), state, found)
+            arrived = found .and. gone + part >= 1.0_wp
+            if (arrived) return
+            if (found) then
+               gone = gone + part
+               part = min(2.0_wp*part, 1.0_wp - gone)
+            else
+               part = 0.5_wp*part
+               if (part < smallest_part) return
+            end if
+         end do
+      end subroutine go_in_parts
 
-   !> The first state that carries tau as eps_1 increases from the state without shear.
-   pure subroutine search(layer, eps_x, tau, state, found)
-      type(layer_type), intent(in) :: layer
-      real(wp), intent(in) :: eps_x, tau
-      type(layer_state), intent(inout) :: state
-      logical, intent(out) :: found
-      type(layer_state) :: best
-      real(wp) :: below, above, cracking, eps_2, tau_here
-      logical :: balanced
+      !> The first state that carries tau as eps_1 increases from the state without shear.
+      pure subroutine search(tau, state, found)
+         real(wp), intent(in) :: tau
+         type(layer_state), intent(inout) :: state
+         logical, intent(out) :: found
+         type(layer_state) :: best
+         real(wp) :: below, above, cracking, eps_2, tau_here
+         logical :: balanced
 
-      found = .false.
-      cracking = layer%concrete%ft/layer%concrete%ec
-      below = max(eps_x, 0.0_wp)
-      best = layer_state(eps_x=eps_x)
-      do while (below < largest_strain)
-         above = max(growth*below, below + 0.02_wp*cracking)
-         ! Both sides of cracking are tried, as the stress drops there.
-         if (below < cracking) above = min(above, cracking)
-         if (.not. below < cracking .and. .not. below > cracking) above = nearest(cracking, 1.0_wp)
-         call balance(layer, eps_x, above, eps_2, tau_here, balanced)
-         if (balanced .and. tau_here > best%tau) best = state_of(eps_x, above, eps_2, tau_here)
-         if (balanced .and. tau_here >= tau) call close_in(layer, eps_x, tau, below, above, state, found)
-         if (found) return
-         below = above
-      end do
-      state = best
-   end subroutine search
+         found = .false.
+         cracking = layer%concrete%ft/layer%concrete%ec
+         below = max(eps_x, 0.0_wp)
+         best = layer_state(eps_x=eps_x)
+         do while (below < largest_strain)
+            above = max(growth*below, below + 0.02_wp*cracking)
+            ! Both sides of cracking are tried, as the stress drops there.
+            if (below < cracking) above = min(above, cracking)
+            if (.not. below < cracking .and. .not. below > cracking) above = nearest(cracking, 1.0_wp)
+            call balance(above, eps_2, tau_here, balanced)
+            if (balanced .and. tau_here > best%tau) best = state_of(above, eps_2, tau_here)
+            if (balanced .and. tau_here >= tau) call close_in(tau, below, above, state, found)
+            if (found) return
+            below = above
+         end do
+         state = best
+      end subroutine search
 
-   !> Halve the interval of eps_1 in which tau is reached; Newton's method gives the last digits.
-   pure subroutine close_in(layer, eps_x, tau, bottom, top, state, found)
-      type(layer_type), intent(in) :: layer
-      real(wp), intent(in) :: eps_x, tau, bottom, top
-      type(layer_state), intent(inout) :: state
-      logical, intent(out) :: found
-      type(layer_state) :: near
-      real(wp) :: below, above, middle, eps_2, tau_here
-      integer :: i
-      logical :: balanced
+      !> Halve the interval of eps_1 in which tau is reached; Newton's method gives the last digits.
+      pure subroutine close_in(tau, bottom, top, state, found)
+         real(wp), intent(in) :: tau, bottom, top
+         type(layer_state), intent(inout) :: state
+         logical, intent(out) :: found
+         type(layer_state) :: near
+         real(wp) :: below, above, middle, eps_2, tau_here
+         integer :: i
+         logical :: balanced
 
-      below = bottom
-      above = top
-      do i = 1, most_bisections
-         middle = 0.5_wp*(below + above)
-         call balance(layer, eps_x, middle, eps_2, tau_here, balanced)
-         near = state_of(eps_x, middle, eps_2, tau)
-         call iterate(layer, eps_x, tau, near, found)
-         ! Newton's method may have left the interval: only a state inside it is the first.
-         if (found) found = in_between(near, bottom, top)
-         if (found) state = near
-         if (found .or. .not. (middle > below .and. middle < above)) return
-         if (balanced .and. tau_here < tau) then
-            below = middle
-         else
-            above = middle
-         end if
-      end do
-   end subroutine close_in
+         below = bottom
+         above = top
+         do i = 1, most_bisections
+            middle = 0.5_wp*(below + above)
+            call balance(middle, eps_2, tau_here, balanced)
+            near = state_of(middle, eps_2, tau)
+            call iterate(eps_x, tau, near, found)
+            ! Newton's method may have left the interval: only a state inside it is the first.
+            if (found) found = in_between(near, bottom, top)
+            if (found) state = near
+            if (found .or. .not. (middle > below .and. middle < above)) return
+            if (balanced .and. tau_here < tau) then
+               below = middle
+            else
+               above = middle
+            end if
+         end do
+      end subroutine close_in
+
+      !> Given eps_1: eps_2 <= eps_x of the state with sigma_z = 0, and its shear stress.
+      !>
+      !> (1 - c)/2 = (eps_1 - eps_x)/(eps_1 - eps_2) and eps_z = eps_1 + eps_2 - eps_x: sigma_z, not negative
+      !> at
+      !> eps_2 = eps_x, falls to zero as eps_2 decreases.
+      pure subroutine balance(eps_1, eps_2, tau, balanced)
+         real(wp), intent(in) :: eps_1
+         real(wp), intent(out) :: eps_2, tau
+         logical, intent(out) :: balanced
+         real(wp) :: low, high, step, sigma_z
+         integer :: i
+
+         high = min(eps_x, eps_1)
+         step = 0.02_wp*layer%concrete%eps0
+         low = high - step
+         do i = 1, 40
+            call stress_between(eps_1, low, sigma_z, tau)
+            if (sigma_z <= 0.0_wp) exit
+            high = low
+            step = 2.0_wp*step
+            low = low - step
+         end do
+         do i = 1, most_bisections
+            eps_2 = 0.5_wp*(low + high)
+            call stress_between(eps_1, eps_2, sigma_z, tau)
+            if (abs(sigma_z) <= 0.1_wp*tolerance*layer%concrete%fc) exit
+            if (.not. (eps_2 > low .and. eps_2 < high)) exit
+            if (sigma_z > 0.0_wp) then
+               high = eps_2
+            else
+               low = eps_2
+            end if
+         end do
+         balanced = abs(sigma_z) <= tolerance*layer%concrete%fc
+      end subroutine balance
+
+      !> Transverse and shear stress of two principal strains around eps_x.
+      pure subroutine stress_between(eps_1, eps_2, sigma_z, tau)
+         real(wp), intent(in) :: eps_1, eps_2
+         real(wp), intent(out) :: sigma_z, tau
+         real(wp) :: f_1, f_2, f11, f22, f21
+
+         call principal_stresses(layer%concrete, eps_1, eps_2, f_1, f_2, f11, f22, f21)
+         sigma_z = (f_1*(eps_1 - eps_x) + f_2*(eps_x - eps_2))/(eps_1 - eps_2) + &
+                   layer%rho_z*steel_stress(layer%stirrup, eps_1 + eps_2 - eps_x)
+         tau = (f_1 - f_2)*sqrt(max(0.0_wp, (eps_1 - eps_x)*(eps_x - eps_2)))/(eps_1 - eps_2)
+      end subroutine stress_between
+
+      !> The state of two principal strains around eps_x.
+      pure type(layer_state) function state_of(eps_1, eps_2, tau) result(state)
+         real(wp), intent(in) :: eps_1, eps_2, tau
+
+         state%eps_x = eps_x
+         state%tau = tau
+         state%eps_z = eps_1 + eps_2 - eps_x
+         state%gamma = 2.0_wp*sqrt(max(0.0_wp, (eps_1 - eps_x)*(eps_x - eps_2)))
+      end function state_of
+
+   end subroutine solve_layer
 
    !> Whether eps_1 of a state is in an interval, apart from round-off.
    elemental logical function in_between(state, bottom, top)
@@ -292,64 +347,5 @@ contains
       eps_1 = 0.5_wp*(state%eps_x + state%eps_z + hypot(state%eps_x - state%eps_z, state%gamma))
       in_between = eps_1 >= bottom*(1.0_wp - 1.0e-9_wp) .and. eps_1 <= top*(1.0_wp + 1.0e-9_wp)
    end function in_between
-
-   !> Given eps_1: eps_2 <= eps_x of the state with sigma_z = 0, and its shear stress.
-   !>
-   !> (1 - c)/2 = (eps_1 - eps_x)/(eps_1 - eps_2) and eps_z = eps_1 + eps_2 - eps_x: sigma_z, not negative at
-   !> eps_2 = eps_x, falls to zero as eps_2 decreases.
-   pure subroutine balance(layer, eps_x, eps_1, eps_2, tau, balanced)
-      type(layer_type), intent(in) :: layer
-      real(wp), intent(in) :: eps_x, eps_1
-      real(wp), intent(out) :: eps_2, tau
-      logical, intent(out) :: balanced
-      real(wp) :: low, high, step, sigma_z
-      integer :: i
-
-      high = min(eps_x, eps_1)
-      step = 0.02_wp*layer%concrete%eps0
-      low = high - step
-      do i = 1, 40
-         call stress_between(layer, eps_x, eps_1, low, sigma_z, tau)
-         if (sigma_z <= 0.0_wp) exit
-         high = low
-         step = 2.0_wp*step
-         low = low - step
-      end do
-      do i = 1, most_bisections
-         eps_2 = 0.5_wp*(low + high)
-         call stress_between(layer, eps_x, eps_1, eps_2, sigma_z, tau)
-         if (abs(sigma_z) <= 0.1_wp*tolerance*layer%concrete%fc) exit
-         if (.not. (eps_2 > low .and. eps_2 < high)) exit
-         if (sigma_z > 0.0_wp) then
-            high = eps_2
-         else
-            low = eps_2
-         end if
-      end do
-      balanced = abs(sigma_z) <= tolerance*layer%concrete%fc
-   end subroutine balance
-
-   !> Transverse and shear stress of two principal strains around eps_x.
-   pure subroutine stress_between(layer, eps_x, eps_1, eps_2, sigma_z, tau)
-      type(layer_type), intent(in) :: layer
-      real(wp), intent(in) :: eps_x, eps_1, eps_2
-      real(wp), intent(out) :: sigma_z, tau
-      real(wp) :: f_1, f_2, f11, f22, f21
-
-      call principal_stresses(layer%concrete, eps_1, eps_2, f_1, f_2, f11, f22, f21)
-      sigma_z = (f_1*(eps_1 - eps_x) + f_2*(eps_x - eps_2))/(eps_1 - eps_2) + &
-                layer%rho_z*steel_stress(layer%stirrup, eps_1 + eps_2 - eps_x)
-      tau = (f_1 - f_2)*sqrt(max(0.0_wp, (eps_1 - eps_x)*(eps_x - eps_2)))/(eps_1 - eps_2)
-   end subroutine stress_between
-
-   !> The state of two principal strains around eps_x.
-   pure type(layer_state) function state_of(eps_x, eps_1, eps_2, tau) result(state)
-      real(wp), intent(in) :: eps_x, eps_1, eps_2, tau
-
-      state%eps_x = eps_x
-      state%tau = tau
-      state%eps_z = eps_1 + eps_2 - eps_x
-      state%gamma = 2.0_wp*sqrt(max(0.0_wp, (eps_1 - eps_x)*(eps_x - eps_2)))
-   end function state_of
 
 end module rbs_section_mcft_layer

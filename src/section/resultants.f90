@@ -19,10 +19,8 @@ module rbs_section_resultants
    !> Resultants of the stresses: compression positive; moment about mid-depth, positive with a curvature
    !> that puts y > 0 in tension.
    type :: resultants_type
-      !> Axial force [N], moment [N m]
-      real(wp) :: n = 0.0_wp, m = 0.0_wp
-      !> Change of the axial force with the strain at mid-depth [N]
-      real(wp) :: stiffness = 0.0_wp
+      !> Axial force [N], moment [N m]; change of the axial force with the strain at mid-depth [N]
+      real(wp) :: n = 0.0_wp, m = 0.0_wp, stiffness = 0.0_wp
    end type resultants_type
 
 contains
@@ -50,10 +48,8 @@ contains
    pure type(resultants_type) function resultants(section, laws, eps0, curvature) result(sums)
       type(section_type), intent(in) :: section
       type(laws_type), intent(in) :: laws
-      !> Strain at mid-depth, compression positive
-      real(wp), intent(in) :: eps0
-      !> [1/m]
-      real(wp), intent(in) :: curvature
+      !> Strain at mid-depth, compression positive; [1/m]
+      real(wp), intent(in) :: eps0, curvature
       real(wp) :: stress, tangent, stress_core, tangent_core, strain, force, stiffness
       integer :: i, cut
 
@@ -75,8 +71,58 @@ contains
             sums%stiffness = sums%stiffness + stiffness
          end do
       end associate
-      if (cut > 0) call add_cut_strip(section, laws, eps0, curvature, cut, sums)
-      call add_bars(section, laws, eps0, curvature, sums)
+      if (cut > 0) call add_cut_strip(cut, sums)
+      call add_bars(sums)
+
+   contains
+
+      !> The parts of a strip on both sides of the tip of the crack; core and cover have the same tension law.
+      pure subroutine add_cut_strip(i, sums)
+         integer, intent(in) :: i
+         type(resultants_type), intent(inout) :: sums
+         real(wp) :: tip, ends(3), width, y, area, strain, stress, tangent, after
+         integer :: part
+
+         tip = crack_tip(laws, eps0, curvature)
+         associate (strips => section%strips)
+            ends = [strips%y(i) - 0.5_wp*strips%dy, tip, strips%y(i) + 0.5_wp*strips%dy]
+            width = strips%area(i)/strips%dy
+         end associate
+         do part = 1, 2
+            y = 0.5_wp*(ends(part) + ends(part + 1))
+            area = width*(ends(part + 1) - ends(part))
+            strain = eps0 - curvature*y
+            call concrete_both(laws%shell, strain, stress, tangent)
+            sums%n = sums%n + stress*area
+            sums%m = sums%m - stress*area*y
+            sums%stiffness = sums%stiffness + tangent*area
+         end do
+         ! The tip moves by d(eps_0)/phi, and the concrete that it passes returns to f_t.
+         strain = laws%shell%ft/laws%shell%ec*(1.0_wp + 1.0e-9_wp)
+         call concrete_both(laws%shell, -strain, after, tangent)
+         sums%stiffness = sums%stiffness - (laws%shell%ft + after)*width/abs(curvature)
+      end subroutine add_cut_strip
+
+      pure subroutine add_bars(sums)
+         type(resultants_type), intent(inout) :: sums
+         real(wp) :: strain, stress, tangent, displaced, slope, force
+         integer :: i
+
+         do i = 1, size(section%bar_y)
+            strain = eps0 - curvature*section%bar_y(i)
+            call steel_both(section%steels(section%bar_steel(i)), strain, stress, tangent)
+            if (section%bar_in_core(i)) then
+               call concrete_both(laws%core, strain, displaced, slope)
+            else
+               call concrete_both(laws%shell, strain, displaced, slope)
+            end if
+            force = (stress - displaced)*section%bar_area(i)
+            sums%n = sums%n + force
+            sums%m = sums%m - force*section%bar_y(i)
+            sums%stiffness = sums%stiffness + (tangent - slope)*section%bar_area(i)
+         end do
+      end subroutine add_bars
+
    end function resultants
 
    !> Index of the strip that contains the tip of the crack; 0 if no strip does, or if the law has no tension.
@@ -102,59 +148,6 @@ contains
 
       crack_tip = (eps0 + laws%shell%ft/laws%shell%ec)/curvature
    end function crack_tip
-
-   !> The parts of a strip on both sides of the tip of the crack; core and cover have the same tension law.
-   pure subroutine add_cut_strip(section, laws, eps0, curvature, i, sums)
-      type(section_type), intent(in) :: section
-      type(laws_type), intent(in) :: laws
-      real(wp), intent(in) :: eps0, curvature
-      integer, intent(in) :: i
-      type(resultants_type), intent(inout) :: sums
-      real(wp) :: tip, ends(3), width, y, area, strain, stress, tangent, after
-      integer :: part
-
-      tip = crack_tip(laws, eps0, curvature)
-      associate (strips => section%strips)
-         ends = [strips%y(i) - 0.5_wp*strips%dy, tip, strips%y(i) + 0.5_wp*strips%dy]
-         width = strips%area(i)/strips%dy
-      end associate
-      do part = 1, 2
-         y = 0.5_wp*(ends(part) + ends(part + 1))
-         area = width*(ends(part + 1) - ends(part))
-         strain = eps0 - curvature*y
-         call concrete_both(laws%shell, strain, stress, tangent)
-         sums%n = sums%n + stress*area
-         sums%m = sums%m - stress*area*y
-         sums%stiffness = sums%stiffness + tangent*area
-      end do
-      ! The tip moves by d(eps_0)/phi, and the concrete that it passes returns to f_t.
-      strain = laws%shell%ft/laws%shell%ec*(1.0_wp + 1.0e-9_wp)
-      call concrete_both(laws%shell, -strain, after, tangent)
-      sums%stiffness = sums%stiffness - (laws%shell%ft + after)*width/abs(curvature)
-   end subroutine add_cut_strip
-
-   pure subroutine add_bars(section, laws, eps0, curvature, sums)
-      type(section_type), intent(in) :: section
-      type(laws_type), intent(in) :: laws
-      real(wp), intent(in) :: eps0, curvature
-      type(resultants_type), intent(inout) :: sums
-      real(wp) :: strain, stress, tangent, displaced, slope, force
-      integer :: i
-
-      do i = 1, size(section%bar_y)
-         strain = eps0 - curvature*section%bar_y(i)
-         call steel_both(section%steels(section%bar_steel(i)), strain, stress, tangent)
-         if (section%bar_in_core(i)) then
-            call concrete_both(laws%core, strain, displaced, slope)
-         else
-            call concrete_both(laws%shell, strain, displaced, slope)
-         end if
-         force = (stress - displaced)*section%bar_area(i)
-         sums%n = sums%n + force
-         sums%m = sums%m - force*section%bar_y(i)
-         sums%stiffness = sums%stiffness + (tangent - slope)*section%bar_area(i)
-      end do
-   end subroutine add_bars
 
    !> Scale of the forces, to which residuals are compared [N].
    pure real(wp) function force_scale(section)

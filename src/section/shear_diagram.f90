@@ -16,8 +16,7 @@ module rbs_section_shear_diagram
    use rbs_section_mcft_layer, only: layer_type, layer_state, solve_layer
    use rbs_section_resultants, only: section_laws
    use rbs_section_cross_section, only: section_type, slice
-   use rbs_section_shear_coupling, only: couple
-   use rbs_section_shear_flow, only: flow_type, begin_flow, shear_stresses, transverse_ratio
+   use rbs_section_shear_flow, only: flow_type, begin_flow, shear_stresses, transverse_ratio, couple
    implicit none
    private
 
@@ -121,24 +120,24 @@ contains
       integer :: i, count
       logical :: sheared, lost
 
-      call prepare(section, asked, model, here, error)
+      call prepare(here)
       if (allocated(error)) return
       knee_stiffness = asked%knee*0.5_wp*section%plain%ec*section%shape%area()
       allocate (points(size(curvature)))
       count = 0
       do i = 1, size(curvature)
          last = here
-         call bend(model, curvature(i), here, sheared, lost)
+         call bend(curvature(i), here, sheared, lost)
          if (sheared .or. lost) then
             diagram%sheared = sheared
             diagram%lost = lost
             here = last
-            call halve(model, curvature(i), 1.0e-4_wp, here)
+            call halve(curvature(i), 1.0e-4_wp, here)
          end if
          if (.not. diagram%knee_found .and. beyond_knee(here%point, knee_stiffness)) then
             diagram%knee_found = .true.
             diagram%knee = here%point
-            call halve(model, here%point%curvature, 1.0e-9_wp, last, knee_stiffness, diagram%knee)
+            call halve(here%point%curvature, 1.0e-9_wp, last, knee_stiffness, diagram%knee)
          end if
          if (sheared .or. lost) exit
          count = i
@@ -151,73 +150,105 @@ contains
       diagram%tau = here%layers%tau
       diagram%gamma = here%layers%gamma
       diagram%eps_z = here%layers%eps_z
-   end subroutine follow_shear
 
-   !> Cut the section into layers and apply its axial load.
-   subroutine prepare(section, asked, model, state, error)
-      type(section_type), intent(in) :: section
-      type(shear_record), intent(in) :: asked
-      type(model_type), intent(inout) :: model
-      type(shear_state), intent(out) :: state
-      type(error_type), allocatable, intent(out) :: error
-      integer :: i
+   contains
 
-      model%axial_load = asked%axial_load
-      model%coupled = asked%coupled
-      model%flow%section = section
-      call slice(model%flow%section, asked%layers)
-      model%flow%laws = section_laws(section, tension_place(asked%tension), asked%confined)
-      model%flow%span = asked%length
-      allocate (model%layers(asked%layers), state%layers(asked%layers))
-      associate (cut => model%flow%section, laws => model%flow%laws)
-         do i = 1, asked%layers
-            model%layers(i)%concrete = laws%shell
-            if (2.0_wp*cut%strips%core_area(i) > cut%strips%area(i)) model%layers(i)%concrete = laws%core
-            model%layers(i)%stirrup = section%transverse%steel
-            model%layers(i)%rho_z = transverse_ratio(cut, cut%strips%y(i), cut%strips%area(i)/cut%strips%dy)
-         end do
-         call begin(cut, laws, asked%axial_load, state%flexure, error)
-      end associate
-      if (allocated(error)) return
-      call begin_flow(model%flow, state%flexure)
-   end subroutine prepare
+      !> Cut the section into layers and apply its axial load.
+      subroutine prepare(state)
+         type(shear_state), intent(out) :: state
+         integer :: i
 
-   !> Bend the section to a larger curvature and solve its layers.
-   subroutine bend(model, curvature, state, sheared, lost)
-      type(model_type), intent(in) :: model
-      real(wp), intent(in) :: curvature
-      type(shear_state), intent(inout) :: state
-      !> Whether a layer no longer carries the shear; whether the section no longer carries its axial load
-      logical, intent(out) :: sheared, lost
-      real(wp) :: tau(size(state%layers)), eps_x
-      logical :: carried
-      integer :: i
+         model%axial_load = asked%axial_load
+         model%coupled = asked%coupled
+         model%flow%section = section
+         call slice(model%flow%section, asked%layers)
+         model%flow%laws = section_laws(section, tension_place(asked%tension), asked%confined)
+         model%flow%span = asked%length
+         allocate (model%layers(asked%layers), state%layers(asked%layers))
+         associate (cut => model%flow%section, laws => model%flow%laws)
+            do i = 1, asked%layers
+               model%layers(i)%concrete = laws%shell
+               if (2.0_wp*cut%strips%core_area(i) > cut%strips%area(i)) model%layers(i)%concrete = laws%core
+               model%layers(i)%stirrup = section%transverse%steel
+               model%layers(i)%rho_z = transverse_ratio(cut, cut%strips%y(i), &
+                            cut%strips%area(i)/cut%strips%dy)
+            end do
+            call begin(cut, laws, asked%axial_load, state%flexure, error)
+         end associate
+         if (allocated(error)) return
+         call begin_flow(model%flow, state%flexure)
+      end subroutine prepare
 
-      sheared = .false.
-      lost = .false.
-      if (model%coupled) then
-         call couple(model%flow, model%layers, model%axial_load, curvature, state%flexure, state%layers, &
-                     carried)
-         sheared = .not. carried
-         if (sheared) return
-      else
-         call advance(model%flow%section, model%flow%laws, model%axial_load, curvature, state%flexure, &
-                      carried)
-         lost = .not. carried
-         if (lost) return
-         call shear_stresses(model%flow, state%flexure, tau)
-         do i = 1, size(tau)
-            eps_x = curvature*model%flow%section%strips%y(i) - state%flexure%eps0
-            call solve_layer(model%layers(i), eps_x, tau(i), state%layers(i), carried)
+      !> Bend the section to a larger curvature and solve its layers.
+      subroutine bend(curvature, state, sheared, lost)
+         real(wp), intent(in) :: curvature
+         type(shear_state), intent(inout) :: state
+         !> Whether a layer no longer carries the shear; whether the section no longer carries its axial load
+         logical, intent(out) :: sheared, lost
+         real(wp) :: tau(size(state%layers)), eps_x
+         logical :: carried
+         integer :: i
+
+         sheared = .false.
+         lost = .false.
+         if (model%coupled) then
+            call couple(model%flow, model%layers, model%axial_load, curvature, state%flexure, state%layers, &
+                        carried)
             sheared = .not. carried
             if (sheared) return
+         else
+            call advance(model%flow%section, model%flow%laws, model%axial_load, curvature, state%flexure, &
+                         carried)
+            lost = .not. carried
+            if (lost) return
+            call shear_stresses(model%flow, state%flexure, tau)
+            do i = 1, size(tau)
+               eps_x = curvature*model%flow%section%strips%y(i) - state%flexure%eps0
+               call solve_layer(model%layers(i), eps_x, tau(i), state%layers(i), carried)
+               sheared = .not. carried
+               if (sheared) return
+            end do
+         end if
+         associate (area => model%flow%section%strips%area)
+            state%point = shear_point(curvature, state%flexure%moment, state%flexure%moment/model%flow%span, &
+                                      dot_product(state%layers%gamma, area)/sum(area))
+         end associate
+      end subroutine bend
+
+      !> Halve the step to the last state that the section carries or, with a knee, that is before the knee.
+      subroutine halve(above, tolerance, state, stiffness, knee)
+         !> A curvature beyond that state [1/m]; length of the last step, as a share of the curvature
+         real(wp), intent(in) :: above, tolerance
+         !> A state that is carried; on return the last one
+         type(shear_state), intent(inout) :: state
+         !> Secant at the knee [N], and the first point found beyond it
+         real(wp), intent(in), optional :: stiffness
+         type(shear_point), intent(inout), optional :: knee
+         type(shear_state) :: here
+         real(wp) :: high, middle
+         integer :: i
+         logical :: sheared, lost, beyond
+
+         high = above
+         do i = 1, most_bisections
+            if (high - state%point%curvature <= tolerance*high) exit
+            middle = 0.5_wp*(state%point%curvature + high)
+            here = state
+            call bend(middle, here, sheared, lost)
+            beyond = sheared .or. lost
+            if (present(knee) .and. .not. beyond) then
+               beyond = beyond_knee(here%point, stiffness)
+               if (beyond) knee = here%point
+            end if
+            if (beyond) then
+               high = middle
+            else
+               state = here
+            end if
          end do
-      end if
-      associate (area => model%flow%section%strips%area)
-         state%point = shear_point(curvature, state%flexure%moment, state%flexure%moment/model%flow%span, &
-                                   dot_product(state%layers%gamma, area)/sum(area))
-      end associate
-   end subroutine bend
+      end subroutine halve
+
+   end subroutine follow_shear
 
    !> Whether the secant is at or below that of the knee.
    elemental logical function beyond_knee(point, stiffness)
@@ -226,42 +257,6 @@ contains
 
       beyond_knee = point%strain > 0.0_wp .and. point%force <= stiffness*point%strain
    end function beyond_knee
-
-   !> Halve the step to the last state that the section carries or, with a knee, that is before the knee.
-   subroutine halve(model, above, tolerance, state, stiffness, knee)
-      type(model_type), intent(in) :: model
-      !> A curvature beyond that state [1/m]
-      real(wp), intent(in) :: above
-      !> Length of the last step, as a share of the curvature
-      real(wp), intent(in) :: tolerance
-      !> A state that is carried; on return the last one
-      type(shear_state), intent(inout) :: state
-      !> Secant at the knee [N], and the first point found beyond it
-      real(wp), intent(in), optional :: stiffness
-      type(shear_point), intent(inout), optional :: knee
-      type(shear_state) :: here
-      real(wp) :: high, middle
-      integer :: i
-      logical :: sheared, lost, beyond
-
-      high = above
-      do i = 1, most_bisections
-         if (high - state%point%curvature <= tolerance*high) exit
-         middle = 0.5_wp*(state%point%curvature + high)
-         here = state
-         call bend(model, middle, here, sheared, lost)
-         beyond = sheared .or. lost
-         if (present(knee) .and. .not. beyond) then
-            beyond = beyond_knee(here%point, stiffness)
-            if (beyond) knee = here%point
-         end if
-         if (beyond) then
-            high = middle
-         else
-            state = here
-         end if
-      end do
-   end subroutine halve
 
    !> The curvatures must be positive and increase.
    subroutine check_curvatures(curvature, messages)

@@ -17,10 +17,9 @@ module rbs_section_steel_law
    public :: steel_record, steel_type, steel_stress, steel_both, steel_yield_strain
 
    type :: steel_type
-      !> Yield stress, largest stress, modulus of elasticity [Pa]
-      real(wp) :: fy = 0.0_wp, fu = 0.0_wp, es = 200.0e9_wp
-      !> Strain at which hardening begins, and of rupture
-      real(wp) :: eps_sh = 0.007_wp, eps_u = 0.1_wp
+      !> Yield stress, largest stress, modulus of elasticity [Pa]; strain at which hardening begins, and of
+      !> rupture
+      real(wp) :: fy = 0.0_wp, fu = 0.0_wp, es = 200.0e9_wp, eps_sh = 0.007_wp, eps_u = 0.1_wp
    end type steel_type
 
    !> Bounds of yield stress, modulus and strain at rupture.

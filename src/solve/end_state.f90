@@ -37,10 +37,9 @@ module rbs_solve_end_state
       !> Displacement of the top [m], lateral force [N], axial load at the top without what follows the
       !> force [N]
       real(wp) :: displacement = 0.0_wp, force = 0.0_wp, axial_load = 0.0_wp
-      !> Axial forces at the springs, compression positive (springs) [N]
-      real(wp), allocatable :: press(:)
-      !> Velocities of the springs (springs); zero after a static path
-      real(wp), allocatable :: v(:)
+      !> Axial forces at the springs, compression positive (springs) [N]; velocities of the springs (springs);
+      !> zero after a static path
+      real(wp), allocatable :: press(:), v(:)
       !> Works of loads and damping, energy at the start, what was missing from the balance [J]
       real(wp) :: input = 0.0_wp, damping = 0.0_wp, at_begin = 0.0_wp, residual = 0.0_wp
       !> Kinetic energy that the velocities of the joints do not show [J]
@@ -137,21 +136,18 @@ contains
       associate (value => self%stream%value, count => self%stream%count)
          if (count <= head) then
             call fatal_error(error, bad_input, 'initial: this is no state of an analysis, or it is '// &
-                             'damaged; '// &
-                             'run the first analysis again')
+                             'damaged; run the first analysis again')
             return
          end if
          expected = -1.0_wp
          if (all(ieee_is_finite(value(:count)))) call find_sum(value(head + 1:count), expected)
          if (abs(value(1) - format) > 0.0_wp .and. ieee_is_finite(value(1))) then
-            call fatal_error(error, bad_input, 'initial: the state was written by a version of '// &
-                             'rbsdem whose '// &
-                             'springs remember other things (format '//to_text(value(1))//', here '// &
+            call fatal_error(error, bad_input, 'initial: the state was written by a version of rbsdem '// &
+                             'whose springs remember other things (format '//to_text(value(1))//', here '// &
                              to_text(format)//'); run the first analysis again with this version')
          else if (any(abs(expected - value(4:5)) > 0.0_wp)) then
-            call fatal_error(error, bad_input, 'initial: the state is damaged, its numbers do not '// &
-                             'add up to '// &
-                             'what its head says; run the first analysis again')
+            call fatal_error(error, bad_input, 'initial: the state is damaged, its numbers do not add up '// &
+                             'to what its head says; run the first analysis again')
          else if (nint(value(6)) /= structure%n) then
             call fatal_error(error, bad_input, 'initial: the state belongs to a column of n = '// &
                              to_text(nint(value(6)))//' bodies, this one has n = '//to_text(structure%n)// &
@@ -165,10 +161,8 @@ contains
             call find_stamp(structure, expected)
             if (all(abs(expected - value(2:3)) <= 0.0_wp)) return
             call fatal_error(error, bad_input, 'initial: the state belongs to a column with other '// &
-                             'springs or '// &
-                             'lengths; begin from a result of the same column (loading, method, '// &
-                             'axial load, '// &
-                             'mass and damping may be others)')
+                             'springs or lengths; begin from a result of the same column (loading, '// &
+                             'method, axial load, mass and damping may be others)')
          end if
       end associate
    end subroutine check

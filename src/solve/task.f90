@@ -2,8 +2,7 @@
 module rbs_solve_task
    use rbs_base_constants, only: unset, unset_integer
    use rbs_base_kinds, only: wp
-   use rbs_output_observer, only: observer_type
-   use rbs_output_recorder, only: recorder_type
+   use rbs_output_recorder, only: recorder_type, observer_type
    use rbs_output_summary, only: summary_type
    use rbs_solve_end_state, only: end_state
    implicit none

@@ -4,10 +4,9 @@ module test_capped
    use rbs_base_error, only: error_type
    use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_rules_backbone, only: backbone_side
+   use rbs_hysteresis_rules_backbone, only: backbone_side, backbone_parameters
    use rbs_hysteresis_rules_deterioration, only: deterioration_type
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_hysteresis_rules_backbone_parameters, only: backbone_parameters
    use rbs_hysteresis_spring_record, only: spring_record
    use samples, only: make_springs, capped, set_value, value_of
    implicit none

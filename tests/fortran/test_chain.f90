@@ -7,10 +7,10 @@ module test_chain
    use rbs_base_text, only: to_text
    use rbs_structure_column_column, only: column_type
    use rbs_structure_column_chain_matrices, only: symmetric_mass
+   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, top_axial
    use rbs_loading_signal, only: signal_type
    use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
    use rbs_solve_modal_modes, only: modes_type, find_modes
-   use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, top_axial
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_rk4, only: rk4_scheme
    use rbs_solve_time_state, only: state_type

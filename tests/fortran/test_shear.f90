@@ -13,8 +13,7 @@ module test_shear
    use rbs_section_section_build, only: build_section
    use rbs_section_shape, only: new_shape, shape_names
    use rbs_section_shear_diagram, only: follow_shear, shear_diagram_type, shear_record
-   use rbs_section_shear_coupling, only: couple
-   use rbs_section_shear_flow, only: begin_flow, flow_type, shear_stresses, transverse_ratio
+   use rbs_section_shear_flow, only: begin_flow, flow_type, shear_stresses, transverse_ratio, couple
    use rbs_section_steel_law, only: steel_stress, steel_type
    implicit none
    private

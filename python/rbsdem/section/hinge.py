@@ -83,7 +83,7 @@ def cut(
 ) -> Strips:
     """Cut a section into strips of equal thickness across the direction of loading.
 
-    The strips are those of the Fortran part (`src/section/strips.f90`). The confinement is that of
+    The strips are those of the Fortran part (`src/section/cross_section.f90`). The confinement is that of
     Mander, Priestley and Park (1988), ASCE Journal of Structural Engineering 114(8), as the layered
     hinge takes it: the confining stress of the direction of loading alone, and the bars that the
     legs hold spread evenly around the core. `src/section/confinement.f90`, which the

@@ -50,7 +50,7 @@ contains
       do event = 1, 1000 + 1000*copy%count
          call go_on(copy, way)
          ! What the layers carry beyond the load; it grows with their stiffness.
-         gain = beyond_load(copy, way)
+         gain = way*(tension(copy, 0.0_wp) + copy%axial_load)
          step = no_step
          do i = 1, copy%count
             associate (d => copy%deformation(i))
@@ -98,13 +98,5 @@ contains
 
       tension = copy%force_0 + copy%a*(copy%opening + further) + copy%s*copy%rotation
    end function tension
-
-   !> What the layers carry beyond the axial load, in the direction of the fall [N].
-   pure real(wp) function beyond_load(copy, way)
-      type(fibre_section), intent(in) :: copy
-      integer, intent(in) :: way
-
-      beyond_load = way*(tension(copy, 0.0_wp) + copy%axial_load)
-   end function beyond_load
 
 end module rbs_hysteresis_layered_fibre_fall

@@ -45,17 +45,15 @@ contains
       integer, intent(in) :: n
       !> Distances, slopes and ends of the lines; finite, so that quotients do not overflow
       real(wp), intent(in) :: y(n), k(n), lo(n), hi(n)
-      !> A layer this close to its end is on it, with `room` [m]
-      real(wp), intent(in) :: slack(n)
-      !> -1, 0 or 1 as in `segment`, and 1 where that is 0, else 0
-      real(wp), intent(in) :: unload_on_reversal(n), both_ways(n)
+      !> A layer this close to its end is on it, with `room` [m]; -1, 0 or 1 as in `segment`, and 1 where that
+      !> is 0, else 0
+      real(wp), intent(in) :: slack(n), unload_on_reversal(n), both_ways(n)
       real(wp), intent(in) :: w, phi, open, turn
       !> Rates up to this count as zero; what is added to `slack` [m]
       real(wp), intent(in) :: least_rate, room
-      !> Ways to the ends, in units of the rates, and the least of them
-      real(wp), intent(out) :: ahead(n), nearest
-      !> Not above zero if a layer is on the end that it goes to, or unloads on a reversal
-      real(wp), intent(out) :: least_room
+      !> Ways to the ends, in units of the rates, and the least of them; not above zero if a layer is on the
+      !> end that it goes to, or unloads on a reversal
+      real(wp), intent(out) :: ahead(n), nearest, least_room
       !> Whether any layer is on a branch that unloads on reversal
       logical, intent(out) :: any_unloads
       !> sum k v**2

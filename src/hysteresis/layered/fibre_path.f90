@@ -167,12 +167,10 @@ contains
       !> Not above zero if a layer has none
       real(wp), intent(out) :: least_room
 
-      associate (ends => self%ends)
-         call look_along(self%count, self%y, self%k, self%lo, self%hi, self%slack, self%unload_on_reversal, &
-                         self%both_ways, self%opening, self%rotation, self%open, self%turn, &
-                         self%least_rate(self%open, self%turn), self%room_in_digits(), self%ahead, &
-                         ends%ahead, least_room, ends%unload_on_reversal, ends%stiffness)
-      end associate
+      call look_along(self%count, self%y, self%k, self%lo, self%hi, self%slack, self%unload_on_reversal, &
+                      self%both_ways, self%opening, self%rotation, self%open, self%turn, &
+                      self%least_rate(self%open, self%turn), self%room_in_digits(), self%ahead, &
+                      self%ends%ahead, least_room, self%ends%unload_on_reversal, self%ends%stiffness)
    end subroutine look_ahead
 
    !> How far the chosen path goes, ahead and back, until a layer reaches the end of its branch.
@@ -220,8 +218,7 @@ contains
       type(fibre_section), intent(inout) :: self
       real(wp), dimension(self%count) :: opening, closing, corner
       real(wp) :: x, best, wanted, at, next_at, slope, value, free, rate
-      integer :: order(self%count)
-      integer :: i, j, m, way, branches
+      integer :: order(self%count), i, j, m, way, branches
       logical :: found
 
       m = 0

@@ -334,10 +334,9 @@ contains
    !> shares of their largest on the other two; below zero a layer goes back.
    pure real(wp) function least_forward_rate(self, turn, press, digits) result(least)
       class(fibre_section), intent(in) :: self
-      !> Rates of the rotation and of the axial load
-      real(wp), intent(in) :: turn(3), press(3)
-      !> Below this number of the least rates that count, a rate is none
-      real(wp), intent(in) :: digits
+      !> Rates of the rotation and of the axial load; below this number of the least rates that count, a rate
+      !> is none
+      real(wp), intent(in) :: turn(3), press(3), digits
       real(wp) :: lift(3), v(3), least_rate
       integer :: i
 

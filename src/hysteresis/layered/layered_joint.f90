@@ -53,9 +53,7 @@ contains
       do i = 1, size(k)
          k(i) = self%rule(self%rule_of(i))%rule%initial_stiffness*self%weight(i)
       end do
-      associate (y => self%y)
-         self%initial_stiffness = sum(k*(y - sum(k*y)/sum(k))**2)
-      end associate
+      self%initial_stiffness = sum(k*(self%y - sum(k*self%y)/sum(k))**2)
    end subroutine prepare
 
    subroutine start(self, memory, branch)

@@ -17,17 +17,14 @@ module rbs_hysteresis_rules_bilinear
    public :: bilinear_rule
 
    type, extends(rule_type) :: bilinear_rule
-      !> Initial stiffness [N/m or N m/rad]
-      real(wp) :: k = unset
-      !> Yield deformation [m or rad]
-      real(wp) :: d_y = unset
+      !> Initial stiffness [N/m or N m/rad]; yield deformation [m or rad]
+      real(wp) :: k = unset, d_y = unset
       !> Stiffness after yield [N/m or N m/rad]
       real(wp) :: k_post = unset
    contains
       procedure :: visit
       procedure :: prepare
       procedure :: check_relations
-      procedure :: start
       procedure :: next
    end type bilinear_rule
 
@@ -46,6 +43,7 @@ contains
       class(bilinear_rule), intent(inout) :: self
 
       self%initial_stiffness = self%k
+      self%branch = segment(k=self%k, lo=-self%d_y, hi=self%d_y)
    end subroutine prepare
 
    subroutine check_relations(self, name, messages)
@@ -59,15 +57,6 @@ contains
       end if
       call check_product(self%k, self%d_y, name, 'k d_y', messages)
    end subroutine check_relations
-
-   subroutine start(self, memory, branch)
-      class(bilinear_rule), intent(in) :: self
-      class(rule_memory), allocatable, intent(out) :: memory
-      type(segment), intent(out) :: branch
-
-      allocate (memory)
-      branch = segment(k=self%k, lo=-self%d_y, hi=self%d_y)
-   end subroutine start
 
    subroutine next(self, memory, branch, direction)
       class(bilinear_rule), intent(in) :: self

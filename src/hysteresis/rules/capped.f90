@@ -20,8 +20,7 @@ module rbs_hysteresis_rules_capped
    use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
-   use rbs_hysteresis_rules_backbone, only: backbone_side
-   use rbs_hysteresis_rules_backbone_parameters, only: backbone_parameters
+   use rbs_hysteresis_rules_backbone, only: backbone_side, backbone_parameters
    use rbs_hysteresis_rules_deterioration, only: deterioration_type
    use rbs_hysteresis_rules_open_turns, only: point, turn, open_turns
    use rbs_hysteresis_segment, only: segment

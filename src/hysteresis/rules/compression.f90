@@ -13,14 +13,11 @@ module rbs_hysteresis_rules_compression
    public :: compression_rule
 
    type, extends(rule_type) :: compression_rule
-      !> Stiffness of the closed joint [N/m]
-      real(wp) :: k = unset
-      !> Closing at which it begins to carry [m]
-      real(wp) :: gap = 0.0_wp
+      !> Stiffness of the closed joint [N/m]; closing at which it begins to carry [m]
+      real(wp) :: k = unset, gap = 0.0_wp
    contains
       procedure :: visit
       procedure :: prepare
-      procedure :: start
       procedure :: next
    end type compression_rule
 
@@ -34,25 +31,14 @@ contains
       call v%key('gap', self%gap, deformation, not_negative, 'closing before the faces touch')
    end subroutine visit
 
+   !> The joint is closed at zero opening, or with a gap at minus that; openings are positive.
    subroutine prepare(self)
       class(compression_rule), intent(inout) :: self
 
       self%initial_stiffness = self%k
+      self%branch = segment(k=self%k, hi=0.0_wp, includes_upper_end=.true.)
+      if (self%gap > 0.0_wp) self%branch = segment(k=0.0_wp, lo=-self%gap, hi=unbounded)
    end subroutine prepare
-
-   !> The joint is closed at zero opening, or with a gap at minus that; openings are positive.
-   subroutine start(self, memory, branch)
-      class(compression_rule), intent(in) :: self
-      class(rule_memory), allocatable, intent(out) :: memory
-      type(segment), intent(out) :: branch
-
-      allocate (memory)
-      if (self%gap > 0.0_wp) then
-         branch = segment(k=0.0_wp, lo=-self%gap, hi=unbounded)
-      else
-         branch = segment(k=self%k, hi=0.0_wp, includes_upper_end=.true.)
-      end if
-   end subroutine start
 
    subroutine next(self, memory, branch, direction)
       class(compression_rule), intent(in) :: self

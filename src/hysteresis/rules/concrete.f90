@@ -59,18 +59,14 @@ module rbs_hysteresis_rules_concrete
    end type concrete_memory
 
    type, extends(rule_type) :: concrete_rule
-      !> Initial stiffness [N/m]
-      real(wp) :: k = unset
-      !> Largest force [N] and the closing there [m]
-      real(wp) :: f_peak = unset, d_peak = unset
-      !> Slope of softening after the peak [N/m], positive, and the residual force [N]
-      real(wp) :: k_soft = unset, f_res = 0.0_wp
-      !> Factor of the plastic closing
-      real(wp) :: plastic = 1.0_wp
-      !> Share of the force at unloading at which a closing crack is fully closed
-      real(wp) :: contact = 0.0_wp
-      !> Share of the widest opening at which its faces touch
-      real(wp) :: misfit = 0.0_wp
+      !> Initial stiffness [N/m]; largest force [N] and the closing there [m]
+      real(wp) :: k = unset, f_peak = unset, d_peak = unset
+      !> Slope of softening after the peak [N/m], positive, and the residual force [N]; factor of the plastic
+      !> closing
+      real(wp) :: k_soft = unset, f_res = 0.0_wp, plastic = 1.0_wp
+      !> Share of the force at unloading at which a closing crack is fully closed; share of the widest opening
+      !> at which its faces touch
+      real(wp) :: contact = 0.0_wp, misfit = 0.0_wp
       !> Share of the strength that an opening takes, after twice the closing at the peak or more
       real(wp) :: wear = 0.0_wp
       !> Share of the force by which the path of opening is below that of closing
@@ -81,7 +77,6 @@ module rbs_hysteresis_rules_concrete
       procedure :: visit
       procedure :: prepare
       procedure :: check_relations
-      procedure :: start
       procedure :: next
    end type concrete_rule
 
@@ -111,9 +106,16 @@ contains
 
    subroutine prepare(self)
       class(concrete_rule), intent(inout) :: self
+      type(concrete_state) :: virgin
+      type(segment) :: branch
 
       self%initial_stiffness = self%k
       self%rubs = self%friction > 0.0_wp
+      ! The envelope begins at zero.
+      branch%lo = 0.0_wp
+      call find_branch(self, virgin, branch, -1)
+      self%branch = branch
+      self%memory = concrete_memory(now=virgin)
    end subroutine prepare
 
    subroutine check_relations(self, name, messages)
@@ -131,18 +133,6 @@ contains
       end if
       call check_product(self%k, self%d_peak, name, 'k d_peak', messages)
    end subroutine check_relations
-
-   subroutine start(self, memory, branch)
-      class(concrete_rule), intent(in) :: self
-      class(rule_memory), allocatable, intent(out) :: memory
-      type(segment), intent(out) :: branch
-      type(concrete_state) :: virgin
-
-      ! The envelope begins at zero.
-      branch%lo = 0.0_wp
-      call find_branch(self, virgin, branch, -1)
-      allocate (memory, source=concrete_memory(now=virgin))
-   end subroutine start
 
    subroutine next(self, memory, branch, direction)
       class(concrete_rule), intent(in) :: self

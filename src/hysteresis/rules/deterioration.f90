@@ -33,10 +33,8 @@ contains
    !> Share that is left of the virgin value, from 1 to 0.
    elemental real(wp) function left(self, capacity, energy)
       class(deterioration_type), intent(in) :: self
-      !> E_t [J], 0: none
-      real(wp), intent(in) :: capacity
-      !> Energy dissipated [J]
-      real(wp), intent(in) :: energy
+      !> E_t [J], 0: none; energy dissipated [J]
+      real(wp), intent(in) :: capacity, energy
 
       left = 1.0_wp
       if (.not. (capacity > 0.0_wp .and. energy > 0.0_wp)) return

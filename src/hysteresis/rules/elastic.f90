@@ -17,7 +17,6 @@ module rbs_hysteresis_rules_elastic
    contains
       procedure :: visit
       procedure :: prepare
-      procedure :: start
       procedure :: next
    end type elastic_rule
 
@@ -34,16 +33,8 @@ contains
       class(elastic_rule), intent(inout) :: self
 
       self%initial_stiffness = self%k
+      self%branch%k = self%k
    end subroutine prepare
-
-   subroutine start(self, memory, branch)
-      class(elastic_rule), intent(in) :: self
-      class(rule_memory), allocatable, intent(out) :: memory
-      type(segment), intent(out) :: branch
-
-      allocate (memory)
-      branch%k = self%k
-   end subroutine start
 
    !> Called only for deformations beyond the largest number: the branch continues.
    subroutine next(self, memory, branch, direction)

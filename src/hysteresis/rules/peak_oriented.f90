@@ -8,7 +8,7 @@ module rbs_hysteresis_rules_peak_oriented
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_hysteresis_rules_backbone_parameters, only: backbone_parameters
+   use rbs_hysteresis_rules_backbone, only: backbone_parameters
    use rbs_hysteresis_rules_capped, only: capped_part, capped_memory
    use rbs_hysteresis_rules_deterioration, only: deterioration_type
    use rbs_hysteresis_rule, only: rule_type, rule_memory
@@ -70,9 +70,8 @@ contains
          call v%key('lambda_a', self%lambda(4), '', not_negative, 'the same for the target of reloading')
          call v%key('c', part%deterioration%c, '', bound_type(1.0_wp, 2.0_wp, reason=range_of_source), &
                     'exponent of deterioration')
-         call v%key('lambda_h', self%lambda_h, '', not_negative, &
-                    'energy dissipated in the hinge, in f_y d_y, after which half of what can be lost is '// &
-                    'lost; 0: none')
+         call v%key('lambda_h', self%lambda_h, '', not_negative, 'energy dissipated in the hinge, in f_y '// &
+                    'd_y, after which half of what can be lost is lost; 0: none')
          call v%key('s_min', part%s_min, '', share_below_one, &
                     'share of the strength that stays, whatever the flexural spring has done')
          call v%key('fade', part%deterioration%fade, '', bound_type(0.0_wp, 4.0_wp), &

@@ -43,8 +43,7 @@ module rbs_hysteresis_rules_steel
    !> Limits over k_i d_y in rows of the plastic reach: linear between them, constant after the last.
    type :: table_type
       integer :: rows = 1
-      real(wp) :: q(most_rows) = 0.0_wp
-      real(wp) :: y(elements, most_rows) = 1.0_wp
+      real(wp) :: q(most_rows) = 0.0_wp, y(elements, most_rows) = 1.0_wp
    end type table_type
 
    type :: steel_state
@@ -64,10 +63,9 @@ module rbs_hysteresis_rules_steel
    end type steel_memory
 
    type, extends(rule_type) :: steel_rule
-      !> Elastic stiffness [N/m], yield force [N], stiffness of hardening [N/m]
-      real(wp) :: k = unset, f_y = unset, k_post = unset
-      !> Roundness, and its decrease with the plastic reach
-      real(wp) :: r0 = 20.0_wp, cr1 = 0.925_wp, cr2 = 0.15_wp
+      !> Elastic stiffness [N/m], yield force [N], stiffness of hardening [N/m]; roundness, and its decrease
+      !> with the plastic reach
+      real(wp) :: k = unset, f_y = unset, k_post = unset, r0 = 20.0_wp, cr1 = 0.925_wp, cr2 = 0.15_wp
       !> Growth of the strength with the plastic reach, and half of the reach that it belongs to
       real(wp) :: isotropic_hardening = 0.0_wp, hardening_reach = 1.0_wp
       !> Force at which hardening ends [N], `unset`: it does not end
@@ -76,10 +74,8 @@ module rbs_hysteresis_rules_steel
       real(wp) :: plateau = 0.0_wp, endurance = 0.0_wp
       !> Tensile deformation from which on bars bow [m], `unset`: never; growth of the wear beyond it
       real(wp) :: d_buckle = unset, buckling = 0.0_wp
-      !> Largest factor of the wear: no limit may move faster than its element
-      real(wp), private :: most_wear = 1.0_wp
-      !> Yield deformation [m]
-      real(wp), private :: d_y = 0.0_wp
+      !> Largest factor of the wear: no limit may move faster than its element; yield deformation [m]
+      real(wp), private :: most_wear = 1.0_wp, d_y = 0.0_wp
       type(table_type), private :: table
       !> Elements that have limits: all, or all but that of hardening
       integer, private :: limited = yielding
@@ -89,7 +85,6 @@ module rbs_hysteresis_rules_steel
       procedure :: visit
       procedure :: check_relations
       procedure :: prepare
-      procedure :: start
       procedure :: next
    end type steel_rule
 
@@ -115,9 +110,8 @@ contains
                  optional=.true.)
       call v%key('plateau', self%plateau, '', not_negative, &
                  'length of the yield plateau over the yield deformation; needs f_u')
-      call v%key('endurance', self%endurance, '', not_negative, &
-                 'sum of plastic deformations over d_y, without new maxima, that halves the strength; '// &
-                 '0: none')
+      call v%key('endurance', self%endurance, '', not_negative, 'sum of plastic deformations over d_y, '// &
+                 'without new maxima, that halves the strength; 0: none')
       call v%key('d_buckle', self%d_buckle, deformation, above_zero, &
                  'tensile deformation from which on bars bow when they are compressed again', optional=.true.)
       call v%key('buckling', self%buckling, '', not_negative, &
@@ -161,16 +155,6 @@ contains
       end if
    end subroutine check_relations
 
-   subroutine start(self, memory, branch)
-      class(steel_rule), intent(in) :: self
-      class(rule_memory), allocatable, intent(out) :: memory
-      type(segment), intent(out) :: branch
-
-      allocate (memory, source=steel_memory(now=steel_state(rate=self%k_element, highest=self%d_y, &
-                                                            lowest=-self%d_y)))
-      branch = segment(k=self%k, lo=-self%d_y, hi=self%d_y)
-   end subroutine start
-
    !> What follows from the parameters alone.
    subroutine prepare(self)
       class(steel_rule), intent(inout) :: self
@@ -181,6 +165,8 @@ contains
       self%limited = merge(elements, yielding, is_given(self%f_u))
       call make_table(self, self%table)
       self%most_wear = max(1.0_wp, self%endurance/maxval(self%table%y(:self%limited, :self%table%rows)))
+      self%branch = segment(k=self%k, lo=-self%d_y, hi=self%d_y)
+      self%memory = steel_memory(now=steel_state(rate=self%k_element, highest=self%d_y, lowest=-self%d_y))
    end subroutine prepare
 
    subroutine next(self, memory, branch, direction)
@@ -262,10 +248,8 @@ contains
       !> Limits of the elements, their growth with the deformation, and distance to the next row of the table.
       subroutine find_limits(growing, limit, growth, ahead)
          logical, intent(in) :: growing
-         !> (elements) [N], (elements) [N/m]
-         real(wp), intent(out) :: limit(elements), growth(elements)
-         !> [m], `unbounded` if no row follows
-         real(wp), intent(out) :: ahead
+         !> (elements) [N], (elements) [N/m]; [m], `unbounded` if no row follows
+         real(wp), intent(out) :: limit(elements), growth(elements), ahead
          real(wp) :: q, way, strength
          integer :: row
 

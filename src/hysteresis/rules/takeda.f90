@@ -65,10 +65,8 @@ module rbs_hysteresis_rules_takeda
    end type takeda_memory
 
    type, extends(rule_type) :: takeda_rule
-      !> Uncracked, cracked and yielded stiffness [N/m or N m/rad]
-      real(wp) :: k_c = unset, k_y = unset, k_u = unset
-      !> Cracking and yield deformation [m or rad]
-      real(wp) :: d_c = unset, d_y = unset
+      !> Uncracked, cracked and yielded stiffness [N/m or N m/rad]; cracking and yield deformation [m or rad]
+      real(wp) :: k_c = unset, k_y = unset, k_u = unset, d_c = unset, d_y = unset
       !> Degradation factors
       real(wp) :: b0 = 0.4_wp, b1 = 1.0_wp
       !> What B1 multiplies, the place of its name among the choices
@@ -79,7 +77,6 @@ module rbs_hysteresis_rules_takeda
       procedure :: visit
       procedure :: prepare
       procedure :: check_relations
-      procedure :: start
       procedure :: next
    end type takeda_rule
 
@@ -104,6 +101,8 @@ contains
       class(takeda_rule), intent(inout) :: self
 
       self%initial_stiffness = self%k_c
+      self%branch = segment(k=self%k_c, lo=-self%d_c, hi=self%d_c)
+      self%memory = takeda_memory()
       self%f_c = self%k_c*self%d_c
       self%f_y = self%f_c + self%k_y*(self%d_y - self%d_c)
    end subroutine prepare
@@ -127,15 +126,6 @@ contains
       end if
       call check_product(self%k_c, self%d_y, name, 'k_c d_y', messages)
    end subroutine check_relations
-
-   subroutine start(self, memory, branch)
-      class(takeda_rule), intent(in) :: self
-      class(rule_memory), allocatable, intent(out) :: memory
-      type(segment), intent(out) :: branch
-
-      allocate (takeda_memory :: memory)
-      branch = segment(k=self%k_c, lo=-self%d_c, hi=self%d_c)
-   end subroutine start
 
    subroutine next(self, memory, branch, direction)
       class(takeda_rule), intent(in) :: self
@@ -273,14 +263,12 @@ contains
 
          s = -now%side
          now%cracked(s) = .true.
-         associate (left => now%peak(-s))
-            k_r = now%k_r(-s)
-            if (abs(left%d) <= self%d_y) then
-               call follow_backbone(s, d)
-               return
-            end if
-            zero = left%d - left%f/k_r
-         end associate
+         k_r = now%k_r(-s)
+         if (abs(now%peak(-s)%d) <= self%d_y) then
+            call follow_backbone(s, d)
+            return
+         end if
+         zero = now%peak(-s)%d - now%peak(-s)%f/k_r
          now%peak(s) = point(s*self%d_y, s*self%f_y)
          ahead = s*(now%peak(s)%d - d)
          if (self%f_y - self%f_c > k_r*ahead .and. k_r > (1.0_wp + parallel)*self%k_u) then

@@ -43,57 +43,122 @@ contains
 
       select type (structure)
       class is (column_type)
-         call assemble_column(structure, paper, matrices, error)
+         call assemble_column(structure)
       class default
          if (paper) then
-            call fatal_error(error, bad_input, &
-                             "matrices: the paper's form is that of a column; ask for the "// &
-                             'other one')
+            call fatal_error(error, bad_input, "matrices: the paper's form is that of a column; ask for "// &
+                             'the other one')
             return
          end if
-         call assemble_bands(structure, matrices)
+         call assemble_bands()
       end select
-   end subroutine assemble_matrices
 
-   !> From the bands that the solvers take.
-   subroutine assemble_bands(structure, matrices)
-      class(structure_type), intent(in) :: structure
-      type(matrices_type), intent(inout) :: matrices
-      real(wp) :: band(structure%half_width + 1, structure%unknowns), axial(structure%axial_count)
-      real(wp) :: at_rest(signals)
-      character(len=2), parameter :: along(3) = ['x_', 't_', 'y_']
-      integer :: i, m
+   contains
 
-      m = structure%unknowns
-      allocate (matrices%mass(m, m), matrices%stiffness(m, m), matrices%geometric(m, m), &
-                matrices%damping(m, m), source=0.0_wp)
-      allocate (matrices%unknown(m))
-      do i = 1, m
-         matrices%mass(i, i) = structure%inertias(i)
-         associate (place => structure%place(size(structure%place) - m + i))
-            matrices%unknown(i) = along(place%kind)//trim(place%owner(6:))
-         end associate
-      end do
-      band = 0.0_wp
-      call structure%add_stiffness(structure%initial_stiffness, structure%initial_tangent, band)
-      call fill(band, matrices%stiffness)
-      if (structure%axially_loaded) then
+      !> From the bands that the solvers take.
+      subroutine assemble_bands()
+         real(wp) :: band(structure%half_width + 1, structure%unknowns), axial(structure%axial_count)
+         real(wp) :: at_rest(signals)
+         character(len=2), parameter :: along(3) = ['x_', 't_', 'y_']
+         integer :: i, m
+
+         m = structure%unknowns
+         allocate (matrices%mass(m, m), matrices%stiffness(m, m), matrices%geometric(m, m), &
+                   matrices%damping(m, m), source=0.0_wp)
+         allocate (matrices%unknown(m))
+         do i = 1, m
+            matrices%mass(i, i) = structure%inertias(i)
+            associate (place => structure%place(size(structure%place) - m + i))
+               matrices%unknown(i) = along(place%kind)//trim(place%owner(6:))
+            end associate
+         end do
          band = 0.0_wp
-         at_rest = 0.0_wp
-         call structure%axial_forces(at_rest, axial)
-         call structure%add_geometric(axial, band)
-         call fill(band, matrices%geometric)
-      end if
-      if (.not. structure%damped) return
-      band = 0.0_wp
-      call structure%add_damping(1.0_wp, structure%initial_tangent, band)
-      call fill(band, matrices%damping)
-      matrices%damping = matrices%damping + structure%mass_damping*matrices%mass
-      if (.not. allocated(structure%modal_momenta)) return
-      associate (momenta => structure%modal_momenta)
-         matrices%damping = matrices%damping + matmul(momenta, transpose(momenta))
-      end associate
-   end subroutine assemble_bands
+         call structure%add_stiffness(structure%initial_stiffness, structure%initial_tangent, band)
+         call fill(band, matrices%stiffness)
+         if (structure%axially_loaded) then
+            band = 0.0_wp
+            at_rest = 0.0_wp
+            call structure%axial_forces(at_rest, axial)
+            call structure%add_geometric(axial, band)
+            call fill(band, matrices%geometric)
+         end if
+         if (.not. structure%damped) return
+         band = 0.0_wp
+         call structure%add_damping(1.0_wp, structure%initial_tangent, band)
+         call fill(band, matrices%damping)
+         matrices%damping = matrices%damping + structure%mass_damping*matrices%mass
+         if (.not. allocated(structure%modal_momenta)) return
+         associate (momenta => structure%modal_momenta)
+            matrices%damping = matrices%damping + matmul(momenta, transpose(momenta))
+         end associate
+      end subroutine assemble_bands
+
+      subroutine assemble_column(column)
+         class(column_type), intent(in) :: column
+         character(len=9) :: names(3)
+         integer :: i, m, n
+
+         n = column%n
+         m = column%unknowns
+         if (real(m, wp)**2 > most_numbers) then
+            call fatal_error(error, bad_input, 'matrices: those of n = '//to_text(n)//' bodies take too '// &
+                             'much memory; take '//to_text(int(sqrt(most_numbers))*n/m)//' at the most')
+            return
+         end if
+         allocate (matrices%mass(m, m))
+         allocate (matrices%stiffness(m, m), matrices%geometric(m, m), matrices%damping(m, m), source=0.0_wp)
+         call symmetric_mass(column, matrices%mass)
+         do i = 1, m
+            matrices%stiffness(i, i) = column%initial_stiffness(i)
+         end do
+         if (column%axially_loaded) call geometric_stiffness(column, matrices%geometric)
+         if (allocated(column%modal_damping)) then
+            call modal_damping(column, matrices%damping, error)
+            if (allocated(error)) return
+         end if
+         matrices%damping = matrices%damping + column%mass_damping*matrices%mass &
+                            + column%stiffness_damping*matrices%stiffness
+         allocate (matrices%unknown(m))
+         names = [character(len=9) :: 'slip_', merge('theta_   ', 'rotation_', paper), 'opening_']
+         do i = 1, m
+            matrices%unknown(i) = trim(names(column%place(i)%kind))//to_text(column%place(i)%joint)
+         end do
+         call transform(column, matrices%mass)
+         call transform(column, matrices%stiffness)
+         call transform(column, matrices%geometric)
+         call transform(column, matrices%damping)
+         if (column%held) matrices%unknown = pack(matrices%unknown, [(i /= column%at(flexure, n), i=1, m)])
+         if (paper .and. .not. column%held) call paper_mass(column, matrices%mass(:2*n, :2*n))
+      end subroutine assemble_column
+
+      !> Take the rotation of a held top out, which is minus the sum of those below, and pass to absolute
+      !> rotations: a relative one is the difference of two.
+      subroutine transform(column, a)
+         class(column_type), intent(in) :: column
+         real(wp), allocatable, intent(inout) :: a(:, :)
+         integer :: i, last, n
+         integer, allocatable :: kept(:)
+
+         n = column%n
+         last = 2*n
+         if (column%held) then
+            do i = n + 1, last - 1
+               a(:, i) = a(:, i) - a(:, last)
+            end do
+            do i = n + 1, last - 1
+               a(i, :) = a(i, :) - a(last, :)
+            end do
+            kept = [(i, i=1, last - 1), (i, i=last + 1, size(a, 1))]
+            a = a(kept, kept)
+            last = last - 1
+         end if
+         if (.not. paper) return
+         do i = n + 1, last - 1
+            a(:, i) = a(:, i) - a(:, i + 1)
+         end do
+      end subroutine transform
+
+   end subroutine assemble_matrices
 
    !> A symmetric matrix in full from its lower band.
    pure subroutine fill(band, a)
@@ -108,78 +173,6 @@ contains
          end do
       end do
    end subroutine fill
-
-   subroutine assemble_column(column, paper, matrices, error)
-      class(column_type), intent(in) :: column
-      !> Whether in the paper's form: unknowns (slip, absolute rotation), rows of its eqs 1 and 2. Else in
-      !> (slip, relative rotation), where all are symmetric
-      logical, intent(in) :: paper
-      type(matrices_type), intent(out) :: matrices
-      type(error_type), allocatable, intent(out) :: error
-      character(len=9) :: names(3)
-      integer :: i, m, n
-
-      n = column%n
-      m = column%unknowns
-      if (real(m, wp)**2 > most_numbers) then
-         call fatal_error(error, bad_input, 'matrices: those of n = '//to_text(n)// &
-                          ' bodies take too much memory; take '//to_text(int(sqrt(most_numbers))*n/m)// &
-                          ' at the most')
-         return
-      end if
-      allocate (matrices%mass(m, m))
-      allocate (matrices%stiffness(m, m), matrices%geometric(m, m), matrices%damping(m, m), source=0.0_wp)
-      call symmetric_mass(column, matrices%mass)
-      do i = 1, m
-         matrices%stiffness(i, i) = column%initial_stiffness(i)
-      end do
-      if (column%axially_loaded) call geometric_stiffness(column, matrices%geometric)
-      if (allocated(column%modal_damping)) then
-         call modal_damping(column, matrices%damping, error)
-         if (allocated(error)) return
-      end if
-      matrices%damping = matrices%damping + column%mass_damping*matrices%mass &
-                         + column%stiffness_damping*matrices%stiffness
-      allocate (matrices%unknown(m))
-      names = [character(len=9) :: 'slip_', merge('theta_   ', 'rotation_', paper), 'opening_']
-      do i = 1, m
-         matrices%unknown(i) = trim(names(column%place(i)%kind))//to_text(column%place(i)%joint)
-      end do
-      call transform(column, paper, matrices%mass)
-      call transform(column, paper, matrices%stiffness)
-      call transform(column, paper, matrices%geometric)
-      call transform(column, paper, matrices%damping)
-      if (column%held) matrices%unknown = pack(matrices%unknown, [(i /= column%at(flexure, n), i=1, m)])
-      if (paper .and. .not. column%held) call paper_mass(column, matrices%mass(:2*n, :2*n))
-   end subroutine assemble_column
-
-   !> Take the rotation of a held top out, which is minus the sum of those below, and pass to absolute
-   !> rotations: a relative one is the difference of two.
-   subroutine transform(column, paper, a)
-      class(column_type), intent(in) :: column
-      logical, intent(in) :: paper
-      real(wp), allocatable, intent(inout) :: a(:, :)
-      integer :: i, last, n
-      integer, allocatable :: kept(:)
-
-      n = column%n
-      last = 2*n
-      if (column%held) then
-         do i = n + 1, last - 1
-            a(:, i) = a(:, i) - a(:, last)
-         end do
-         do i = n + 1, last - 1
-            a(i, :) = a(i, :) - a(last, :)
-         end do
-         kept = [(i, i=1, last - 1), (i, i=last + 1, size(a, 1))]
-         a = a(kept, kept)
-         last = last - 1
-      end if
-      if (.not. paper) return
-      do i = n + 1, last - 1
-         a(:, i) = a(:, i) - a(:, i + 1)
-      end do
-   end subroutine transform
 
    !> The accelerations that forces give to the column at rest: eqs 1 and 2 of the paper, M q'' = p, solved as
    !> they stand.

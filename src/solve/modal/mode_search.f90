@@ -112,7 +112,7 @@ contains
       step = 0
       rho = 0.0_wp
       do
-         call split(self%low(j), self%high(j), shift, more)
+         call split(self%low(j), self%high(j), shift)
          if (more .and. (astray .or. self%below_low(j) /= j - 1 .or. self%below_high(j) /= j)) then
             below = count_below(self, shift)
             astray = .false.
@@ -128,11 +128,11 @@ contains
          below = self%chain%factor(shift)
          if (step == 0) then
             last_change = huge(1.0_wp)
-            call any_motion(self)
-            call iterate(self, place, shift, squares, shapes, rho)
+            call any_motion()
+            call iterate()
          end if
          change = rho
-         call iterate(self, place, shift, squares, shapes, rho)
+         call iterate()
          if (.not. more) exit
          step = step + 1
          change = abs(rho - change)
@@ -144,66 +144,62 @@ contains
       end do
       shapes(:, :, place) = shapes(:, :, place)/sqrt(self%chain%mass_product(self%x, self%x))
       squares(place) = min(max(rho, self%low(j)), self%high(j))
-   end subroutine find
 
-   !> Inverse iteration, and the Rayleigh quotient. Motions are scaled by powers of two, so that the units
-   !> change no digit.
-   subroutine iterate(self, place, shift, squares, shapes, rho)
-      type(mode_search), intent(inout) :: self
-      integer, intent(in) :: place
-      real(wp), intent(in) :: shift, squares(:)
-      real(wp), intent(inout), contiguous :: shapes(:, :, :)
-      real(wp), intent(out) :: rho
-      real(wp) :: share
-      integer :: i
+   contains
 
-      associate (chain => self%chain, d => shapes(:, :, place))
-         call chain%solve(self%x, d)
-         d = scale(1.0_wp, -exponent(maxval(abs(d))))*d
-         call chain%body_motion(d, self%x)
-         do i = place - 1, 1, -1
-            if (i < place - neighbours .and. squares(i) < (1.0_wp - close_by)*shift) exit
-            call chain%body_motion(shapes(:, :, i), self%other)
-            share = chain%mass_product(self%other, self%x)
-            self%x = self%x - share*self%other
-            d = d - share*shapes(:, :, i)
+      !> Inverse iteration, and the Rayleigh quotient. Motions are scaled by powers of two, so that the units
+      !> change no digit.
+      subroutine iterate()
+         real(wp) :: share
+         integer :: i
+
+         associate (chain => self%chain, d => shapes(:, :, place))
+            call chain%solve(self%x, d)
+            d = scale(1.0_wp, -exponent(maxval(abs(d))))*d
+            call chain%body_motion(d, self%x)
+            do i = place - 1, 1, -1
+               if (i < place - neighbours .and. squares(i) < (1.0_wp - close_by)*shift) exit
+               call chain%body_motion(shapes(:, :, i), self%other)
+               share = chain%mass_product(self%other, self%x)
+               self%x = self%x - share*self%other
+               d = d - share*shapes(:, :, i)
+            end do
+            rho = chain%stiffness_of(d, self%x)/chain%mass_product(self%x, self%x)
+         end associate
+      end subroutine iterate
+
+      !> A motion in which every mode has a share: a logistic map wanders between 0 and 1.
+      subroutine any_motion()
+         real(wp) :: length, z
+         integer :: i
+
+         length = sum(self%chain%lower + self%chain%upper)
+         if (.not. length > 0.0_wp) length = 1.0_wp
+         z = 0.5_wp
+         do i = 1, self%chain%n
+            z = z*3.9_wp*(1.0_wp - z)
+            self%x(1, i) = (z - 0.4_wp)*length
+            z = z*3.9_wp*(1.0_wp - z)
+            self%x(2, i) = z - 0.4_wp
          end do
-         rho = chain%stiffness_of(d, self%x)/chain%mass_product(self%x, self%x)
-      end associate
-   end subroutine iterate
+      end subroutine any_motion
 
-   !> A motion in which every mode has a share: a logistic map wanders between 0 and 1.
-   subroutine any_motion(self)
-      type(mode_search), intent(inout) :: self
-      real(wp) :: length, z
-      integer :: i
+      !> A number between two bounds, a power of two while they are far apart. `more` is false when there is
+      !> no number between them.
+      subroutine split(below, above, between)
+         real(wp), intent(in) :: below, above
+         real(wp), intent(out) :: between
+         integer :: powers
 
-      length = sum(self%chain%lower + self%chain%upper)
-      if (.not. length > 0.0_wp) length = 1.0_wp
-      z = 0.5_wp
-      do i = 1, self%chain%n
-         z = z*3.9_wp*(1.0_wp - z)
-         self%x(1, i) = (z - 0.4_wp)*length
-         z = z*3.9_wp*(1.0_wp - z)
-         self%x(2, i) = z - 0.4_wp
-      end do
-   end subroutine any_motion
+         if (above > 8.0_wp*below .and. below > 0.0_wp) then
+            powers = exponent(below) + exponent(above) - 1
+            between = scale(1.0_wp, (powers - modulo(powers, 2))/2)
+         else
+            between = below + 0.5_wp*(above - below)
+         end if
+         more = between > below .and. between < above
+      end subroutine split
 
-   !> A number between two bounds, a power of two while they are far apart. `more` is false when there is
-   !> no number between them.
-   pure subroutine split(below, above, between, more)
-      real(wp), intent(in) :: below, above
-      real(wp), intent(out) :: between
-      logical, intent(out) :: more
-      integer :: powers
-
-      if (above > 8.0_wp*below .and. below > 0.0_wp) then
-         powers = exponent(below) + exponent(above) - 1
-         between = scale(1.0_wp, (powers - modulo(powers, 2))/2)
-      else
-         between = below + 0.5_wp*(above - below)
-      end if
-      more = between > below .and. between < above
-   end subroutine split
+   end subroutine find
 
 end module rbs_solve_modal_mode_search

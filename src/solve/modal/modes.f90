@@ -66,65 +66,144 @@ contains
       end if
       select type (structure)
       class is (column_type)
-         call find_column_modes(structure, modes, error, count)
+         call find_column_modes(structure)
       class default
-         call find_assembled_modes(structure, modes, error, count)
+         call find_assembled_modes()
       end select
-   end subroutine find_modes
 
-   !> Modes of a structure from its matrices: what has no mass follows the rest, and with the flexibility
-   !> F = (K + K_G)^-1 between the masses M^(1/2) F M^(1/2) y = y/omega^2, by LAPACK. Shapes are those of the
-   !> unknowns, and the stable step of RK4 is that of none where unknowns have no mass.
-   subroutine find_assembled_modes(structure, modes, error, count)
-      class(structure_type), intent(in) :: structure
-      type(modes_type), intent(inout) :: modes
-      type(error_type), allocatable, intent(out) :: error
-      integer, intent(in), optional :: count
-      type(band_matrix) :: matrix
-      real(wp), allocatable :: flexible(:, :), all_of(:, :), square(:), root(:)
-      integer, allocatable :: heavy(:)
-      integer :: i, wanted
-      logical :: found
+   contains
 
-      call frequency_bounds(structure, modes%condition, modes%stable_step, error)
-      modes%condition = 1.0_wp
-      modes%stable_step = 0.0_wp
-      if (allocated(error)) return
-      heavy = pack([(i, i=1, structure%unknowns)], structure%inertias > 0.0_wp .and. .not. structure%is_held)
-      if (size(heavy) == 0) then
-         call fatal_error(error, bad_input, 'modes: nothing has mass; give &floor mass, or mass to nodes')
-         return
-      end if
-      wanted = size(heavy)
-      if (present(count)) wanted = min(wanted, count)
-      call assemble_initial(structure, structure%axially_loaded, matrix)
-      call matrix%factor()
-      allocate (all_of(structure%unknowns, size(heavy)), source=0.0_wp)
-      root = sqrt(structure%inertias(heavy))
-      do i = 1, size(heavy)
-         all_of(heavy(i), i) = root(i)
-      end do
-      call matrix%solve(all_of, found)
-      flexible = all_of(heavy, :)*spread(root, 2, size(heavy))
-      allocate (square(size(heavy)))
-      if (found) call symmetric_modes(flexible, square, found)
-      if (.not. found) then
-         call fatal_error(error, bad_input, 'modes: the stiffness has no inverse; look for parts that '// &
-                          'can move without force')
-         return
-      end if
-      allocate (modes%omega(wanted), modes%shapes(structure%unknowns, wanted))
-      do i = 1, wanted
-         associate (from => size(heavy) + 1 - i)
-            modes%omega(i) = 1.0_wp/sqrt(max(square(from), tiny(1.0_wp)))
-            ! F M^(1/2) y omega^2 is the shape of all unknowns, with unit modal mass.
-            modes%shapes(:, i) = matmul(all_of, flexible(:, from))*modes%omega(i)**2
-         end associate
-         if (structure%work_of(horizontal, modes%shapes(:, i)) > 0.0_wp) then
-            modes%shapes(:, i) = -modes%shapes(:, i)
+      !> Modes of a structure from its matrices: what has no mass follows the rest, and with the flexibility
+      !> F = (K + K_G)^-1 between the masses M^(1/2) F M^(1/2) y = y/omega^2, by LAPACK. Shapes are those of
+      !> the
+      !> unknowns, and the stable step of RK4 is that of none where unknowns have no mass.
+      subroutine find_assembled_modes()
+         type(band_matrix) :: matrix
+         real(wp), allocatable :: flexible(:, :), all_of(:, :), square(:), root(:)
+         integer, allocatable :: heavy(:)
+         integer :: i, wanted
+         logical :: found
+
+         call frequency_bounds(structure, modes%condition, modes%stable_step, error)
+         modes%condition = 1.0_wp
+         modes%stable_step = 0.0_wp
+         if (allocated(error)) return
+         heavy = pack([(i, i=1, structure%unknowns)], structure%inertias > 0.0_wp &
+                 .and. .not. structure%is_held)
+         if (size(heavy) == 0) then
+            call fatal_error(error, bad_input, 'modes: nothing has mass; give &floor mass, or mass to nodes')
+            return
          end if
-      end do
-   end subroutine find_assembled_modes
+         wanted = size(heavy)
+         if (present(count)) wanted = min(wanted, count)
+         call assemble_initial(structure, structure%axially_loaded, matrix)
+         call matrix%factor()
+         allocate (all_of(structure%unknowns, size(heavy)), source=0.0_wp)
+         root = sqrt(structure%inertias(heavy))
+         do i = 1, size(heavy)
+            all_of(heavy(i), i) = root(i)
+         end do
+         call matrix%solve(all_of, found)
+         flexible = all_of(heavy, :)*spread(root, 2, size(heavy))
+         allocate (square(size(heavy)))
+         if (found) call symmetric_modes(flexible, square, found)
+         if (.not. found) then
+            call fatal_error(error, bad_input, 'modes: the stiffness has no inverse; look for parts that '// &
+                             'can move without force')
+            return
+         end if
+         allocate (modes%omega(wanted), modes%shapes(structure%unknowns, wanted))
+         do i = 1, wanted
+            associate (from => size(heavy) + 1 - i)
+               modes%omega(i) = 1.0_wp/sqrt(max(square(from), tiny(1.0_wp)))
+               ! F M^(1/2) y omega^2 is the shape of all unknowns, with unit modal mass.
+               modes%shapes(:, i) = matmul(all_of, flexible(:, from))*modes%omega(i)**2
+            end associate
+            if (structure%work_of(horizontal, modes%shapes(:, i)) > 0.0_wp) then
+               modes%shapes(:, i) = -modes%shapes(:, i)
+            end if
+         end do
+      end subroutine find_assembled_modes
+
+      subroutine find_column_modes(column)
+         class(column_type), intent(in) :: column
+         type(mode_search) :: search(2)
+         real(wp), allocatable :: squares(:, :), shapes(:, :, :, :)
+         real(wp) :: lowest(2), top
+         integer :: b, blocks, i, n, next(2), wanted
+
+         n = column%n
+         blocks = merge(2, 1, column%opens)
+         wanted = column%unknowns - merge(1, 0, column%held)
+         if (present(count)) then
+            wanted = min(wanted, count)
+            if (real(wanted, wp)*column%unknowns > most_numbers) then
+               call fatal_error(error, bad_input, 'modes: the shapes of '//to_text(wanted)//' modes of n '// &
+                                '= '//to_text(n)//' bodies take too much memory; ask for '// &
+                                to_text(int(most_numbers/column%unknowns))//' at the most')
+               return
+            end if
+         else if (n > most_dense) then
+            call fatal_error(error, bad_input, 'modes: all modes are found for up to '// &
+                             to_text(most_dense)//' bodies, not for n = '// &
+                             to_text(n)//'; ask for the first ones by count. '// &
+                             'A dynamic analysis does not need them, it finds its stable step for any n')
+            return
+         end if
+         ! This also refuses a column that buckles under its axial load alone.
+         call stability_limit(column, modes%stable_step, error)
+         if (allocated(error)) return
+         call set_condition(column)
+
+         allocate (squares(wanted, blocks), shapes(2, n, wanted, blocks))
+         call search(1)%start(lateral_chain(column, column%axially_loaded))
+         if (column%opens) call search(2)%start(opening_chain(column))
+         lowest = huge(1.0_wp)
+         do b = 1, blocks
+            next(b) = 1
+            call search(b)%find(1, 1, squares(:, b), shapes(:, :, :, b))
+            lowest(b) = squares(1, b)
+         end do
+         allocate (modes%omega(wanted))
+         allocate (modes%shapes(column%unknowns, wanted), source=0.0_wp)
+         do i = 1, wanted
+            b = minloc(lowest, 1)
+            associate (shape => modes%shapes(:, i), found => shapes(:, :, next(b), b))
+               modes%omega(i) = sqrt(lowest(b))
+               if (b == 2) then
+                  shape(column%at(axial, :)) = found(1, :)
+               else
+                  shape(column%at(shear, :)) = found(1, :)
+                  shape(column%at(flexure, :)) = found(2, :)
+               end if
+               ! The top goes to +x or, if it only goes along the column, up.
+               top = dot_product(column%arm, shape) + sum(shape, column%place%kind == axial)
+               shape = sign(1.0_wp, top)*shape
+            end associate
+            next(b) = next(b) + 1
+            lowest(b) = huge(1.0_wp)
+            if (next(b) > min(wanted, search(b)%chain%modes) .or. i == wanted) cycle
+            call search(b)%find(next(b), next(b), squares(:, b), shapes(:, :, :, b))
+            lowest(b) = squares(next(b), b)
+         end do
+      end subroutine find_column_modes
+
+      !> Condition of the modes under axial load.
+      subroutine set_condition(column)
+         class(column_type), intent(in) :: column
+         real(wp) :: factor, share
+
+         if (.not. column%axially_loaded) return
+         call critical_factor(column, factor)
+         share = 1.0_wp/factor
+         modes%condition = (1.0_wp + share)/max(1.0_wp - share, epsilon(1.0_wp))
+         if (modes%condition < worst_condition) return
+         modes%warning = 'the axial load is '//to_text(share)//' of the critical one: a relative error '// &
+                         'of a stiffness or of the load may grow by '//to_text(modes%condition)// &
+                         ' in the square of the lowest frequency'
+      end subroutine set_condition
+
+   end subroutine find_modes
 
    !> Stiffness before any spring yields, with the axial forces at rest.
    subroutine assemble_initial(structure, axial, matrix)
@@ -141,88 +220,6 @@ contains
       call structure%axial_forces(at_rest, force)
       call structure%add_geometric(force, matrix%band)
    end subroutine assemble_initial
-
-   subroutine find_column_modes(column, modes, error, count)
-      class(column_type), intent(in) :: column
-      type(modes_type), intent(out) :: modes
-      type(error_type), allocatable, intent(out) :: error
-      !> How many, the lowest first; without it all
-      integer, intent(in), optional :: count
-      type(mode_search) :: search(2)
-      real(wp), allocatable :: squares(:, :), shapes(:, :, :, :)
-      real(wp) :: lowest(2), top
-      integer :: b, blocks, i, n, next(2), wanted
-
-      n = column%n
-      blocks = merge(2, 1, column%opens)
-      wanted = column%unknowns - merge(1, 0, column%held)
-      if (present(count)) then
-         wanted = min(wanted, count)
-         if (real(wanted, wp)*column%unknowns > most_numbers) then
-            call fatal_error(error, bad_input, 'modes: the shapes of '//to_text(wanted)//' modes of n = '// &
-                             to_text(n)//' bodies take too much memory; ask for '// &
-                             to_text(int(most_numbers/column%unknowns))//' at the most')
-            return
-         end if
-      else if (n > most_dense) then
-         call fatal_error(error, bad_input, 'modes: all modes are found for up to '//to_text(most_dense)// &
-                          ' bodies, not for n = '//to_text(n)//'; ask for the first ones by count. '// &
-                          'A dynamic analysis does not need them, it finds its stable step for any n')
-         return
-      end if
-      ! This also refuses a column that buckles under its axial load alone.
-      call stability_limit(column, modes%stable_step, error)
-      if (allocated(error)) return
-      call set_condition(column, modes)
-
-      allocate (squares(wanted, blocks), shapes(2, n, wanted, blocks))
-      call search(1)%start(lateral_chain(column, column%axially_loaded))
-      if (column%opens) call search(2)%start(opening_chain(column))
-      lowest = huge(1.0_wp)
-      do b = 1, blocks
-         next(b) = 1
-         call search(b)%find(1, 1, squares(:, b), shapes(:, :, :, b))
-         lowest(b) = squares(1, b)
-      end do
-      allocate (modes%omega(wanted))
-      allocate (modes%shapes(column%unknowns, wanted), source=0.0_wp)
-      do i = 1, wanted
-         b = minloc(lowest, 1)
-         associate (shape => modes%shapes(:, i), found => shapes(:, :, next(b), b))
-            modes%omega(i) = sqrt(lowest(b))
-            if (b == 2) then
-               shape(column%at(axial, :)) = found(1, :)
-            else
-               shape(column%at(shear, :)) = found(1, :)
-               shape(column%at(flexure, :)) = found(2, :)
-            end if
-            ! The top goes to +x or, if it only goes along the column, up.
-            top = dot_product(column%arm, shape) + sum(shape, column%place%kind == axial)
-            shape = sign(1.0_wp, top)*shape
-         end associate
-         next(b) = next(b) + 1
-         lowest(b) = huge(1.0_wp)
-         if (next(b) > min(wanted, search(b)%chain%modes) .or. i == wanted) cycle
-         call search(b)%find(next(b), next(b), squares(:, b), shapes(:, :, :, b))
-         lowest(b) = squares(next(b), b)
-      end do
-   end subroutine find_column_modes
-
-   !> Condition of the modes under axial load.
-   subroutine set_condition(column, modes)
-      class(column_type), intent(in) :: column
-      type(modes_type), intent(inout) :: modes
-      real(wp) :: factor, share
-
-      if (.not. column%axially_loaded) return
-      call critical_factor(column, factor)
-      share = 1.0_wp/factor
-      modes%condition = (1.0_wp + share)/max(1.0_wp - share, epsilon(1.0_wp))
-      if (modes%condition < worst_condition) return
-      modes%warning = 'the axial load is '//to_text(share)//' of the critical one: a relative error of '// &
-                      'a stiffness or of the load may grow by '//to_text(modes%condition)// &
-                      ' in the square of the lowest frequency'
-   end subroutine set_condition
 
    !> Lowest and highest circular frequency of the structure before any spring yields [rad/s]; the axial
    !> forces count where the kinematics let them.
@@ -376,6 +373,7 @@ contains
       real(wp), intent(in) :: omega, c
       complex(wp) :: root, lambda(2)
       real(wp) :: below, above
+      logical :: stable
       integer :: i
 
       h = 2.0_wp*sqrt(2.0_wp)/max(omega, slowest)
@@ -389,7 +387,11 @@ contains
       above = 4.0_wp/abs(lambda(1))
       do i = 1, 100
          h = 0.5_wp*(below + above)
-         if (all(growth(lambda*h) <= 1.0_wp + 1.0e-12_wp)) then
+         associate (z => lambda*h)
+            stable = all(abs(1.0_wp + z*(1.0_wp + z/2.0_wp*(1.0_wp + z/3.0_wp*(1.0_wp + z/4.0_wp)))) &
+                         <= 1.0_wp + 1.0e-12_wp)
+         end associate
+         if (stable) then
             below = h
          else
             above = h
@@ -397,11 +399,5 @@ contains
       end do
       h = below
    end function stable_step
-
-   elemental real(wp) function growth(z)
-      complex(wp), intent(in) :: z
-
-      growth = abs(1.0_wp + z*(1.0_wp + z/2.0_wp*(1.0_wp + z/3.0_wp*(1.0_wp + z/4.0_wp))))
-   end function growth
 
 end module rbs_solve_modal_modes

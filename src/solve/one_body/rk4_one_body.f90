@@ -14,10 +14,8 @@ module rbs_solve_one_body_rk4_one_body
       !> Inverse of the mass matrix in slip and rotation [1/kg, 1/(kg m), 1/(kg m2)], and the moment of the
       !> axial force per rotation [N m]
       real(wp) :: flexible = 0.0_wp, coupling = 0.0_wp, turning = 0.0_wp, softening = 0.0_wp
-      !> Distance of the centroid from the joint, length [m], and mass
-      real(wp), private :: lower = 0.0_wp, height = 0.0_wp, mass = 0.0_wp
-      !> Accelerations by a lateral force
-      real(wp), private :: push(2) = 0.0_wp
+      !> Distance of the centroid from the joint, length [m], and mass; accelerations by a lateral force
+      real(wp), private :: lower = 0.0_wp, height = 0.0_wp, mass = 0.0_wp, push(2) = 0.0_wp
       !> See `resistance_per_velocity`; the step and the lines that it belongs to
       real(wp), private :: g(4) = 0.0_wp, h = -1.0_wp
       integer, private :: version = -1
@@ -107,12 +105,9 @@ contains
    !> Acceleration that half a step takes away for each velocity, by the springs on their lines and the axial
    !> force [1/s]: of the slip by slip and by rotation, of the rotation by slip and by rotation.
    pure function resistance_per_velocity(flexible, coupling, turning, softening, k_1, k_2, half) result(g)
-      !> See `rk4_body`
-      real(wp), intent(in) :: flexible, coupling, turning, softening
-      !> Slopes of the lines, half a step [s]
-      real(wp), intent(in) :: k_1, k_2, half
-      real(wp) :: g(4)
-      real(wp) :: shear, flexure
+      !> See `rk4_body`; slopes of the lines, half a step [s]
+      real(wp), intent(in) :: flexible, coupling, turning, softening, k_1, k_2, half
+      real(wp) :: g(4), shear, flexure
 
       shear = half*k_1
       flexure = half*(k_2 - softening)

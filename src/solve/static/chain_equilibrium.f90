@@ -15,7 +15,7 @@ module rbs_solve_static_chain_equilibrium
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_few_bodies, only: few_bodies, most_unknowns
-   use rbs_structure_column_chain, only: second_order_forces, geometric_forces
+   use rbs_structure_column_chain, only: geometric_forces
    use rbs_structure_column_chain_matrices, only: geometric_stiffness
    use rbs_structure_column_column, only: column_type
    implicit none
@@ -35,9 +35,9 @@ module rbs_solve_static_chain_equilibrium
       !> Arms of the force, and initial stiffness, which shares the motion between joints that have none left
       !> (2 n)
       real(wp), allocatable, private :: arm(:), initial(:)
-      !> Lengths of the bodies (n); axial forces that do second-order work (2 n); the stiffness that they take
-      !> away, between the slip of a joint and the rotation below it, and of the rotations (n, 2)
-      real(wp), allocatable, private :: length(:), axial(:), geometric(:, :)
+      !> Axial forces that do second-order work, times lengths and across slips (2 n): the stiffness that they
+      !> take away of the rotations, and between the slip of a joint and the rotation below it
+      real(wp), allocatable, private :: axial(:)
       !> Whether the joints are coupled; if not, K is diagonal and nothing is factored
       logical, private :: coupled = .false.
       type(few_bodies), private :: few
@@ -60,6 +60,7 @@ contains
    subroutine create(self, column)
       class(chain_equilibrium), intent(out) :: self
       class(column_type), intent(in) :: column
+      real(wp) :: stiffness(most_unknowns, most_unknowns)
       integer :: m
 
       m = 2*column%n
@@ -67,47 +68,31 @@ contains
       self%moving = m
       self%held = column%held
       self%height = column%total_height
-      self%length = column%length
       self%arm = column%arm(:m)
       self%initial = column%initial_stiffness(:m)
       self%coupled = column%axially_loaded .or. column%held
       allocate (self%f(m), self%g(m), self%residual(m), self%correction(m), source=0.0_wp)
       if (.not. self%coupled) return
       allocate (self%axial(m), source=0.0_wp)
-      if (column%axially_loaded) self%axial(:) = [column%axial_body, column%axial_slip]
+      if (column%axially_loaded) self%axial(:) = column%second_order
       if (m <= most_unknowns .and. .not. column%held) then
-         call create_few(self, column)
+         call geometric_stiffness(column, stiffness(:m, :m))
+         call self%few%create(stiffness(:m, :m), self%arm)
       else
-         call create_band(self)
+         call create_band(self, column%length)
       end if
    end subroutine create
 
-   subroutine create_few(self, column)
+   subroutine create_band(self, length)
       type(chain_equilibrium), intent(inout) :: self
-      class(column_type), intent(in) :: column
-      real(wp) :: stiffness(most_unknowns, most_unknowns)
-
-      associate (m => self%moving)
-         call geometric_stiffness(column, stiffness(:m, :m))
-         call self%few%create(stiffness(:m, :m), self%arm)
-      end associate
-   end subroutine create_few
-
-   subroutine create_band(self)
-      type(chain_equilibrium), intent(inout) :: self
-      real(wp) :: unit(2*self%n), stiffness(2*self%n)
+      real(wp), intent(in) :: length(:)
+      real(wp) :: stiffness(2*self%n)
       integer :: i
 
       associate (n => self%n, m => self%moving)
          allocate (self%lever(m), self%found(m, 2), self%missing(m, 2), self%along(m, 2), self%more(m, 2))
-         ! All bodies turn alike.
-         unit = 0.0_wp
-         unit(n + 1) = 1.0_wp
-         allocate (self%geometric(n, 2), source=0.0_wp)
-         call second_order_forces(n, self%length, self%axial, unit, self%geometric(:, 1), 1, &
-                                  self%geometric(:, 2))
          do i = 1, n
-            self%lever(2*i - 1:2*i) = [1.0_wp, self%length(i)]
+            self%lever(2*i - 1:2*i) = [1.0_wp, length(i)]
             stiffness(2*i - 1:2*i) = [self%initial(i), self%initial(n + i)]
             if (i < n) stiffness(2*i) = stiffness(2*i) + self%initial(n + i + 1)
          end do
@@ -130,7 +115,7 @@ contains
          r(i) = self%arm(i)*force - f(i)
       end do
       if (.not. self%coupled) return
-      call geometric_forces(self%n, self%length, self%axial, q, self%g)
+      call geometric_forces(self%n, self%axial, q, self%g)
       do i = 1, self%moving
          r(i) = r(i) - self%g(i)
       end do
@@ -273,10 +258,10 @@ contains
          band = 0.0_wp
          do i = 1, n
             band(1, 2*i - 1) = k(i)
-            band(1, 2*i) = k(n + i) - self%geometric(i, 2)
+            band(1, 2*i) = k(n + i) - self%axial(i)
             if (i == n) exit
             band(1, 2*i) = band(1, 2*i) + k(n + i + 1)
-            band(2, 2*i) = self%geometric(i + 1, 1)
+            band(2, 2*i) = -self%axial(n + i + 1)
             band(3, 2*i) = -k(n + i + 1)
          end do
       end associate
@@ -319,14 +304,12 @@ contains
    pure subroutine follow_diagonal(m, arm, initial, k, r, gap, rate, force_rate, correction, &
                                    force_correction, flexible, regular)
       integer, intent(in) :: m
-      !> Arms of the force and initial stiffness of the joints (m)
-      real(wp), intent(in) :: arm(m), initial(m)
-      !> Stiffness of the springs, residual (m), and what is missing from the displacement [m]
-      real(wp), intent(in) :: k(m), r(m), gap
-      !> Change of the deformations per metre, and what takes the residuals away (m)
-      real(wp), intent(out) :: rate(m), correction(m)
-      !> Change of the force [N/m], and of the force with the correction [N]
-      real(wp), intent(out) :: force_rate, force_correction
+      !> Arms of the force and initial stiffness of the joints (m); stiffness of the springs, residual (m),
+      !> and what is missing from the displacement [m]
+      real(wp), intent(in) :: arm(m), initial(m), k(m), r(m), gap
+      !> Change of the deformations per metre, and what takes the residuals away (m); change of the force
+      !> [N/m], and of the force with the correction [N]
+      real(wp), intent(out) :: rate(m), correction(m), force_rate, force_correction
       !> Flexibilities, 0 where there is no stiffness (m)
       real(wp), intent(out) :: flexible(m)
       !> Whether there is a unique solution

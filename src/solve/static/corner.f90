@@ -208,20 +208,18 @@ contains
       if (.not. path%by_force) then
          call fatal_error(error, analysis_failed, 'the equilibrium is not unique at the displacement '// &
                           to_text(target)//' m at '//trim(state_of(path))//': '// &
-                          trim(weakest_spring(path))// &
-                          ' and the axial load leave it without stiffness. Change the axial load '// &
-                          'or the stiffness after yield')
+                          trim(weakest_spring(path))//' and the axial load leave it without stiffness. '// &
+                          'Change the axial load or the stiffness after yield')
       else if (path%of_dead_load) then
          call fatal_error(error, analysis_failed, 'it is beyond the capacity of the frame: at a share of '// &
                           to_text(path%force)//' of it '//trim(weakest_spring(path))// &
                           ' has no stiffness left. Give less load, or stronger or stiffer members')
       else
-         call fatal_error(error, analysis_failed, 'the lateral force '//to_text(target)// &
-                          ' N is beyond the capacity of the structure: '// &
-                          trim(weakest_spring(path))//' has no stiffness left at '// &
-                          trim(state_of(path))//'. The path up to there is '// &
-                          'kept; drive the column by displacement, or give the spring a stiffness '// &
-                          'after yield'//remark)
+         call fatal_error(error, analysis_failed, 'the lateral force '//to_text(target)//' N is beyond '// &
+                          'the capacity of the structure: '//trim(weakest_spring(path))//' has no '// &
+                          'stiffness left at '//trim(state_of(path))//'. The path up to there is kept; '// &
+                          'drive the column by displacement, or give the spring a stiffness after yield'// &
+                          remark)
       end if
    end subroutine report_no_line
 

@@ -79,8 +79,7 @@ contains
    pure function clean(structure, point) result(rate)
       class(structure_type), intent(in) :: structure
       type(path_point), intent(in) :: point
-      real(wp) :: rate(size(point%rate))
-      real(wp) :: least(2)
+      real(wp) :: rate(size(point%rate)), least(2)
       integer :: i
 
       least(1) = noise*motion_of(structure, point)
@@ -277,8 +276,7 @@ contains
    pure function slopes(self, i)
       type(curve_type), intent(in) :: self
       integer, intent(in) :: i
-      real(wp) :: slopes(3)
-      real(wp) :: rise, first, last
+      real(wp) :: slopes(3), rise, first, last
 
       rise = self%far%q(i) - self%near%q(i)
       first = self%length*self%near%rate(i)

@@ -13,14 +13,15 @@ module rbs_solve_static_curved
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_hysteresis_interaction_joints, only: put_on_plane
+   use rbs_hysteresis_interaction_joints, only: moment_on_plane, nearest_layer, put_on_plane
    use rbs_structure_column_column, only: column_type
    use rbs_solve_static_corner, only: turn_corner
-   use rbs_solve_static_curve, only: clean, most_turn
+   use rbs_solve_line_search, only: false_position
+   use rbs_solve_static_curve, only: clean, curve_type, most_turn, same_rate
+   use rbs_solve_static_curved_equilibrium, only: curved_equilibrium, path_point
    use rbs_solve_static_path, only: static_path, state_of, weakest_spring, is_on_end, on_the_end, &
                                     serialize_path
    use rbs_solve_static_resume, only: begin_path, end_path
-   use rbs_solve_static_stride, only: stride_type, no_progress, round_off
    use rbs_solve_task, only: task_type
    use rbs_structure_structure, only: finite
    implicit none
@@ -39,8 +40,27 @@ module rbs_solve_static_curved
    !> method, whose points are off by round-off.
    real(wp), parameter :: close_by = 1.0e-9_wp
 
+   !> What round-off leaves of a displacement or force, as a share of the largest.
+   real(wp), parameter :: round_off = 32.0_wp*epsilon(1.0_wp)
+
+   !> Newton's method has converged if a change is below this share of the largest deformation of its kind:
+   !> the next one would be its square. Where round-off ends the progress before, that must be below the
+   !> second share.
+   real(wp), parameter :: arrived = 1.0e-10_wp, no_progress = 1.0e-7_wp
+   integer, parameter :: most_iterations = 15
+
+   !> What the slopes may correct of the work of a stride under a constant axial load, and what may be missing
+   !> from its works under one that varies, with exact rotations and without; as shares of the largest energy
+   !> so far.
+   real(wp), parameter :: most_correction = 1.0e-5_wp, most_missing(2) = [1.0e-12_wp, 1.0e-13_wp]
+
    type, extends(static_path) :: curved_path
-      type(stride_type) :: stride
+      type(curved_equilibrium) :: equilibrium
+      !> The present point and the one that is tried, the curve between the first and the farthest tried, and
+      !> the spring that stands on the end of its line there with its layer; 0 for none
+      type(path_point) :: here, there
+      type(curve_type) :: curve
+      integer :: spring = 0, layer = 0
       !> Axial load at the top at each target (m) where it varies [N], and the number of the target
       real(wp), allocatable :: load(:)
       integer :: row = 0
@@ -78,12 +98,12 @@ contains
       varies = size(load) > 0
       m = column%unknowns
       path%load = load
-      call path%stride%equilibrium%create(column, by_force, varies)
-      allocate (path%stride%here%q(m), path%stride%here%rate(m), path%stride%there%q(m), &
-                path%stride%there%rate(m), source=0.0_wp)
+      call path%equilibrium%create(column, by_force, varies)
+      allocate (path%here%q(m), path%here%rate(m), path%there%q(m), &
+                path%there%rate(m), source=0.0_wp)
       path%structure => column
       path%steady => column
-      if (varies) path%steady => path%stride%equilibrium%steady
+      if (varies) path%steady => path%equilibrium%steady
       call begin_path(path, by_force, m, varies, task%before, error)
       if (allocated(error)) return
       if (.not. task%resumes()) then
@@ -104,13 +124,13 @@ contains
       integer :: direction, strides
 
       self%standing = 0
-      if (self%stride%equilibrium%varies) then
+      if (self%equilibrium%varies) then
          self%row = self%row + 1
-         self%stride%equilibrium%driven = [self%control, target - self%control]
-         self%stride%equilibrium%load = [self%load_now, self%load(self%row) - self%load_now]
-         if (.not. any(abs([self%stride%equilibrium%driven(2), &
-                           self%stride%equilibrium%load(2)]) > 0.0_wp)) return
-         self%stride%here%t = 0.0_wp
+         self%equilibrium%driven = [self%control, target - self%control]
+         self%equilibrium%load = [self%load_now, self%load(self%row) - self%load_now]
+         if (.not. any(abs([self%equilibrium%driven(2), &
+                           self%equilibrium%load(2)]) > 0.0_wp)) return
+         self%here%t = 0.0_wp
          self%goal = 1.0_wp
          self%extent = 1.0_wp
          self%next_length = huge(1.0_wp)
@@ -120,26 +140,26 @@ contains
          self%extent = max(self%extent, abs(target))
       end if
       do strides = 1, 10000 + 1000*self%moving
-         if (.not. abs(self%goal - self%stride%here%t) > 0.0_wp) exit
-         direction = merge(1, -1, self%goal > self%stride%here%t)
+         if (.not. abs(self%goal - self%here%t) > 0.0_wp) exit
+         direction = merge(1, -1, self%goal > self%here%t)
          if (self%direction /= direction) then
             call turn_corner(self, direction, target, error)
             if (allocated(error) .or. self%springs%lost_joint() > 0) return
             ! A spring that was put on the end of its line left the column a little out of equilibrium.
-            if (self%stride%equilibrium%size_of(self%stride%equilibrium%correction, &
-                                                self%stride%here%q) <= no_progress) then
-               self%stride%here%q = self%stride%here%q + self%stride%equilibrium%correction
-               self%stride%here%force = self%stride%here%force + self%stride%equilibrium%force_correction
+            if (self%equilibrium%size_of(self%equilibrium%correction, &
+                                                self%here%q) <= no_progress) then
+               self%here%q = self%here%q + self%equilibrium%correction
+               self%here%force = self%here%force + self%equilibrium%force_correction
             end if
          end if
          call take_stride(self, target, error)
          if (allocated(error)) return
       end do
-      if (abs(self%goal - self%stride%here%t) > 0.0_wp) then
+      if (abs(self%goal - self%here%t) > 0.0_wp) then
          call report_no_way(self, target, error)
          return
       end if
-      if (self%stride%equilibrium%varies) self%load_now = self%load(self%row)
+      if (self%equilibrium%varies) self%load_now = self%load(self%row)
    end subroutine advance
 
    !> Rates of the column on the present lines of its springs.
@@ -148,11 +168,11 @@ contains
       integer, intent(in) :: direction
       logical, intent(out) :: found
 
-      call self%stride%equilibrium%solve(self%springs, self%stride%here, found)
+      call self%equilibrium%solve(self%springs, self%here, found)
       if (.not. found) return
-      self%rate = direction*clean(self%structure, self%stride%here)
-      if (self%stride%equilibrium%varies) self%stride%here%rate = self%rate
-      self%axial_rate = self%stride%here%axial_rate
+      self%rate = direction*clean(self%structure, self%here)
+      if (self%equilibrium%varies) self%here%rate = self%rate
+      self%axial_rate = self%here%axial_rate
    end subroutine solve_line
 
    !> Go on toward the target, at the most to the next event. A stride that fails is cut in halves.
@@ -164,17 +184,16 @@ contains
       integer :: cuts
       logical :: done, near
 
-      self%stride%direction = self%direction
-      way = abs(self%goal - self%stride%here%t)
-      turn = self%structure%largest_turn(self%stride%here%rate)
+      way = abs(self%goal - self%here%t)
+      turn = self%structure%largest_turn(self%here%rate)
       length = min(way, self%next_length)
       if (turn*length > most_turn) length = most_turn/turn
-      shortest = no_stride*max(abs(self%stride%here%t), length)
+      shortest = no_stride*max(abs(self%here%t), length)
       cuts = 0
       do
-         limit = self%stride%here%t + self%direction*length
+         limit = self%here%t + self%direction*length
          if (length >= way) limit = self%goal
-         call try_stride(self, limit, cuts, done, near)
+         call try_stride()
          if (done) exit
          cuts = cuts + 1
          self%cuts = self%cuts + 1
@@ -187,141 +206,309 @@ contains
       if (self%standing > 20 + 4*self%moving + merge(2000, 0, self%springs%pressed)) then
          call report_no_way(self, target, error)
       end if
+
+   contains
+
+      !> One stride, to a limit or to the first event before it.
+      subroutine try_stride()
+         real(wp) :: works(3)
+         logical :: turns
+
+         turns = .false.
+         self%there = self%here
+         call find_event(self, limit)
+         associate (way => abs(self%there%t - self%here%t))
+            near = (self%spring > 0 .or. .not. abs(self%goal - limit) > 0.0_wp) .and. &
+                   way <= close_by*self%extent .and. &
+                   way*self%structure%largest_turn(self%here%rate) <= close_by
+         end associate
+         done = near
+         if (.not. near) call find_point(self, limit, .true., done)
+         if (done) call self%curve%set(self%structure, self%here, self%there)
+         if (done .and. .not. near) then
+            done = self%curve%is_gentle(self%structure)
+            if (done) turns = self%curve%least_rate(self%springs, self%there) < 0.0_wp
+            if (turns) then
+               call find_turn(self, done)
+               if (done) call self%curve%set(self%structure, self%here, self%there)
+            end if
+            ! With small rotations the curve is so slight that no layer goes out of its line and back.
+            if (done) done = .not. self%curve%hides_event(self%springs, self%equilibrium%above, &
+                                                          self%structure%kinematics == finite .and. &
+                                                          cuts < most_looks)
+         end if
+         if (.not. done) return
+         call find_works(self, cuts < most_cuts_for_work .and. .not. near, works, done)
+         if (done) call accept(turns, works)
+      end subroutine try_stride
+
+      !> Go to the point that was found.
+      subroutine accept(turns, works)
+         !> Whether a motion turns back there
+         logical, intent(in) :: turns
+         !> Of force and axial load on the way [J]
+         real(wp), intent(in) :: works(:)
+         logical :: closed, stands
+         integer :: side
+
+         associate (there => self%there, here => self%here, spring => self%spring)
+            ! An end that is met where the path goes to, but for round-off, is met there: beyond it, the path
+            ! would turn back.
+            if (abs(self%goal - there%t) <= on_the_end*abs(self%goal) + round_off*self%extent) then
+               there%t = self%goal
+            end if
+            self%control = self%equilibrium%driven(1) + self%equilibrium%driven(2)*there%t
+            if (self%by_force) then
+               there%force = self%control
+            else
+               there%displacement = self%control
+            end if
+            self%work = self%work + works(1)
+            self%load_work = self%load_work + works(2)
+            self%most_work = max(self%most_work, abs(self%work))
+            stands = .not. abs(there%t - here%t) > 0.0_wp
+            self%standing = merge(self%standing + 1, 0, stands)
+            if (spring > 0 .and. self%layer == 0) then
+               side = merge(1, -1, self%direction*there%rate(spring) > 0.0_wp)
+               closed = merge(self%springs%includes_upper_end(spring), &
+                        self%springs%includes_lower_end(spring), side > 0)
+               call self%springs%arrive(spring, side)
+               ! Where it made no progress its rate is zero and does not show that it goes on. From an open
+               ! end it has gone on already.
+               if (closed .and. stands) call self%springs%leave(spring, side)
+            end if
+            call put_springs()
+            ! A motion may have turned by less than the search resolves.
+            if (turns .or. spring > 0 .or. &
+                any(self%springs%unload_on_reversal*self%direction*clean(self%structure, &
+                                                                         there) < 0.0_wp)) self%direction = 0
+         end associate
+         self%force = self%there%force
+         self%displacement = self%there%displacement
+         self%here = self%there
+         self%here%q = self%springs%d
+         call self%equilibrium%remember(self%here%q)
+         if (.not. abs(self%goal - self%here%t) > 0.0_wp) return
+         if (self%equilibrium%varies) then
+            call self%see_corner(self%here%t)
+         else
+            call self%see_corner((self%control - self%way_begin)/(self%goal - self%way_begin))
+         end if
+      end subroutine accept
+
+      !> Move the springs along their lines; those that come to an open end are put on the next line.
+      subroutine put_springs()
+         real(wp) :: work
+         integer :: i, j, direction
+
+         direction = self%direction
+         associate (springs => self%springs, there => self%there)
+            do i = 1, self%moving
+               if (springs%on_plane(i)) cycle
+               call springs%advance_on_branch(i, min(max(there%q(i), springs%first(i)), springs%last(i)))
+               if (.not. is_on_end(springs, i, there%q(i), direction*there%rate(i))) cycle
+               call springs%arrive(i, merge(1, -1, direction*there%rate(i) > 0.0_wp))
+               self%direction = 0
+            end do
+            if (.not. springs%pressed) return
+            do j = 1, size(springs%layered)
+               i = springs%layered(j)
+               work = work_of_joint(self, i)
+               call put_on_plane(springs, i, there%q(i), there%axial_load + self%equilibrium%above(i), &
+                                 there%rate(i), there%axial_rate, merge(self%layer, 0, i == self%spring))
+               springs%work(i) = springs%work(i) + work
+            end do
+         end associate
+      end subroutine put_springs
+
    end subroutine take_stride
 
-   !> One stride, to a limit or to the first event before it.
-   subroutine try_stride(self, limit, cuts, done, near)
+   !> Go from the point that is tried along its tangent to the first end of a line, if there is one before the
+   !> limit, else to the limit; not back beyond the present point.
+   subroutine find_event(self, limit, change)
       class(curved_path), intent(inout) :: self
       real(wp), intent(in) :: limit
-      !> How often it has been cut
-      integer, intent(in) :: cuts
-      logical, intent(out) :: done
-      !> Whether the way was so short that it is straight, and tells nothing of how far the next stride may
-      !> go. A part of a way that was too long does not count: before a limit point the path bends within any
-      !> distance
-      logical, intent(out) :: near
-      real(wp) :: works(3)
-      logical :: turns
+      !> Of the deformations, to be added to
+      real(wp), intent(inout), optional :: change(:)
+      real(wp) :: room, way
+      integer :: i, side, spring, layer
 
-      turns = .false.
-      self%stride%there = self%stride%here
-      call self%stride%find_event(self%springs, limit)
-      associate (way => abs(self%stride%there%t - self%stride%here%t))
-         near = (self%stride%spring > 0 .or. .not. abs(self%goal - limit) > 0.0_wp) .and. &
-                way <= close_by*self%extent .and. &
-                way*self%structure%largest_turn(self%stride%here%rate) <= close_by
-      end associate
-      done = near
-      if (.not. near) call self%stride%find_point(self%springs, limit, .true., done)
-      if (done) call set_curve(self)
-      if (done .and. .not. near) then
-         done = self%stride%curve%is_gentle(self%structure)
-         if (done) turns = self%stride%curve%least_rate(self%springs, self%stride%there) < 0.0_wp
-         if (turns) then
-            call self%stride%find_turn(self%springs, done)
-            if (done) call set_curve(self)
-         end if
-         ! With small rotations the curve is so slight that no layer goes out of its line and back.
-         if (done) done = .not. self%stride%curve%hides_event(self%springs, self%stride%equilibrium%above, &
-                                                              self%structure%kinematics == finite .and. &
-                                                              cuts < most_looks)
-      end if
-      if (.not. done) return
-      call self%stride%find_works(self%springs, self%most_work, cuts < most_cuts_for_work .and. .not. near, &
-                                  works, done)
-      if (done) call accept(self, turns, works)
-   end subroutine try_stride
-
-   !> The curve between the present point and the one that is tried.
-   subroutine set_curve(self)
-      class(curved_path), intent(inout) :: self
-
-      call self%stride%curve%set(self%structure, self%stride%here, self%stride%there)
-   end subroutine set_curve
-
-   !> Go to the point that was found.
-   subroutine accept(self, turns, works)
-      class(curved_path), intent(inout) :: self
-      !> Whether a motion turns back there
-      logical, intent(in) :: turns
-      !> Of force and axial load on the way [J]
-      real(wp), intent(in) :: works(:)
-      logical :: closed, stands
-      integer :: side
-
-      associate (there => self%stride%there, here => self%stride%here, spring => self%stride%spring)
-         ! An end that is met where the path goes to, but for round-off, is met there: beyond it, the path
-         ! would turn back.
-         if (abs(self%goal - there%t) <= on_the_end*abs(self%goal) + round_off*self%extent) then
-            there%t = self%goal
-         end if
-         associate (driven => self%stride%equilibrium%driven(1) + self%stride%equilibrium%driven(2)*there%t)
-            if (self%by_force) then
-               there%force = driven
-            else
-               there%displacement = driven
+      self%spring = 0
+      self%layer = 0
+      associate (there => self%there)
+         room = self%direction*(limit - there%t)
+         do i = 1, self%springs%count
+            associate (rise => self%direction*there%rate(i))
+               if (.not. abs(rise) > 0.0_wp) cycle
+               side = merge(1, -1, rise > 0.0_wp)
+               if (self%springs%unload_on_reversal(i) == -side) cycle
+               way = side*(self%springs%end_toward(i, side) - there%q(i))
+               if (way < room*abs(rise)) then
+                  room = way/abs(rise)
+                  self%spring = i
+               end if
+            end associate
+         end do
+         if (self%springs%pressed) then
+            call nearest_layer(self%springs, there%q, there%axial_load + self%equilibrium%above, there%rate, &
+                               there%axial_rate, way, spring, layer)
+            if (way < room) then
+               room = way
+               self%spring = spring
+               self%layer = layer
             end if
-            self%control = driven
-         end associate
-         self%work = self%work + works(1)
-         self%load_work = self%load_work + works(2)
-         self%most_work = max(self%most_work, abs(self%work))
-         stands = .not. abs(there%t - here%t) > 0.0_wp
-         self%standing = merge(self%standing + 1, 0, stands)
-         if (spring > 0 .and. self%stride%layer == 0) then
-            side = merge(1, -1, self%direction*there%rate(spring) > 0.0_wp)
-            closed = merge(self%springs%includes_upper_end(spring), self%springs%includes_lower_end(spring), &
-                           side > 0)
-            call self%springs%arrive(spring, side)
-            ! Where it made no progress its rate is zero and does not show that it goes on. From an open end
-            ! it has gone on already.
-            if (closed .and. stands) call self%springs%leave(spring, side)
          end if
-         call put_springs(self)
-         ! A motion may have turned by less than the search resolves.
-         if (turns .or. spring > 0 .or. &
-             any(self%springs%unload_on_reversal*self%direction*clean(self%structure, &
-                                                                      there) < 0.0_wp)) self%direction = 0
+         room = max(room, self%direction*(self%here%t - there%t))
+         if (present(change)) change = change + there%rate*(self%direction*room)
+         call move(self, self%direction*room)
+         if (self%spring > 0 .and. self%layer == 0) then
+            there%q(self%spring) = self%springs%end_toward(self%spring, merge(1, -1, self%direction &
+                                                                         *there%rate(self%spring) > 0.0_wp))
+         else if (self%spring == 0) then
+            there%t = limit
+         end if
       end associate
-      self%force = self%stride%there%force
-      self%displacement = self%stride%there%displacement
-      self%stride%here = self%stride%there
-      self%stride%here%q = self%springs%d
-      call self%stride%equilibrium%remember(self%stride%here%q)
-      if (.not. abs(self%goal - self%stride%here%t) > 0.0_wp) return
-      if (self%stride%equilibrium%varies) then
-         call self%see_corner(self%stride%here%t)
-      else
-         call self%see_corner((self%control - self%way_begin)/(self%goal - self%way_begin))
-      end if
-   end subroutine accept
+   end subroutine find_event
 
-   !> Move the springs along their lines; those that come to an open end are put on the next line.
-   subroutine put_springs(self)
+   !> Move the point that is tried along its tangent.
+   pure subroutine move(self, step)
       class(curved_path), intent(inout) :: self
-      real(wp) :: work
-      integer :: i, j, direction
+      !> Of the parameter
+      real(wp), intent(in) :: step
 
-      direction = self%direction
-      associate (springs => self%springs, there => self%stride%there)
-         do i = 1, self%moving
-            if (springs%on_plane(i)) cycle
-            call springs%advance_on_branch(i, min(max(there%q(i), springs%first(i)), springs%last(i)))
-            if (.not. is_on_end(springs, i, there%q(i), direction*there%rate(i))) cycle
-            call springs%arrive(i, merge(1, -1, direction*there%rate(i) > 0.0_wp))
-            self%direction = 0
-         end do
-         if (.not. springs%pressed) return
-         do j = 1, size(springs%layered)
-            i = springs%layered(j)
-            work = self%stride%work_of_joint(springs, i)
-            call put_on_plane(springs, i, there%q(i), there%axial_load + self%stride%equilibrium%above(i), &
-                                      there%rate(i), there%axial_rate, &
-                                           merge(self%stride%layer, 0, i == self%stride%spring))
-            springs%work(i) = springs%work(i) + work
-         end do
+      associate (there => self%there)
+         there%t = there%t + step
+         there%q = there%q + there%rate*step
+         there%force = there%force + there%force_rate*step
+         there%displacement = there%displacement + there%displacement_rate*step
+         there%axial_load = there%axial_load + there%axial_rate*step
       end associate
-   end subroutine put_springs
+   end subroutine move
+
+   !> Newton's method from the point that is tried to the first event before a limit, or to the limit.
+   subroutine find_point(self, limit, with_events, found)
+      class(curved_path), intent(inout) :: self
+      real(wp), intent(in) :: limit
+      logical, intent(in) :: with_events
+      logical, intent(out) :: found
+      real(wp) :: change(size(self%here%q)), share, last_share
+      logical :: regular
+      integer :: i
+
+      found = .false.
+      last_share = huge(1.0_wp)
+      associate (there => self%there, equilibrium => self%equilibrium)
+         do i = 1, most_iterations
+            call equilibrium%solve(self%springs, there, regular)
+            if (.not. regular) return
+            if (equilibrium%varies) there%rate = clean(equilibrium%column, there)
+            change = equilibrium%correction
+            there%q = there%q + change
+            there%force = there%force + equilibrium%force_correction
+            there%axial_load = there%axial_load + equilibrium%ratio*equilibrium%force_correction
+            if (with_events) call find_event(self, limit, change)
+            share = equilibrium%size_of(change, there%q - change)
+            found = share <= arrived .or. (share <= no_progress .and. share > 0.25_wp*last_share)
+            if (found) exit
+            if (i > 3 .and. share > 2.0_wp*last_share) return
+            last_share = share
+         end do
+         if (.not. found) return
+         if (self%equilibrium%by_force) then
+            there%force = equilibrium%driven(1) + equilibrium%driven(2)*there%t
+            there%displacement = self%equilibrium%column%top_displacement(there%q)
+         else
+            there%displacement = equilibrium%driven(1) + equilibrium%driven(2)*there%t
+         end if
+      end associate
+   end subroutine find_point
+
+   !> Find the point where the first motion turns back.
+   subroutine find_turn(self, done)
+      class(curved_path), intent(inout) :: self
+      logical, intent(out) :: done
+      type(false_position) :: line
+      real(wp) :: value, reached
+      integer :: i
+
+      self%spring = 0
+      self%layer = 0
+      line = false_position(self%here%t, self%there%t, self%curve%least_rate(self%springs, self%here), &
+                            self%curve%least_rate(self%springs, self%there))
+      done = line%at_low > 0.0_wp .and. line%at_high < 0.0_wp
+      if (.not. done) return
+      do i = 1, 60
+         reached = line%next()
+         if (i > 40) reached = 0.5_wp*(line%low + line%high)
+         call self%curve%guess(reached, self%there)
+         call find_point(self, reached, .false., done)
+         if (.not. done) return
+         value = self%curve%least_rate(self%springs, self%there)
+         if (abs(value) < 0.9_wp*same_rate) return
+         call line%narrow(reached, value)
+      end do
+      done = .false.
+   end subroutine find_turn
+
+   !> Works of the lateral force and of the axial load on the way that was tried, and of the layered joints
+   !> whose axial loads vary, all by the cubics of the curve.
+   subroutine find_works(self, strict, works, done)
+      class(curved_path), intent(inout) :: self
+      !> Whether a stride whose works are not exact enough is refused
+      logical, intent(in) :: strict
+      !> Of force, axial load and layered joints [J]
+      real(wp), intent(out) :: works(3)
+      logical, intent(out) :: done
+      real(wp) :: work(2), change(size(self%here%q)), f(size(self%here%q)), lift(2), weight(2), missing, &
+           turnover
+      integer :: j
+
+      associate (here => self%here, there => self%there)
+         work = self%curve%work([here%force, there%force], [here%displacement, there%displacement], &
+                                [here%force_rate, there%force_rate], &
+                                [here%displacement_rate, there%displacement_rate])
+         works = [sum(work), 0.0_wp, 0.0_wp]
+         change = there%q - here%q
+         f = self%springs%f0 + self%springs%k*(there%q - self%springs%d0)
+         if (.not. self%equilibrium%varies) then
+            turnover = sum(abs(change*f))
+            done = .not. strict .or. abs(work(2)) <= most_correction*max(self%most_work, turnover)
+            return
+         end if
+         associate (unit => self%equilibrium%unit, steady => self%equilibrium%steady)
+            lift = [unit%potential_energy(here%q), unit%potential_energy(there%q)]
+            weight = [steady%potential_energy(here%q), steady%potential_energy(there%q)]
+         end associate
+         works(2) = sum(self%curve%work([here%axial_load, there%axial_load], lift, &
+                                        [here%axial_rate, there%axial_rate], &
+                                        [here%lift_rate, there%lift_rate]))
+         f(:) = f - 0.5_wp*self%springs%k*change
+         do j = 1, size(self%springs%layered)
+            if (self%springs%pressed) f(self%springs%layered(j)) = 0.0_wp
+            if (self%springs%pressed) works(3) = works(3) + work_of_joint(self, self%springs%layered(j))
+         end do
+         turnover = sum(abs(change*f)) + sum(abs(works))
+         missing = works(1) - works(2) - works(3) - sum(change*f) - (weight(2) - weight(1))
+         done = .not. strict .or. abs(missing) <= max(self%most_work, turnover) &
+                *most_missing(merge(1, 2, self%structure%kinematics == finite)) &
+                + round_off*(abs(there%axial_load)*maxval(abs(lift)) + maxval(abs(weight)))
+      end associate
+   end subroutine find_works
+
+   !> Work of a layered joint on its plane.
+   pure real(wp) function work_of_joint(self, i) result(work)
+      class(curved_path), intent(in) :: self
+      integer, intent(in) :: i
+
+      associate (here => self%here, there => self%there)
+         work = sum(self%curve%work( &
+                    moment_on_plane(self%springs, i, [here%q(i), there%q(i)], &
+                                    [here%axial_load, there%axial_load] + self%equilibrium%above(i)), &
+                    [here%q(i), there%q(i)], self%springs%k(i)*[here%rate(i), there%rate(i)] &
+                    - self%springs%centre(i)*[here%axial_rate, there%axial_rate], &
+                    [here%rate(i), there%rate(i)]))
+      end associate
+   end function work_of_joint
 
    !> Report why the path cannot be continued.
    subroutine report_no_way(self, target, error)
@@ -333,16 +520,15 @@ contains
       place = trim(state_of(self))
       weakest = ' ('//trim(weakest_spring(self))//' has the least stiffness left). The path up to there '// &
                 'is kept'
-      if (self%stride%equilibrium%varies) then
+      if (self%equilibrium%varies) then
          call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//place//' and the '// &
-                          'axial load '//to_text(self%stride%here%axial_load)//' N on the way to '// &
+                          'axial load '//to_text(self%here%axial_load)//' N on the way to '// &
                           to_text(target)//merge(' N', ' m', self%by_force)//': the column snaps through '// &
                           'or has lost its capacity there'//weakest//'; use a dynamic analysis to go on')
       else if (self%by_force) then
-         call fatal_error(error, analysis_failed, 'the lateral force '//to_text(target)// &
-                          ' N is beyond the capacity of the column: no stable equilibrium was found '// &
-                          'beyond '//place//weakest//'; drive the column by displacement, or stiffen the '// &
-                          'springs')
+         call fatal_error(error, analysis_failed, 'the lateral force '//to_text(target)//' N is beyond '// &
+                          'the capacity of the column: no stable equilibrium was found beyond '//place// &
+                          weakest//'; drive the column by displacement, or stiffen the springs')
       else
          call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//place// &
                           ' on the way to '//to_text(target)//' m: the column snaps back there, or '// &
@@ -357,19 +543,19 @@ contains
       real(wp), intent(out) :: correction(:), force
       logical, intent(out) :: found
 
-      self%stride%here%q = self%springs%d
-      self%stride%here%force = self%force
-      self%stride%here%t = 0.0_wp
-      associate (equilibrium => self%stride%equilibrium)
+      self%here%q = self%springs%d
+      self%here%force = self%force
+      self%here%t = 0.0_wp
+      associate (equilibrium => self%equilibrium)
          equilibrium%by_force = .false.
          equilibrium%driven = [self%displacement, 0.0_wp]
          equilibrium%load = [self%load_now, 0.0_wp]
-         call equilibrium%solve(self%springs, self%stride%here, found)
+         call equilibrium%solve(self%springs, self%here, found)
          equilibrium%by_force = self%by_force
          equilibrium%driven = [0.0_wp, 1.0_wp]
          correction = equilibrium%correction
          force = equilibrium%force_correction
-         if (self%springs%pressed) self%springs%press_to(:) = self%stride%here%axial_load + equilibrium%above
+         if (self%springs%pressed) self%springs%press_to(:) = self%here%axial_load + equilibrium%above
       end associate
    end subroutine find_balance
 
@@ -377,8 +563,8 @@ contains
    real(wp) function unbalance(self)
       class(curved_path), intent(inout) :: self
 
-      self%stride%here%q = self%springs%d
-      unbalance = self%stride%equilibrium%unbalance(self%springs, self%stride%here)
+      self%here%q = self%springs%d
+      unbalance = self%equilibrium%unbalance(self%springs, self%here)
    end function unbalance
 
    !> The springs stand where the path begins.
@@ -386,16 +572,16 @@ contains
       class(curved_path), intent(inout) :: self
 
       self%direction = 0
-      self%stride%here%q = self%springs%d
-      self%stride%here%force = self%force
-      self%stride%here%displacement = self%displacement
-      self%stride%here%t = merge(self%force, self%displacement, self%by_force)
-      self%extent = abs(self%stride%here%t)
-      call self%stride%equilibrium%remember(self%stride%here%q)
-      if (.not. self%stride%equilibrium%varies) return
-      self%stride%equilibrium%load = [self%load_now, 0.0_wp]
+      self%here%q = self%springs%d
+      self%here%force = self%force
+      self%here%displacement = self%displacement
+      self%here%t = merge(self%force, self%displacement, self%by_force)
+      self%extent = abs(self%here%t)
+      call self%equilibrium%remember(self%here%q)
+      if (.not. self%equilibrium%varies) return
+      self%equilibrium%load = [self%load_now, 0.0_wp]
       ! The load has done its work before the path begins.
-      self%load_work = self%load_now*self%stride%equilibrium%unit%potential_energy(self%stride%here%q)
+      self%load_work = self%load_now*self%equilibrium%unit%potential_energy(self%here%q)
    end subroutine stand_still
 
    !> Present to a tape where the path is and how far it may stride.
@@ -404,22 +590,15 @@ contains
       type(stream_type), intent(inout) :: stream
 
       call serialize_path(self, stream)
-      call stream%item(self%load_work)
-      call stream%item(self%next_length)
-      call stream%item(self%extent)
-      call stream%item(self%most_work)
-      call stream%item(self%stride%here%t)
-      call stream%item(self%stride%here%q)
-      call stream%item(self%stride%here%rate)
-      call stream%item(self%stride%here%force)
-      call stream%item(self%stride%here%displacement)
-      call stream%item(self%stride%here%axial_load)
-      call stream%item(self%stride%here%force_rate)
-      call stream%item(self%stride%here%displacement_rate)
-      call stream%item(self%stride%here%axial_rate)
-      call stream%item(self%stride%here%lift_rate)
-      call stream%item(self%stride%equilibrium%scale)
-      call stream%item(self%stride%equilibrium%load)
+      associate (here => self%here)
+         call stream%items(self%load_work, self%next_length, self%extent, self%most_work, here%t)
+         call stream%item(here%q)
+         call stream%item(here%rate)
+         call stream%items(here%force, here%displacement, here%axial_load, here%force_rate, &
+                           here%displacement_rate, here%axial_rate, here%lift_rate)
+      end associate
+      call stream%item(self%equilibrium%scale)
+      call stream%item(self%equilibrium%load)
    end subroutine serialize
 
 end module rbs_solve_static_curved

@@ -32,14 +32,12 @@ module rbs_solve_static_path
       type(spring_array) :: springs
       !> Number of springs that can move, the first ones
       integer :: moving = 0
-      !> Whether the force is driven, else the displacement
-      logical :: by_force = .false.
-      !> Whether what is driven is the share of the dead load of a frame
-      logical :: of_dead_load = .false.
-      !> Displacement of the top [m], lateral force [N], work of the force [J]
-      real(wp) :: displacement = 0.0_wp, force = 0.0_wp, work = 0.0_wp
-      !> What is driven, and the way it goes on the line found last: +1, -1, 0 for no line
-      real(wp) :: control = 0.0_wp
+      !> Whether the force is driven, else the displacement; whether what is driven is the share of the dead
+      !> load of a frame
+      logical :: by_force = .false., of_dead_load = .false.
+      !> Displacement of the top [m], lateral force [N], work of the force [J]; what is driven, and the way it
+      !> goes on the line found last: +1, -1, 0 for no line
+      real(wp) :: displacement = 0.0_wp, force = 0.0_wp, work = 0.0_wp, control = 0.0_wp
       integer :: direction = 0
       !> Change of the deformations per unit of what is driven, in its direction (springs)
       real(wp), allocatable :: rate(:)
@@ -306,11 +304,10 @@ contains
                            on_ends, fault)
       if (.not. allocated(fault)) return
       self%is_wrong = .true.
-      call fatal_error(failure, analysis_failed, 'on the way to '//to_text(target)//' '// &
-                       merge('N', 'm', self%by_force)//' the arithmetic has lost the static path: at a '// &
-                       'displacement of '//to_text(self%displacement)//' m '//fault//'. The path up to '// &
-                       'there is kept. The stiffnesses of the springs are too far apart ('// &
-                       trim(weakest_spring(self))// &
+      call fatal_error(failure, analysis_failed, 'on the way to '//to_text(target)//' '//merge('N', 'm', &
+                       self%by_force)//' the arithmetic has lost the static path: at a displacement of '// &
+                       to_text(self%displacement)//' m '//fault//'. The path up to there is kept. The '// &
+                       'stiffnesses of the springs are too far apart ('//trim(weakest_spring(self))// &
                        ' has the least left): give it more stiffness after yield, or take stiff springs '// &
                        'less stiff')
    end subroutine look

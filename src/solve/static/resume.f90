@@ -37,7 +37,7 @@ contains
 
       call path%prepare(by_force, moving)
       if (before%is_given()) then
-         call begin_from(path, before, varies, error)
+         call begin_from()
          return
       end if
       call path%compress(error)
@@ -46,67 +46,67 @@ contains
       path%load_now = path%structure%axial_load
       energy = path%energies()
       path%at_begin = energy%spring + energy%axial
-   end subroutine begin_path
 
-   !> Begin in the state that another analysis ended in. A static path of the same kind under the same axial
-   !> load goes on as if it had not been cut. Otherwise the top is held where it is, velocities vanish, and
-   !> the joints come to equilibrium.
-   subroutine begin_from(path, before, varies, error)
-      class(static_path), intent(inout) :: path
-      type(end_state), intent(inout) :: before
-      logical, intent(in) :: varies
-      type(error_type), allocatable, intent(out) :: error
-      type(standing_type) :: standing
-      real(wp) :: press(size(path%structure%place)), missing
-      integer :: lost
-      type(energy_type) :: energy
-      logical :: goes_on
+   contains
 
-      call before%take_up(path%structure, standing, path%springs, error)
-      if (allocated(error)) return
-      if (varies) call vary_axial_loads(path%springs)
-      press = path%structure%constant_axial
-      if (varies) press = standing%press
-      goes_on = standing%kind == static_state .and. all(abs(press - standing%press) <= 0.0_wp)
-      call go_under(path%springs, press, standing%pressed)
-      lost = path%springs%lost_joint()
-      if (lost > 0) then
-         call fatal_error(error, analysis_failed, 'initial: the layers of '// &
-                          trim(spring_name(path%structure%place(lost)))// &
-                          ' cannot carry the axial load of '//to_text(press(lost))// &
-                          ' N in the state that the first analysis ended in; give a smaller axial_load')
-         return
-      end if
-      path%load_now = merge(standing%axial_load, path%structure%axial_load, varies)
-      path%work = standing%input
-      path%damped_before = standing%damping
-      path%at_begin = standing%at_begin
-      if (goes_on) then
-         path%displacement = standing%displacement
-         path%force = standing%force
-         if (standing%method == kind_of(path, varies)) then
-            call path%serialize(before%stream)
-            if (before%stream%broken) then
-               call fatal_error(error, analysis_failed, 'initial: the state ends too early; run the '// &
-                                'first analysis again')
-               return
+      !> Begin in the state that another analysis ended in. A static path of the same kind under the same
+      !> axial
+      !> load goes on as if it had not been cut. Otherwise the top is held where it is, velocities vanish, and
+      !> the joints come to equilibrium.
+      subroutine begin_from()
+         type(standing_type) :: standing
+         real(wp) :: press(size(path%structure%place)), missing
+         integer :: lost
+         type(energy_type) :: energy
+         logical :: goes_on
+
+         call before%take_up(path%structure, standing, path%springs, error)
+         if (allocated(error)) return
+         if (varies) call vary_axial_loads(path%springs)
+         press = path%structure%constant_axial
+         if (varies) press = standing%press
+         goes_on = standing%kind == static_state .and. all(abs(press - standing%press) <= 0.0_wp)
+         call go_under(path%springs, press, standing%pressed)
+         lost = path%springs%lost_joint()
+         if (lost > 0) then
+            call fatal_error(error, analysis_failed, 'initial: the layers of '// &
+                             trim(spring_name(path%structure%place(lost)))// &
+                             ' cannot carry the axial load of '//to_text(press(lost))// &
+                             ' N in the state that the first analysis ended in; give a smaller axial_load')
+            return
+         end if
+         path%load_now = merge(standing%axial_load, path%structure%axial_load, varies)
+         path%work = standing%input
+         path%damped_before = standing%damping
+         path%at_begin = standing%at_begin
+         if (goes_on) then
+            path%displacement = standing%displacement
+            path%force = standing%force
+            if (standing%method == kind_of(path, varies)) then
+               call path%serialize(before%stream)
+               if (before%stream%broken) then
+                  call fatal_error(error, analysis_failed, 'initial: the state ends too early; run the '// &
+                                   'first analysis again')
+                  return
+               end if
+            else
+               call path%stand_still()
             end if
          else
+            path%displacement = path%structure%top_displacement(path%springs%d)
+            path%force = standing%force
+            call path%compress(error)
+            if (.not. allocated(error)) call settle(path, error)
+            if (allocated(error)) return
             call path%stand_still()
          end if
-      else
-         path%displacement = path%structure%top_displacement(path%springs%d)
-         path%force = standing%force
-         call path%compress(error)
-         if (.not. allocated(error)) call settle(path, error)
-         if (allocated(error)) return
-         call path%stand_still()
-      end if
-      if (path%direction == 0) path%control = merge(path%force, path%displacement, path%by_force)
-      energy = path%energies()
-      missing = standing%residual - energy%residual
-      if (abs(missing) > 0.0_wp) path%at_begin = path%at_begin + missing
-   end subroutine begin_from
+         if (path%direction == 0) path%control = merge(path%force, path%displacement, path%by_force)
+         energy = path%energies()
+         missing = standing%residual - energy%residual
+         if (abs(missing) > 0.0_wp) path%at_begin = path%at_begin + missing
+      end subroutine begin_from
+
+   end subroutine begin_path
 
    !> What must be the same for a path to go on with what another one remembered: what is driven, and whether
    !> the axial load varies.
@@ -222,9 +222,7 @@ contains
                           + (path%structure%constant_axial - path%structure%axial_load)
          if (path%springs%pressed) then
             do i = 1, size(path%springs%layered)
-               associate (place => path%springs%layered(i))
-                  standing%press(place) = path%springs%press_at(place)
-               end associate
+               standing%press(path%springs%layered(i)) = path%springs%press_at(path%springs%layered(i))
             end do
          end if
       end if

@@ -91,10 +91,9 @@ contains
       class(row_check), intent(inout) :: self
       class(structure_type), intent(in) :: structure
       type(spring_array), intent(in) :: springs
-      !> Of the top [m], and lateral force [N]
-      real(wp), intent(in) :: displacement, force
-      !> Largest force that is out of balance; moments over the height [N]
-      real(wp), intent(in) :: unbalance
+      !> Of the top [m], and lateral force [N]; largest force that is out of balance; moments over the height
+      !> [N]
+      real(wp), intent(in) :: displacement, force, unbalance
       type(energy_type), intent(in) :: energy
       !> Whether springs were put on ends of their lines since the displacement was found
       logical, intent(in) :: on_ends

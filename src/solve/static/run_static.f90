@@ -5,7 +5,7 @@ module rbs_solve_static_run_static
    use rbs_base_text, only: to_text
    use rbs_structure_column_sturm, only: critical_factor
    use rbs_structure_column_column, only: column_type, small, finite
-   use rbs_solve_check_values, only: check_values
+   use rbs_base_check, only: check_values
    use rbs_solve_static_chain_equilibrium, only: chain_equilibrium
    use rbs_solve_static_curved, only: trace_curved
    use rbs_solve_static_frame_equilibrium, only: frame_equilibrium
@@ -39,117 +39,107 @@ contains
       if (allocated(error)) return
       select type (structure)
       class is (column_type)
-         call trace_column(structure, by_force, target, task, error, axial_load)
+         call trace_column(structure)
       class is (frame_type)
-         call trace_frame(structure, by_force, target, task, error, axial_load)
+         call trace_frame(structure)
       end select
       ! Without inertia the ground holds what drives the structure.
       task%summary%peak_base_shear = task%summary%peak_force
       task%summary%method = 'static'
-   end subroutine run_static
 
-   subroutine trace_frame(frame, by_force, target, task, error, axial_load)
-      class(frame_type), intent(in), target :: frame
-      logical, intent(in) :: by_force
-      real(wp), intent(in) :: target(:)
-      type(task_type), intent(inout) :: task
-      type(error_type), allocatable, intent(out) :: error
-      real(wp), intent(in), optional :: axial_load(:)
-      type(frame_equilibrium) :: equilibrium
+   contains
 
-      if (present(axial_load)) then
-         if (size(axial_load) > 0) then
-            call fatal_error(error, bad_input, 'axial_load: a frame has none that varies; its columns '// &
-                             'carry the dead load of floors, beams and nodes')
+      subroutine trace_frame(frame)
+         class(frame_type), intent(in), target :: frame
+         type(frame_equilibrium) :: equilibrium
+
+         if (present(axial_load)) then
+            if (size(axial_load) > 0) then
+               call fatal_error(error, bad_input, 'axial_load: a frame has none that varies; its columns '// &
+                                'carry the dead load of floors, beams and nodes')
+               return
+            end if
+         end if
+         call equilibrium%create(frame, .false.)
+         call trace_straight(frame, equilibrium, by_force, target, task, error)
+         if (.not. allocated(error) .or. equilibrium%unstable == 0) return
+         error%message = error%message//'. Member '//trim(frame%member_name(equilibrium%unstable))// &
+                         ' snaps back: its springs soften faster than the rest of it gives back; give it '// &
+                         'a softer rest, or springs that soften less'
+      end subroutine trace_frame
+
+      subroutine trace_column(column)
+         class(column_type), intent(in), target :: column
+         class(column_type), allocatable, target :: other
+         class(column_type), pointer :: loaded
+         type(chain_equilibrium) :: equilibrium
+         real(wp) :: load(size(target))
+         logical :: varies, curved
+
+         loaded => column
+         load = column%axial_load
+         varies = abs(column%axial_force_ratio) > 0.0_wp
+         if (present(axial_load)) then
+            if (size(axial_load) > 0) then
+               call check_axial_load(column, size(target))
+               if (allocated(error)) return
+               load = axial_load
+               ! From the state of another analysis the load goes to its first value.
+               varies = varies .or. task%resumes() .or. any(abs(load - load(1)) > same_load*maxval(abs(load)))
+               allocate (other, source=column)
+               call other%put_under(load(1))
+               loaded => other
+            end if
+         end if
+         curved = varies .or. column%kinematics == finite
+         if (curved .and. (column%axial_follows .or. column%force_follows)) then
+            call fatal_error(error, bad_input, 'column: loads that follow the top (axial_follows, '// &
+                             'force_follows) have no potential, and a static path could miss the loss of '// &
+                             'stability; use a dynamic analysis')
             return
          end if
-      end if
-      call equilibrium%create(frame, .false.)
-      call trace_straight(frame, equilibrium, by_force, target, task, error)
-      if (.not. allocated(error) .or. equilibrium%unstable == 0) return
-      error%message = error%message//'. Member '//trim(frame%member_name(equilibrium%unstable))// &
-                      ' snaps back: its springs soften faster than the rest of it gives back; give it a '// &
-                      'softer rest, or springs that soften less'
-   end subroutine trace_frame
-
-   subroutine trace_column(column, by_force, target, task, error, axial_load)
-      class(column_type), intent(in), target :: column
-      logical, intent(in) :: by_force
-      real(wp), intent(in) :: target(:)
-      type(task_type), intent(inout) :: task
-      type(error_type), allocatable, intent(out) :: error
-      real(wp), intent(in), optional :: axial_load(:)
-      class(column_type), allocatable, target :: other
-      class(column_type), pointer :: loaded
-      type(chain_equilibrium) :: equilibrium
-      real(wp) :: load(size(target))
-      logical :: varies, curved
-
-      loaded => column
-      load = column%axial_load
-      varies = abs(column%axial_force_ratio) > 0.0_wp
-      if (present(axial_load)) then
-         if (size(axial_load) > 0) then
-            call check_axial_load(column, axial_load, size(target), error)
-            if (allocated(error)) return
-            load = axial_load
-            ! From the state of another analysis the load goes to its first value.
-            varies = varies .or. task%resumes() .or. any(abs(load - load(1)) > same_load*maxval(abs(load)))
-            allocate (other, source=column)
-            call other%put_under(load(1))
-            loaded => other
+         if (curved) then
+            call trace_curved(loaded, by_force, target, pack(load, varies), task, error)
+         else
+            call equilibrium%create(loaded)
+            call trace_straight(loaded, equilibrium, by_force, target, task, error)
          end if
-      end if
-      curved = varies .or. column%kinematics == finite
-      if (curved .and. (column%axial_follows .or. column%force_follows)) then
-         call fatal_error(error, bad_input, 'column: loads that follow the top (axial_follows, '// &
-                          'force_follows) have no potential, and a static path could miss the loss of '// &
-                          'stability; use a dynamic analysis')
-         return
-      end if
-      if (curved) then
-         call trace_curved(loaded, by_force, target, pack(load, varies), task, error)
-      else
-         call equilibrium%create(loaded)
-         call trace_straight(loaded, equilibrium, by_force, target, task, error)
-      end if
-      if (allocated(error) .and. by_force .and. .not. abs(task%summary%peak_displacement) > 0.0_wp) then
-         call explain_buckling(loaded, task%summary%steps, error)
-      end if
-   end subroutine trace_column
+         if (allocated(error) .and. by_force .and. .not. abs(task%summary%peak_displacement) > 0.0_wp) then
+            call explain_buckling(loaded, task%summary%steps)
+         end if
+      end subroutine trace_column
 
-   !> A column that could not be moved by a force may have buckled before.
-   subroutine explain_buckling(column, row, error)
-      class(column_type), intent(in) :: column
-      !> In which the path failed
-      integer, intent(in) :: row
-      type(error_type), intent(inout) :: error
-      real(wp) :: factor
+      !> A column that could not be moved by a force may have buckled before.
+      subroutine explain_buckling(column, row)
+         class(column_type), intent(in) :: column
+         !> In which the path failed
+         integer, intent(in) :: row
+         real(wp) :: factor
 
-      call critical_factor(column, factor)
-      if (factor > 1.0_wp .or. row == 0) return
-      error%message = 'row '//to_text(row)//': the axial load is '//to_text(1.0_wp/factor)// &
-                      ' times the critical load of the uncracked column, which buckles by itself; '// &
-                      'reduce axial_load, stiffen the springs, or drive it by displacement'
-   end subroutine explain_buckling
+         call critical_factor(column, factor)
+         if (factor > 1.0_wp .or. row == 0) return
+         error%message = 'row '//to_text(row)//': the axial load is '//to_text(1.0_wp/factor)// &
+                         ' times the critical load of the uncracked column, which buckles by itself; '// &
+                         'reduce axial_load, stiffen the springs, or drive it by displacement'
+      end subroutine explain_buckling
 
-   !> One axial load for each target.
-   subroutine check_axial_load(column, axial_load, targets, error)
-      class(column_type), intent(in) :: column
-      real(wp), intent(in) :: axial_load(:)
-      integer, intent(in) :: targets
-      type(error_type), allocatable, intent(out) :: error
+      !> One axial load for each target.
+      subroutine check_axial_load(column, targets)
+         class(column_type), intent(in) :: column
+         integer, intent(in) :: targets
 
-      if (size(axial_load) /= targets) then
-         call fatal_error(error, bad_input, 'axial_load: '//to_text(size(axial_load))//' values for '// &
-                          to_text(targets)//' points of the path; give one for each')
-         return
-      end if
-      call check_values(axial_load, 'axial_load', error)
-      if (allocated(error) .or. column%kinematics /= small .or. column%opens .or. &
-          any(column%rules%name == 'layered')) return
-      call fatal_error(error, bad_input, "axial_load: with kinematics = 'small', no layered joint and no "// &
-                       "axial spring a history of it does nothing; use 'pdelta', or give such springs")
-   end subroutine check_axial_load
+         if (size(axial_load) /= targets) then
+            call fatal_error(error, bad_input, 'axial_load: '//to_text(size(axial_load))//' values for '// &
+                             to_text(targets)//' points of the path; give one for each')
+            return
+         end if
+         call check_values(axial_load, 'axial_load', error)
+         if (allocated(error) .or. column%kinematics /= small .or. column%opens .or. &
+             any(column%rules%name == 'layered')) return
+         call fatal_error(error, bad_input, "axial_load: with kinematics = 'small', no layered joint and "// &
+                          "no axial spring a history of it does nothing; use 'pdelta', or give such springs")
+      end subroutine check_axial_load
+
+   end subroutine run_static
 
 end module rbs_solve_static_run_static

@@ -147,16 +147,14 @@ contains
       logical :: near
 
       change = control - self%start
-      associate (springs => self%springs)
-         call springs%go_along(self%q, self%rate, abs(change), nearly, near)
-         do i = 1, merge(self%moving, 0, near)
-            d = self%q(i) + self%rate(i)*abs(change)
-            if (is_on_end(springs, i, d, self%rate(i))) then
-               call springs%arrive(i, merge(1, -1, self%rate(i) > 0.0_wp))
-               self%direction = 0
-            end if
-         end do
-      end associate
+      call self%springs%go_along(self%q, self%rate, abs(change), nearly, near)
+      do i = 1, merge(self%moving, 0, near)
+         d = self%q(i) + self%rate(i)*abs(change)
+         if (is_on_end(self%springs, i, d, self%rate(i))) then
+            call self%springs%arrive(i, merge(1, -1, self%rate(i) > 0.0_wp))
+            self%direction = 0
+         end if
+      end do
       associate (line => self%equilibrium)
          force = self%force_start + line%force_rate*change
          displacement = self%displacement_start + line%displacement_rate*change

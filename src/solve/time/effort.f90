@@ -68,8 +68,7 @@ contains
       text = 'analysis: about '//to_text(anint(steps_of(plan, method)))//" steps with method = '"// &
              trim(plan%method)//"' will take some "//to_text(one_digit(seconds))//' s'
       if (.not. method%explicit) return
-      text = text//'; the highest frequency limits the stable step to '// &
-             to_text(plan%limit)//' s'
+      text = text//'; the highest frequency limits the stable step to '//to_text(plan%limit)//' s'
       other = method_named(faster)
       call frequency_bounds(structure, lowest, highest, error)
       if (allocated(error)) return

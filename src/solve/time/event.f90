@@ -117,9 +117,7 @@ contains
       integer :: i
 
       i = event%spring
-      if (event%turns) then
-         call state%motion%acceleration(state%springs, scheme%q, scheme%v, scheme%load, now)
-      end if
+      if (event%turns) call state%motion%acceleration(state%springs, scheme%q, scheme%v, scheme%load, now)
       if (event%layer == 0) then
          if (event%turns) then
             wrong = event%way*scheme%v(i)

@@ -43,10 +43,9 @@ module rbs_solve_time_finite_joint
       !> Numbers of its bodies, 0 for the ground, and its sign
       integer :: lower = 0, upper = 0
       real(wp) :: sign = 1.0_wp
-      !> Distances of the joint from the centroids of the bodies below and above [m]
-      real(wp) :: below = 0.0_wp, above = 0.0_wp
-      !> D at the start of the step, in the mean and at the end [m]
-      real(wp) :: start(2) = 0.0_wp, mean(2) = 0.0_wp, finish(2) = 0.0_wp
+      !> Distances of the joint from the centroids of the bodies below and above [m]; D at the start of the
+      !> step, in the mean and at the end [m]
+      real(wp) :: below = 0.0_wp, above = 0.0_wp, start(2) = 0.0_wp, mean(2) = 0.0_wp, finish(2) = 0.0_wp
    end type joint_type
 
 contains
@@ -131,8 +130,7 @@ contains
       !> Velocities of the bodies (x, y, th)
       real(wp), intent(in) :: rate_below(3), rate_above(3)
       type(joint_type), intent(in) :: joint
-      real(wp) :: rates(3)
-      real(wp) :: rate(2)
+      real(wp) :: rates(3), rate(2)
 
       rate = (rate_above(:2) - rate_below(:2)) - (joint%above*rate_above(3))*above%t1 &
              - (joint%below*rate_below(3))*below%t1
@@ -165,10 +163,9 @@ contains
    pure subroutine joint_tangent(below, above, joint, half, forces, k, closed, tangent)
       type(turned_body), intent(in) :: below, above
       type(joint_type), intent(in) :: joint
-      !> Share of the end of the step in the means: 1/2, or 1 at one state
-      real(wp), intent(in) :: half
-      !> Forces, and their derivatives by the deformations at the end of the step
-      real(wp), intent(in) :: forces(3), k(3)
+      !> Share of the end of the step in the means: 1/2, or 1 at one state; forces, and their derivatives by
+      !> the deformations at the end of the step
+      real(wp), intent(in) :: half, forces(3), k(3)
       !> Whether the joint does not open: its axial force is an unknown
       logical, intent(in) :: closed
       real(wp), intent(out) :: tangent(local, local)

@@ -12,10 +12,9 @@ module rbs_solve_time_implicit
    use rbs_solve_one_body_implicit_one_body, only: one_body_step
    use rbs_solve_one_body_rk4_one_body, only: softening_of
    use rbs_solve_time_implicit_finite, only: finite_stepper
-   use rbs_solve_time_implicit_balance, only: step_balance
-   use rbs_solve_time_implicit_tangent, only: step_tangent
+   use rbs_solve_time_implicit_balance, only: step_balance, step_tangent
    use rbs_loading_loads, only: lateral, horizontal
-   use rbs_solve_time_newton, only: newton_stepper, move_springs
+   use rbs_solve_time_newton, only: newton_stepper
    use rbs_solve_time_state, only: state_type
    implicit none
    private
@@ -81,16 +80,12 @@ contains
       type(finite_stepper) :: stepper
 
       stepper%average = method%average
-      stepper%alpha_m = method%step%alpha_m
-      stepper%alpha_f = method%step%alpha_f
-      stepper%beta = method%step%beta
-      stepper%gamma = method%step%gamma
+      stepper%by = method%step%family_type
    end function with_finite_rotations
 
-   !> Once, before the first step.
    subroutine prepare(self, state)
       class(implicit_stepper), intent(inout) :: self
-      type(state_type), intent(in) :: state
+      type(state_type), intent(inout) :: state
 
       call self%step%start(state)
       if (allocated(self%dx)) return
@@ -99,63 +94,188 @@ contains
                 self%dq(size(state%q)), self%mean(size(state%q)), source=0.0_wp)
    end subroutine prepare
 
-   !> Take a step of h, if it converges.
-   subroutine take_step(self, state, h, load, converged, busiest)
+   subroutine take_step(self, state)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4)
-      logical, intent(out) :: converged
-      integer, intent(out) :: busiest
 
+      self%busiest = 0
       if (associated(state%motion%one_body)) then
-         busiest = 0
-         call take_step_of_one_body(self, state, h, load, converged)
-         if (converged) return
+         call take_step_of_one_body()
+         if (self%converged) return
       end if
-      call solve_step(self, state, h, load, converged, busiest)
-      if (converged) call commit(self, state, h, load)
+      call solve_step()
+      if (self%converged) call commit()
+
+   contains
+
+      !> Take a step of one body without damping. If it is not found so, nothing has happened.
+      subroutine take_step_of_one_body()
+         real(wp) :: mean(2)
+
+         associate (step => self%step, body => self%one_body, motion => state%motion, h => self%h, &
+                    load => self%load)
+            if (abs(h - body%h) > 0.0_wp .or. abs(self%wanted - body%wanted) > 0.0_wp) then
+               call fit_one_body(body, step, self%wanted, state, h)
+            end if
+            call body%take_step(state%springs, state%q, step%v0, step%a0, step%g0, step%largest, &
+                                load(lateral), load(horizontal), self%converged)
+            if (.not. self%converged) return
+            mean = 0.5_wp*(state%load(:2) + load(:2))
+            if (motion%acts(lateral)) then
+               state%of_loads = state%of_loads &
+                                + mean(lateral)*(body%moved(1) + body%upper*body%moved(2))
+            end if
+            if (motion%acts(horizontal)) then
+               state%of_loads = state%of_loads - mean(horizontal)*body%mass(1)*body%moved(1)
+            end if
+            ! Both elements one by one: the compiler does not know that there are no more.
+            state%v(1) = body%v1(1) - body%lower*body%v1(2)
+            state%v(2) = body%v1(2)
+            state%q(1) = body%q(1)
+            state%q(2) = body%q(2)
+            state%time = state%time + h
+            state%load = load
+            step%largest(1) = body%scale(1)
+            step%largest(2) = body%scale(2)
+            step%v0(1) = body%v1(1)
+            step%v0(2) = body%v1(2)
+            step%a0(1) = body%a1(1)
+            step%a0(2) = body%a1(2)
+            step%g0(1) = body%g(1)
+            step%g0(2) = body%g(2)
+         end associate
+      end subroutine take_step_of_one_body
+
+      !> Find the end of the step. If it is not found, the springs are as before.
+      subroutine solve_step()
+
+         self%marked = .false.
+         call state%motion%press(state%springs, self%load)
+         call begin()
+         call self%iterate(state)
+         if (.not. self%marked) return
+         if (.not. self%converged) then
+            call state%springs%restore()
+            ! Joints under an axial load that varies have no lines that the deformations alone could follow.
+            if (.not. state%springs%pressed) then
+               call go_by_events()
+               if (.not. self%converged) call state%springs%restore()
+            end if
+         end if
+         call state%springs%forget_mark()
+      end subroutine solve_step
+
+      !> The trial at the start of the step.
+      subroutine begin()
+
+         self%step%moved = 0.0_wp
+         self%step%q1 = state%q
+         call self%step%find_residual(state, self%h, self%load, self%residual)
+      end subroutine begin
+
+      !> The step from end to end of the springs' lines, where `iterate` has failed. On the present lines the
+      !> tangent step is exact, so the residual decreases in proportion to the way, and no line is taken
+      !> twice.
+      subroutine go_by_events()
+         real(wp) :: share, before
+         integer :: iteration, i, way
+
+         before = huge(1.0_wp)
+         call begin()
+         do iteration = 1, 100 + 20*state%springs%count
+            call self%correct(state)
+            call first_end(self%step%q1, self%dq, share, i, way)
+            self%step%q1 = self%step%q1 + share*self%dq
+            self%step%moved = self%step%moved + share*self%dx
+            if (i > 0) then
+               self%busiest = i
+               call state%springs%carry_to(self%step%q1)
+               call state%springs%leave(i, way)
+               self%step%q1(i) = state%springs%d(i)
+               if (state%springs%stuck) return
+               before = huge(1.0_wp)
+            end if
+            call self%step%find_residual(state, self%h, self%load, self%residual)
+            if (i > 0) cycle
+            self%converged = self%has_converged(state, before)
+            if (self%converged .or. .not. self%residual < before) return
+            before = self%residual
+         end do
+      end subroutine go_by_events
+
+      !> The share of a correction up to the first end of a line that a spring reaches.
+      subroutine first_end(q, dq, share, first, way)
+         !> Deformations reached and their correction (unknowns)
+         real(wp), intent(in), contiguous :: q(:), dq(:)
+         !> Share from 0 to 1; the spring, 0 if there is none; its direction
+         real(wp), intent(out) :: share
+         integer, intent(out) :: first, way
+         real(wp) :: room
+         integer :: i
+
+         share = 1.0_wp
+         first = 0
+         way = 0
+         associate (springs => state%springs)
+            do i = 1, springs%count
+               ! Most springs stay on their lines.
+               if (q(i) + dq(i) >= springs%first(i) .and. q(i) + dq(i) <= springs%last(i)) cycle
+               if (dq(i) > 0.0_wp) then
+                  ! The rear end of a one-way line is where the spring was put last.
+                  room = springs%end_toward(i, 1) - q(i)
+               else
+                  room = q(i) - springs%end_toward(i, -1)
+               end if
+               if (room >= share*abs(dq(i))) cycle
+               share = max(room, 0.0_wp)/abs(dq(i))
+               first = i
+               way = merge(1, -1, dq(i) > 0.0_wp)
+               if (.not. share > 0.0_wp) return
+            end do
+         end associate
+      end subroutine first_end
+
+      !> The end of the step becomes the state. Works by the trapezoidal rule along the way, which balances
+      !> exactly for average acceleration on straight lines.
+      subroutine commit()
+         real(wp) :: before, after
+         integer :: i
+
+         associate (motion => state%motion, h => self%h, load => self%load, &
+                    mean => 0.5_wp*(state%load + self%load))
+            do i = lateral, horizontal
+               if (motion%acts(i)) then
+                  state%of_loads = state%of_loads + mean(i)*motion%structure%work_of(i, self%step%moved)
+               end if
+            end do
+            call motion%structure%spring_rates(self%step%now%tangent, self%step%v1, self%step%w1)
+            if (motion%varies) then
+               before = motion%structure%power_of_loads(state%q, state%v, lifts(state%load))
+               after = motion%structure%power_of_loads(self%step%q1, self%step%w1, lifts(load))
+               state%of_loads = state%of_loads + 0.5_wp*h*(before + after)
+            end if
+            if (motion%damped) then
+               self%mean(:) = 0.5_wp*(state%v + self%step%w1)
+               state%of_damping = state%of_damping &
+                                  + h*motion%damping_power(state%springs, self%step%q1, self%mean)
+               if (motion%structure%tangent_numbers > 0) then
+                  ! Elements damp as wholes; the residual is not needed any more.
+                  call motion%structure%unknown_rates(self%mean, self%dx)
+                  self%step%r = 0.0_wp
+                  call motion%structure%damp(self%dx, self%step%now%tangent, self%step%r)
+                  state%of_damping = state%of_damping - h*inner_product(size(self%dx), self%dx, self%step%r)
+               end if
+            end if
+         end associate
+         call state%springs%carry_to(self%step%q1)
+         call swap(state%q, self%step%q1)
+         call swap(state%v, self%step%w1)
+         state%time = state%time + self%h
+         state%load = self%load
+         call self%step%go_on()
+      end subroutine commit
+
    end subroutine take_step
-
-   !> Take a step of h of one body without damping. If it is not found so, nothing has happened.
-   subroutine take_step_of_one_body(self, state, h, load, taken)
-      type(implicit_stepper), intent(inout) :: self
-      type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4)
-      logical, intent(out) :: taken
-      real(wp) :: mean(2)
-
-      associate (step => self%step, body => self%one_body, motion => state%motion)
-         if (abs(h - body%h) > 0.0_wp .or. abs(self%wanted - body%wanted) > 0.0_wp) then
-            call fit_one_body(body, step, self%wanted, state, h)
-         end if
-         call body%take_step(state%springs, state%q, step%v0, step%a0, step%g0, step%largest, &
-                             load(lateral), load(horizontal), taken)
-         if (.not. taken) return
-         mean = 0.5_wp*(state%load(:2) + load(:2))
-         if (motion%acts(lateral)) then
-            state%of_loads = state%of_loads &
-                             + mean(lateral)*(body%moved(1) + body%upper*body%moved(2))
-         end if
-         if (motion%acts(horizontal)) then
-            state%of_loads = state%of_loads - mean(horizontal)*body%mass(1)*body%moved(1)
-         end if
-         ! Both elements one by one: the compiler does not know that there are no more.
-         state%v(1) = body%v1(1) - body%lower*body%v1(2)
-         state%v(2) = body%v1(2)
-         state%q(1) = body%q(1)
-         state%q(2) = body%q(2)
-         state%time = state%time + h
-         state%load = load
-         step%largest(1) = body%scale(1)
-         step%largest(2) = body%scale(2)
-         step%v0(1) = body%v1(1)
-         step%v0(2) = body%v1(2)
-         step%a0(1) = body%a1(1)
-         step%a0(2) = body%a1(2)
-         step%g0(1) = body%g(1)
-         step%g0(2) = body%g(2)
-      end associate
-   end subroutine take_step_of_one_body
 
    !> Column, method and length of the step, and the tangent on the present lines, of one body.
    subroutine fit_one_body(body, step, wanted, state, h)
@@ -183,72 +303,26 @@ contains
       call body%fit_to(state%springs)
    end subroutine fit_one_body
 
-   !> Find the end of a step of h. If it is not found, the springs are as before.
-   subroutine solve_step(self, state, h, load, converged, busiest)
-      type(implicit_stepper), intent(inout) :: self
-      type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4)
-      logical, intent(out) :: converged
-      !> The spring that changed its line last, 0 for none
-      integer, intent(out) :: busiest
-      real(wp) :: size_now
-      logical :: marked
-
-      marked = .false.
-      busiest = 0
-      call state%motion%press(state%springs, load)
-      call begin(self, state, h, load, size_now)
-      call self%iterate(state, h, load, size_now, converged, marked)
-      if (.not. converged .and. marked) then
-         call state%springs%restore()
-         ! Joints under an axial load that varies have no lines that the deformations alone could follow.
-         if (.not. state%springs%pressed) then
-            call go_by_events(self, state, h, load, converged, busiest)
-            if (.not. converged) call state%springs%restore()
-         end if
-      end if
-      if (marked) call state%springs%forget_mark()
-   end subroutine solve_step
-
-   !> The trial at the start of the step.
-   subroutine begin(self, state, h, load, size_now)
-      type(implicit_stepper), intent(inout) :: self
-      type(state_type), intent(in) :: state
-      real(wp), intent(in) :: h, load(4)
-      real(wp), intent(out) :: size_now
-
-      self%step%moved = 0.0_wp
-      self%step%q1 = state%q
-      call self%step%find_residual(state, h, load, size_now)
-   end subroutine begin
-
-   subroutine correct(self, state, h, found)
+   subroutine correct(self, state)
       class(implicit_stepper), intent(inout) :: self
-      type(state_type), intent(in) :: state
-      real(wp), intent(in) :: h
-      logical, intent(out) :: found
+      type(state_type), intent(inout) :: state
 
-      call self%tangent%find_correction(self%step, state, h, self%dx)
-      associate (now => self%step%now)
-         call state%motion%structure%spring_rates(now%tangent, self%dx, self%dq)
-         if (size(now%correction) > 0) self%dq = self%dq + now%correction
-      end associate
-      found = .true.
+      call self%tangent%find_correction(self%step, state, self%h, self%dx)
+      call state%motion%structure%spring_rates(self%step%now%tangent, self%dx, self%dq)
+      if (size(self%step%now%correction) > 0) self%dq = self%dq + self%step%now%correction
    end subroutine correct
 
-   subroutine try(self, state, h, load, share, marked, size_now)
+   subroutine try(self, state, share)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4), share
-      logical, intent(inout) :: marked
-      real(wp), intent(out) :: size_now
+      real(wp), intent(in) :: share
       logical :: inside
 
-      size_now = huge(1.0_wp)
+      self%residual = huge(1.0_wp)
       self%step%q1 = self%step%q1 + share*self%dq
       self%step%moved = self%step%moved + share*self%dx
-      call move_springs(state, self%step%q1, marked, inside)
-      if (inside) call self%step%find_residual(state, h, load, size_now)
+      call self%move_springs(state, self%step%q1, inside)
+      if (inside) call self%step%find_residual(state, self%h, self%load, self%residual)
    end subroutine try
 
    real(wp) function work_of_residual(self) result(work)
@@ -257,125 +331,12 @@ contains
       work = inner_product(size(self%step%r), self%step%r, self%dx)
    end function work_of_residual
 
-   logical function is_round_off(self, state, h)
+   logical function is_round_off(self, state)
       class(implicit_stepper), intent(in) :: self
       type(state_type), intent(in) :: state
-      real(wp), intent(in) :: h
 
-      is_round_off = self%step%is_round_off(state%motion%structure, h, self%tangent%stiffness)
+      is_round_off = self%step%is_round_off(state%motion%structure, self%h, self%tangent%stiffness)
    end function is_round_off
-
-   !> The step from end to end of the springs' lines, where `iterate` has failed. On the present lines the
-   !> tangent step is exact, so the residual decreases in proportion to the way, and no line is taken twice.
-   subroutine go_by_events(self, state, h, load, converged, busiest)
-      type(implicit_stepper), intent(inout) :: self
-      type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4)
-      logical, intent(out) :: converged
-      integer, intent(out) :: busiest
-      real(wp) :: share, size_now, size_before
-      integer :: iteration, i, way
-      logical :: found
-
-      converged = .false.
-      busiest = 0
-      size_before = huge(1.0_wp)
-      call begin(self, state, h, load, size_now)
-      do iteration = 1, 100 + 20*state%springs%count
-         call self%correct(state, h, found)
-         call first_end(state, self%step%q1, self%dq, share, i, way)
-         self%step%q1 = self%step%q1 + share*self%dq
-         self%step%moved = self%step%moved + share*self%dx
-         if (i > 0) then
-            busiest = i
-            call state%springs%carry_to(self%step%q1)
-            call state%springs%leave(i, way)
-            self%step%q1(i) = state%springs%d(i)
-            if (state%springs%stuck) return
-            size_before = huge(1.0_wp)
-         end if
-         call self%step%find_residual(state, h, load, size_now)
-         if (i > 0) cycle
-         converged = self%has_converged(state, h, size_now, size_before)
-         if (converged .or. .not. size_now < size_before) return
-         size_before = size_now
-      end do
-   end subroutine go_by_events
-
-   !> The share of a correction up to the first end of a line that a spring reaches.
-   subroutine first_end(state, q, dq, share, first, way)
-      type(state_type), intent(in) :: state
-      !> Deformations reached and their correction (unknowns)
-      real(wp), intent(in), contiguous :: q(:), dq(:)
-      !> Share from 0 to 1; the spring, 0 if there is none; its direction
-      real(wp), intent(out) :: share
-      integer, intent(out) :: first, way
-      real(wp) :: room
-      integer :: i
-
-      share = 1.0_wp
-      first = 0
-      way = 0
-      associate (springs => state%springs)
-         do i = 1, springs%count
-            ! Most springs stay on their lines.
-            if (q(i) + dq(i) >= springs%first(i) .and. q(i) + dq(i) <= springs%last(i)) cycle
-            if (dq(i) > 0.0_wp) then
-               ! The rear end of a one-way line is where the spring was put last.
-               room = springs%end_toward(i, 1) - q(i)
-            else
-               room = q(i) - springs%end_toward(i, -1)
-            end if
-            if (room >= share*abs(dq(i))) cycle
-            share = max(room, 0.0_wp)/abs(dq(i))
-            first = i
-            way = merge(1, -1, dq(i) > 0.0_wp)
-            if (.not. share > 0.0_wp) return
-         end do
-      end associate
-   end subroutine first_end
-
-   !> The end of the step becomes the state. Works by the trapezoidal rule along the way, which balances
-   !> exactly for average acceleration on straight lines.
-   subroutine commit(self, state, h, load)
-      type(implicit_stepper), intent(inout) :: self
-      type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4)
-      real(wp) :: before, after
-      integer :: i
-
-      associate (motion => state%motion, mean => 0.5_wp*(state%load + load))
-         do i = lateral, horizontal
-            if (motion%acts(i)) then
-               state%of_loads = state%of_loads + mean(i)*motion%structure%work_of(i, self%step%moved)
-            end if
-         end do
-         call motion%structure%spring_rates(self%step%now%tangent, self%step%v1, self%step%w1)
-         if (motion%varies) then
-            before = motion%structure%power_of_loads(state%q, state%v, lifts(state%load))
-            after = motion%structure%power_of_loads(self%step%q1, self%step%w1, lifts(load))
-            state%of_loads = state%of_loads + 0.5_wp*h*(before + after)
-         end if
-         if (motion%damped) then
-            self%mean(:) = 0.5_wp*(state%v + self%step%w1)
-            state%of_damping = state%of_damping &
-                               + h*motion%damping_power(state%springs, self%step%q1, self%mean)
-            if (motion%structure%tangent_numbers > 0) then
-               ! Elements damp as wholes; the residual is not needed any more.
-               call motion%structure%unknown_rates(self%mean, self%dx)
-               self%step%r = 0.0_wp
-               call motion%structure%damp(self%dx, self%step%now%tangent, self%step%r)
-               state%of_damping = state%of_damping - h*inner_product(size(self%dx), self%dx, self%step%r)
-            end if
-         end if
-      end associate
-      call state%springs%carry_to(self%step%q1)
-      call swap(state%q, self%step%q1)
-      call swap(state%v, self%step%w1)
-      state%time = state%time + h
-      state%load = load
-      call self%step%go_on()
-   end subroutine commit
 
    !> Vertical loads alone: their work is not that of a force which keeps its direction.
    pure function lifts(load)

@@ -19,7 +19,8 @@ module rbs_solve_time_implicit_finite
                                           joint_at, joint_rates, add_joint_forces, joint_tangent, local
    use rbs_loading_loads, only: lateral, horizontal, vertical
    use rbs_solve_time_motion, only: motion_result
-   use rbs_solve_time_newton, only: newton_stepper, move_springs
+   use rbs_solve_time_implicit_balance, only: family_type
+   use rbs_solve_time_newton, only: newton_stepper
    use rbs_solve_time_state, only: state_type
    use rbs_structure_spring_place, only: shear, flexure, tension => axial
    implicit none
@@ -39,7 +40,7 @@ module rbs_solve_time_implicit_finite
    type, extends(newton_stepper) :: finite_stepper
       !> Whether the forces are those of the mean-value derivatives; else the parameters of generalised-alpha
       logical :: average = .true.
-      real(wp) :: alpha_m = 0.0_wp, alpha_f = 0.0_wp, beta = 0.25_wp, gamma = 0.5_wp
+      type(family_type) :: by
       class(finite_chain_type), pointer, private :: column => null()
       !> Unknowns of a body in the band, and diagonals of the band beside the main one
       integer, private :: per = 3, beside = 6
@@ -61,10 +62,9 @@ module rbs_solve_time_implicit_finite
       !> Of joints that do not open: how far they have opened, axial forces, tension positive, and these at
       !> the start of the step (n)
       real(wp), allocatable, private :: gap(:), reaction(:), reaction0(:)
-      !> Derivative of the load on the top body by its rotation
-      real(wp), private :: load_rate(3) = 0.0_wp
-      !> Largest force, moment of the present trial and of all steps so far
-      real(wp), private :: scale(2) = 0.0_wp, largest(2) = 0.0_wp
+      !> Derivative of the load on the top body by its rotation; largest force, moment of the present trial
+      !> and of all steps so far
+      real(wp), private :: load_rate(3) = 0.0_wp, scale(2) = 0.0_wp, largest(2) = 0.0_wp
       !> Correction of the bodies (3, n) and of the axial forces (n)
       real(wp), allocatable, private :: dx(:, :), dn(:)
       real(wp), allocatable, private :: band(:, :), right(:, :)
@@ -86,7 +86,7 @@ contains
    !> Velocities and accelerations of the bodies at the start of the first step.
    subroutine prepare(self, state)
       class(finite_stepper), intent(inout) :: self
-      type(state_type), intent(in) :: state
+      type(state_type), intent(inout) :: state
       type(motion_result) :: now
       integer :: i, m, n
 
@@ -137,36 +137,31 @@ contains
 
    !> In a step the work of the springs is counted from its start: as the small difference of large numbers
    !> it would have no digits.
-   subroutine take_step(self, state, h, load, converged, busiest)
+   subroutine take_step(self, state)
       class(finite_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4)
-      logical, intent(out) :: converged
-      integer, intent(out) :: busiest
-      real(wp) :: size_now
-      logical :: marked
 
-      marked = .false.
+      self%marked = .false.
       self%work(:) = state%springs%work
       self%reaction0(:) = self%reaction
       state%springs%work_before(:) = self%work
       state%springs%work = 0.0_wp
-      call state%motion%press(state%springs, load)
+      call state%motion%press(state%springs, self%load)
       call start_step(self, state%q)
-      call self%try(state, h, load, 0.0_wp, marked, size_now)
-      call self%iterate(state, h, load, size_now, converged, marked)
-      busiest = maxloc(abs(self%change)*self%column%initial_stiffness, dim=1)
-      if (converged) then
+      call self%try(state, 0.0_wp)
+      call self%iterate(state)
+      self%busiest = maxloc(abs(self%change)*self%column%initial_stiffness, dim=1)
+      if (self%converged) then
          call state%springs%carry_to(self%q1)
          state%springs%work = state%springs%work + self%work
-         call finish_step(self, state, h, load)
+         call finish_step(self, state)
       else
-         if (marked) call state%springs%restore()
+         if (self%marked) call state%springs%restore()
          state%springs%work = self%work
          self%reaction(:) = self%reaction0
       end if
       state%springs%work_before(:) = 0.0_wp
-      if (marked) call state%springs%forget_mark()
+      if (self%marked) call state%springs%forget_mark()
    end subroutine take_step
 
    !> Rotations of the bodies, and where the joints are.
@@ -209,10 +204,8 @@ contains
       real(wp), intent(in) :: opening
       real(wp) :: y(3)
 
-      associate (at => self%column%at)
-         y = [x(at(shear, i)), x(at(flexure, i)), opening]
-         if (self%column%opens) y(tension) = x(at(tension, i))
-      end associate
+      y = [x(self%column%at(shear, i)), x(self%column%at(flexure, i)), opening]
+      if (self%column%opens) y(tension) = x(self%column%at(tension, i))
    end function of_joint
 
    !> Put values of a joint among those of all springs.
@@ -222,80 +215,103 @@ contains
       integer, intent(in) :: i
       real(wp), intent(inout), contiguous :: x(:)
 
-      associate (at => self%column%at)
-         x(at(shear, i)) = y(shear)
-         x(at(flexure, i)) = y(flexure)
-         if (self%column%opens) x(at(tension, i)) = y(tension)
-      end associate
+      x(self%column%at(shear, i)) = y(shear)
+      x(self%column%at(flexure, i)) = y(flexure)
+      if (self%column%opens) x(self%column%at(tension, i)) = y(tension)
    end subroutine put_joint
 
-   subroutine try(self, state, h, load, share, marked, size_now)
+   subroutine try(self, state, share)
       class(finite_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4), share
-      logical, intent(inout) :: marked
-      real(wp), intent(out) :: size_now
+      real(wp), intent(in) :: share
       logical :: inside
 
-      size_now = huge(1.0_wp)
+      self%residual = huge(1.0_wp)
       self%moved(:, 1:) = self%moved(:, 1:) + share*self%dx
       self%reaction = self%reaction + share*self%dn
-      call find_changes(self)
+      call find_changes()
       self%q1(:) = state%q + self%change
-      call move_springs(state, self%q1, marked, inside)
-      if (inside) call find_residual(self, state, h, load, marked, size_now)
-   end subroutine try
+      call self%move_springs(state, self%q1, inside)
+      if (inside) call find_residual()
 
-   !> Changes of the deformations that follow from what the bodies have moved.
-   subroutine find_changes(self)
-      type(finite_stepper), intent(inout) :: self
-      real(wp) :: change(3)
-      integer :: i
+   contains
 
-      do i = 1, size(self%from)
-         call turn_body(self%from(i), self%moved(3, i), self%turned(i))
-      end do
-      do i = 1, size(self%joint)
-         associate (a => self%joint(i)%lower, b => self%joint(i)%upper)
-            call joint_change(self%turned(a), self%turned(b), self%moved(:, a), self%moved(:, b), &
-                              self%joint(i), change)
+      !> Changes of the deformations that follow from what the bodies have moved.
+      subroutine find_changes()
+         real(wp) :: change(3)
+         integer :: i
+
+         do i = 1, size(self%from)
+            call turn_body(self%from(i), self%moved(3, i), self%turned(i))
+         end do
+         do i = 1, size(self%joint)
+            associate (a => self%joint(i)%lower, b => self%joint(i)%upper)
+               call joint_change(self%turned(a), self%turned(b), self%moved(:, a), self%moved(:, b), &
+                                 self%joint(i), change)
+            end associate
+            call put_joint(self, change, i, self%change)
+            self%gap(i) = change(tension)
+         end do
+      end subroutine find_changes
+
+      !> Residual of the step, and its size relative to the forces. The springs are at the end of the step, or
+      !> still at its start if their lines reach so far.
+      subroutine find_residual()
+
+         associate (by => self%by, h => self%h)
+            if (self%average) then
+               call end_of_step(size(self%moved), h, self%moved, self%v0, self%v1, self%a1)
+               self%seen = self%turned
+               call find_mean_forces()
+               call find_balance(self, 0.5_wp*(state%load + self%load), self%g1)
+               call balance(size(self%r), self%column%mass_damping/h, self%mass, self%moved(:, 1:), &
+                            self%a1(:, 1:), self%g1(:, 1:), self%r)
+            else
+               self%a1 = (self%moved - h*self%v0 - (h**2*(0.5_wp - by%beta))*self%a0)/(by%beta*h**2)
+               self%v1 = self%v0 + h*((1.0_wp - by%gamma)*self%a0 + by%gamma*self%a1)
+               call see_end(self)
+               call find_forces_at(self, state, self%q1, self%w1, self%load, h, self%g1)
+               self%r = (1.0_wp - by%alpha_f)*self%g1(:, 1:) + by%alpha_f*self%g0(:, 1:) &
+                        - self%mass*((1.0_wp - by%alpha_m)*self%a1(:, 1:) + by%alpha_m*self%a0(:, 1:))
+            end if
          end associate
-         call put_joint(self, change, i, self%change)
-         self%gap(i) = change(tension)
-      end do
-   end subroutine find_changes
+         self%scale(1) = max(self%scale(1), maxval(abs(self%mass(:2, :)*self%a1(:2, 1:))))
+         self%scale(2) = max(self%scale(2), maxval(abs(self%mass(3, :)*self%a1(3, 1:))))
+         self%residual = max(maxval(abs(self%r(:2, :)))/max(self%scale(1), self%largest(1), least_scale), &
+                             maxval(abs(self%r(3, :)))/max(self%scale(2), self%largest(2), least_scale))
+         if (self%column%opens) return
+         self%residual = max(self%residual, maxval(abs(self%gap))/maxval(self%column%length))
+      end subroutine find_residual
 
-   !> Residual of the step, and its size relative to the forces. The springs are at the end of the step, or
-   !> still at its start if their lines reach so far.
-   subroutine find_residual(self, state, h, load, there, relative)
-      type(finite_stepper), intent(inout) :: self
-      type(state_type), intent(in) :: state
-      real(wp), intent(in) :: h, load(4)
-      !> Whether the springs are at the end of the step; their work is then counted from its start
-      logical, intent(in) :: there
-      real(wp), intent(out) :: relative
+      !> Forces of the joints that do exactly the work of springs and damping, and their derivatives.
+      subroutine find_mean_forces()
+         real(wp) :: finish, mean, moved
+         integer :: i
 
-      if (self%average) then
-         call end_of_step(size(self%moved), h, self%moved, self%v0, self%v1, self%a1)
-         self%seen = self%turned
-         call find_mean_forces(self, state, h, there)
-         call find_balance(self, 0.5_wp*(state%load + load), self%g1)
-         call balance(size(self%r), self%column%mass_damping/h, self%mass, self%moved(:, 1:), &
-                      self%a1(:, 1:), self%g1(:, 1:), self%r)
-      else
-         self%a1 = (self%moved - h*self%v0 - (h**2*(0.5_wp - self%beta))*self%a0)/(self%beta*h**2)
-         self%v1 = self%v0 + h*((1.0_wp - self%gamma)*self%a0 + self%gamma*self%a1)
-         call see_end(self)
-         call find_forces_at(self, state, self%q1, self%w1, load, h, self%g1)
-         self%r = (1.0_wp - self%alpha_f)*self%g1(:, 1:) + self%alpha_f*self%g0(:, 1:) &
-                  - self%mass*((1.0_wp - self%alpha_m)*self%a1(:, 1:) + self%alpha_m*self%a0(:, 1:))
-      end if
-      self%scale(1) = max(self%scale(1), maxval(abs(self%mass(:2, :)*self%a1(:2, 1:))))
-      self%scale(2) = max(self%scale(2), maxval(abs(self%mass(3, :)*self%a1(3, 1:))))
-      relative = max(maxval(abs(self%r(:2, :)))/max(self%scale(1), self%largest(1), least_scale), &
-                     maxval(abs(self%r(3, :)))/max(self%scale(2), self%largest(2), least_scale))
-      if (.not. self%column%opens) relative = max(relative, maxval(abs(self%gap))/maxval(self%column%length))
-   end subroutine find_residual
+         call find_damping(self, state)
+         associate (springs => state%springs, h => self%h)
+            do i = 1, size(self%f)
+               finish = springs%f0(i) + springs%k(i)*(self%q1(i) - springs%d0(i))
+               mean = springs%f0(i) + springs%k(i)*(0.5_wp*(self%q1(i) + state%q(i)) - springs%d0(i))
+               self%k(i) = 0.5_wp*springs%k(i)
+               ! A change that its deformation has no digits for is the one that the spring has made.
+               moved = self%change(i)
+               if (abs(moved) < no_digits*abs(state%q(i))) moved = self%q1(i) - state%q(i)
+               ! Springs with a mark are at the end of the step; their work is counted from its start.
+               if (self%marked .and. abs(moved) > 0.0_wp) then
+                  mean = springs%work(i)/moved
+                  if (abs(finish - mean) > no_change*(abs(finish) + abs(mean))) then
+                     self%k(i) = (finish - mean)/moved
+                  end if
+               end if
+               self%f(i) = mean + self%viscous(i)*self%change(i)/h
+               self%k(i) = self%k(i) + self%viscous(i)/h
+            end do
+         end associate
+         if (allocated(state%motion%modal)) self%f = self%f + matmul(state%motion%modal, self%change)/self%h
+      end subroutine find_mean_forces
+
+   end subroutine try
 
    pure subroutine end_of_step(m, h, moved, v0, v1, a1)
       integer, intent(in) :: m
@@ -328,37 +344,6 @@ contains
       end do
    end subroutine see_end
 
-   !> Forces of the joints that do exactly the work of springs and damping, and their derivatives.
-   subroutine find_mean_forces(self, state, h, there)
-      type(finite_stepper), intent(inout) :: self
-      type(state_type), intent(in) :: state
-      real(wp), intent(in) :: h
-      logical, intent(in) :: there
-      real(wp) :: finish, mean, moved
-      integer :: i
-
-      call find_damping(self, state)
-      associate (springs => state%springs)
-         do i = 1, size(self%f)
-            finish = springs%f0(i) + springs%k(i)*(self%q1(i) - springs%d0(i))
-            mean = springs%f0(i) + springs%k(i)*(0.5_wp*(self%q1(i) + state%q(i)) - springs%d0(i))
-            self%k(i) = 0.5_wp*springs%k(i)
-            ! A change that its deformation has no digits for is the one that the spring has made.
-            moved = self%change(i)
-            if (abs(moved) < no_digits*abs(state%q(i))) moved = self%q1(i) - state%q(i)
-            if (there .and. abs(moved) > 0.0_wp) then
-               mean = springs%work(i)/moved
-               if (abs(finish - mean) > no_change*(abs(finish) + abs(mean))) then
-                  self%k(i) = (finish - mean)/moved
-               end if
-            end if
-            self%f(i) = mean + self%viscous(i)*self%change(i)/h
-            self%k(i) = self%k(i) + self%viscous(i)/h
-         end do
-      end associate
-      if (allocated(state%motion%modal)) self%f = self%f + matmul(state%motion%modal, self%change)/h
-   end subroutine find_mean_forces
-
    !> Damping of the joints on their present lines.
    subroutine find_damping(self, state)
       type(finite_stepper), intent(inout) :: self
@@ -383,7 +368,7 @@ contains
       call find_damping(self, state)
       associate (springs => state%springs)
          self%f = springs%f0 + springs%k*(q - springs%d0) + self%viscous*v
-         self%k = springs%k + self%viscous*(self%gamma/(self%beta*h))
+         self%k = springs%k + self%viscous*(self%by%gamma/(self%by%beta*h))
       end associate
       if (allocated(state%motion%modal)) self%f = self%f + matmul(state%motion%modal, v)
       call find_balance(self, load, g)
@@ -446,23 +431,23 @@ contains
    end subroutine add_loads
 
    !> The correction that takes the residual away as far as the step is linear.
-   subroutine correct(self, state, h, found)
+   subroutine correct(self, state)
       class(finite_stepper), intent(inout) :: self
-      type(state_type), intent(in) :: state
-      real(wp), intent(in) :: h
-      logical, intent(out) :: found
+      type(state_type), intent(inout) :: state
       real(wp) :: damping, of_mass, share, per_force
       integer :: i, j, l, n
 
       n = self%column%n
       damping = merge(self%column%mass_damping, 0.0_wp, state%motion%damped)
       share = 1.0_wp
-      if (self%average) then
-         of_mass = 2.0_wp/h**2 + damping/h
-      else
-         share = 1.0_wp - self%alpha_f
-         of_mass = (1.0_wp - self%alpha_m)/(self%beta*h**2) + share*damping*self%gamma/(self%beta*h)
-      end if
+      associate (by => self%by, h => self%h)
+         if (self%average) then
+            of_mass = 2.0_wp/h**2 + damping/h
+         else
+            share = 1.0_wp - by%alpha_f
+            of_mass = (1.0_wp - by%alpha_m)/(by%beta*h**2) + share*damping*by%gamma/(by%beta*h)
+         end if
+      end associate
       ! The axial forces in units that make both kinds of equations alike.
       per_force = of_mass*maxval(self%column%mass)
       self%band = 0.0_wp
@@ -483,12 +468,12 @@ contains
             self%band(main + l - last, last) = self%band(main + l - last, last) - share*self%load_rate(j)
          end do
       end associate
-      call solve_general_band(self%band, self%beside, self%beside, self%right, found, self%pivot)
+      call solve_general_band(self%band, self%beside, self%beside, self%right, self%regular, self%pivot)
       do i = 1, n
          self%dx(:, i) = self%right(self%per*i - 2:self%per*i, 1)
          if (.not. self%column%opens) self%dn(i) = per_force*self%right(self%per*i - 3, 1)
       end do
-      if (found) found = maxval(abs(self%dx(3, :))) < most_turn
+      if (self%regular) self%regular = maxval(abs(self%dx(3, :))) < most_turn
    end subroutine correct
 
    !> Add what a joint gives to the tangent.
@@ -519,9 +504,7 @@ contains
             if (at(j) == 0) cycle
             do l = 1, local
                if (at(l) == 0) cycle
-               associate (place => self%band(main + at(l) - at(j), at(j)))
-                  place = place + tangent(l, j)
-               end associate
+               self%band(main + at(l) - at(j), at(j)) = self%band(main + at(l) - at(j), at(j)) + tangent(l, j)
             end do
          end do
       end associate
@@ -534,29 +517,28 @@ contains
    end function work_of_residual
 
    !> Where the bodies turn, round-off is not told from the rest: the acceptable residual decides.
-   logical function is_round_off(self, state, h)
+   logical function is_round_off(self, state)
       class(finite_stepper), intent(in) :: self
       type(state_type), intent(in) :: state
-      real(wp), intent(in) :: h
 
-      is_round_off = self%acceptable < 0.0_wp .and. state%lost .and. h < 0.0_wp
+      is_round_off = self%acceptable < 0.0_wp .and. state%lost
    end function is_round_off
 
    !> The end of the step becomes the state, the springs excepted.
-   subroutine finish_step(self, state, h, load)
+   subroutine finish_step(self, state)
       type(finite_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4)
 
       self%g0 = 0.0_wp
-      call add_loads(self, self%turned(self%column%n), 0.5_wp*(state%load + load), .false., self%g0, &
+      call add_loads(self, self%turned(self%column%n), 0.5_wp*(state%load + self%load), .false., self%g0, &
                      self%load_rate)
       state%of_loads = state%of_loads + sum(self%g0*self%moved)
       if (state%motion%damped) then
-         state%of_damping = state%of_damping + sum(self%viscous*self%change**2)/h &
-                            + self%column%mass_damping*sum(self%mass*self%moved(:, 1:)**2)/h
+         state%of_damping = state%of_damping + sum(self%viscous*self%change**2)/self%h &
+                            + self%column%mass_damping*sum(self%mass*self%moved(:, 1:)**2)/self%h
          if (allocated(state%motion%modal)) then
-            state%of_damping = state%of_damping + sum(self%change*matmul(state%motion%modal, self%change))/h
+            state%of_damping = state%of_damping + sum(self%change*matmul(state%motion%modal, self%change)) &
+                               /self%h
          end if
       end if
       call see_end(self)
@@ -564,8 +546,8 @@ contains
       state%v(:) = self%w1
       state%along_joints = 0.5_wp*sum(self%mass*self%v1(:, 1:)**2) &
                            - self%column%kinetic_energy(state%q, state%v)
-      state%time = state%time + h
-      state%load = load
+      state%time = state%time + self%h
+      state%load = self%load
       self%largest = max(self%largest, self%scale)
       self%v0 = self%v1
       self%a0 = self%a1

@@ -125,7 +125,7 @@ contains
    !> With a tolerance the length of the next step and the measure of its error depend on the steps before.
    subroutine resume(self, state, stream)
       class(located_stepper), intent(inout) :: self
-      type(state_type), intent(in) :: state
+      type(state_type), intent(inout) :: state
       type(stream_type), intent(inout) :: stream
 
       stream%broken = stream%broken .or. state%lost
@@ -192,11 +192,9 @@ contains
       call state%sight%see_within(state%motion, state%springs, self%scheme%q, self%scheme%v, state%q, &
                                   state%v, h, state%begin + state%time)
       if (state%springs%pressed) call carry_planes(self, state, event, h)
-      associate (springs => state%springs)
-         ! No other spring has passed an end by more than the last digits.
-         call springs%carry_to(state%q)
-         if (i > 0 .and. event%layer == 0) call springs%leave(i, event%way)
-      end associate
+      ! No other spring has passed an end by more than the last digits.
+      call state%springs%carry_to(state%q)
+      if (i > 0 .and. event%layer == 0) call state%springs%leave(i, event%way)
       if (self%tolerance > 0.0_wp) then
          self%longest_step = max(self%longest_step, h)
          self%largest = max(self%largest, energy_of(self, state, state%q, state%v))

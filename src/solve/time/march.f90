@@ -56,7 +56,7 @@ contains
       if (present(sight)) state%sight = sight
       call state%begin_sight(task%collapse_drift, task%recorder%channels%contents%motion)
       task%summary%time_step = plan%dt
-      call take_steps(state, plan, stepper, time, response, step, task, error)
+      call take_steps()
       if (present(sight)) sight = state%sight
       associate (summary => task%summary)
          summary%last_time = response%time
@@ -70,112 +70,133 @@ contains
       end associate
       if (allocated(error) .or. .not. task%keeps_end .or. task%summary%lost_joint > 0) return
       call keep_state(state, stepper, plan, step, response%energy%residual, task%after)
-   end subroutine march
 
-   !> The steps of the plan, up to the end of the run.
-   subroutine take_steps(state, plan, stepper, time, response, step, task, error)
-      type(state_type), intent(inout) :: state
-      type(time_plan), intent(in) :: plan
-      class(stepper_type), intent(inout) :: stepper
-      !> See `march`
-      real(wp), intent(in) :: time(:)
-      !> That of the last row in the end
-      type(response_type), intent(inout) :: response
-      !> Steps taken, as planned
-      integer, intent(out) :: step
-      type(task_type), intent(inout) :: task
-      type(error_type), allocatable, intent(inout) :: error
-      type(motion_result) :: now
-      real(wp) :: begin, finish, h
-      integer :: interval, part, parts, next_row, lost
-      logical :: ends
+   contains
 
-      call now%create(state%motion%structure)
-      next_row = huge(1)
-      if (task%every /= unset_integer) next_row = min(task%every, plan%steps)
-      step = 0
-      call let_go(state, stepper)
-      call balance(state, response%energy, task%summary)
-      call keep(state, response, task, error, now)
-      if (allocated(error)) return
-      finish = plan%begin
-      do interval = 1, plan%intervals
-         begin = finish
-         call interval_of(plan, time, interval, finish, parts)
-         h = step_of(plan, (finish - begin)/parts)
-         do part = 1, parts
-            call stepper%advance(state, h, error)
-            if (allocated(error)) then
-               call keep_last(state, now, response, task)
-               return
-            end if
-            step = step + 1
-            if (state%lost .or. state%springs%stuck) then
-               call report_state(state, error)
-               return
-            end if
-            state%clock = begin + part*h
-            if (part == parts) state%clock = finish
-            lost = state%springs%lost_joint()
-            if (lost > 0) task%summary%lost_joint = state%motion%structure%place(lost)%index
-            ends = task%summary%lost_joint > 0 .or. state%sight%collapsed
-            ! A joint may have lost its axial load, or the column may have collapsed, within the step.
-            associate (at => state%begin + state%time)
-               if (ends .and. at < state%clock - same_step*h) state%clock = at
-            end associate
-            state%time = state%clock - state%begin
-            call let_go(state, stepper)
-            call state%see(state%clock)
-            ends = ends .or. state%sight%collapsed
-            if (task%summary%lost_joint > 0) then
-               call fall_of(state%springs, lost, task%summary%fall)
-            end if
-            if (ends .or. part == parts) call balance(state, response%energy, task%summary)
-            if (ends .or. step == next_row .or. (task%every == unset_integer .and. part == parts)) then
-               if (.not. (ends .or. part == parts)) call balance(state, response%energy)
-               call keep(state, response, task, error, now)
-               if (allocated(error) .or. ends) return
-               if (task%every /= unset_integer) next_row = min(step + task%every, plan%steps)
-            end if
-            if (iand(step, 8191) == 0 .and. associated(task%progress)) then
-               call task%progress%update(real(step, wp)/plan%steps)
-            end if
+      !> The steps of the plan, up to the end of the run.
+      subroutine take_steps()
+         type(motion_result) :: now
+         real(wp) :: begin, finish, h
+         integer :: interval, part, parts, next_row, lost
+         logical :: ends
+
+         call now%create(state%motion%structure)
+         next_row = huge(1)
+         if (task%every /= unset_integer) next_row = min(task%every, plan%steps)
+         step = 0
+         call let_go()
+         call balance(state, response%energy, task%summary)
+         call keep(error, now)
+         if (allocated(error)) return
+         finish = plan%begin
+         do interval = 1, plan%intervals
+            begin = finish
+            call interval_of(interval, finish, parts)
+            h = step_of(plan, (finish - begin)/parts)
+            do part = 1, parts
+               call stepper%advance(state, h, error)
+               if (allocated(error)) then
+                  call keep_last(now)
+                  return
+               end if
+               step = step + 1
+               if (state%lost .or. state%springs%stuck) then
+                  call report_state(state, error)
+                  return
+               end if
+               state%clock = begin + part*h
+               if (part == parts) state%clock = finish
+               lost = state%springs%lost_joint()
+               if (lost > 0) task%summary%lost_joint = state%motion%structure%place(lost)%index
+               ends = task%summary%lost_joint > 0 .or. state%sight%collapsed
+               ! A joint may have lost its axial load, or the column may have collapsed, within the step.
+               associate (at => state%begin + state%time)
+                  if (ends .and. at < state%clock - same_step*h) state%clock = at
+               end associate
+               state%time = state%clock - state%begin
+               call let_go()
+               call state%see(state%clock)
+               ends = ends .or. state%sight%collapsed
+               if (task%summary%lost_joint > 0) call fall_of(state%springs, lost, task%summary%fall)
+               if (ends .or. part == parts) call balance(state, response%energy, task%summary)
+               if (ends .or. step == next_row .or. (task%every == unset_integer .and. part == parts)) then
+                  if (.not. (ends .or. part == parts)) call balance(state, response%energy)
+                  call keep(error, now)
+                  if (allocated(error) .or. ends) return
+                  if (task%every /= unset_integer) next_row = min(step + task%every, plan%steps)
+               end if
+               if (iand(step, 8191) == 0 .and. associated(task%progress)) then
+                  call task%progress%update(real(step, wp)/plan%steps)
+               end if
+            end do
          end do
-      end do
-   end subroutine take_steps
+      end subroutine take_steps
 
-   !> Members that are lost carry nothing from the next step on, which begins with other accelerations.
-   subroutine let_go(state, stepper)
-      type(state_type), intent(inout) :: state
-      class(stepper_type), intent(inout) :: stepper
-      integer :: member
+      !> Members that are lost carry nothing from the next step on, which begins with other accelerations.
+      subroutine let_go()
+         integer :: member
 
-      do
-         member = state%motion%structure%find_lost(state%springs, state%clock)
-         if (member == 0) return
-         call state%motion%structure%let_go(member, state%springs)
-         state%q = state%springs%d
-         stepper%begun = .false.
-      end do
-   end subroutine let_go
+         do
+            member = state%motion%structure%find_lost(state%springs, state%clock)
+            if (member == 0) return
+            call state%motion%structure%let_go(member, state%springs)
+            state%q = state%springs%d
+            stepper%begun = .false.
+         end do
+      end subroutine let_go
 
-   !> End of an interval between kept times, and the number of its steps.
-   pure subroutine interval_of(plan, time, interval, finish, parts)
-      type(time_plan), intent(in) :: plan
-      real(wp), intent(in) :: time(:)
-      integer, intent(in) :: interval
-      real(wp), intent(out) :: finish
-      integer, intent(out) :: parts
+      !> End of an interval between kept times, and the number of its steps.
+      pure subroutine interval_of(interval, finish, parts)
+         integer, intent(in) :: interval
+         real(wp), intent(out) :: finish
+         integer, intent(out) :: parts
 
-      if (plan%free) then
-         parts = 1
-         finish = min(plan%origin + (plan%offset + interval)*plan%dt, plan%finish)
-         if (interval == plan%intervals) finish = plan%finish
-      else
-         parts = plan%parts(interval)
-         finish = time(interval + 1)
-      end if
-   end subroutine interval_of
+         if (plan%free) then
+            parts = 1
+            finish = min(plan%origin + (plan%offset + interval)*plan%dt, plan%finish)
+            if (interval == plan%intervals) finish = plan%finish
+         else
+            parts = plan%parts(interval)
+            finish = time(interval + 1)
+         end if
+      end subroutine interval_of
+
+      !> Record the last good state before a failure.
+      subroutine keep_last(now)
+         type(motion_result), intent(inout) :: now
+         type(error_type), allocatable :: ignored
+
+         state%clock = state%begin + state%time
+         if (state%lost .or. .not. state%clock > response%time) return
+         call state%see(state%clock)
+         call balance(state, response%energy, task%summary)
+         call keep(ignored, now)
+      end subroutine keep_last
+
+      !> Keep the present state, whose energies are in the response.
+      subroutine keep(error, now)
+         type(error_type), allocatable, intent(inout) :: error
+         type(motion_result), intent(inout) :: now
+
+         response%time = state%clock
+         response%displacement = state%motion%structure%top_displacement(state%q)
+         response%force = state%load(lateral)
+         response%ground = state%load(horizontal)
+         if (.not. allocated(response%v)) allocate (response%v, response%f, response%a, source=state%v)
+         response%v(:) = state%v
+         if (task%recorder%channels%contents%motion) then
+            call state%motion%acceleration(state%springs, state%q, state%v, state%load, now)
+            response%a(:) = now%a
+         end if
+         if (state%motion%damped) then
+            call state%motion%joint_forces(state%springs, state%q, state%v, state%load, response%f)
+            response%base_shear = state%motion%base_shear(state%springs, state%q, state%v)
+         end if
+         task%summary%rows = task%summary%rows + 1
+         call task%recorder%keep(state%motion%structure, response, state%springs, state%q, error)
+      end subroutine keep
+
+   end subroutine march
 
    !> Times that are multiples of one step differ by it up to round-off; the steps are then equal to the last
    !> bit, and what a method has found for a step holds for all of them.
@@ -205,21 +226,6 @@ contains
       end if
    end subroutine report_state
 
-   !> Record the last good state before a failure.
-   subroutine keep_last(state, now, response, task)
-      type(state_type), intent(inout) :: state
-      type(motion_result), intent(inout) :: now
-      type(response_type), intent(inout) :: response
-      type(task_type), intent(inout) :: task
-      type(error_type), allocatable :: ignored
-
-      state%clock = state%begin + state%time
-      if (state%lost .or. .not. state%clock > response%time) return
-      call state%see(state%clock)
-      call balance(state, response%energy, task%summary)
-      call keep(state, response, task, ignored, now)
-   end subroutine keep_last
-
    !> The energies of the present state.
    subroutine balance(state, energy, summary)
       type(state_type), intent(in) :: state
@@ -236,31 +242,5 @@ contains
                         - energy%axial
       if (present(summary)) call summary%see_energies(energy)
    end subroutine balance
-
-   !> Keep the present state, whose energies are in the response.
-   subroutine keep(state, response, task, error, now)
-      type(state_type), intent(in) :: state
-      type(response_type), intent(inout) :: response
-      type(task_type), intent(inout) :: task
-      type(error_type), allocatable, intent(inout) :: error
-      type(motion_result), intent(inout) :: now
-
-      response%time = state%clock
-      response%displacement = state%motion%structure%top_displacement(state%q)
-      response%force = state%load(lateral)
-      response%ground = state%load(horizontal)
-      if (.not. allocated(response%v)) allocate (response%v, response%f, response%a, source=state%v)
-      response%v(:) = state%v
-      if (task%recorder%channels%contents%motion) then
-         call state%motion%acceleration(state%springs, state%q, state%v, state%load, now)
-         response%a(:) = now%a
-      end if
-      if (state%motion%damped) then
-         call state%motion%joint_forces(state%springs, state%q, state%v, state%load, response%f)
-         response%base_shear = state%motion%base_shear(state%springs, state%q, state%v)
-      end if
-      task%summary%rows = task%summary%rows + 1
-      call task%recorder%keep(state%motion%structure, response, state%springs, state%q, error)
-   end subroutine keep
 
 end module rbs_solve_time_march

@@ -25,10 +25,9 @@ module rbs_solve_time_motion
       type(column_type), pointer :: one_body => null()
       !> Which of the loads act (see `rbs_loading_loads`), and whether axial forces vary
       logical :: acts(4) = .false., varies = .false.
-      !> Damping of the springs, beta k0 (springs) [N s/m, N m s]
-      real(wp), allocatable :: joint_damping(:)
-      !> Modal damping (springs, springs); allocated only if there is any
-      real(wp), allocatable :: modal(:, :)
+      !> Damping of the springs, beta k0 (springs) [N s/m, N m s]; modal damping (springs, springs); allocated
+      !> only if there is any
+      real(wp), allocatable :: joint_damping(:), modal(:, :)
       !> Whether there is damping at all, and whether any axial force does second-order work
       logical :: damped = .false., second_order = .false.
       !> The spring whose force is the base shear, 0 where more than that belongs to it
@@ -79,10 +78,8 @@ contains
    subroutine acceleration(self, springs, q, v, load, result)
       class(motion_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
-      !> Deformations and their velocities (springs)
-      real(wp), intent(in) :: q(springs%count), v(springs%count)
-      !> Loads at the time
-      real(wp), intent(in) :: load(signals)
+      !> Deformations and their velocities (springs); loads at the time
+      real(wp), intent(in) :: q(springs%count), v(springs%count), load(signals)
       type(motion_result), intent(inout) :: result
       integer :: m
 

@@ -1,20 +1,24 @@
 !> Implicit steps by Newton's method with a line search. Every trial goes from the state at the start of the
 !> step, each spring in one direction, so that earlier trials leave no trace; and the forces of springs that
-!> do not soften then have a convex potential, on which this converges.
+!> do not soften then have a convex potential, on which this converges. A step that does not converge is taken
+!> in two halves.
 module rbs_solve_time_newton
+   use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
+   use rbs_base_stream, only: stream_type
+   use rbs_base_text, only: to_text
    use rbs_solve_line_search, only: false_position
-   use rbs_solve_time_halving, only: halving_stepper
-   use rbs_solve_time_state, only: state_type, in_bounds, out_of_bounds
+   use rbs_solve_time_state, only: state_type, stepper_type, in_bounds, out_of_bounds
+   use rbs_structure_spring_place, only: spring_name
    implicit none
    private
 
-   public :: newton_stepper, move_springs
+   public :: newton_stepper
 
-   !> Number of trials in which Newton's method may overshoot.
-   integer, parameter :: most_free = 8
+   !> Number of trials in which Newton's method may overshoot, and most cuts of a step in halves.
+   integer, parameter :: most_free = 8, most_cuts = 24
 
-   type, abstract, extends(halving_stepper) :: newton_stepper
+   type, abstract, extends(stepper_type) :: newton_stepper
       !> Most iterations; mostly two or three are needed
       integer :: most_iterations = 40
       !> The residual has vanished below this share of the forces; where round-off does not let it, below the
@@ -23,37 +27,47 @@ module rbs_solve_time_newton
       !> Whether an overshoot is bounded too where the residual does negative work on the correction, as a
       !> tangent that is not positive definite may let it
       logical :: searches_uphill = .true.
+      !> The step that is taken: its length [s], the loads at its end, the relative size of the residual of
+      !> the trial
+      real(wp) :: h = 0.0_wp, load(4) = 0.0_wp, residual = 0.0_wp
+      !> Whether it has converged, whether springs have changed their lines, and a mark was set, and whether
+      !> there is a correction
+      logical :: converged = .false., marked = .false., regular = .true.
+      !> The spring that changed its line last, 0 for none
+      integer :: busiest = 0
    contains
+      procedure :: advance
+      procedure :: resume
       procedure :: iterate
       procedure :: has_converged
-      procedure(correct_interface), deferred :: correct
+      procedure :: move_springs
+      !> Once, before the first step
+      procedure(act_on_state), deferred :: prepare
+      !> Take the step, if it converges; else the state is as before
+      procedure(act_on_state), deferred :: take_step
+      !> Find the correction that takes the residual away as long as no line changes
+      procedure(act_on_state), deferred :: correct
       procedure(try_interface), deferred :: try
       procedure(work_interface), deferred :: work_of_residual
       procedure(round_off_interface), deferred :: is_round_off
+      procedure(serialize_interface), deferred :: serialize
    end type newton_stepper
 
    abstract interface
-      !> Find the correction that takes the residual away as long as no line changes.
-      subroutine correct_interface(self, state, h, found)
-         import :: newton_stepper, state_type, wp
+      subroutine act_on_state(self, state)
+         import :: newton_stepper, state_type
          implicit none
          class(newton_stepper), intent(inout) :: self
-         type(state_type), intent(in) :: state
-         real(wp), intent(in) :: h
-         logical, intent(out) :: found
-      end subroutine correct_interface
+         type(state_type), intent(inout) :: state
+      end subroutine act_on_state
 
       !> Go on (or back) by a share of the correction, and find the residual there.
-      subroutine try_interface(self, state, h, load, share, marked, size_now)
+      subroutine try_interface(self, state, share)
          import :: newton_stepper, state_type, wp
          implicit none
          class(newton_stepper), intent(inout) :: self
          type(state_type), intent(inout) :: state
-         real(wp), intent(in) :: h, load(4), share
-         !> Whether springs have changed their lines, and a mark was set
-         logical, intent(inout) :: marked
-         !> Relative size of the residual
-         real(wp), intent(out) :: size_now
+         real(wp), intent(in) :: share
       end subroutine try_interface
 
       !> Work of the residual on the correction.
@@ -64,81 +78,146 @@ module rbs_solve_time_newton
       end function work_interface
 
       !> Whether the residual is what round-off leaves of the terms of the step.
-      logical function round_off_interface(self, state, h)
-         import :: newton_stepper, state_type, wp
+      logical function round_off_interface(self, state)
+         import :: newton_stepper, state_type
          implicit none
          class(newton_stepper), intent(in) :: self
          type(state_type), intent(in) :: state
-         real(wp), intent(in) :: h
       end function round_off_interface
+
+      !> Save or restore what the bodies do at the start of a step.
+      subroutine serialize_interface(self, stream)
+         import :: newton_stepper, stream_type
+         implicit none
+         class(newton_stepper), intent(inout) :: self
+         type(stream_type), intent(inout) :: stream
+      end subroutine serialize_interface
    end interface
 
 contains
 
-   !> Iterate from a trial whose residual has been found.
-   subroutine iterate(self, state, h, load, size_now, converged, marked)
+   subroutine advance(self, state, h, error)
       class(newton_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4)
-      real(wp), intent(inout) :: size_now
-      logical, intent(out) :: converged
-      !> See `try_interface`
-      logical, intent(inout) :: marked
-      real(wp) :: size_before, slope_before, slope, too_far
-      integer :: iteration, most
-      logical :: found
+      real(wp), intent(in) :: h
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp) :: finish
 
-      converged = .false.
+      if (allocated(error)) return
+      if (.not. self%begun) call self%prepare(state)
+      self%begun = .true.
+      finish = state%time + h
+      ! Most steps converge.
+      self%h = h
+      call state%loads%at_time(finish, self%load)
+      call self%take_step(state)
+      if (self%converged) then
+         self%steps = self%steps + 1
+      else
+         call halve(self, state, h, 0, error)
+      end if
+      if (.not. allocated(error)) state%time = finish
+   end subroutine advance
+
+   !> Accelerations and forces at the start of a step are those that the step before ended with.
+   subroutine resume(self, state, stream)
+      class(newton_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      type(stream_type), intent(inout) :: stream
+
+      if (.not. self%begun) call self%prepare(state)
+      self%begun = .true.
+      call self%serialize(stream)
+   end subroutine resume
+
+   !> Take the halves of a step that has not converged.
+   recursive subroutine halve(self, state, h, cuts, error)
+      class(newton_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      real(wp), intent(in) :: h
+      !> How often the step has been cut before
+      integer, intent(in) :: cuts
+      type(error_type), allocatable, intent(inout) :: error
+      integer :: half
+
+      self%cut_steps = self%cut_steps + 1
+      if (cuts == most_cuts) then
+         call fatal_error(error, analysis_failed, 'the step of '//to_text(h)//' s at time '// &
+                          to_text(state%begin + state%time)//' s does not converge although it was cut '// &
+                          to_text(most_cuts)//' times; '// &
+                          trim(spring_name(state%motion%structure%place(max(self%busiest, 1))))// &
+                          ' is the busiest. Rows up to there are kept, the last good state is that of '// &
+                          "this time. Try a shorter dt or method = 'rk45', and look at the springs "// &
+                          'that soften')
+         return
+      end if
+      do half = 1, 2
+         self%h = 0.5_wp*h
+         call state%loads%at_time(state%time + self%h, self%load)
+         call self%take_step(state)
+         if (self%converged) then
+            self%steps = self%steps + 1
+            if (.not. (state%lost .or. state%springs%stuck)) call state%see(state%begin + state%time)
+         else
+            call halve(self, state, 0.5_wp*h, cuts + 1, error)
+            if (allocated(error)) return
+         end if
+      end do
+   end subroutine halve
+
+   !> Iterate from a trial whose residual has been found.
+   subroutine iterate(self, state)
+      class(newton_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      real(wp) :: before, slope_before, slope, too_far
+      integer :: iteration, most
+
+      self%converged = .false.
       most = self%most_iterations
       ! Modal damping is not in the tangent: an iteration leaves of its share as much as the damping ratio.
       if (allocated(state%motion%structure%modal_damping)) most = 10*most
       do iteration = 1, most
-         size_before = size_now
-         call self%correct(state, h, found)
-         if (.not. found) return
+         before = self%residual
+         call self%correct(state)
+         if (.not. self%regular) return
          slope_before = self%work_of_residual()
-         call self%try(state, h, load, 1.0_wp, marked, size_now)
-         if (.not. size_now < out_of_bounds .or. state%springs%stuck) return
-         converged = self%has_converged(state, h, size_now, size_before)
-         if (converged) return
+         call self%try(state, 1.0_wp)
+         if (.not. self%residual < out_of_bounds .or. state%springs%stuck) return
+         self%converged = self%has_converged(state, before)
+         if (self%converged) return
          slope = self%work_of_residual()
          ! An overshoot mostly does no harm. Where Newton's method goes back and forth, it is bounded.
          too_far = merge(0.9_wp, 0.05_wp, iteration <= most_free)
          if (slope < -too_far*slope_before .and. (self%searches_uphill .or. slope_before > 0.0_wp)) then
-            call search_line(self, state, h, load, slope_before, slope, too_far/3.0_wp, marked, size_now)
-            if (.not. size_now < out_of_bounds .or. state%springs%stuck) return
+            call search_line(self, state, slope_before, slope, too_far/3.0_wp)
+            if (.not. self%residual < out_of_bounds .or. state%springs%stuck) return
          end if
       end do
    end subroutine iterate
 
    !> Whether the residual has vanished, or is as small as round-off lets it be.
-   logical function has_converged(self, state, h, size_now, size_before)
+   logical function has_converged(self, state, before)
       class(newton_stepper), intent(in) :: self
       type(state_type), intent(in) :: state
-      real(wp), intent(in) :: h
-      !> Relative size now and at the last trial
-      real(wp), intent(in) :: size_now, size_before
+      !> Relative size at the last trial
+      real(wp), intent(in) :: before
 
-      has_converged = size_now <= self%wanted
+      has_converged = self%residual <= self%wanted
       if (has_converged .or. self%acceptable < 0.0_wp) return
-      has_converged = size_now <= self%acceptable .and. size_now > 0.5_wp*size_before
+      has_converged = self%residual <= self%acceptable .and. self%residual > 0.5_wp*before
       ! As long as the residual decreases quickly, it is not yet round-off.
-      if (has_converged .or. size_now < 0.1_wp*size_before) return
-      has_converged = self%is_round_off(state, h)
+      if (has_converged .or. self%residual < 0.1_wp*before) return
+      has_converged = self%is_round_off(state)
    end function has_converged
 
    !> The trial has gone too far: find the share of the correction at which the residual does little work
    !> on it.
-   subroutine search_line(self, state, h, load, slope_before, slope_at_end, share_left, marked, size_now)
+   subroutine search_line(self, state, slope_before, slope_at_end, share_left)
       class(newton_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: h, load(4)
-      !> Work of the residual on the correction at its start and at its end
-      real(wp), intent(in) :: slope_before, slope_at_end
-      !> Share of the first that may be left
-      real(wp), intent(in) :: share_left
-      logical, intent(inout) :: marked
-      real(wp), intent(inout) :: size_now
+      !> Work of the residual on the correction at its start and at its end; share of the first that may be
+      !> left
+      real(wp), intent(in) :: slope_before, slope_at_end, share_left
       type(false_position) :: line
       real(wp) :: share, slope, now
       integer :: trial
@@ -147,9 +226,9 @@ contains
       now = 1.0_wp
       do trial = 1, 8
          share = line%next()
-         call self%try(state, h, load, share - now, marked, size_now)
+         call self%try(state, share - now)
          now = share
-         if (.not. size_now < out_of_bounds .or. state%springs%stuck) return
+         if (.not. self%residual < out_of_bounds .or. state%springs%stuck) return
          slope = self%work_of_residual()
          if (abs(slope) <= share_left*slope_before) return
          call line%narrow(share, slope)
@@ -157,25 +236,25 @@ contains
    end subroutine search_line
 
    !> Move the springs from the start of the step to a trial, if their lines do not reach so far.
-   subroutine move_springs(state, q, marked, inside)
+   subroutine move_springs(self, state, q, inside)
+      class(newton_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
       !> Deformations (springs)
       real(wp), intent(in), contiguous :: q(:)
-      logical, intent(inout) :: marked
       !> Whether the deformations are within bounds
       logical, intent(out) :: inside
 
       inside = .true.
-      if (.not. marked) then
+      if (.not. self%marked) then
          if (state%springs%stay_on_lines(q)) return
       end if
       inside = in_bounds(size(q), q)
       if (.not. inside) return
-      if (marked) then
+      if (self%marked) then
          call state%springs%restore()
       else
          call state%springs%mark()
-         marked = .true.
+         self%marked = .true.
       end if
       call state%springs%move_all(q)
    end subroutine move_springs

@@ -92,12 +92,10 @@ contains
       real(wp), intent(in) :: load(4)
       real(wp), intent(out) :: of_loads, of_damping
 
-      associate (motion => state%motion)
-         of_loads = self%now%power
-         if (.not. self%now%has_power) of_loads = motion%structure%power_of_loads(self%q, self%v, load)
-         of_damping = 0.0_wp
-         if (motion%damped) of_damping = motion%damping_power(state%springs, self%q, self%v)
-      end associate
+      of_loads = self%now%power
+      if (.not. self%now%has_power) of_loads = state%motion%structure%power_of_loads(self%q, self%v, load)
+      of_damping = 0.0_wp
+      if (state%motion%damped) of_damping = state%motion%damping_power(state%springs, self%q, self%v)
    end subroutine find_powers
 
    !> Deformations, velocities and accelerations of a stage.

@@ -89,14 +89,11 @@ contains
    !> steps of dt run from the start to the end and a row is kept after each.
    subroutine new_plan(plan, time, dt, longest, limit, error)
       type(time_plan), intent(inout) :: plan
-      !> Times of the loading, checked (m) [s]
-      real(wp), intent(in) :: time(:)
-      !> Step that the user wants, or `unset` [s]
-      real(wp), intent(in) :: dt
-      !> Longest step where the user gives none [s]
-      real(wp), intent(in) :: longest
-      !> Steps that the user gives must not be longer; `huge` for none [s]
-      real(wp), intent(in) :: limit
+      !> Times of the loading, checked (m) [s]; step that the user wants, or `unset` [s]
+      real(wp), intent(in) :: time(:), dt
+      !> Longest step where the user gives none [s]; steps that the user gives must not be longer; `huge` for
+      !> none [s]
+      real(wp), intent(in) :: longest, limit
       type(error_type), allocatable, intent(out) :: error
       real(wp), allocatable :: parts(:)
       real(wp) :: step, steps

@@ -6,7 +6,7 @@ module rbs_solve_time_run_dynamic
    use rbs_base_text, only: to_text
    use rbs_case_methods, only: method_type, methods, method_named, responses_tried, usual_tolerance, &
                                usual_rho_infinity
-   use rbs_solve_check_values, only: check_values
+   use rbs_base_check, only: is_given, check_values
    use rbs_solve_task, only: task_type
    use rbs_solve_modal_modes, only: frequency_bounds, stability_limit
    use rbs_solve_time_effort, only: check_effort
@@ -22,7 +22,6 @@ module rbs_solve_time_run_dynamic
    use rbs_solve_time_state, only: stepper_type
    use rbs_structure_structure, only: structure_type, finite
    use rbs_case_analysis_record, only: analysis_record
-   use rbs_base_check, only: is_given
    implicit none
    private
 
@@ -52,74 +51,113 @@ contains
       if (allocated(error)) return
       plan%method = analysis%method
       if (structure%tangent_numbers > 0) then
-         call choose_implicit(structure, plan, error)
+         call choose_implicit()
          if (allocated(error)) return
       end if
       if (plan%method == 'auto') then
-         call choose_method(structure, analysis, time, plan, error)
+         call choose_method()
          if (allocated(error)) return
       end if
-      call plan_steps(structure, analysis, time, loads, plan, error)
+      call plan_steps()
       if (allocated(error)) return
       call check_effort(structure, analysis%max_seconds, plan, error)
-   end subroutine plan_dynamic
 
-   !> What has no mass follows from an implicit step alone.
-   subroutine choose_implicit(structure, plan, error)
-      class(structure_type), intent(in) :: structure
-      type(time_plan), intent(inout) :: plan
-      type(error_type), allocatable, intent(out) :: error
-      type(method_type) :: method
+   contains
 
-      if (.not. any(structure%inertias > 0.0_wp)) then
-         call fatal_error(error, bad_input, 'frame: nothing has mass; give &floor mass, or mass to nodes')
-         return
-      end if
-      if (plan%method == 'auto') then
-         plan%method = 'generalised_alpha'
-         plan%reason = 'nodes of a frame without mass of their own need an implicit method'
-      end if
-      method = method_named(plan%method)
-      if (method%implicit) return
-      call fatal_error(error, bad_input, &
-                       "analysis: method = '"//trim(plan%method)//"' takes explicit steps, "// &
-                       'and a frame has unknowns without mass; choose newmark, hht or generalised_alpha')
-   end subroutine choose_implicit
+      !> What has no mass follows from an implicit step alone.
+      subroutine choose_implicit()
+         type(method_type) :: method
 
-   !> Steps of the method chosen.
-   subroutine plan_steps(structure, analysis, time, loads, plan, error)
-      class(structure_type), intent(in) :: structure
-      type(analysis_record), intent(in) :: analysis
-      real(wp), intent(in) :: time(:)
-      type(loads_type), intent(in) :: loads
-      type(time_plan), intent(inout) :: plan
-      type(error_type), allocatable, intent(out) :: error
-      type(method_type) :: method
-      real(wp) :: lowest, highest, longest, bound
+         if (.not. any(structure%inertias > 0.0_wp)) then
+            call fatal_error(error, bad_input, 'frame: nothing has mass; give &floor mass, or mass to nodes')
+            return
+         end if
+         if (plan%method == 'auto') then
+            plan%method = 'generalised_alpha'
+            plan%reason = 'nodes of a frame without mass of their own need an implicit method'
+         end if
+         method = method_named(plan%method)
+         if (method%implicit) return
+         call fatal_error(error, bad_input, &
+                          "analysis: method = '"//trim(plan%method)//"' takes explicit steps, "// &
+                          'and a frame has unknowns without mass; choose newmark, hht or generalised_alpha')
+      end subroutine choose_implicit
 
-      method = method_named(plan%method)
-      longest = time(size(time)) - time(1)
-      bound = huge(1.0_wp)
-      if (method%implicit) then
-         call frequency_bounds(structure, lowest, highest, error)
+      !> Steps of the method chosen.
+      subroutine plan_steps()
+         type(method_type) :: method
+         real(wp) :: lowest, highest, longest, bound
+
+         method = method_named(plan%method)
+         longest = time(size(time)) - time(1)
+         bound = huge(1.0_wp)
+         if (method%implicit) then
+            call frequency_bounds(structure, lowest, highest, error)
+            if (allocated(error)) return
+            longest = min(longest, method%period_share*longest_period(lowest))
+         else
+            call stability_limit(structure, plan%limit, error)
+            if (allocated(error)) return
+            if (method%adaptive) then
+               ! It is explicit too: its steps cannot be much longer than the limit of rk4.
+               call check_length((time(size(time)) - time(1))/plan%limit, plan%limit, error)
+               if (allocated(error)) return
+            else
+               longest = method%limit_share*plan%limit
+               if (.not. analysis%allow_unstable) bound = plan%limit
+            end if
+         end if
+         call new_plan(plan, time, analysis%dt, longest, bound, error)
          if (allocated(error)) return
-         longest = min(longest, method%period_share*longest_period(lowest))
-      else
+         call structure%check_loads(loads%signal%acts(), error)
+      end subroutine plan_steps
+
+      !> The method for a case whose user leaves it to the program: the most accurate one if it takes hardly
+      !> any
+      !> time, else the cheapest. It is chosen by counts of steps, never by a clock.
+      subroutine choose_method()
+         type(method_type) :: explicit_choice, implicit_choice, chosen
+         real(wp) :: lowest, highest, explicit_steps, implicit_steps, longest, step_cost, work
+         logical :: affordable
+
+         explicit_choice = method_named('rk4')
+         implicit_choice = method_named('generalised_alpha')
          call stability_limit(structure, plan%limit, error)
          if (allocated(error)) return
-         if (method%adaptive) then
-            ! It is explicit too: its steps cannot be much longer than the limit of rk4.
-            call check_length((time(size(time)) - time(1))/plan%limit, plan%limit, error)
-            if (allocated(error)) return
+         call frequency_bounds(structure, lowest, highest, error)
+         if (allocated(error)) return
+         longest = implicit_choice%period_share*longest_period(lowest)
+         step_cost = merge(finite_step_cost, implicit_step_cost, structure%kinematics == finite)
+         associate (duration => time(size(time)) - time(1))
+            explicit_steps = real(size(time) - 1, wp) + duration/(explicit_choice%limit_share*plan%limit)
+            implicit_steps = real(size(time) - 1, wp) + duration/longest
+         end associate
+         work = explicit_steps*structure%n
+         affordable = work <= negligible_work .or. explicit_steps <= step_cost*implicit_steps
+         if (is_given(analysis%tolerance) .and. (affordable .or. work <= bearable_work)) then
+            plan%method = 'rk45'
+            plan%reason = 'a tolerance of '//to_text(analysis%tolerance)//' asks for controlled errors'
+         else if (.not. affordable) then
+            plan%method = implicit_choice%name
+            plan%reason = 'stiff: rk4 would take '//to_text(anint(explicit_steps))//' steps for its '// &
+                          'stability, this method takes about '//to_text(anint(implicit_steps))
+         else if (structure%kinematics == finite) then
+            ! How fast the column turns, and with it the step that resolves it, is not known in advance.
+            plan%method = 'rk45'
+            plan%reason = 'finite rotations: the steps follow from a tolerance'
          else
-            longest = method%limit_share*plan%limit
-            if (.not. analysis%allow_unstable) bound = plan%limit
+            plan%method = explicit_choice%name
+            plan%located = any(structure%rules%name /= 'elastic')
+            plan%reason = to_text(anint(explicit_steps))//' steps take little time'
+            if (plan%located) plan%reason = trim(plan%reason)//'; events located'
          end if
-      end if
-      call new_plan(plan, time, analysis%dt, longest, bound, error)
-      if (allocated(error)) return
-      call structure%check_loads(loads%signal%acts(), error)
-   end subroutine plan_steps
+         chosen = method_named(plan%method)
+         plan%reason = trim(plan%reason)//'; errors over the peaks: '//to_text(chosen%usual_error)// &
+                       ' in the median of '//to_text(responses_tried)//' responses, '// &
+                       to_text(chosen%largest_error)//' at most'
+      end subroutine choose_method
+
+   end subroutine plan_dynamic
 
    !> The longest natural period [s]; a long time where there is no restoring force.
    pure real(wp) function longest_period(lowest)
@@ -128,55 +166,6 @@ contains
 
       longest_period = 2.0_wp*pi/max(lowest, tiny(1.0_wp)*1.0e3_wp)
    end function longest_period
-
-   !> The method for a case whose user leaves it to the program: the most accurate one if it takes hardly any
-   !> time, else the cheapest. It is chosen by counts of steps, never by a clock.
-   subroutine choose_method(structure, analysis, time, plan, error)
-      class(structure_type), intent(in) :: structure
-      type(analysis_record), intent(in) :: analysis
-      real(wp), intent(in) :: time(:)
-      type(time_plan), intent(inout) :: plan
-      type(error_type), allocatable, intent(out) :: error
-      type(method_type) :: explicit_choice, implicit_choice, chosen
-      real(wp) :: lowest, highest, explicit_steps, implicit_steps, longest, step_cost, work
-      logical :: affordable
-
-      explicit_choice = method_named('rk4')
-      implicit_choice = method_named('generalised_alpha')
-      call stability_limit(structure, plan%limit, error)
-      if (allocated(error)) return
-      call frequency_bounds(structure, lowest, highest, error)
-      if (allocated(error)) return
-      longest = implicit_choice%period_share*longest_period(lowest)
-      step_cost = merge(finite_step_cost, implicit_step_cost, structure%kinematics == finite)
-      associate (duration => time(size(time)) - time(1))
-         explicit_steps = real(size(time) - 1, wp) + duration/(explicit_choice%limit_share*plan%limit)
-         implicit_steps = real(size(time) - 1, wp) + duration/longest
-      end associate
-      work = explicit_steps*structure%n
-      affordable = work <= negligible_work .or. explicit_steps <= step_cost*implicit_steps
-      if (is_given(analysis%tolerance) .and. (affordable .or. work <= bearable_work)) then
-         plan%method = 'rk45'
-         plan%reason = 'a tolerance of '//to_text(analysis%tolerance)//' asks for controlled errors'
-      else if (.not. affordable) then
-         plan%method = implicit_choice%name
-         plan%reason = 'stiff: rk4 would take '//to_text(anint(explicit_steps))//' steps for its '// &
-                       'stability, this method takes about '//to_text(anint(implicit_steps))
-      else if (structure%kinematics == finite) then
-         ! How fast the column turns, and with it the step that resolves it, is not known in advance.
-         plan%method = 'rk45'
-         plan%reason = 'finite rotations: the steps follow from a tolerance'
-      else
-         plan%method = explicit_choice%name
-         plan%located = any(structure%rules%name /= 'elastic')
-         plan%reason = to_text(anint(explicit_steps))//' steps take little time'
-         if (plan%located) plan%reason = trim(plan%reason)//'; events located'
-      end if
-      chosen = method_named(plan%method)
-      plan%reason = trim(plan%reason)//'; errors over the peaks: '//to_text(chosen%usual_error)// &
-                    ' in the median of '//to_text(responses_tried)//' responses, '// &
-                    to_text(chosen%largest_error)//' at most'
-   end subroutine choose_method
 
    !> Response in time under lateral force, ground motion, axial load, or all of them.
    subroutine run_dynamic(structure, analysis, plan, time, loads, initial, task, error, sight)

@@ -13,14 +13,11 @@ module rbs_solve_time_scheme
    type, abstract :: scheme_type
       !> Order of the scheme
       integer :: order = 0
-      !> Result of the last attempt: deformations and velocities (springs)
-      real(wp), allocatable :: q(:), v(:)
-      !> Estimate of its error, if the scheme has one (springs)
-      real(wp), allocatable :: error_q(:), error_v(:)
-      !> Works of loads and damping in it [J]
-      real(wp) :: of_loads = 0.0_wp, of_damping = 0.0_wp
-      !> Loads at its end
-      real(wp) :: load(4) = 0.0_wp
+      !> Result of the last attempt: deformations and velocities (springs); estimate of its error, if the
+      !> scheme has one (springs)
+      real(wp), allocatable :: q(:), v(:), error_q(:), error_v(:)
+      !> Works of loads and damping in it [J]; loads at its end
+      real(wp) :: of_loads = 0.0_wp, of_damping = 0.0_wp, load(4) = 0.0_wp
       !> The equation of motion at the stage that was looked at last
       type(motion_result) :: now
       !> Whether the acceleration at the start is known from the last attempt

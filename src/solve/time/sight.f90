@@ -1,13 +1,14 @@
 !> What is seen of a run at the end of every step, and within the steps of methods that resolve it: the
 !> largest responses, collapse, and limit states. Which rows are kept has no part in it.
+!>
+!> Cubics on a step: through four values at its start, its thirds and its end.
 module rbs_solve_time_sight
    use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_interaction_joints, only: opening_of, rest_of
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_output_summary, only: peaks_type
-   use rbs_solve_time_cubic, only: cubic_type, cubic_through
    use rbs_loading_loads, only: lateral, horizontal
+   use rbs_output_summary, only: peaks_type
    use rbs_solve_time_motion, only: motion_type, motion_result
    use rbs_structure_spring_place, only: shear, flexure, layer
    use rbs_structure_structure, only: finite
@@ -15,6 +16,18 @@ module rbs_solve_time_sight
    private
 
    public :: sight_type, watch_type
+
+   !> c(1) + c(2) s + c(3) s**2 + c(4) s**3, s from 0 to 1.
+   type :: cubic_type
+      real(wp) :: c(4) = 0.0_wp
+      !> Its value at the end, to the last bit
+      real(wp) :: last = 0.0_wp
+   contains
+      procedure :: at
+      procedure :: largest
+      procedure :: first_at
+      procedure, private :: turns
+   end type cubic_type
 
    !> A limit state is reached where a sum of a joint's deformations is at a threshold or beyond it.
    type :: watch_type
@@ -390,15 +403,13 @@ contains
       top = cubic_through(value)
       open = .not. self%reached < huge(1.0_wp)
       do i = 1, size(self%watch)
-         associate (watch => self%watch(i))
-            if (.not. open(watch%state)) cycle
-            do j = 1, 4
-               value(j) = value_of(watch, self%inner_q(:, j), self%inner_openings(i, j))
-            end do
-            along = cubic_through(value)
-            share = along%first_at(watch%threshold)
-            if (share <= 1.0_wp) call reach(self, i, clock - (1.0_wp - share)*h, top%at(share))
-         end associate
+         if (.not. open(self%watch(i)%state)) cycle
+         do j = 1, 4
+            value(j) = value_of(self%watch(i), self%inner_q(:, j), self%inner_openings(i, j))
+         end do
+         along = cubic_through(value)
+         share = along%first_at(self%watch(i)%threshold)
+         if (share <= 1.0_wp) call reach(self, i, clock - (1.0_wp - share)*h, top%at(share))
       end do
       call set_bounds(self)
    end subroutine look_within
@@ -477,11 +488,9 @@ contains
       !> When [s], and displacement of the top [m]
       real(wp), intent(in) :: at, top
 
-      associate (state => self%watch(i)%state)
-         if (at >= self%reached(state)) return
-         self%reached(state) = at
-         self%top(state) = top
-      end associate
+      if (at >= self%reached(self%watch(i)%state)) return
+      self%reached(self%watch(i)%state) = at
+      self%top(self%watch(i)%state) = top
    end subroutine reach
 
    !> The bounds of what is still watched for.
@@ -519,5 +528,96 @@ contains
       if (factor > 0.0_wp) highest = min(highest, threshold/factor)
       if (factor < 0.0_wp) lowest = max(lowest, threshold/factor)
    end subroutine narrow
+
+   pure type(cubic_type) function cubic_through(value) result(cubic)
+      !> At 0, 1/3, 2/3 and 1
+      real(wp), intent(in) :: value(4)
+      real(wp) :: d1, d2, d3
+
+      ! Differences: values that are equal have coefficients that vanish.
+      d1 = value(2) - value(1)
+      d2 = value(3) - value(2)
+      d3 = value(4) - value(3)
+      cubic%last = value(4)
+      cubic%c(1) = value(1)
+      cubic%c(2) = 0.5_wp*(11.0_wp*d1 - 7.0_wp*d2 + 2.0_wp*d3)
+      cubic%c(3) = 4.5_wp*(-2.0_wp*d1 + 3.0_wp*d2 - d3)
+      cubic%c(4) = 4.5_wp*(d1 - 2.0_wp*d2 + d3)
+   end function cubic_through
+
+   pure real(wp) function at(self, s)
+      class(cubic_type), intent(in) :: self
+      real(wp), intent(in) :: s
+
+      at = self%last
+      if (s < 1.0_wp) at = self%c(1) + s*(self%c(2) + s*(self%c(3) + s*self%c(4)))
+   end function at
+
+   !> Where it turns within the step, in order; 1 where it does not.
+   pure function turns(self) result(s)
+      class(cubic_type), intent(in) :: self
+      real(wp) :: s(2), a, half, root, q
+
+      s = 1.0_wp
+      a = 3.0_wp*self%c(4)
+      half = self%c(3)
+      root = half**2 - a*self%c(2)
+      if (.not. root > 0.0_wp) return
+      ! The larger of both in size first, so that nothing cancels.
+      q = -(half + sign(sqrt(root), half))
+      s(1) = share_of(self%c(2), q)
+      s(2) = share_of(q, a)
+      if (s(1) > s(2)) s = s([2, 1])
+   end function turns
+
+   !> A quotient, 1 where it is not between 0 and 1.
+   pure real(wp) function share_of(part, whole) result(share)
+      real(wp), intent(in) :: part, whole
+
+      share = 1.0_wp
+      if (abs(part) < abs(whole) .and. part*whole > 0.0_wp) share = part/whole
+   end function share_of
+
+   !> The value that is largest in size, with its sign.
+   pure real(wp) function largest(self)
+      class(cubic_type), intent(in) :: self
+      real(wp) :: value(4), s(2)
+
+      s = self%turns()
+      value = [self%c(1), self%at(s(1)), self%at(s(2)), self%last]
+      largest = value(maxloc(abs(value), dim=1))
+   end function largest
+
+   !> Where it first has a value or is above it; 2 if it does not within the step.
+   pure real(wp) function first_at(self, value) result(s)
+      class(cubic_type), intent(in) :: self
+      real(wp), intent(in) :: value
+      real(wp) :: way(3), low, high
+      integer :: i
+
+      s = 0.0_wp
+      if (self%c(1) >= value) return
+      way(:2) = self%turns()
+      way(3) = 1.0_wp
+      low = 0.0_wp
+      do i = 1, 3
+         high = way(i)
+         if (self%at(high) >= value) exit
+         low = high
+      end do
+      s = 2.0_wp
+      if (i > 3) return
+      ! It rises from the one to the other.
+      do
+         s = 0.5_wp*(low + high)
+         if (.not. (s > low .and. s < high)) exit
+         if (self%at(s) >= value) then
+            high = s
+         else
+            low = s
+         end if
+      end do
+      s = high
+   end function first_at
 
 end module rbs_solve_time_sight

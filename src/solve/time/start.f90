@@ -63,10 +63,9 @@ contains
       lost = state%springs%lost_joint()
       if (lost > 0) then
          call fatal_error(error, analysis_failed, 'initial: the layers of '// &
-                          trim(spring_name(structure%place(lost)))// &
-                          ' cannot carry the axial load of '// &
-                          to_text(structure%axial_force(lost, state%load))// &
-                          ' N in the state that the first analysis ended in; give a smaller axial_load')
+                          trim(spring_name(structure%place(lost)))//' cannot carry the axial load of '// &
+                          to_text(structure%axial_force(lost, state%load))//' N in the state that the '// &
+                          'first analysis ended in; give a smaller axial_load')
          return
       end if
       state%q = state%springs%d
@@ -91,7 +90,7 @@ contains
 
    !> The same method goes on with what it remembers, unless a load jumps at the start.
    subroutine resume_steps(state, stepper, before, standing)
-      type(state_type), intent(in) :: state
+      type(state_type), intent(inout) :: state
       class(stepper_type), intent(inout) :: stepper
       type(end_state), intent(inout) :: before
       type(standing_type), intent(in) :: standing

@@ -21,10 +21,9 @@ module rbs_solve_time_state
       real(wp), allocatable :: q(:), v(:)
       !> Time since the start of the run [s], which keeps its digits where the clock is late; the loads then
       real(wp) :: time = 0.0_wp, load(4) = 0.0_wp
-      !> Time of the clock at the start, and now [s]
-      real(wp) :: begin = 0.0_wp, clock = 0.0_wp
-      !> Works of loads and damping, and the energy at the start [J]
-      real(wp) :: of_loads = 0.0_wp, of_damping = 0.0_wp, at_begin = 0.0_wp
+      !> Time of the clock at the start, and now [s]; works of loads and damping, and the energy at the start
+      !> [J]
+      real(wp) :: begin = 0.0_wp, clock = 0.0_wp, of_loads = 0.0_wp, of_damping = 0.0_wp, at_begin = 0.0_wp
       !> Kinetic energy that the velocities of the joints do not show: implicit steps keep joints from
       !> opening at their ends, not at every moment [J]
       real(wp) :: along_joints = 0.0_wp
@@ -106,7 +105,7 @@ contains
    !> state alone inherits this procedure.
    subroutine resume(self, state, stream)
       class(stepper_type), intent(inout) :: self
-      type(state_type), intent(in) :: state
+      type(state_type), intent(inout) :: state
       type(stream_type), intent(inout) :: stream
 
       stream%broken = stream%broken .or. self%steps < 0 .or. state%lost

@@ -17,7 +17,7 @@ module rbs_structure_column_chain
    implicit none
    private
 
-   public :: deformations, displacements, second_order_forces, geometric_forces
+   public :: deformations, displacements, second_order_forces, geometric_forces, second_order_energy
    public :: add_joint_stiffness, add_axial_stiffness
 
 contains
@@ -27,10 +27,8 @@ contains
       integer, intent(in) :: n
       !> Kinds of deformations: 2, or 3 where joints open
       integer, intent(in) :: kinds
-      !> Distances from the centroid to bottom and top (n) [m]
-      real(wp), intent(in) :: lower(n), upper(n)
-      !> (2 n or 3 n)
-      real(wp), intent(in) :: x(kinds*n)
+      !> Distances from the centroid to bottom and top (n) [m]; (2 n or 3 n)
+      real(wp), intent(in) :: lower(n), upper(n), x(kinds*n)
       real(wp), intent(inout) :: d(kinds*n)
       integer :: i
 
@@ -73,12 +71,12 @@ contains
       end do
    end subroutine displacements
 
-   !> Second-order forces of axial forces, those of the potential -sum a_k l_k th_k^2/2 - sum b_k u_k
-   !> th_{k-1}: on the joints their part in u, on the bodies that in th.
-   pure subroutine second_order_forces(n, length, axial, d, shear, step, moment)
+   !> Second-order forces of axial forces, those of the potential -sum a_k th_k^2/2 - sum b_k u_k th_{k-1}: on
+   !> the joints their part in u, on the bodies that in th. Power and stiffness follow from them.
+   pure subroutine second_order_forces(n, axial, d, shear, step, moment)
       integer, intent(in) :: n
-      !> a, then b, compression positive (2 n) [N]
-      real(wp), intent(in) :: length(n), axial(2*n)
+      !> a, axial forces times lengths [N m], then b [N]; compression positive (2 n)
+      real(wp), intent(in) :: axial(2*n)
       !> Slips [m] and relative rotations [rad] of the joints (2 n)
       real(wp), intent(in) :: d(2*n)
       !> Forces of the joints (n) [N], to which their share is added
@@ -93,27 +91,43 @@ contains
       do i = 1, n - 1
          shear(i) = shear(i) - axial(n + i)*rotation
          rotation = rotation + d(n + i)
-         moment(step*i) = axial(i)*length(i)*rotation + axial(n + i + 1)*d(i + 1)
+         moment(step*i) = axial(i)*rotation + axial(n + i + 1)*d(i + 1)
       end do
       shear(n) = shear(n) - axial(2*n)*rotation
-      moment(step*n) = axial(n)*length(n)*(rotation + d(2*n))
+      moment(step*n) = axial(n)*(rotation + d(2*n))
    end subroutine second_order_forces
 
    !> Geometric stiffness times deformations: the same forces on slips and relative rotations of the joints.
-   pure subroutine geometric_forces(n, length, axial, d, g)
+   pure subroutine geometric_forces(n, axial, d, g)
       integer, intent(in) :: n
-      real(wp), intent(in) :: length(n), axial(2*n), d(2*n)
+      real(wp), intent(in) :: axial(2*n), d(2*n)
       !> (2 n) [N, N m]
       real(wp), intent(out) :: g(2*n)
       integer :: i
 
       g(:n) = 0.0_wp
-      call second_order_forces(n, length, axial, d, g, 1, g(n + 1:))
+      call second_order_forces(n, axial, d, g, 1, g(n + 1:))
       g(2*n) = -g(2*n)
       do i = 2*n - 1, n + 1, -1
          g(i) = g(i + 1) - g(i)
       end do
    end subroutine geometric_forces
+
+   !> That potential [J].
+   pure real(wp) function second_order_energy(n, axial, d) result(energy)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: axial(2*n), d(2*n)
+      real(wp) :: rotation
+      integer :: i
+
+      energy = 0.0_wp
+      rotation = 0.0_wp
+      do i = 1, n
+         energy = energy - axial(n + i)*d(i)*rotation
+         rotation = rotation + d(n + i)
+         energy = energy - 0.5_wp*axial(i)*rotation**2
+      end do
+   end function second_order_energy
 
    !> Add B' diag(k) B of the springs.
    pure subroutine add_joint_stiffness(n, kinds, lower, upper, k, band)
@@ -157,9 +171,9 @@ contains
    end subroutine add_joint_stiffness
 
    !> Add the second derivatives of the potential of the axial forces, see `second_order_forces`.
-   pure subroutine add_axial_stiffness(n, length, lower, upper, axial, band)
+   pure subroutine add_axial_stiffness(n, lower, upper, axial, band)
       integer, intent(in) :: n
-      real(wp), intent(in) :: length(n), lower(n), upper(n), axial(2*n)
+      real(wp), intent(in) :: lower(n), upper(n), axial(2*n)
       !> Lower band
       real(wp), intent(inout) :: band(4, 2*n)
       real(wp) :: force
@@ -167,7 +181,7 @@ contains
 
       do i = 1, n
          t = 2*i
-         band(1, t) = band(1, t) - axial(i)*length(i)
+         band(1, t) = band(1, t) - axial(i)
          if (i == 1) cycle
          force = axial(n + i)
          band(2, t - 3) = band(2, t - 3) + force

@@ -88,7 +88,7 @@ contains
       unit = 0.0_wp
       do j = 1, m
          unit(j) = 1.0_wp
-         call geometric_forces(column%n, column%length, [column%axial_body, column%axial_slip], unit, g)
+         call geometric_forces(column%n, column%second_order, unit, g)
          ! No negative zeros
          stiffness(:m, j) = g + 0.0_wp
          unit(j) = 0.0_wp

@@ -16,8 +16,8 @@ module rbs_structure_column_column
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_structure_channel, only: channel_type, response_type, row_contents
-   use rbs_structure_column_chain, only: deformations, displacements, second_order_forces, &
-                               add_joint_stiffness, add_axial_stiffness
+   use rbs_structure_column_chain, only: deformations, displacements, second_order_forces, geometric_forces, &
+                                         second_order_energy, add_joint_stiffness, add_axial_stiffness
    use rbs_hysteresis_interaction_joints, only: opening_of, rest_of
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_spring_place, only: flexure
@@ -76,6 +76,8 @@ module rbs_structure_column_column
       real(wp), allocatable :: axial_body(:), axial_joint(:)
       !> The latter as far as it does second-order work on slips: not where they keep their direction (n) [N]
       real(wp), allocatable :: axial_slip(:)
+      !> What does second-order work, `axial_body` times the lengths, then `axial_slip` (2 n) [N m, N]
+      real(wp), allocatable :: second_order(:)
       !> Axial force of load and weight in the joints of the straight column, compression positive (n) [N]
       real(wp), allocatable :: compression(:)
       !> The same per vertical acceleration of the ground, from all masses (n) [kg]
@@ -131,6 +133,7 @@ contains
       self%axial_joint = dead + above(:self%n)
       self%axial_slip = self%axial_joint
       if (self%held) self%axial_slip(self%n) = 0.0_wp
+      self%second_order = [self%axial_body*self%length, self%axial_slip]
       self%compression = load + above(:self%n)
       self%axially_loaded = self%kinematics /= small .and. (abs(dead) > 0.0_wp .or. self%gravity > 0.0_wp)
       ! Layered joints and axial springs carry the axial load of load and weight above them.
@@ -167,7 +170,7 @@ contains
       real(wp), intent(inout), contiguous :: correction(:)
 
       if (size(tangent) + size(correction) > 0) return
-      if (size(axial) > 0) call second_order_forces(self%n, self%length, axial, d, f, 2, g)
+      if (size(axial) > 0) call second_order_forces(self%n, axial, d, f, 2, g)
       call body_forces(self%n, self%kinds, self%lower, self%upper, f, load(lateral), &
                        self%axial_load + load(top_axial), self%weight, size(axial) > 0, g)
    end subroutine forces
@@ -205,18 +208,27 @@ contains
       g(3*n) = -axial_load - f(3*n) - weight(n)
    end subroutine body_forces
 
-   !> Axial forces for the rotations of the bodies, then across the slips of the joints (2 n).
+   !> Axial forces for the rotations of the bodies, times their lengths, then across the slips of the joints
+   !> (2 n), see `second_order_forces`.
    subroutine axial_forces(self, load, axial)
       class(column_type), intent(in) :: self
       real(wp), intent(in), contiguous :: load(:)
       real(wp), intent(out), contiguous :: axial(:)
-      integer :: n
 
-      n = self%n
-      axial(:n) = self%axial_body + load(top_axial)*self%axial_lever + load(vertical)*self%lifted_body
-      axial(n + 1:) = self%axial_slip + load(top_axial)*self%axial_lever + load(vertical)*self%lifted_joint
-      if (self%held) axial(2*n) = 0.0_wp
+      axial = self%second_order + added_axial(self, load)
    end subroutine axial_forces
+
+   !> The same of the loads that are added to the constant ones.
+   pure function added_axial(self, load) result(axial)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in) :: load(:)
+      real(wp) :: axial(2*self%n)
+
+      associate (top => load(top_axial)*self%axial_lever)
+         axial = [(top + load(vertical)*self%lifted_body)*self%length, top + load(vertical)*self%lifted_joint]
+      end associate
+      if (self%held) axial(2*self%n) = 0.0_wp
+   end function added_axial
 
    !> Rate of the axial force at a spring under the slopes of the loads [N/s].
    pure real(wp) function axial_rate(self, spring, load)
@@ -242,7 +254,7 @@ contains
       real(wp), intent(in), contiguous :: k(:)
       real(wp), intent(inout), contiguous :: band(:, :)
 
-      call add_axial_stiffness(self%n, self%length, self%lower, self%upper, k, band)
+      call add_axial_stiffness(self%n, self%lower, self%upper, k, band)
    end subroutine add_geometric
 
    !> Accelerations of the joints, where the rotations are small.
@@ -260,7 +272,7 @@ contains
          return
       end if
       n = self%n
-      if (pressing > 0) call second_order_forces(n, self%length, result%axial, d, result%f, 1, result%work)
+      if (pressing > 0) call second_order_forces(n, result%axial, d, result%f, 1, result%work)
       call chain_accelerations(n, self%lower, self%upper, self%inverse_mass, self%inverse_inertia, result%f, &
                                result%work, load(lateral), load(horizontal), result%work(n + 1), &
                                result%work(2*n + 1), result%a)
@@ -314,35 +326,37 @@ contains
    pure real(wp) function power_of_loads(self, d, v, load) result(watt)
       class(column_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:), v(:), load(:)
-      real(wp) :: rotation, turning, rising, body, joint, lifts
-      integer :: i, n
+      integer :: i
 
       watt = 0.0_wp
       do i = lateral, horizontal
          if (abs(load(i)) > 0.0_wp) watt = watt + self%speed(i, d, v)*load(i)
       end do
-      if (.not. (abs(load(vertical)) > 0.0_wp .or. abs(load(top_axial)) > 0.0_wp)) return
-      lifts = 0.0_wp
+      if (abs(load(vertical)) > 0.0_wp .or. abs(load(top_axial)) > 0.0_wp) then
+         watt = watt + power_of_axial(self, d, v, load)
+      end if
+   end function power_of_loads
+
+   pure real(wp) function power_of_axial(self, d, v, load) result(watt)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), v(:), load(:)
+      real(wp) :: rising, g(2*self%n)
+      integer :: i, n
+
       n = self%n
-      rotation = 0.0_wp
-      turning = 0.0_wp
+      watt = 0.0_wp
+      if (self%kinematics /= small) then
+         call geometric_forces(n, added_axial(self, load), d, g)
+         watt = -inner_product(2*n, v, g)
+      end if
+      if (.not. self%opens) return
       rising = 0.0_wp
       do i = 1, n
-         body = load(top_axial)*self%axial_lever + load(vertical)*self%lifted_body(i)
-         joint = load(top_axial)*self%axial_lever + load(vertical)*self%lifted_joint(i)
-         if (i == n .and. self%held) joint = 0.0_wp
-         if (self%kinematics /= small) lifts = lifts + joint*(v(i)*rotation + d(i)*turning)
-         rotation = rotation + d(n + i)
-         turning = turning + v(n + i)
-         if (self%kinematics /= small) lifts = lifts + body*self%length(i)*rotation*turning
-         if (self%opens) then
-            rising = rising + v(2*n + i)
-            lifts = lifts - self%mass(i)*load(vertical)*rising
-         end if
+         rising = rising + v(2*n + i)
+         watt = watt - self%mass(i)*load(vertical)*rising
       end do
-      if (self%opens) lifts = lifts - load(top_axial)*rising
-      watt = watt + lifts
-   end function power_of_loads
+      watt = watt - load(top_axial)*rising
+   end function power_of_axial
 
    pure real(wp) function kinetic_energy(self, d, v) result(energy)
       class(column_type), intent(in) :: self
@@ -368,25 +382,14 @@ contains
       end do
    end function kinetic_energy
 
-   !> Potential of the constant axial load and the weight: -sum a_k l_k th_k^2/2 - sum b_k u_k th_{k-1} with
-   !> a = `axial_body`, b = `axial_slip`, and what they do on openings.
+   !> Potential of the constant axial load and the weight, on rotations and openings.
    pure real(wp) function potential_energy(self, d) result(energy)
       class(column_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:)
-      real(wp) :: rotation
-      integer :: i, n
 
-      n = self%n
       energy = 0.0_wp
-      if (self%axially_loaded) then
-         rotation = 0.0_wp
-         do i = 1, n
-            energy = energy - self%axial_slip(i)*d(i)*rotation
-            rotation = rotation + d(n + i)
-            energy = energy - 0.5_wp*self%axial_body(i)*self%length(i)*rotation**2
-         end do
-      end if
-      if (self%opens) energy = energy + inner_product(n, self%axial_joint, d(2*n + 1:))
+      if (self%axially_loaded) energy = second_order_energy(self%n, self%second_order, d)
+      if (self%opens) energy = energy + inner_product(self%n, self%axial_joint, d(2*self%n + 1:))
    end function potential_energy
 
    pure real(wp) function top_displacement(self, d) result(x)
@@ -404,20 +407,18 @@ contains
    pure real(wp) function top_height(self, d) result(y)
       class(column_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:)
-      real(wp) :: rotation
-      integer :: i, n
+      real(wp) :: unit(2*self%n)
 
-      n = self%n
-      y = self%joint_height(n + 1)
-      if (self%kinematics /= small) then
-         rotation = 0.0_wp
-         do i = 1, n
-            if (i < n .or. .not. self%held) y = y - d(i)*rotation
-            rotation = rotation + d(n + i)
-            y = y - 0.5_wp*self%length(i)*rotation**2
-         end do
-      end if
-      if (self%opens) y = y + sum(d(2*n + 1:))
+      associate (n => self%n)
+         y = self%joint_height(n + 1)
+         if (self%kinematics /= small) then
+            unit = 1.0_wp
+            unit(:n) = self%length
+            if (self%held) unit(2*n) = 0.0_wp
+            y = y + second_order_energy(n, unit, d)
+         end if
+         if (self%opens) y = y + sum(d(2*n + 1:))
+      end associate
    end function top_height
 
    pure subroutine rotations(self, d, rotation)
@@ -489,10 +490,9 @@ contains
       type(error_type), allocatable, intent(inout) :: error
 
       if (abs(self%axial_force_ratio) > 0.0_wp) then
-         call fatal_error(error, bad_input, &
-                          'column: axial_force_ratio = '//to_text(self%axial_force_ratio)// &
-                          ' belongs to a static path, which has one lateral force; in a dynamic analysis '// &
-                          'give the axial load as a history, axial_load')
+         call fatal_error(error, bad_input, 'column: axial_force_ratio = '// &
+                          to_text(self%axial_force_ratio)//' belongs to a static path, which has one '// &
+                          'lateral force; in a dynamic analysis give the axial load as a history, axial_load')
          return
       end if
       if (self%kinematics /= small .or. self%opens .or. any(self%rules%name == 'layered')) return

@@ -50,16 +50,14 @@ module rbs_structure_column_column_record
    !> beneath a footing, on which joint 1 then stands.
    type, extends(visited_record) :: column_record
       integer :: n = 1
-      real(wp) :: height = unset
-      real(wp) :: mass = unset
+      real(wp) :: height = unset, mass = unset
       !> Lengths [m] and masses [kg] of the bodies (n); not allocated: all lengths equal, masses in
       !> proportion to the lengths
       real(wp), allocatable :: lengths(:), masses(:)
       character(len=16) :: kinematics = 'small'
-      !> At the top, compression positive [N]
-      real(wp) :: axial_load = 0.0_wp
-      !> How it follows the lateral force on a static path: N = axial_load + axial_force_ratio F
-      real(wp) :: axial_force_ratio = 0.0_wp
+      !> At the top, compression positive [N]; how it follows the lateral force on a static path: N =
+      !> axial_load + axial_force_ratio F
+      real(wp) :: axial_load = 0.0_wp, axial_force_ratio = 0.0_wp
       !> Height at which it acts [m]; `unset`: at the top
       real(wp) :: axial_height = unset
       logical :: self_weight = .false.
@@ -72,8 +70,7 @@ module rbs_structure_column_column_record
       !> Whether the column stands on a footing, which is so if springs are given for joint 0; mass [kg],
       !> rotary inertia about its centroid [kg m2] and height [m] of the footing
       logical :: footing = .false.
-      real(wp) :: footing_mass = 0.0_wp, footing_inertia = 0.0_wp, footing_height = 0.0_wp
-      real(wp) :: depth = 0.0_wp
+      real(wp) :: footing_mass = 0.0_wp, footing_inertia = 0.0_wp, footing_height = 0.0_wp, depth = 0.0_wp
       !> One for all bodies or n; not allocated: m (l^2 + depth^2)/12 [kg m2]
       real(wp), allocatable :: rotary_inertia(:)
       !> Which model made the column, and the version of its parameters; for the record only
@@ -110,12 +107,10 @@ contains
                   kinematics_names)
       call v%key('axial_load', self%axial_load, 'N', any_number, &
                  'axial load at the top, compression positive')
-      call v%key('axial_force_ratio', self%axial_force_ratio, '', any_number, &
-                 'change of the axial load per lateral force on a static path, '// &
-                 'as in the exterior column of a frame')
-      call v%key('axial_height', self%axial_height, 'm', above_zero, &
-                 'height at which the axial load acts and leans with the column (pdelta); by default '// &
-                 'the top', optional=.true.)
+      call v%key('axial_force_ratio', self%axial_force_ratio, '', any_number, 'change of the axial load '// &
+                 'per lateral force on a static path, as in the exterior column of a frame')
+      call v%key('axial_height', self%axial_height, 'm', above_zero, 'height at which the axial load '// &
+                 'acts and leans with the column (pdelta); by default the top', optional=.true.)
       call v%key('self_weight', self%self_weight, 'whether the weight of the bodies acts')
       call v%key('gravity', self%gravity, 'm/s2', not_negative, 'acceleration of gravity for the weight')
       call v%key('axial_follows', self%axial_follows, &
@@ -176,184 +171,168 @@ contains
       type(message_list), intent(inout) :: messages
 
       call self%check('column', messages)
-      if (allocated(self%lengths)) call check_count('lengths', size(self%lengths), self%n, messages)
-      if (allocated(self%masses)) call check_count('masses', size(self%masses), self%n, messages)
-      if (allocated(self%lengths)) call check_sum(self, messages)
+      if (allocated(self%lengths)) call check_count('lengths', size(self%lengths), self%n)
+      if (allocated(self%masses)) call check_count('masses', size(self%masses), self%n)
+      if (allocated(self%lengths)) call check_sum()
       if (self%kinematics /= 'finite' .and. (self%axial_follows .or. self%force_follows)) then
          call messages%add('column: a load that follows the top (axial_follows, force_follows) needs '// &
                            "kinematics = 'finite'; remove it or change the kinematics")
       end if
-      call check_axial_height(self, messages)
-      call check_inertia(self, messages)
-      call check_top(self, messages)
-      call check_footing(self, messages)
+      call check_axial_height()
+      call check_inertia()
+      call check_top()
+      call check_footing()
       call self%damping%check('damping', messages)
-      call check_damping(self, messages)
-      call check_springs(self, self%shear, 'shear', in_shear, messages)
-      call check_springs(self, self%flexure, 'flexure', in_flexure, messages)
+      call check_damping()
+      call check_springs(self%shear, 'shear', in_shear)
+      call check_springs(self%flexure, 'flexure', in_flexure)
       if (allocated(self%axial_spring)) then
-         call check_springs(self, self%axial_spring, 'axial', in_axial, messages)
+         call check_springs(self%axial_spring, 'axial', in_axial)
       end if
+
+   contains
+
+      !> What has no meaning where the top does not turn.
+      subroutine check_top()
+
+         if (self%top /= 'fixed') return
+         if (self%top_inertia > 0.0_wp) then
+            call messages%add('column: top_inertia = '//to_text(self%top_inertia)//' kg m2 has no effect '// &
+                              "with top = 'fixed', as the top does not turn; remove it")
+         end if
+         if (self%axial_follows .or. self%force_follows) then
+            call messages%add("column: with top = 'fixed' the top does not turn, and no load can turn "// &
+                              'with it; remove axial_follows and force_follows')
+         end if
+      end subroutine check_top
+
+      !> A footing stands on springs of its own.
+      subroutine check_footing()
+
+         if (self%footing) return
+         if (self%footing_mass > 0.0_wp .or. self%footing_inertia > 0.0_wp .or. &
+             self%footing_height > 0.0_wp) then
+            call messages%add('column: footing_mass, footing_inertia and footing_height need springs '// &
+                              'beneath the footing; give &shear and &flexure with joint = 0 (Python: '// &
+                              'footing=), or remove them')
+         end if
+      end subroutine check_footing
+
+      !> A lever of the axial load is known to the second-order moments of joints that do not open.
+      subroutine check_axial_height()
+
+         if (.not. ieee_is_finite(self%axial_height)) return
+         if (.not. is_given(self%axial_height)) return
+         if (self%footing .or. self%top == 'fixed') then
+            call messages%add('column: axial_height is the lever of the load on a cantilever; remove it, '// &
+                              'or the footing and the fixed top')
+         else if (self%kinematics /= 'pdelta') then
+            call messages%add("column: axial_height needs kinematics = 'pdelta', not '"// &
+                              trim(self%kinematics)//"'; remove it or change the kinematics")
+         else if (allocated(self%axial_spring)) then
+            call messages%add('column: axial_height cannot stand with axial springs; remove one of them')
+         end if
+      end subroutine check_axial_height
+
+      !> Two statements on rotary inertia contradict each other.
+      subroutine check_inertia()
+         logical :: given
+
+         if (.not. allocated(self%rotary_inertia)) return
+         given = .false.
+         if (ieee_is_finite(self%depth)) given = self%depth > 0.0_wp
+         if (given) then
+            call messages%add('column: both depth and rotary_inertia are given; keep the one that is meant')
+         end if
+         if (size(self%rotary_inertia) /= 1 .and. size(self%rotary_inertia) /= self%n) then
+            call messages%add('column: rotary_inertia has '//to_text(size(self%rotary_inertia))// &
+                              ' values for n = '//to_text(self%n)//' bodies; give one, or one for each')
+         end if
+      end subroutine check_inertia
+
+      !> Damping that has something to act on, and matrices that can be handled.
+      subroutine check_damping()
+         integer :: modes
+         logical :: given
+
+         given = .false.
+         if (ieee_is_finite(self%damping%stiffness)) given = self%damping%stiffness > 0.0_wp
+         if (self%damping%tangent .and. .not. given) then
+            call messages%add('damping: tangent has no meaning without stiffness; give one')
+         end if
+         if (.not. allocated(self%damping%modal)) return
+         modes = merge(3, 2, allocated(self%axial_spring))*self%joints() - merge(1, 0, self%top == 'fixed')
+         if (size(self%damping%modal) > modes) then
+            call messages%add('damping: modal has '//to_text(size(self%damping%modal))//' values for '// &
+                              to_text(modes)//' modes; give one for all, or one for each of the first modes')
+         end if
+         if (self%n > most_dense) then
+            call messages%add('damping: modal damping needs all modes, which are there for up to '// &
+                              to_text(most_dense)//' bodies, not for n = '//to_text(self%n)// &
+                              '; use mass and stiffness damping')
+         end if
+      end subroutine check_damping
+
+      !> Lengths and masses: one for each body.
+      subroutine check_count(name, count, n)
+         character(len=*), intent(in) :: name
+         integer, intent(in) :: count, n
+
+         if (count == n) return
+         call messages%add('column: '//name//' has '//to_text(count)//' values for n = '//to_text(n)// &
+                           ' bodies; give one for each')
+      end subroutine check_count
+
+      subroutine check_sum()
+         real(wp) :: total
+
+         if (.not. ieee_is_finite(self%height) .or. .not. all(ieee_is_finite(self%lengths))) return
+         if (.not. self%height > 0.0_wp) return
+         total = sum(self%lengths)
+         if (abs(total - self%height) > 1.0e-9_wp*self%height) then
+            call messages%add('column: the lengths add up to '//to_text(total)//' m, the height is '// &
+                              to_text(self%height)//' m; make them equal')
+         end if
+      end subroutine check_sum
+
+      subroutine check_springs(springs, name, place)
+         type(spring_record), intent(in), allocatable :: springs(:)
+         !> For messages: 'shear'; where they stand, see `rbs_hysteresis_rule`
+         character(len=*), intent(in) :: name, place
+         integer :: i
+
+         if (.not. allocated(springs)) then
+            call messages%add('column: the '//name//' spring is missing; give one for every joint')
+         else if (size(springs) == 1 .and. .not. self%footing) then
+            call check_spring(springs(1), name//' spring', name, place)
+         else if (size(springs) /= self%joints()) then
+            call messages%add('column: '//to_text(size(springs))//' '//name//' springs for '// &
+                              to_text(self%joints())//' joints; give one, or one for each joint')
+         else
+            do i = 1, size(springs)
+               ! Equal springs have equal faults; they are told once.
+               if (i > 1) then
+                  if (springs(i)%same_as(springs(i - 1))) cycle
+               end if
+               call check_spring(springs(i), name//' spring of joint '//to_text(self%joint_number(i)), name, &
+                                 place)
+            end do
+         end if
+      end subroutine check_springs
+
+      subroutine check_spring(spring, full_name, name, place)
+         type(spring_record), intent(in) :: spring
+         character(len=*), intent(in) :: full_name, name, place
+         character(len=:), allocatable :: from
+
+         call spring%place(from)
+         call spring%validate(from//full_name, messages)
+         if (suits(spring%rule, place) .or. .not. any(rule_names == spring%rule)) return
+         call messages%add(from//'column: the '//name//" spring cannot be of the rule '"// &
+                           trim(spring%rule)//"'; it is one of "// &
+                           list_of(pack(rule_names, suits(rule_names, place))))
+      end subroutine check_spring
+
    end subroutine validate
-
-   !> What has no meaning where the top does not turn.
-   subroutine check_top(self, messages)
-      class(column_record), intent(in) :: self
-      type(message_list), intent(inout) :: messages
-
-      if (self%top /= 'fixed') return
-      if (self%top_inertia > 0.0_wp) then
-         call messages%add('column: top_inertia = '//to_text(self%top_inertia)//' kg m2 has no effect '// &
-                           "with top = 'fixed', as the top does not turn; remove it")
-      end if
-      if (self%axial_follows .or. self%force_follows) then
-         call messages%add("column: with top = 'fixed' the top does not turn, and no load can turn with "// &
-                           'it; remove axial_follows and force_follows')
-      end if
-   end subroutine check_top
-
-   !> A footing stands on springs of its own.
-   subroutine check_footing(self, messages)
-      class(column_record), intent(in) :: self
-      type(message_list), intent(inout) :: messages
-
-      if (self%footing) return
-      if (self%footing_mass > 0.0_wp .or. self%footing_inertia > 0.0_wp .or. &
-          self%footing_height > 0.0_wp) then
-         call messages%add('column: footing_mass, footing_inertia and footing_height need springs '// &
-                           'beneath the footing; give &shear and &flexure with joint = 0 '// &
-                           '(Python: footing=), or '// &
-                           'remove them')
-      end if
-   end subroutine check_footing
-
-   !> A lever of the axial load is known to the second-order moments of joints that do not open.
-   subroutine check_axial_height(self, messages)
-      type(column_record), intent(in) :: self
-      type(message_list), intent(inout) :: messages
-
-      if (.not. ieee_is_finite(self%axial_height)) return
-      if (.not. is_given(self%axial_height)) return
-      if (self%footing .or. self%top == 'fixed') then
-         call messages%add('column: axial_height is the lever of the load on a cantilever; remove it, or '// &
-                           'the footing and the fixed top')
-      else if (self%kinematics /= 'pdelta') then
-         call messages%add("column: axial_height needs kinematics = 'pdelta', not '"// &
-                           trim(self%kinematics)//"'; remove it or change the kinematics")
-      else if (allocated(self%axial_spring)) then
-         call messages%add('column: axial_height cannot stand with axial springs; remove one of them')
-      end if
-   end subroutine check_axial_height
-
-   !> Two statements on rotary inertia contradict each other.
-   subroutine check_inertia(self, messages)
-      type(column_record), intent(in) :: self
-      type(message_list), intent(inout) :: messages
-      logical :: given
-
-      if (.not. allocated(self%rotary_inertia)) return
-      given = .false.
-      if (ieee_is_finite(self%depth)) given = self%depth > 0.0_wp
-      if (given) then
-         call messages%add('column: both depth and rotary_inertia are given; keep the one that is meant')
-      end if
-      if (size(self%rotary_inertia) /= 1 .and. size(self%rotary_inertia) /= self%n) then
-         call messages%add('column: rotary_inertia has '//to_text(size(self%rotary_inertia))// &
-                           ' values for n = '//to_text(self%n)//' bodies; give one, or one for each')
-      end if
-   end subroutine check_inertia
-
-   !> Damping that has something to act on, and matrices that can be handled.
-   subroutine check_damping(self, messages)
-      type(column_record), intent(in) :: self
-      type(message_list), intent(inout) :: messages
-      integer :: modes
-      logical :: given
-
-      given = .false.
-      if (ieee_is_finite(self%damping%stiffness)) given = self%damping%stiffness > 0.0_wp
-      if (self%damping%tangent .and. .not. given) then
-         call messages%add('damping: tangent has no meaning without stiffness; give one')
-      end if
-      if (.not. allocated(self%damping%modal)) return
-      modes = merge(3, 2, allocated(self%axial_spring))*self%joints() - merge(1, 0, self%top == 'fixed')
-      if (size(self%damping%modal) > modes) then
-         call messages%add('damping: modal has '//to_text(size(self%damping%modal))// &
-                           ' values for '//to_text(modes)//' modes; give one for all, or one for each '// &
-                           'of the first modes')
-      end if
-      if (self%n > most_dense) then
-         call messages%add('damping: modal damping needs all modes, which are there for up to '// &
-                           to_text(most_dense)//' bodies, not for n = '//to_text(self%n)// &
-                           '; use mass and stiffness damping')
-      end if
-   end subroutine check_damping
-
-   !> Lengths and masses: one for each body.
-   subroutine check_count(name, count, n, messages)
-      character(len=*), intent(in) :: name
-      integer, intent(in) :: count, n
-      type(message_list), intent(inout) :: messages
-
-      if (count == n) return
-      call messages%add('column: '//name//' has '//to_text(count)//' values for n = '//to_text(n)// &
-                        ' bodies; give one for each')
-   end subroutine check_count
-
-   subroutine check_sum(self, messages)
-      type(column_record), intent(in) :: self
-      type(message_list), intent(inout) :: messages
-      real(wp) :: total
-
-      if (.not. ieee_is_finite(self%height) .or. .not. all(ieee_is_finite(self%lengths))) return
-      if (.not. self%height > 0.0_wp) return
-      total = sum(self%lengths)
-      if (abs(total - self%height) > 1.0e-9_wp*self%height) then
-         call messages%add('column: the lengths add up to '//to_text(total)//' m, the height is '// &
-                           to_text(self%height)//' m; make them equal')
-      end if
-   end subroutine check_sum
-
-   subroutine check_springs(self, springs, name, place, messages)
-      type(column_record), intent(in) :: self
-      type(spring_record), intent(in), allocatable :: springs(:)
-      !> For messages: 'shear'
-      character(len=*), intent(in) :: name
-      !> Where they stand, see `rbs_hysteresis_rule`
-      character(len=*), intent(in) :: place
-      type(message_list), intent(inout) :: messages
-      integer :: i
-
-      if (.not. allocated(springs)) then
-         call messages%add('column: the '//name//' spring is missing; give one for every joint')
-      else if (size(springs) == 1 .and. .not. self%footing) then
-         call check_spring(springs(1), name//' spring', name, place, messages)
-      else if (size(springs) /= self%joints()) then
-         call messages%add('column: '//to_text(size(springs))//' '//name//' springs for '// &
-                           to_text(self%joints())//' joints; give one, or one for each joint')
-      else
-         do i = 1, size(springs)
-            ! Equal springs have equal faults; they are told once.
-            if (i > 1) then
-               if (springs(i)%same_as(springs(i - 1))) cycle
-            end if
-            call check_spring(springs(i), name//' spring of joint '//to_text(self%joint_number(i)), name, &
-                              place, messages)
-         end do
-      end if
-   end subroutine check_springs
-
-   subroutine check_spring(spring, full_name, name, place, messages)
-      type(spring_record), intent(in) :: spring
-      character(len=*), intent(in) :: full_name, name, place
-      type(message_list), intent(inout) :: messages
-      character(len=:), allocatable :: from
-
-      call spring%place(from)
-      call spring%validate(from//full_name, messages)
-      if (suits(spring%rule, place) .or. .not. any(rule_names == spring%rule)) return
-      call messages%add(from//'column: the '//name//" spring cannot be of the rule '"//trim(spring%rule)// &
-                        "'; it is one of "//list_of(pack(rule_names, suits(rule_names, place))))
-   end subroutine check_spring
 
 end module rbs_structure_column_column_record

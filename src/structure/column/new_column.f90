@@ -73,183 +73,175 @@ contains
       column%axial_follows = spec%axial_follows
       column%force_follows = spec%force_follows
 
-      call set_heights(column)
+      call set_heights()
       if (spec%self_weight) column%gravity = spec%gravity
       column%weight = column%gravity*column%mass
-      call set_bodies(column, spec, first, last)
-      call set_mass_sums(column)
-      call set_lifted_masses(column)
-      call set_springs(column, spec)
+      call set_bodies()
+      call set_mass_sums()
+      call set_lifted_masses()
+      call set_springs()
       column%axial_force_ratio = spec%axial_force_ratio
       if (is_given(spec%axial_height)) column%axial_lever = spec%axial_height/spec%height
       call column%put_under(spec%axial_load)
       column%initial_stiffness = column%rules%initial_stiffness()
-      call set_unknowns(column)
+      call set_unknowns()
+
+   contains
+
+      subroutine set_heights()
+         integer :: i, n
+
+         n = column%n
+         allocate (column%joint_height(n + 1))
+         allocate (column%arm(column%unknowns), source=0.0_wp)
+         column%joint_height(1) = 0.0_wp
+         do i = 1, n
+            column%joint_height(i + 1) = column%joint_height(i) + column%length(i)
+         end do
+         column%total_height = column%joint_height(n + 1)
+         column%arm(:n) = 1.0_wp
+         ! Summed from the top down: the lever arm of an upper joint is not a difference of large heights.
+         column%arm(2*n) = column%length(n)
+         do i = n - 1, 1, -1
+            column%arm(n + i) = column%arm(n + i + 1) + column%length(i)
+         end do
+      end subroutine set_heights
+
+      !> Centroids and rotary inertias, the lumped mass included.
+      subroutine set_bodies()
+         real(wp) :: own, shift
+         integer :: i, n
+
+         n = column%n
+         column%inertia = column%mass*(column%length**2 + spec%depth**2)/12.0_wp
+         if (allocated(spec%rotary_inertia)) then
+            column%inertia(first:last) = spec%rotary_inertia(min([(i, i=1, spec%n)], &
+                           size(spec%rotary_inertia)))
+         end if
+         column%lower = column%length/2.0_wp
+         column%upper = column%length/2.0_wp
+         if (column%footing) column%inertia(1) = spec%footing_inertia
+         if (column%held) then
+            column%mass(n) = spec%top_mass
+            column%inertia(n) = of_held_body
+            return
+         end if
+         if (.not. spec%top_mass > 0.0_wp .and. .not. spec%top_inertia > 0.0_wp) return
+         own = column%mass(n)
+         shift = spec%top_mass/(own + spec%top_mass)*column%upper(n)
+         column%inertia(n) = column%inertia(n) + spec%top_inertia + own*shift*column%upper(n)
+         column%mass(n) = own + spec%top_mass
+         column%upper(n) = own/column%mass(n)*column%upper(n)
+         column%lower(n) = column%length(n) - column%upper(n)
+      end subroutine set_bodies
+
+      !> Sums over the bodies above each joint; every term is positive, so nothing cancels.
+      subroutine set_mass_sums()
+         integer :: i, n
+
+         n = column%n
+         allocate (column%mass_above(n + 1), column%moment_above(n + 1), column%inertia_above(n + 1), &
+                   source=0.0_wp)
+         do i = n, 1, -1
+            associate (m => column%mass(i), l => column%length(i), s => column%lower(i))
+               column%mass_above(i) = column%mass_above(i + 1) + m
+               column%moment_above(i) = column%moment_above(i + 1) + l*column%mass_above(i + 1) + m*s
+               column%inertia_above(i) = column%inertia_above(i + 1) &
+                                         + 2.0_wp*l*column%moment_above(i + 1) &
+                                         + l**2*column%mass_above(i + 1) &
+                                         + m*s**2 + column%inertia(i)
+            end associate
+         end do
+         allocate (column%ground_arm(column%unknowns), source=0.0_wp)
+         column%ground_arm(:n) = column%mass_above(:n)
+         column%ground_arm(n + 1:2*n) = column%moment_above(:n)
+      end subroutine set_mass_sums
+
+      !> Axial forces per vertical acceleration of the ground.
+      subroutine set_lifted_masses()
+         integer :: n
+
+         n = column%n
+         ! A body without length does not lean.
+         column%lifted_body = column%mass_above(2:)
+         where (column%length > 0.0_wp)
+            column%lifted_body = column%mass*column%lower/column%length + column%mass_above(2:)
+         end where
+         column%lifted_joint = column%mass_above(:n)
+      end subroutine set_lifted_masses
+
+      subroutine set_springs()
+         integer :: i, joint, n
+
+         n = column%n
+         allocate (column%place(column%unknowns))
+         allocate (column%constant_axial(column%unknowns), source=0.0_wp)
+         allocate (column%at(3, n), source=0)
+         do i = 1, n
+            column%at(:2, i) = [i, n + i]
+            ! A shear spring may ask for the work of the flexural one of its joint.
+            joint = merge(i - 1, i, column%footing)
+            column%place(i) = spring_place(shear, 1, joint, n + i, n + i, i)
+            column%place(n + i) = spring_place(flexure, 1, joint, index=i)
+            if (.not. column%opens) cycle
+            column%at(axial, i) = 2*n + i
+            column%place(2*n + i) = spring_place(axial, 1, joint, index=i)
+         end do
+         call add_rules(column%rules, spec%shear, n)
+         call add_rules(column%rules, spec%flexure, n)
+         if (column%opens) call add_rules(column%rules, spec%axial_spring, n)
+      end subroutine set_springs
+
+      !> The coordinates of the bodies, in which the mass is diagonal; see `rbs_structure_column_chain`.
+      subroutine set_unknowns()
+         integer :: i, n, m
+
+         n = column%n
+         m = column%unknowns
+         column%half_width = 3
+         allocate (column%inertias(m), column%is_held(m), column%part(m))
+         column%is_held = .false.
+         column%is_held(2*n) = column%held
+         column%has_held = column%held
+         do i = 1, n
+            column%inertias(2*i - 1:2*i) = [column%mass(i), column%inertia(i)]
+            column%part(2*i - 1:2*i) = i
+            if (.not. column%opens) cycle
+            column%inertias(2*n + i) = column%mass(i)
+            column%part(2*n + i) = n + i
+         end do
+         ! A column of static paths alone may have none.
+         allocate (column%inverse_mass(n), column%inverse_inertia(n), source=0.0_wp)
+         where (column%mass > 0.0_wp) column%inverse_mass = 1.0_wp/column%mass
+         where (column%inertia > 0.0_wp) column%inverse_inertia = 1.0_wp/column%inertia
+         if (column%held) column%inverse_inertia(n) = 0.0_wp
+         allocate (column%initial_tangent(0))
+         column%axial_count = 2*n
+         column%work_size = 5*n
+         column%base_spring = column%at(shear, 1)
+         allocate (column%group(merge(3, 2, column%opens)))
+         column%group(1) = unknown_group(1, n, 2, 1, n, 1.0_wp)
+         column%group(2) = unknown_group(2, n, 2, n + 1, 2*n, column%upper(n))
+         if (column%opens) column%group(3) = unknown_group(2*n + 1, n, 1, 2*n + 1, 3*n)
+         do i = 1, size(column%pattern)
+            allocate (column%pattern(i)%force(m), source=0.0_wp)
+         end do
+         column%pattern(lateral)%force(2*n - 1:2*n) = [1.0_wp, column%upper(n)]
+         if (column%held) column%pattern(lateral)%force(2*n) = 0.0_wp
+         column%pattern(horizontal)%force(1:2*n:2) = -column%mass
+         if (column%opens) then
+            column%pattern(vertical)%force(2*n + 1:) = -column%mass
+            column%pattern(top_axial)%force(3*n) = -1.0_wp
+         end if
+         do i = 1, size(column%pattern)
+            associate (pattern => column%pattern(i))
+               pattern%first = findloc(abs(pattern%force) > 0.0_wp, .true., dim=1)
+               pattern%last = findloc(abs(pattern%force) > 0.0_wp, .true., dim=1, back=.true.)
+               if (pattern%first == 0) pattern%first = 1
+            end associate
+         end do
+      end subroutine set_unknowns
+
    end subroutine new_column
-
-   subroutine set_heights(column)
-      type(column_type), intent(inout) :: column
-      integer :: i, n
-
-      n = column%n
-      allocate (column%joint_height(n + 1))
-      allocate (column%arm(column%unknowns), source=0.0_wp)
-      column%joint_height(1) = 0.0_wp
-      do i = 1, n
-         column%joint_height(i + 1) = column%joint_height(i) + column%length(i)
-      end do
-      column%total_height = column%joint_height(n + 1)
-      column%arm(:n) = 1.0_wp
-      ! Summed from the top down: the lever arm of an upper joint is not a difference of large heights.
-      column%arm(2*n) = column%length(n)
-      do i = n - 1, 1, -1
-         column%arm(n + i) = column%arm(n + i + 1) + column%length(i)
-      end do
-   end subroutine set_heights
-
-   !> Centroids and rotary inertias, the lumped mass included.
-   subroutine set_bodies(column, spec, first, last)
-      type(column_type), intent(inout) :: column
-      type(column_record), intent(in) :: spec
-      !> Bodies of the column itself
-      integer, intent(in) :: first, last
-      real(wp) :: own, shift
-      integer :: i, n
-
-      n = column%n
-      column%inertia = column%mass*(column%length**2 + spec%depth**2)/12.0_wp
-      if (allocated(spec%rotary_inertia)) then
-         column%inertia(first:last) = spec%rotary_inertia(min([(i, i=1, spec%n)], size(spec%rotary_inertia)))
-      end if
-      column%lower = column%length/2.0_wp
-      column%upper = column%length/2.0_wp
-      if (column%footing) column%inertia(1) = spec%footing_inertia
-      if (column%held) then
-         column%mass(n) = spec%top_mass
-         column%inertia(n) = of_held_body
-         return
-      end if
-      if (.not. spec%top_mass > 0.0_wp .and. .not. spec%top_inertia > 0.0_wp) return
-      own = column%mass(n)
-      shift = spec%top_mass/(own + spec%top_mass)*column%upper(n)
-      column%inertia(n) = column%inertia(n) + spec%top_inertia + own*shift*column%upper(n)
-      column%mass(n) = own + spec%top_mass
-      column%upper(n) = own/column%mass(n)*column%upper(n)
-      column%lower(n) = column%length(n) - column%upper(n)
-   end subroutine set_bodies
-
-   !> Sums over the bodies above each joint; every term is positive, so nothing cancels.
-   subroutine set_mass_sums(column)
-      type(column_type), intent(inout) :: column
-      integer :: i, n
-
-      n = column%n
-      allocate (column%mass_above(n + 1), column%moment_above(n + 1), column%inertia_above(n + 1), &
-                source=0.0_wp)
-      do i = n, 1, -1
-         associate (m => column%mass(i), l => column%length(i), s => column%lower(i))
-            column%mass_above(i) = column%mass_above(i + 1) + m
-            column%moment_above(i) = column%moment_above(i + 1) + l*column%mass_above(i + 1) + m*s
-            column%inertia_above(i) = column%inertia_above(i + 1) &
-                                      + 2.0_wp*l*column%moment_above(i + 1) &
-                                      + l**2*column%mass_above(i + 1) &
-                                      + m*s**2 + column%inertia(i)
-         end associate
-      end do
-      allocate (column%ground_arm(column%unknowns), source=0.0_wp)
-      column%ground_arm(:n) = column%mass_above(:n)
-      column%ground_arm(n + 1:2*n) = column%moment_above(:n)
-   end subroutine set_mass_sums
-
-   !> Axial forces per vertical acceleration of the ground.
-   subroutine set_lifted_masses(column)
-      type(column_type), intent(inout) :: column
-      integer :: n
-
-      n = column%n
-      ! A body without length does not lean.
-      column%lifted_body = column%mass_above(2:)
-      where (column%length > 0.0_wp)
-         column%lifted_body = column%mass*column%lower/column%length + column%mass_above(2:)
-      end where
-      column%lifted_joint = column%mass_above(:n)
-   end subroutine set_lifted_masses
-
-   subroutine set_springs(column, spec)
-      type(column_type), intent(inout) :: column
-      type(column_record), intent(in) :: spec
-      integer :: i, joint, n
-
-      n = column%n
-      allocate (column%place(column%unknowns))
-      allocate (column%constant_axial(column%unknowns), source=0.0_wp)
-      allocate (column%at(3, n), source=0)
-      do i = 1, n
-         column%at(:2, i) = [i, n + i]
-         ! A shear spring may ask for the work of the flexural one of its joint.
-         joint = merge(i - 1, i, column%footing)
-         column%place(i) = spring_place(shear, 1, joint, n + i, n + i, i)
-         column%place(n + i) = spring_place(flexure, 1, joint, index=i)
-         if (.not. column%opens) cycle
-         column%at(axial, i) = 2*n + i
-         column%place(2*n + i) = spring_place(axial, 1, joint, index=i)
-      end do
-      call add_rules(column%rules, spec%shear, n)
-      call add_rules(column%rules, spec%flexure, n)
-      if (column%opens) call add_rules(column%rules, spec%axial_spring, n)
-   end subroutine set_springs
-
-   !> The coordinates of the bodies, in which the mass is diagonal; see `rbs_structure_column_chain`.
-   subroutine set_unknowns(column)
-      type(column_type), intent(inout) :: column
-      integer :: i, n, m
-
-      n = column%n
-      m = column%unknowns
-      column%half_width = 3
-      allocate (column%inertias(m), column%is_held(m), column%part(m))
-      column%is_held = .false.
-      column%is_held(2*n) = column%held
-      column%has_held = column%held
-      do i = 1, n
-         column%inertias(2*i - 1:2*i) = [column%mass(i), column%inertia(i)]
-         column%part(2*i - 1:2*i) = i
-         if (.not. column%opens) cycle
-         column%inertias(2*n + i) = column%mass(i)
-         column%part(2*n + i) = n + i
-      end do
-      ! A column of static paths alone may have none.
-      allocate (column%inverse_mass(n), column%inverse_inertia(n), source=0.0_wp)
-      where (column%mass > 0.0_wp) column%inverse_mass = 1.0_wp/column%mass
-      where (column%inertia > 0.0_wp) column%inverse_inertia = 1.0_wp/column%inertia
-      if (column%held) column%inverse_inertia(n) = 0.0_wp
-      allocate (column%initial_tangent(0))
-      column%axial_count = 2*n
-      column%work_size = 5*n
-      column%base_spring = column%at(shear, 1)
-      allocate (column%group(merge(3, 2, column%opens)))
-      column%group(1) = unknown_group(1, n, 2, 1, n, 1.0_wp)
-      column%group(2) = unknown_group(2, n, 2, n + 1, 2*n, column%upper(n))
-      if (column%opens) column%group(3) = unknown_group(2*n + 1, n, 1, 2*n + 1, 3*n)
-      do i = 1, size(column%pattern)
-         allocate (column%pattern(i)%force(m), source=0.0_wp)
-      end do
-      associate (push => column%pattern(lateral), ground => column%pattern(horizontal))
-         push%force(2*n - 1:2*n) = [1.0_wp, column%upper(n)]
-         if (column%held) push%force(2*n) = 0.0_wp
-         ground%force(1:2*n:2) = -column%mass
-      end associate
-      if (column%opens) then
-         column%pattern(vertical)%force(2*n + 1:) = -column%mass
-         column%pattern(top_axial)%force(3*n) = -1.0_wp
-      end if
-      do i = 1, size(column%pattern)
-         associate (pattern => column%pattern(i))
-            pattern%first = findloc(abs(pattern%force) > 0.0_wp, .true., dim=1)
-            pattern%last = findloc(abs(pattern%force) > 0.0_wp, .true., dim=1, back=.true.)
-            if (pattern%first == 0) pattern%first = 1
-         end associate
-      end do
-   end subroutine set_unknowns
 
 end module rbs_structure_column_new_column

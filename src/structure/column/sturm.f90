@@ -64,11 +64,8 @@ contains
       self%mass(2, :) = column%inertia
       self%lower = column%lower
       self%upper = column%upper
-      self%turning = column%axial_body*column%length
-      self%sliding = column%axial_slip
-      if (axial) return
-      self%turning = 0.0_wp
-      self%sliding = 0.0_wp
+      self%turning = merge(column%second_order(:n), 0.0_wp, axial)
+      self%sliding = merge(column%second_order(n + 1:), 0.0_wp, axial)
    end function lateral_chain
 
    !> Openings on the initial stiffness.
