@@ -170,7 +170,7 @@ contains
 
          self%step%moved = 0.0_wp
          self%step%q1 = state%q
-         call self%step%find_residual(state, self%h, self%load, self%residual)
+         call self%step%find_first(state, self%h, self%load, self%residual)
       end subroutine begin
 
       !> The step from end to end of the springs' lines, where `iterate` has failed. On the present lines the

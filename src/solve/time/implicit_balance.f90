@@ -39,6 +39,8 @@ module rbs_solve_time_implicit_balance
       real(wp) :: load(signals) = 0.0_wp
       !> Deformations of the springs and their velocities at the end of the step (springs)
       real(wp), allocatable :: q1(:), w1(:)
+      !> Whether forces and tangents are those of the end of the last step
+      logical, private :: known = .false.
       !> Forces of the present trial
       type(motion_result) :: now
       !> Largest force of each group of unknowns in the present trial and in all steps so far. Residuals are
@@ -49,6 +51,7 @@ module rbs_solve_time_implicit_balance
    contains
       procedure :: start
       procedure :: find_residual
+      procedure :: find_first
       procedure :: is_round_off
       procedure :: go_on
       procedure :: serialize
@@ -92,6 +95,7 @@ contains
             allocate (self%scale(size(structure%group)), self%largest(size(structure%group)), source=0.0_wp)
             call self%now%create(structure)
          end if
+         self%known = .false.
          call structure%unknown_rates(state%v, self%v0)
          call structure%linearise(state%springs%k, self%now%tangent, unstable)
          call find_forces(state, state%q, state%v, self%v0, state%load, self%now, self%g0)
@@ -109,6 +113,7 @@ contains
       call swap(self%v0, self%v1)
       call swap(self%a0, self%a1)
       call swap(self%g0, self%g1)
+      self%known = .true.
    end subroutine go_on
 
    !> Save or restore what the bodies do at the start of a step.
@@ -128,26 +133,61 @@ contains
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: h, load(signals)
       real(wp), intent(out) :: relative
-      integer :: m
 
-      m = size(self%r)
       self%load = load
       associate (structure => state%motion%structure)
-         call end_of_step(m, h, self%beta, self%gamma, self%moved, self%v0, self%a0, self%v1, self%a1)
+         call end_of_step(self, h)
          ! Where elements damp as wholes, the springs do not by themselves.
          if (state%motion%damped .and. structure%tangent_numbers == 0) then
             call structure%spring_rates(self%now%tangent, self%v1, self%w1)
          end if
          call find_forces(state, self%q1, self%w1, self%v1, load, self%now, self%g1)
-         call balance(m, self%alpha_m, self%alpha_f, structure%inertias, self%a0, self%a1, self%g0, self%g1, &
-                      self%r)
-         call measure(structure, self%a1, self%now%f, self%r, load, self%largest, self%scale, relative)
+      end associate
+      self%known = .false.
+      call compare(self, state, relative)
+   end subroutine find_residual
+
+   !> The residual of the trial that nothing has moved. It has the forces of the end of the last step, but for
+   !> what follows the loads and the velocities by themselves.
+   subroutine find_first(self, state, h, load, relative)
+      class(step_balance), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      real(wp), intent(in) :: h, load(signals)
+      real(wp), intent(out) :: relative
+
+      if (.not. (self%known .and. state%motion%structure%tangent_numbers > 0)) then
+         call self%find_residual(state, h, load, relative)
+         return
+      end if
+      self%load = load
+      associate (structure => state%motion%structure, change => load - state%load)
+         call end_of_step(self, h)
+         self%g1 = self%g0 + change(lateral)*structure%pattern(lateral)%force
+         call structure%add_ground(change, self%g1)
+         if (structure%damped) call structure%damp(self%v1 - self%v0, self%now%tangent, self%g1)
+         if (structure%mass_damping > 0.0_wp) then
+            self%g1 = self%g1 - structure%mass_damping*structure%inertias*(self%v1 - self%v0)
+         end if
+      end associate
+      call compare(self, state, relative)
+   end subroutine find_first
+
+   !> What the trial leaves of the balance, relative to the forces.
+   subroutine compare(self, state, relative)
+      class(step_balance), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      real(wp), intent(out) :: relative
+
+      associate (structure => state%motion%structure)
+         call balance(size(self%r), self%alpha_m, self%alpha_f, structure%inertias, self%a0, self%a1, &
+                      self%g0, self%g1, self%r)
+         call measure(structure, self%a1, self%now%f, self%r, self%load, self%largest, self%scale, relative)
          if (size(self%now%correction) > 0) then
             relative = max(relative, maxval(abs(structure%initial_stiffness*self%now%correction)) &
                            /max(maxval(self%scale), maxval(self%largest), tiny(1.0_wp)))
          end if
       end associate
-   end subroutine find_residual
+   end subroutine compare
 
    !> Forces on the unknowns, inertia of the ground and damping included.
    subroutine find_forces(state, q, w, v, load, now, g)
@@ -168,13 +208,15 @@ contains
       end associate
    end subroutine find_forces
 
-   pure subroutine end_of_step(m, h, beta, gamma, moved, v0, a0, v1, a1)
-      integer, intent(in) :: m
-      real(wp), intent(in) :: h, beta, gamma, moved(m), v0(m), a0(m)
-      real(wp), intent(out) :: v1(m), a1(m)
+   !> Accelerations and velocities at the end of the step for what the unknowns have moved.
+   pure subroutine end_of_step(self, h)
+      class(step_balance), intent(inout) :: self
+      real(wp), intent(in) :: h
 
-      a1 = (moved - h*v0 - (h**2*(0.5_wp - beta))*a0)*(1.0_wp/(beta*h**2))
-      v1 = v0 + (h*(1.0_wp - gamma))*a0 + (h*gamma)*a1
+      associate (v0 => self%v0, a0 => self%a0, beta => self%beta, gamma => self%gamma)
+         self%a1(:) = (self%moved - h*v0 - (h**2*(0.5_wp - beta))*a0)*(1.0_wp/(beta*h**2))
+         self%v1(:) = v0 + (h*(1.0_wp - gamma))*a0 + (h*gamma)*self%a1
+      end associate
    end subroutine end_of_step
 
    pure subroutine balance(m, alpha_m, alpha_f, mass, a0, a1, g0, g1, r)
