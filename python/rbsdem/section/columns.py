@@ -12,7 +12,7 @@ from rbsdem.model.column import MOST_BODIES, Column, Footing, Top, bodies
 from rbsdem.model.frame import FrameMember
 from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Elastic, Spring
-from rbsdem.section.curvature import diagram
+from rbsdem.section.axial_moment import nominal_moment
 from rbsdem.section.layered import LayeredColumn, LayeredModel, body_lengths, lumping
 from rbsdem.section.paper_springs import springs
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
@@ -33,7 +33,7 @@ DEFAULT: Model = "layered"
 _BARS_OF_BEAMS = {"isotropic_hardening": 0.0, "fatigue": 0.0}
 #: Ties that hold less than this share of the axial load hold none of it.
 _LEAST_TIES = 1e-3
-#: Force at the largest moment over strength in shear, up to which columns fail in flexure.
+#: Force at the nominal moment over strength in shear, up to which columns fail in flexure.
 _IN_FLEXURE = 0.6
 
 CONCRETE_DENSITY = 2400.0
@@ -299,9 +299,7 @@ def _failure(
 ) -> tuple[float, float, float | None]:
     """Return when a member whose hinges have yielded fails in shear, and loses its axial load."""
     drift, halves = axial_failure_law(section)
-    peak = diagram(section, axial_load).events.peak
-    assert peak is not None
-    force = 2.0 * peak.moment / length
+    force = 2.0 * nominal_moment(section, axial_load) / length
     # Below that share of its strength in shear it is flexure that limits a column (ASCE 41-17).
     critical = force > _IN_FLEXURE * shear.f_y  # type: ignore[attr-defined]
     # Without ties any load falls at once.
