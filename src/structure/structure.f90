@@ -141,6 +141,7 @@ module rbs_structure_structure
       ! Parts that are lost on the way
       procedure :: find_lost
       procedure :: let_go
+      procedure :: has_fallen
       ! Where deformations follow from the unknowns and the present stiffness of the springs
       procedure :: linearise
       procedure :: damp
@@ -475,6 +476,15 @@ contains
 
       if (.false.) call springs%let_go(member, self%height)
    end subroutine let_go
+
+   !> Whether a part has fallen so far that small rotations tell nothing of it.
+   pure logical function has_fallen(self, d)
+      class(structure_type), intent(in) :: self
+      !> Deformations of the springs (springs)
+      real(wp), intent(in), contiguous :: d(:)
+
+      has_fallen = size(d) < self%base_spring
+   end function has_fallen
 
    !> What follows from the present stiffness of the springs; nothing, where it is not asked for.
    subroutine linearise(self, k, tangent, unstable)

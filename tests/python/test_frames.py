@@ -739,6 +739,17 @@ def test_a_run_goes_on_after_a_loss():
     assert run.summary["relative_energy_residual"] < 1e-11
 
 
+def test_a_run_ends_where_nothing_carries_the_load():
+    """A free fall from the loss on: W t^2/(2 m), to a tenth of the storey."""
+    frame = replace(bent(), losses=dict.fromkeys(["C-1-1", "C-2-1", "C-3-1"], 0.1))
+    t = np.arange(0, 2, 0.005)
+    run = rbsdem.time_history(frame, t, ground_acceleration=0 * t, method="newmark", dt=0.005)
+    assert run.summary["status"] == "collapsed"
+    fallen = 0.5 * 300e3 / 60e3 * (run.time[-1] - 0.1) ** 2
+    assert fallen > 0.3 > 0.5 * 300e3 / 60e3 * (run.time[-2] - 0.1) ** 2 - 1e-3
+    assert -run.y[-1, 3:].mean() == pytest.approx(fallen, rel=0.02)
+
+
 def test_a_static_path_ends_where_a_column_loses_its_load():
     with pytest.raises(rbsdem.SolveError, match="C-2-1 has failed in shear and loses") as caught:
         rbsdem.pushover(bent(), drift=0.08)

@@ -116,6 +116,9 @@ contains
                state%time = state%clock - state%begin
                call let_go()
                call state%see(state%clock)
+               associate (sight => state%sight)
+                  sight%collapsed = sight%collapsed .or. state%motion%structure%has_fallen(state%q)
+               end associate
                ends = ends .or. state%sight%collapsed
                if (task%summary%lost_joint > 0) call fall_of(state%springs, lost, task%summary%fall)
                if (ends .or. part == parts) call balance(state, response%energy, task%summary)

@@ -40,6 +40,9 @@ module rbs_structure_frame_frame
    !> Share of the terms of all elements that counts as those of any.
    real(wp), parameter :: of_all = 0.01_wp
 
+   !> Share of the height of a storey that a node may sink.
+   real(wp), parameter :: deepest = 0.1_wp
+
    !> Times that differ by less than this share are the same.
    real(wp), parameter :: same_time = 1.0e-9_wp
 
@@ -114,6 +117,7 @@ module rbs_structure_frame_frame
       procedure :: check_loads
       procedure :: find_lost
       procedure :: let_go
+      procedure :: has_fallen
    end type frame_type
 
 contains
@@ -1028,6 +1032,21 @@ contains
          springs%work(e%before + 1) = springs%work(e%before + 1) + energy
       end associate
    end subroutine let_go
+
+   !> Whether a node has sunk by a tenth of the height of a storey, once members may be lost.
+   pure logical function has_fallen(self, d)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+      integer :: i
+
+      has_fallen = .false.
+      if (.not. self%may_lose) return
+      do i = 1, self%n
+         if (self%number(2, i) == 0) cycle
+         has_fallen = has_fallen .or. &
+                      d(self%inside + self%number(2, i)) < -deepest*self%height/max(self%storeys, 1)
+      end do
+   end function has_fallen
 
    !> Energy of the elastic rest of an element [J].
    pure real(wp) function energy_of_rest(e, gap) result(energy)
