@@ -73,7 +73,6 @@ module rbs_solve_one_body_implicit_one_body
       procedure :: set_step
       procedure :: take_step
       procedure :: fit_to
-      procedure :: fit
       procedure :: solve
    end type one_body_step
 
@@ -171,7 +170,7 @@ contains
       if (self%version == springs%version) return
       self%spring(1)%line%k = springs%k(1)
       self%spring(2)%line%k = springs%k(2)
-      call self%fit()
+      call fit(self)
       self%version = springs%version
    end subroutine fit_to
 
@@ -194,7 +193,7 @@ contains
       self%carried(2) = self%alpha_f*self%g0(2) - self%mass(2)*(self%alpha_m*self%a0(2))
       do trial = 1, most_trials
          if (trial > 1) then
-            call self%fit()
+            call fit(self)
             self%dx(1) = self%inverse(1)*self%r(1) + self%inverse(2)*self%r(2)
             self%dx(2) = self%inverse(3)*self%r(1) + self%inverse(4)*self%r(2)
             self%work = self%r(1)*self%dx(1) + self%r(2)*self%dx(2)
@@ -212,7 +211,7 @@ contains
          call put_back(self, slot)
          return
       end if
-      call self%fit()
+      call fit(self)
       do i = 1, 2
          self%v1(i) = self%v0(i) + (self%h*(1.0_wp - self%gamma))*self%a0(i) + (self%h*self%gamma)*self%a1(i)
          call advance_on_branch(self%spring(i), self%q(i))
@@ -221,7 +220,7 @@ contains
 
    !> Find the inverse of the tangent on the present lines.
    pure subroutine fit(self)
-      class(one_body_step), intent(inout) :: self
+      type(one_body_step), intent(inout) :: self
       real(wp) :: of_mass, shear, along, across, about, share
 
       if (self%fits .and. .not. (abs(self%spring(1)%line%k - self%stiffness(1)) > 0.0_wp .or. &
