@@ -2,7 +2,7 @@
 module rbs_hysteresis_journal
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_layered_fibre_section, only: fibre_section
-   use rbs_hysteresis_rule, only: memory_slot, copy_memory
+   use rbs_hysteresis_rule, only: spring_slot
    use rbs_hysteresis_segment, only: segment
    implicit none
    private
@@ -20,10 +20,8 @@ module rbs_hysteresis_journal
       integer, allocatable :: spring(:)
       !> Whether each spring is among them (count)
       logical, allocatable :: is_kept(:)
-      !> The branches that they had (changed), and their memories (count). A layered joint marks itself: of
-      !> its many layers few change
+      !> The branches that they had (changed)
       type(segment), allocatable :: line(:)
-      type(memory_slot), allocatable :: slot(:)
    contains
       procedure :: start
       procedure :: keep
@@ -44,7 +42,7 @@ contains
       n = size(d)
       if (.not. allocated(self%is_kept)) then
          allocate (self%is_kept(n), source=.false.)
-         allocate (self%spring(n), self%line(n), self%slot(n), self%d(n), self%work(n))
+         allocate (self%spring(n), self%line(n), self%d(n), self%work(n))
       end if
       if (self%changed > 0) call self%forget()
       self%open = .true.
@@ -60,50 +58,54 @@ contains
       class(journal_type), intent(inout) :: self
       integer, intent(in) :: i
       type(segment), intent(in) :: line
-      type(memory_slot), intent(inout) :: slot
+      type(spring_slot), intent(inout) :: slot
 
       if (self%is_kept(i)) return
       self%is_kept(i) = .true.
       self%changed = self%changed + 1
       self%spring(self%changed) = i
       self%line(self%changed) = line
-      call save_memory(slot, self%slot(i))
+      call save_memory(slot)
    end subroutine keep
 
    !> Give spring i the memory back that it had at the start.
    subroutine give_back(self, i, slot)
       class(journal_type), intent(inout) :: self
       integer, intent(in) :: i
-      type(memory_slot), intent(inout) :: slot
+      type(spring_slot), intent(inout) :: slot
 
       self%is_kept(i) = .false.
-      call return_memory(slot, self%slot(i))
+      call return_memory(slot)
    end subroutine give_back
 
-   !> Save a memory; a layered joint marks itself.
-   subroutine save_memory(slot, kept)
-      type(memory_slot), intent(inout) :: slot
-      !> Where it is saved; what is there from earlier is of the same spring
-      type(memory_slot), intent(inout) :: kept
+   !> Save a memory, without an allocation where there is a copy from earlier. A layered joint marks itself:
+   !> of its many layers few change.
+   subroutine save_memory(slot)
+      type(spring_slot), intent(inout) :: slot
 
+      if (allocated(slot%kept)) then
+         call slot%kept%copy(slot%memory)
+         return
+      end if
       select type (memory => slot%memory)
       type is (fibre_section)
          call memory%mark()
       class default
-         call copy_memory(slot, kept)
+         allocate (slot%kept, source=memory)
       end select
    end subroutine save_memory
 
    !> Give a spring the memory back that was saved.
-   subroutine return_memory(slot, kept)
-      type(memory_slot), intent(inout) :: slot
-      type(memory_slot), intent(in) :: kept
+   subroutine return_memory(slot)
+      type(spring_slot), intent(inout) :: slot
 
+      if (allocated(slot%kept)) then
+         call slot%memory%copy(slot%kept)
+         return
+      end if
       select type (memory => slot%memory)
       type is (fibre_section)
          call memory%restore()
-      class default
-         call memory%copy(kept%memory)
       end select
    end subroutine return_memory
 

@@ -10,7 +10,8 @@ module rbs_hysteresis_rule
    implicit none
    private
 
-   public :: rule_type, rule_memory, rule_slot, memory_slot, spring_rules, copy_memory, check_product
+   public :: rule_type, rule_memory, rule_slot, memory_slot, spring_slot, spring_rules, copy_memory, &
+             check_product
 
    !> Places of springs; the registry lists those where a rule may be used.
    character(len=*), parameter, public :: in_shear = 'shear', in_flexure = 'flexure'
@@ -59,6 +60,18 @@ module rbs_hysteresis_rule
       class(rule_memory), allocatable :: memory
    end type memory_slot
 
+   !> What one spring is made of, side by side, as every new line needs all of it: its rule, its memory, and
+   !> room for a copy of the memory from before a trial.
+   type :: spring_slot
+      !> Of the structure, which is there as long as the spring
+      class(rule_type), pointer :: rule => null()
+      class(rule_memory), allocatable :: memory, kept
+      !> Whether the memory is told of the work of the flexural spring
+      logical :: is_told = .false.
+   contains
+      procedure :: next_branch
+   end type spring_slot
+
    !> The rules of many springs, made once: equal neighbours share one.
    type :: spring_rules
       type(rule_slot), allocatable :: list(:)
@@ -98,6 +111,18 @@ contains
       end do
       k = of_rule(self%of)
    end function stiffness_of_springs
+
+   !> The branch that follows from the rule, see `rule_type`.
+   subroutine next_branch(self, branch, direction, flexural_work)
+      class(spring_slot), intent(inout) :: self
+      type(segment), intent(inout) :: branch
+      integer, intent(in) :: direction
+      !> Work of the flexural spring of the joint so far [J]; for a spring that decays with it
+      real(wp), intent(in) :: flexural_work
+
+      if (self%is_told) self%memory%flexural_work = flexural_work
+      call self%rule%next(self%memory, branch, direction)
+   end subroutine next_branch
 
    !> Become a copy of the memory of another spring with the same rule, without an allocation where there is
    !> room.

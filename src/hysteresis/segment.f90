@@ -27,7 +27,7 @@ module rbs_hysteresis_segment
    contains
       procedure :: force
       procedure :: end_toward
-      procedure :: outward
+      procedure :: lead_outward
       procedure :: serialize
    end type segment
 
@@ -50,12 +50,10 @@ contains
       end_toward = merge(self%hi, self%lo, direction > 0)
    end function end_toward
 
-   !> A branch through (d0, f0) seen from side s: it leads outward to `far`, and back to `near`.
-   !> Rules are written once, for the positive side; this procedure mirrors their branches.
-   elemental type(segment) function outward(self, s, near, far, unload_on_reversal, includes_near_end) &
-      result(branch)
-      !> Anchor and slope are taken from here
-      class(segment), intent(in) :: self
+   !> From side s the branch leads outward to `far`, and back to `near`; anchor and slope stay. Rules are
+   !> written once, for the positive side; this procedure mirrors their branches.
+   pure subroutine lead_outward(self, s, near, far, unload_on_reversal, includes_near_end)
+      class(segment), intent(inout) :: self
       !> Side, +1 or -1
       integer, intent(in) :: s
       !> Ends, `far` further in the direction s than `near`
@@ -67,25 +65,19 @@ contains
       logical, intent(in), optional :: includes_near_end
       logical :: included
 
-      branch = segment(d0=self%d0, f0=self%f0, k=self%k)
-      branch%unload_on_reversal = s
+      self%unload_on_reversal = s
       included = .true.
       if (present(unload_on_reversal)) then
          if (.not. unload_on_reversal) then
-            branch%unload_on_reversal = 0
+            self%unload_on_reversal = 0
             if (present(includes_near_end)) included = includes_near_end
          end if
       end if
-      if (s > 0) then
-         branch%lo = near
-         branch%hi = far
-         branch%includes_lower_end = included
-      else
-         branch%lo = far
-         branch%hi = near
-         branch%includes_upper_end = included
-      end if
-   end function outward
+      self%lo = merge(near, far, s > 0)
+      self%hi = merge(far, near, s > 0)
+      self%includes_lower_end = included .and. s > 0
+      self%includes_upper_end = included .and. s <= 0
+   end subroutine lead_outward
 
    !> Save or restore the line.
    pure subroutine serialize(self, stream)

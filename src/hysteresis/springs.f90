@@ -9,7 +9,7 @@ module rbs_hysteresis_springs
    use rbs_hysteresis_layered_fibre_path, only: go
    use rbs_hysteresis_layered_fibre_section, only: fibre_section
    use rbs_hysteresis_layered_layered_joint, only: start_under
-   use rbs_hysteresis_rule, only: memory_slot, spring_rules
+   use rbs_hysteresis_rule, only: spring_slot, spring_rules
    use rbs_hysteresis_segment, only: segment, first_on, last_on, upper_end, lower_end
    use rbs_hysteresis_spring_record, only: spring_record, add_rules
    implicit none
@@ -47,9 +47,10 @@ module rbs_hysteresis_springs
       integer :: version = 0
       !> Whether a rule has exceeded `most_lines`; the state must not be used then
       logical :: stuck = .false.
-      !> Rules, which equal springs share, of the structure; memories (count), and what `mark` has saved
+      !> Rules, which equal springs share, of the structure; rule and memory of each spring (count), and what
+      !> `mark` has saved
       type(spring_rules), pointer :: rules => null()
-      type(memory_slot), allocatable :: slot(:)
+      type(spring_slot), allocatable :: slot(:)
       type(journal_type) :: journal
       !> Layered joints among the springs, and whether their axial loads vary along the path: then they follow
       !> straight paths in rotation and axial load, and are on planes where other springs are on lines, see
@@ -64,7 +65,6 @@ module rbs_hysteresis_springs
    contains
       procedure :: create
       procedure :: restart
-      procedure :: next_branch
       procedure :: force
       procedure :: end_toward
       procedure :: advance_to
@@ -114,7 +114,8 @@ contains
       allocate (self%on_plane(n), source=.false.)
       allocate (self%layered(0))
       do i = 1, n
-         associate (rule => rules%list(rules%of(i))%rule)
+         self%slot(i)%rule => rules%list(rules%of(i))%rule
+         associate (rule => self%slot(i)%rule)
             before = max(i - 1, 1)
             if (allocated(self%slot(before)%memory) .and. rules%of(i) == rules%of(before) .and. &
                 .not. abs(axial_load(i) - axial_load(before)) > 0.0_wp) then
@@ -124,6 +125,7 @@ contains
             end if
             call put_line(self, i, line)
             if (rule%uses_flexural_work) self%heard(:, i) = told(:, i)
+            self%slot(i)%is_told = self%heard(1, i) > 0
          end associate
          select type (section => self%slot(i)%memory)
          type is (fibre_section)
@@ -146,23 +148,10 @@ contains
       self%stuck = .false.
       self%version = modulo(self%version + 1, huge(1))
       do i = 1, self%count
-         call start_under(self%rules%list(self%rules%of(i))%rule, axial_load(i), self%slot(i)%memory, line)
+         call start_under(self%slot(i)%rule, axial_load(i), self%slot(i)%memory, line)
          call put_line(self, i, line)
       end do
    end subroutine restart
-
-   !> The branch that follows from the rule of a spring, see `rule_type`.
-   subroutine next_branch(self, i, branch, direction, flexural_work)
-      class(spring_array), intent(inout) :: self
-      integer, intent(in) :: i
-      type(segment), intent(inout) :: branch
-      integer, intent(in) :: direction
-      !> Work of the flexural spring of the joint so far [J]; for a spring that decays with it
-      real(wp), intent(in) :: flexural_work
-
-      if (self%heard(1, i) > 0) self%slot(i)%memory%flexural_work = flexural_work
-      call self%rules%list(self%rules%of(i))%rule%next(self%slot(i)%memory, branch, direction)
-   end subroutine next_branch
 
    !> Force of one spring at its present deformation [N or N m].
    pure real(wp) function force(self, i)
@@ -242,7 +231,7 @@ contains
       associate (first => self%heard(1, i), last => self%heard(2, i))
          if (first > 0) flexural_work = sum(self%work_before(first:last) + self%work(first:last))
       end associate
-      call self%next_branch(i, line, direction, flexural_work)
+      call self%slot(i)%next_branch(line, direction, flexural_work)
       self%events = self%events + 1
       self%version = modulo(self%version + 1, huge(1))
       call put_line(self, i, line)

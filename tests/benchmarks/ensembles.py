@@ -4,7 +4,7 @@
 
 Processor time of one thread where nothing else is said, so that another load of the machine
 disturbs little; what takes two threads is wall time, on a machine that does nothing else. The
-yardstick is C by hand, of the same 64 columns without any event: meson setup build/fortran, then
+yardstick is C by hand, of 64 such columns without any event: meson setup build/fortran, then
 meson compile -C build/fortran yardstick_lanes.
 """
 
@@ -82,7 +82,7 @@ def lanes(program: Path | None, repeats: int, runs: int) -> list[Row]:
             alone, _ = processor(lambda few=few: compute(few, kernel=-1), 1)
             times, answer = processor(lambda task=task: compute(task), repeats)
             numbers = dict(zip(core_measures(), answer.values.sum(axis=1), strict=True))
-            row = Row(f"{method}, 64 lanes, record x {scale:g}", "ns/column-step", goal)
+            row = Row(f"{method}, lanes, record x {scale:g}", "ns/column-step", goal)
             row.values = [1e9 * t / numbers["steps"] for t in times]
             steps = numbers["steps"] * 8 / runs
             row.note = (

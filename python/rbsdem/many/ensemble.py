@@ -57,7 +57,7 @@ if TYPE_CHECKING:
 _LONGEST = 2.0
 
 #: Runs that advance side by side.
-_LANES = 64
+_LANES = 32
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -139,7 +139,7 @@ contains
       branch%f0 = section%moment
       if (section%failed) then
          ! The joint keeps its moment for the rest of the motion; whoever moves it asks `failed`.
-         branch = branch%outward(direction, near=branch%d0, far=direction*unbounded)
+         call branch%lead_outward(direction, near=(branch%d0), far=direction*unbounded)
          return
       end if
       branch%k = section%ends%stiffness
@@ -148,8 +148,8 @@ contains
       near = -direction*unbounded
       if (section%ends%ahead < unbounded) far = branch%d0 + direction*section%ends%ahead
       if (section%ends%behind < unbounded) near = branch%d0 - direction*section%ends%behind
-      branch = branch%outward(direction, near=near, far=far, &
-                              unload_on_reversal=section%ends%unload_on_reversal)
+      call branch%lead_outward(direction, near=near, far=far, &
+                               unload_on_reversal=section%ends%unload_on_reversal)
    end subroutine find_branch
 
    !> Rotate until there is no moment, and measure rotations from there.

@@ -206,7 +206,7 @@ contains
          slope = slope_after(self, i)
       end if
       line = segment(d0=s*self%d(i), f0=0.0_wp + s*self%f(i), k=slope)
-      line = line%outward(s, near=d, far=s*far)
+      call line%lead_outward(s, near=d, far=s*far)
    end function line_from
 
    !> The first deformation where a line that rises steeply from zero force meets the backbone [m or rad].

@@ -70,13 +70,13 @@ contains
       if (branch%unload_on_reversal == 0) then
          ! The elastic branch has ended: yield along the bounding line of this direction.
          branch = segment(f0=direction*(self%k - self%k_post)*self%d_y, k=self%k_post)
-         branch = branch%outward(direction, near=d, far=direction*unbounded)
+         call branch%lead_outward(direction, near=d, far=direction*unbounded)
       else
          ! The motion has turned back from a bounding line: elastic over twice the yield deformation.
          f = branch%force(d)
          branch = segment(d0=d, f0=f, k=self%k)
-         branch = branch%outward(-direction, near=d + direction*2.0_wp*self%d_y, far=d, &
-                                 includes_near_end=.false., unload_on_reversal=.false.)
+         call branch%lead_outward(-direction, near=d + direction*2.0_wp*self%d_y, far=d, &
+                                  includes_near_end=.false., unload_on_reversal=.false.)
       end if
    end subroutine next
 

@@ -152,8 +152,8 @@ contains
       branch = segment(k=self%given(s)%stiffness())
       near = 0.0_wp
       if (.not. abs(branch%k - self%given(-s)%stiffness()) > 0.0_wp) near = -s*now%backbone(-s)%d(1)
-      branch = branch%outward(s, near=near, far=s*now%backbone(s)%d(1), includes_near_end=near*s >= 0.0_wp, &
-                              unload_on_reversal=.false.)
+      call branch%lead_outward(s, near=near, far=s*now%backbone(s)%d(1), includes_near_end=near*s >= 0.0_wp, &
+                               unload_on_reversal=.false.)
    end function virgin_branch
 
    !> The branch that follows, see `rule_type`.
@@ -200,7 +200,8 @@ contains
       case (unloading)
          if (outward) then
             now%branch = now%left_branch
-            branch = now%left%outward(now%side, near=here%d, far=now%left%end_toward(direction))
+            branch = now%left
+            call branch%lead_outward(now%side, near=here%d, far=now%left%end_toward(direction))
          else
             call end_excursion(here%d)
          end if
@@ -262,7 +263,7 @@ contains
          end if
          k = unloading_stiffness(s, at)
          branch = segment(d0=here%d, f0=here%f, k=k)
-         branch = branch%outward(s, near=here%d - here%f/k, far=here%d, unload_on_reversal=.false.)
+         call branch%lead_outward(s, near=here%d - here%f/k, far=here%d, unload_on_reversal=.false.)
       end subroutine unload
 
       !> Zero force is reached: the excursion to the present side is over.
@@ -305,7 +306,7 @@ contains
          if (now%start_at > s*zero) then
             now%branch = gap
             branch = segment(d0=zero)
-            branch = branch%outward(s, near=zero, far=s*now%start_at)
+            call branch%lead_outward(s, near=zero, far=s*now%start_at)
          else
             call reload()
          end if
@@ -374,7 +375,7 @@ contains
             else
                branch = segment(d0=s*from%d, f0=0.0_wp + s*from%f, k=k)
             end if
-            branch = branch%outward(s, near=s*from%d, far=s*max(at%d, from%d))
+            call branch%lead_outward(s, near=s*from%d, far=s*max(at%d, from%d))
          end associate
       end subroutine aim
 

@@ -226,7 +226,7 @@ contains
       if (ahead < unbounded) far = now%d + direction*ahead
       if (.not. growing .and. direction*(end_of_reach - far) <= 0.0_wp) far = end_of_reach
       branch = segment(d0=now%d, f0=f, k=slope)
-      branch = branch%outward(direction, near=now%d, far=far, unload_on_reversal=growing .or. one_slips)
+      call branch%lead_outward(direction, near=now%d, far=far, unload_on_reversal=growing .or. one_slips)
 
    contains
 

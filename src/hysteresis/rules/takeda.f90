@@ -197,11 +197,11 @@ contains
          if (s*d < self%d_y) then
             now%branch = cracked_backbone
             branch = segment(d0=s*self%d_c, f0=s*self%f_c, k=self%k_y)
-            branch = branch%outward(s, near=d, far=s*self%d_y)
+            call branch%lead_outward(s, near=d, far=s*self%d_y)
          else
             now%branch = yielded_backbone
             branch = segment(d0=s*self%d_y, f0=s*self%f_y, k=self%k_u)
-            branch = branch%outward(s, near=d, far=s*unbounded)
+            call branch%lead_outward(s, near=d, far=s*unbounded)
          end if
       end subroutine follow_backbone
 
@@ -223,8 +223,8 @@ contains
          else
             near = peak%d - (peak%f + s*self%f_c)/now%k_r(s)
          end if
-         branch = branch%outward(s, near=near, far=peak%d, includes_near_end=now%cracked(-s), &
-                                 unload_on_reversal=.false.)
+         call branch%lead_outward(s, near=near, far=peak%d, includes_near_end=now%cracked(-s), &
+                                  unload_on_reversal=.false.)
       end subroutine unload_from_peak
 
       !> K_r of a peak (eq 7), not below the secant: unloading must not end on the other side of the origin.
@@ -319,7 +319,7 @@ contains
          now%branch = inner_unloading
          k_in = inner_stiffness(here)
          branch = segment(d0=here%d, f0=here%f, k=k_in)
-         branch = branch%outward(s, near=here%d - here%f/k_in, far=here%d, unload_on_reversal=.false.)
+         call branch%lead_outward(s, near=here%d - here%f/k_in, far=here%d, unload_on_reversal=.false.)
       end subroutine unload_from_inner_peak
 
       !> K_in of an inner peak within its bounds, of which the lower one has priority.
@@ -351,7 +351,7 @@ contains
          now%aim = open%list(place)
          now%side = now%aim%side
          branch = segment(d0=now%aim%goal%d, f0=now%aim%goal%f, k=now%aim%k)
-         branch = branch%outward(now%side, near=now%aim%at%d, far=now%aim%goal%d)
+         call branch%lead_outward(now%side, near=now%aim%at%d, far=now%aim%goal%d)
          open%count = place - 1
       end subroutine resume_reloading
 
@@ -396,7 +396,7 @@ contains
             if (s*way > 0.0_wp) k = (target%f - from%f)/way
             now%aim%k = k
             branch = segment(d0=target%d, f0=target%f, k=k)
-            branch = branch%outward(s, near=from%d, far=s*max(s*target%d, s*from%d))
+            call branch%lead_outward(s, near=from%d, far=s*max(s*target%d, s*from%d))
          end associate
       end subroutine reload
    end subroutine find_branch

@@ -10,9 +10,9 @@ module rbs_solve_ensemble_lane_arrays
 
    integer, parameter :: wp = real64
 
-   !> Columns side by side: compile-time numbers, so that the loops have no remainders. Chains advance in
-   !> blocks of fewer lanes, whose numbers stay near the processor.
-   integer, parameter :: lanes = 64, few = 16
+   !> Columns side by side: compile-time numbers, so that the loops have no remainders, and so few that their
+   !> numbers stay near the processor, with what their events need. Chains advance in blocks of fewer lanes.
+   integer, parameter :: lanes = 32, few = 16
 
    !> Deformations beyond this [m, rad] have no meaning.
    real(wp), parameter, public :: out_of_bounds = 1.0e100_wp

@@ -7,19 +7,21 @@ module rbs_solve_ensemble_simd_batch
    use, intrinsic :: iso_fortran_env, only: int32
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
+   use rbs_hysteresis_segment, only: segment
    use rbs_structure_column_column, only: column_type
    use rbs_loading_loads, only: loads_type, horizontal
    use rbs_output_summary, only: summary_type
    use rbs_solve_ensemble_dispatch, only: chosen_kernel
    use rbs_solve_ensemble_ensemble_input, only: column_of, ensemble_column, ensemble_motion, run_type, &
                                                 lane_task
-   use rbs_solve_ensemble_lane_arrays, only: lane_clock, lane_block, lane_method, kernel_type, lanes, few
+   use rbs_solve_ensemble_lane_arrays, only: lane_clock, lane_block, body_arrays, lane_method, kernel_type, &
+                                             lanes, few
    use rbs_solve_ensemble_lane_choice, only: is_plain_body
    use rbs_solve_ensemble_lane_state, only: fit_block, column_to_lane, springs_to_lane, motion_to_lane, &
                                             bounds_to_lane, step_to_lane, springs_from_lane, &
                                             motion_from_lane, step_from_lane, ground_from_lane
-   use rbs_solve_ensemble_one_body_lane, only: body_to_lane, follow_springs, follow_trial, lines_to_body, &
-                                               lines_from_body
+   use rbs_solve_ensemble_one_body_lane, only: body_to_lane, method_to_body, follow_springs, follow_trial, &
+                                               lines_to_lane, lines_from_lane
    use rbs_solve_ensemble_run_result, only: run_result, collect
    use rbs_solve_one_body_implicit_one_body, only: one_body_step
    use rbs_solve_time_implicit, only: implicit_stepper
@@ -41,8 +43,8 @@ module rbs_solve_ensemble_simd_batch
       !> The run alone, which knows the rules of its springs
       type(state_type) :: state
       class(stepper_type), allocatable :: stepper
-      !> One body without damping: its steps on which springs leave their lines, and the lines
-      type(one_body_step) :: body
+      !> Lines of one body without damping
+      type(segment) :: line(2)
    end type lane_type
 
    type :: batch_type
@@ -54,6 +56,10 @@ module rbs_solve_ensemble_simd_batch
       real(wp), allocatable :: room(:)
       type(lane_clock), pointer :: x => null()
       type(lane_block), allocatable :: block(:)
+      !> The only block of columns of one body without damping, and their steps on which springs leave their
+      !> lines
+      type(body_arrays), pointer :: y => null()
+      type(one_body_step) :: body
       type(lane_type), allocatable :: lane(:)
       !> All motions one after the other, each followed by two more points [s, m/s2], and the place of the
       !> first point of each
@@ -173,6 +179,7 @@ contains
       do j = 1, size(batch%block)
          call fit_block(batch%block(j), batch%room, taken, (j - 1)*width, width, column)
       end do
+      if (batch%one_body) call c_f_pointer(c_loc(batch%block(1)%q), batch%y)
       at = 0
       do j = 1, size(motion)
          at = at + size(motion(j)%time) + 2
@@ -223,7 +230,9 @@ contains
          x%furthest(l) = lane%state%sight%furthest
          call motion_to_lane(x, b, i, lane%state)
          call springs_to_lane(b, i, lane%state)
-         if (batch%one_body) call lines_to_body(x, b, l, lane%state, lane%stepper, lane%body)
+         if (batch%one_body) then
+            call lines_to_lane(x, batch%y, l, lane%state, batch%body, b%method%implicit, lane%line)
+         end if
          x%seen(l) = 0.0_wp
          x%t(l) = 0.0_wp
          x%steps(l) = 0.0_wp
@@ -260,8 +269,8 @@ contains
                                    stepper%step%gamma, stepper%wanted, stepper%acceptable)
          end select
          if (batch%one_body) then
-            lane%body = one_body_step()
             call body_to_lane(x, l, lane%state)
+            call method_to_body(b%method, batch%body)
          else
             call column_to_lane(b, l - b%base, column_of(column), lane%state%motion)
          end if
@@ -314,9 +323,9 @@ contains
          if (x%tried(l) > 0.5_wp) then
             ! Of RK4 the step has ended, and only the springs have still to follow.
             if (b%method%implicit) then
-               call follow_trial(x, b, l, lane%body, state%springs, taken)
+               call follow_trial(x, batch%y, l, batch%body, lane%line, state%springs, taken)
             else if (batch%one_body) then
-               call follow_springs(x, b, l, lane%body, state%springs)
+               call follow_springs(x, batch%y, l, lane%line, state%springs)
                taken = .true.
             else
                call springs_from_lane(b, l - b%base, b%from, state)
@@ -335,7 +344,7 @@ contains
 
    !> A whole step by the method of the run itself.
    subroutine step_alone(batch, x, b, lane, l, error)
-      type(batch_type), intent(in) :: batch
+      type(batch_type), intent(inout) :: batch
       type(lane_clock), intent(inout) :: x
       type(lane_block), intent(inout) :: b
       type(lane_type), intent(inout) :: lane
@@ -345,7 +354,7 @@ contains
 
       i = l - b%base
       if (batch%one_body) then
-         call lines_from_body(b, l, lane%body, lane%state%springs)
+         call lines_from_lane(batch%y, l, lane%line, lane%state%springs)
       else
          call springs_from_lane(b, i, b%q, lane%state)
       end if
@@ -370,7 +379,9 @@ contains
             b%tangent(i, :, :) = stepper%tangent%matrix%triangle
          end if
       end select
-      if (batch%one_body) call lines_to_body(x, b, l, lane%state, lane%stepper, lane%body)
+      if (batch%one_body) then
+         call lines_to_lane(x, batch%y, l, lane%state, batch%body, b%method%implicit, lane%line)
+      end if
    end subroutine step_alone
 
    !> Lanes in which a limit state may have been reached.

@@ -10,7 +10,7 @@ module rbs_solve_one_body_implicit_one_body
    use rbs_base_constants, only: out_of_bounds
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_journal, only: save_memory, return_memory
-   use rbs_hysteresis_rule, only: memory_slot
+   use rbs_hysteresis_rule, only: spring_slot
    use rbs_hysteresis_segment, only: segment, first_on, last_on
    use rbs_hysteresis_springs, only: spring_array, most_lines
    implicit none
@@ -48,8 +48,8 @@ module rbs_solve_one_body_implicit_one_body
       real(wp) :: mass(2) = 1.0_wp, lower = 0.0_wp, upper = 0.0_wp, softening = 0.0_wp
       !> Deformations, velocities, accelerations and forces at the start; the largest forces so far
       real(wp) :: q0(2) = 0.0_wp, v0(2) = 0.0_wp, a0(2) = 0.0_wp, g0(2) = 0.0_wp, largest(2) = 0.0_wp
-      !> The springs; branches left
-      type(body_spring) :: spring(2)
+      !> The springs at the start, and now, which is the same at first; branches left
+      type(body_spring) :: start(2), spring(2)
       integer :: events = 0
       !> What the body has moved, the last correction, and the work of the residual on it at its start. The
       !> first is that on the lines of the start, which is given with its work
@@ -59,18 +59,16 @@ module rbs_solve_one_body_implicit_one_body
       real(wp) :: q(2) = 0.0_wp, r(2) = 0.0_wp, v1(2) = 0.0_wp, a1(2) = 0.0_wp, g(2) = 0.0_wp, &
                   scale(2) = 0.0_wp
       !> Inverse of the tangent (11, 12, 21, 22), the stiffnesses that it is for, whether it is for the
-      !> present step, and the lines that it belongs to
+      !> present column and step, and the lines that it belongs to
       real(wp) :: inverse(4) = 0.0_wp
       real(wp), private :: stiffness(2) = -1.0_wp
-      logical, private :: fits = .false.
+      logical :: fits = .false.
       integer, private :: version = -1
       !> What velocity and acceleration at the start would move; share of the forces and accelerations at the
       !> start in the balance
       real(wp), private :: before(2) = 0.0_wp, carried(2) = 0.0_wp
-      !> Whether springs have left their lines, and whether the memories of their rules are saved
-      logical, private :: changed = .false., saved(2) = .false., stuck = .false.
-      !> Room for copies of the memories
-      type(memory_slot), private :: kept(2)
+      !> Whether a rule goes round in lines
+      logical, private :: stuck = .false.
    contains
       procedure :: set_step
       procedure :: take_step
@@ -151,10 +149,11 @@ contains
       integer :: i
 
       do i = 1, 2
-         self%spring(i) = body_spring(springs%line_of(i), springs%first(i), springs%last(i), springs%d(i), &
-                                      springs%work(i))
+         self%start(i) = body_spring(springs%line_of(i), springs%first(i), springs%last(i), springs%d(i), &
+                                     springs%work(i))
+         self%spring(i) = self%start(i)
       end do
-      call self%solve(springs, taken)
+      call self%solve(springs%slot, taken)
       if (.not. taken) return
       do i = 1, 2
          call springs%put(i, self%spring(i)%line, self%spring(i)%d, self%spring(i)%work)
@@ -176,22 +175,17 @@ contains
    end subroutine fit_to
 
    !> Find the end of the step. If it is not found, the memories are as before.
-   subroutine solve(self, springs, taken)
+   subroutine solve(self, slot, taken)
       class(one_body_step), intent(inout) :: self
-      !> Of which rules and memories are used
-      class(spring_array), intent(inout) :: springs
+      !> Rules and memories of the springs
+      type(spring_slot), intent(inout) :: slot(2)
       logical, intent(out) :: taken
-      type(body_spring) :: start(2)
       real(wp) :: slope
       integer :: trial, i
 
-      self%spring(1)%way = 0
-      self%spring(2)%way = 0
       self%dx = self%moved
       taken = .false.
-      self%changed = .false.
       self%stuck = .false.
-      self%saved = .false.
       self%events = 0
       self%before(1) = self%h*self%v0(1) + (self%h**2*(0.5_wp - self%beta))*self%a0(1)
       self%before(2) = self%h*self%v0(2) + (self%h**2*(0.5_wp - self%beta))*self%a0(2)
@@ -206,15 +200,15 @@ contains
             self%moved(1) = self%moved(1) + self%dx(1)
             self%moved(2) = self%moved(2) + self%dx(2)
          end if
-         call look(self, start, springs, slope)
+         call look(self, slot, slope)
          if (.not. slope < out_of_bounds) exit
          taken = abs(self%r(1)) <= self%wanted*self%scale(1) .and. abs(self%r(2)) <= self%wanted*self%scale(2)
          if (taken) exit
-         if (slope < -too_far*self%work) call cut_correction(self, start, springs, slope)
+         if (slope < -too_far*self%work) call cut_correction(self, slot, slope)
          if (self%stuck) exit
       end do
       if (.not. taken) then
-         call put_back(self, start, springs)
+         call put_back(self, slot)
          return
       end if
       call fit(self)
@@ -252,10 +246,9 @@ contains
 
    !> The correction has gone too far: go back to where the residual does little work on it, by the method of
    !> false position (Illinois).
-   subroutine cut_correction(self, start, springs, slope)
+   subroutine cut_correction(self, slot, slope)
       type(one_body_step), intent(inout) :: self
-      type(body_spring), intent(inout) :: start(2)
-      class(spring_array), intent(inout) :: springs
+      type(spring_slot), intent(inout) :: slot(2)
       !> Work of the residual on the correction at its end
       real(wp), intent(inout) :: slope
       real(wp) :: low, high, at_low, at_high, share, now
@@ -270,7 +263,7 @@ contains
          share = low + (high - low)*at_low/(at_low - at_high)
          self%moved = self%moved + (share - now)*self%dx
          now = share
-         call look(self, start, springs, slope)
+         call look(self, slot, slope)
          if (abs(slope) <= too_far/3.0_wp*self%work .or. self%stuck) return
          if (slope > 0.0_wp) then
             low = share
@@ -286,10 +279,9 @@ contains
 
    !> Look where the body is when it has moved so far: put the springs on their lines there, find what is left
    !> of the balance, and its work on the correction.
-   subroutine look(self, start, springs, slope)
+   subroutine look(self, slot, slope)
       type(one_body_step), intent(inout) :: self
-      type(body_spring), intent(inout) :: start(2)
-      class(spring_array), intent(inout) :: springs
+      type(spring_slot), intent(inout) :: slot(2)
       !> `huge`: out of bounds, or the springs go round in lines
       real(wp), intent(out) :: slope
 
@@ -298,10 +290,9 @@ contains
       self%q(2) = self%q0(2) + self%moved(2)
       if (.not. (abs(self%q(1)) < out_of_bounds .and. abs(self%q(2)) < out_of_bounds)) return
       if (.not. (is_on_line(self%spring(1), self%q(1)) .and. is_on_line(self%spring(2), self%q(2)))) then
-         if (self%changed) call put_back(self, start, springs)
-         self%changed = .true.
-         call find_line(self, 1, start(1), springs)
-         call find_line(self, 2, start(2), springs)
+         if (self%events > 0) call put_back(self, slot)
+         call find_line(self, 1, slot)
+         call find_line(self, 2, slot)
          if (self%stuck) return
       end if
       call find_residual(self)
@@ -319,25 +310,19 @@ contains
 
    !> Put a spring, which is at the start of the step, on the line that it is on at the end. It stays where
    !> that line begins.
-   subroutine find_line(self, i, start, springs)
+   subroutine find_line(self, i, slot)
       type(one_body_step), intent(inout) :: self
       integer, intent(in) :: i
-      !> Where it was, once it has left its line
-      type(body_spring), intent(inout) :: start
-      class(spring_array), intent(inout) :: springs
+      type(spring_slot), intent(inout) :: slot(2)
       integer :: lines, way
 
       associate (spring => self%spring(i))
          do lines = 1, most_changes
             way = side_of(spring, self%q(i))
             if (way == 0) return
+            if (spring%way == 0) call save_memory(slot(i))
             spring%way = way
-            if (.not. self%saved(i)) then
-               start = spring
-               call save_memory(springs%slot(i), self%kept(i))
-               self%saved(i) = .true.
-            end if
-            call change_line(spring, springs, i, way, self%spring(2)%work)
+            call change_line(spring, slot(i), way, self%spring(2)%work)
             self%events = self%events + 1
             ! A new one-way line starts at the present deformation, to the last bit.
             if (spring%line%unload_on_reversal > 0) spring%first = spring%d
@@ -348,18 +333,16 @@ contains
    end subroutine find_line
 
    !> Put the springs back to the start of the step.
-   subroutine put_back(self, start, springs)
+   subroutine put_back(self, slot)
       type(one_body_step), intent(inout) :: self
-      type(body_spring), intent(in) :: start(2)
-      class(spring_array), intent(inout) :: springs
+      type(spring_slot), intent(inout) :: slot(2)
       integer :: i
 
       self%events = 0
       do i = 1, 2
-         if (.not. self%saved(i)) cycle
-         self%spring(i) = start(i)
-         call return_memory(springs%slot(i), self%kept(i))
-         self%saved(i) = .false.
+         if (self%spring(i)%way == 0) cycle
+         self%spring(i) = self%start(i)
+         call return_memory(slot(i))
       end do
    end subroutine put_back
 
@@ -398,11 +381,9 @@ contains
    end function side_of
 
    !> Move monotonically to d, over any number of lines.
-   subroutine move_spring(spring, springs, i, d, flexural_work, events, stuck)
+   subroutine move_spring(spring, slot, d, flexural_work, events, stuck)
       type(body_spring), intent(inout) :: spring
-      !> The springs, and which it is
-      class(spring_array), intent(inout) :: springs
-      integer, intent(in) :: i
+      type(spring_slot), intent(inout) :: slot
       !> New deformation [m or rad]
       real(wp), intent(in) :: d
       !> See `next_branch`
@@ -419,7 +400,7 @@ contains
             call advance_on_branch(spring, d)
             return
          end if
-         call change_line(spring, springs, i, way, flexural_work)
+         call change_line(spring, slot, way, flexural_work)
       end do
       stuck = .true.
    end subroutine move_spring
@@ -440,10 +421,9 @@ contains
 
    !> Move to the end of the line and get the line that follows from the rule. When the motion turns back, a
    !> one-way line ends at the present deformation.
-   subroutine change_line(spring, springs, i, way, flexural_work)
+   subroutine change_line(spring, slot, way, flexural_work)
       type(body_spring), intent(inout) :: spring
-      class(spring_array), intent(inout) :: springs
-      integer, intent(in) :: i
+      type(spring_slot), intent(inout) :: slot
       !> +1: by the upper end, -1: by the lower end
       integer, intent(in) :: way
       real(wp), intent(in) :: flexural_work
@@ -452,7 +432,7 @@ contains
          if (line%unload_on_reversal > 0) line%lo = spring%d
          if (line%unload_on_reversal < 0) line%hi = spring%d
          if (line%unload_on_reversal /= -way) call advance_on_branch(spring, merge(line%hi, line%lo, way > 0))
-         call springs%next_branch(i, line, way, flexural_work)
+         call slot%next_branch(line, way, flexural_work)
          spring%first = first_on(line)
          spring%last = last_on(line)
       end associate

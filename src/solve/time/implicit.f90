@@ -16,11 +16,11 @@ module rbs_solve_time_implicit
    use rbs_loading_loads, only: lateral, horizontal
    use rbs_solve_time_newton, only: newton_stepper
    use rbs_solve_time_state, only: state_type
+   use rbs_structure_column_column, only: column_type
    implicit none
    private
 
-   public :: implicit_stepper, fit_one_body, new_newmark, new_generalised_alpha, new_hht, &
-             with_finite_rotations
+   public :: implicit_stepper, new_newmark, new_generalised_alpha, new_hht, with_finite_rotations
 
    type, extends(newton_stepper) :: implicit_stepper
       !> Whether it is average acceleration, which with finite rotations has the forces of the mean
@@ -114,9 +114,8 @@ contains
 
          associate (step => self%step, body => self%one_body, motion => state%motion, h => self%h, &
                     load => self%load)
-            if (abs(h - body%h) > 0.0_wp .or. abs(self%wanted - body%wanted) > 0.0_wp) then
-               call fit_one_body(body, step, self%wanted, state, h)
-            end if
+            body%wanted = self%wanted
+            if (abs(h - body%h) > 0.0_wp) call fit_one_body(body, step, motion%one_body, h)
             call body%take_step(state%springs, state%q, step%v0, step%a0, step%g0, step%largest, &
                                 load(lateral), load(horizontal), self%converged)
             if (.not. self%converged) return
@@ -277,30 +276,22 @@ contains
 
    end subroutine take_step
 
-   !> Column, method and length of the step, and the tangent on the present lines, of one body.
-   subroutine fit_one_body(body, step, wanted, state, h)
+   !> Column, method and length of the step of one body.
+   pure subroutine fit_one_body(body, step, column, h)
       type(one_body_step), intent(inout) :: body
       type(step_balance), intent(in) :: step
-      !> Share of the forces that the residual may have
-      real(wp), intent(in) :: wanted
-      type(state_type), intent(in) :: state
+      type(column_type), intent(in) :: column
       real(wp), intent(in) :: h
 
-      body%wanted = wanted
-      if (abs(h - body%h) > 0.0_wp) then
-         associate (column => state%motion%one_body)
-            body%alpha_m = step%alpha_m
-            body%alpha_f = step%alpha_f
-            body%beta = step%beta
-            body%gamma = step%gamma
-            body%mass = column%inertias(:2)
-            body%lower = column%lower(1)
-            body%upper = column%upper(1)
-            body%softening = softening_of(column)
-         end associate
-         call body%set_step(h)
-      end if
-      call body%fit_to(state%springs)
+      body%alpha_m = step%alpha_m
+      body%alpha_f = step%alpha_f
+      body%beta = step%beta
+      body%gamma = step%gamma
+      body%mass = column%inertias(:2)
+      body%lower = column%lower(1)
+      body%upper = column%upper(1)
+      body%softening = softening_of(column)
+      call body%set_step(h)
    end subroutine fit_one_body
 
    subroutine correct(self, state)
