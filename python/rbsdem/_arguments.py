@@ -16,11 +16,11 @@ from types import NoneType
 from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
+from rbsdem._types import Array as Array  # noqa: PLC0414
+from rbsdem._types import ArrayLike
 from rbsdem.errors import InputError
 
-Array = NDArray[np.float64]
 T = TypeVar("T")
 Number = TypeVar("Number", int, float)
 

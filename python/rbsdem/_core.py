@@ -14,10 +14,10 @@ from itertools import islice
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rbsdem import _arguments, _rbsdem
-from rbsdem._arguments import Array, boolean, number, vector
+from rbsdem._arguments import boolean, number, vector
+from rbsdem._types import Array, NDArray
 from rbsdem.errors import InputError, SolveError
 
 #: A number that was not given.

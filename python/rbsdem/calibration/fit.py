@@ -9,10 +9,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike
 from rbsdem.batch.work import progress_bar
 from rbsdem.calibration.determined import (
     Determined,

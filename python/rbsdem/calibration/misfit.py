@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._types import Array
 from rbsdem.curves.cycles import half_cycle_numbers
 from rbsdem.curves.metrics import N_POINTS, PathPoints, work
 from rbsdem.errors import InputError, SolveError

@@ -4,18 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import Array, DataFrame
 from rbsdem.curves.scores import Comparison
 from rbsdem.model.column import Column
-
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 _HEAD = ("", "Unit", "Start", "Low", "High", "Fitted", "Std. error", "Effect", "Rise", "At")
 
@@ -140,7 +135,7 @@ class Calibration(Tabular):
             lines += ["", *(f"Warning: {line}" for line in self.warnings)]
         return "\n".join(lines)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame with a row for each parameter: the attributes of `Fitted`."""
         frame = data_frame([asdict(fitted) for fitted in self.parameters])
         return frame.rename(columns={"unit": "unit_of_values"})

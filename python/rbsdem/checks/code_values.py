@@ -6,13 +6,13 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
 from rbsdem import _arguments, _package
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import Array, DataFrame
 from rbsdem.checks import formulas
 from rbsdem.checks.formulas import Quantities, quantities
 from rbsdem.checks.limit_states import limit_states
@@ -29,9 +29,6 @@ from rbsdem.section.strength import (
     shear_failure_drift,
     shear_strength_sezen,
 )
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -95,7 +92,7 @@ class CodeValues(Tabular):
         """Return the names."""
         return list(self._values)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each value with its unit, meaning and source."""
         return data_frame([asdict(value) for value in self])
 
@@ -425,7 +422,7 @@ class CodeComparison(Tabular):
     def __iter__(self) -> Iterator[Quantity]:
         return iter(self._rows.values())
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame in SI: a row a quantity, a column a source that says anything."""
         rows = [{"quantity": row.name, "unit": row.unit} | row.values for row in self]
         sources = [source for source in SOURCES if any(source in row.values for row in self)]

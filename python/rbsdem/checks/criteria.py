@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rbsdem._arguments import Array
+from rbsdem._types import Array
 from rbsdem.checks.formulas import goodnight_buckling_strain, quantities
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column

@@ -8,22 +8,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import Array, DataFrame
 from rbsdem.checks.criteria import Criterion, criteria
 from rbsdem.curves.envelope import strength_loss_point
 from rbsdem.errors import InputError
 from rbsdem.model.response import Response
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.strength import axial_failure_drift
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -101,7 +97,7 @@ class LimitStates(Tabular):
         """Return the drift, in size, at which a state is reached; NaN if it is not."""
         return abs(self[name].drift) if name in self else float("nan")
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each state: the attributes of `LimitState`."""
         names = list(LimitState.__dataclass_fields__)
         frame = data_frame([asdict(state) for state in self], columns=names)

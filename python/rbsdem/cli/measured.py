@@ -12,8 +12,8 @@ from pathlib import Path
 import click
 import numpy as np
 
-from rbsdem._arguments import Array
 from rbsdem._files import save_frame, write_figure
+from rbsdem._types import Array
 from rbsdem.cli import FILE, FOLDER, INTERRUPTED, Command, Values, quiet, tell
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.measured.doubts import Checked

@@ -13,11 +13,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular
+from rbsdem._types import Array, ArrayLike, NDArray
 from rbsdem.curves.metrics import columns, work
 from rbsdem.errors import InputError
 

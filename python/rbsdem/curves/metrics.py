@@ -11,10 +11,9 @@ from dataclasses import dataclass
 from typing import Any, Protocol, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
 
 

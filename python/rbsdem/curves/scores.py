@@ -5,22 +5,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import Array, ArrayLike, DataFrame
 from rbsdem.curves.cycles import HalfCycles, half_cycles, tip_rows
 from rbsdem.curves.envelope import strength_loss
 from rbsdem.curves.metrics import Curve, Loop, PathPoints, columns, loop_of, pair, ratio, rms
 from rbsdem.errors import InputError
-
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 SCORES = (
     "nrmse",
@@ -174,7 +169,7 @@ class Comparison(_Ratios, Tabular):
     def _tips(self) -> np.ndarray:
         return tip_rows(self.displacement, self.test_force)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame with a row for each half-cycle, test and model side by side.
 
         What the model did not reach is NaN.

@@ -5,22 +5,17 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike, NDArray, Unpack
 from rbsdem.errors import InputError
 from rbsdem.many.fragility import Fragile, Fragility, Hazard, checked_probability
 from rbsdem.many.inputs import is_switch
 from rbsdem.many.runs import RunOptions, Runs, make_collector, motions_by_name
 from rbsdem.model.frame import Structure
 from rbsdem.motions.motion import GroundMotion
-
-if TYPE_CHECKING:
-    from typing_extensions import Unpack
 
 _MOST_STEPS = 100
 _CLOSE = 1e-10

@@ -10,14 +10,13 @@ from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import Array, ArrayLike, DataFrame, NDArray, Unpack
 from rbsdem.batch.work import (
     Cluster,
     EndRequest,
@@ -48,10 +47,6 @@ from rbsdem.many.plan import Outcome, Piece, Plan, RunStore, compute, cut, expec
 from rbsdem.model.frame import Structure
 from rbsdem.results.result import Result
 from rbsdem.solve.solver import Solver, checked_solver
-
-if TYPE_CHECKING:
-    import pandas as pd
-    from typing_extensions import Unpack
 
 #: Seconds of a task at the most, as far as that is known: what a kill may cost.
 _LONGEST = 2.0
@@ -124,7 +119,7 @@ class Ensemble(Tabular):
         found = {status: int((self.status == status).sum()) for status in STATUSES}
         return {status or "not started": number for status, number in found.items() if number}
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each run: what it is, its measures, its error."""
         import pandas  # noqa: PLC0415
 

@@ -8,22 +8,17 @@ import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular
+from rbsdem._types import Array, ArrayLike, DataFrame, NDArray
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.many.inputs import limit_states
 from rbsdem.many.lognormal import Bounds, bounds_of_counts, fit_bounds, fit_points
 from rbsdem.many.runs import Runs
-
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 #: A frequency of which more than this part comes from beyond the given points is warned of.
 _BEYOND = 0.1
@@ -623,6 +618,6 @@ class Fragile(Tabular, ABC, Generic[Curve]):
             )
         return {name: self._fit(name, *state, stated.get(name)) for name, state in states.items()}
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each run."""
         return self.runs.to_pandas()

@@ -11,14 +11,13 @@ from __future__ import annotations
 import time
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._files import Reported
+from rbsdem._types import Array, ArrayLike, NDArray, Unpack
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import InputError
 from rbsdem.many.fragility import Capacities, Counts, Fragile, Fragility, fit_fragility
@@ -34,10 +33,6 @@ from rbsdem.many.runs import (
 )
 from rbsdem.model.frame import Structure
 from rbsdem.motions.motion import GroundMotion
-
-if TYPE_CHECKING:
-    from typing_extensions import Unpack
-
 
 _SMALLEST = 1e-4
 _MOST_REPAIRS = 5

@@ -13,10 +13,9 @@ from typing import Any, TypeAlias
 from unicodedata import category
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column

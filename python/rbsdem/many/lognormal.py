@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rbsdem._arguments import Array
+from rbsdem._types import Array, NDArray
 
 _MOST_STEPS = 100
 #: Gain of the logarithm of the likelihood that a step still promises where the search ends.

@@ -16,11 +16,10 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rbsdem import _core
-from rbsdem._arguments import Array
 from rbsdem._package import code_digest, extra
+from rbsdem._types import Array, NDArray
 from rbsdem.batch.store import PARQUET, Store, digest
 from rbsdem.checks.criteria import criteria, watches
 from rbsdem.errors import InputError, RbsdemError

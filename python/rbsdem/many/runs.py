@@ -6,14 +6,13 @@ import os
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import Array, DataFrame, NDArray, Unpack
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.many.ensemble import ensemble
@@ -33,10 +32,6 @@ from rbsdem.model.frame import Frame, Structure
 from rbsdem.motions.motion import GroundMotion, checked_motion
 from rbsdem.solve.analysis import modes
 from rbsdem.solve.solver import COLLAPSE_DRIFT, Solver, checked_solver
-
-if TYPE_CHECKING:
-    import pandas as pd
-    from typing_extensions import Unpack
 
 Name = Literal["sa_t1", "pga", "sa_avg"]
 NAMES: tuple[Name, ...] = ("sa_t1", "pga", "sa_avg")
@@ -238,7 +233,7 @@ class Runs(Tabular):
             values = np.isfinite(values).astype(float)
         return np.where(self.collapsed, np.inf, np.abs(values))
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each run; the intensity in the unit of its measure."""
         return data_frame(
             {

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
 from rbsdem.many.inputs import raise_faults
 from rbsdem.model.column import Column, without_notes

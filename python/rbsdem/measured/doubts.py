@@ -38,21 +38,17 @@ import statistics
 import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import Array, DataFrame
 from rbsdem.errors import AccuracyWarning, RbsdemError
 from rbsdem.measured.drawing import checked_specimen, draw
 from rbsdem.measured.measured import MeasuredTest
 from rbsdem.measured.specimens import Specimen, Specimens
 from rbsdem.section.curvature import diagram
-
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 #: Share of the largest drift beyond which the growth of the base moment is taken.
 _OUTER = 0.4
@@ -309,7 +305,7 @@ class Checked(Tabular):
             kept.append(replace(one.specimen, pdelta_code=codes[0]) if codes else one.specimen)
         return Specimens(kept)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each doubt, the sure ones first."""
         rows = [
             {
@@ -324,7 +320,7 @@ class Checked(Tabular):
         columns = ["test", "about", "certainty", "why", "for_the_second_score"]
         return data_frame(rows, columns=columns)
 
-    def by_test(self) -> pd.DataFrame:
+    def by_test(self) -> DataFrame:
         """Return a DataFrame, a row for each test: its indicators and its doubts."""
         rows = []
         for one in self.indicators:

@@ -11,8 +11,8 @@ from typing import Literal
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._tables import FORCES, LENGTHS, NumberTable, bare, read_table, to_si
+from rbsdem._types import Array
 from rbsdem.errors import InputError
 from rbsdem.measured.measured import PDELTA_CODES, MeasuredTest, net_force, top_displacement
 

@@ -12,11 +12,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments, _core, _package
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular
+from rbsdem._types import Array, ArrayLike, NDArray
 from rbsdem.curves.metrics import Loop
 from rbsdem.errors import InputError
 

@@ -15,10 +15,9 @@ from functools import lru_cache, partial
 from typing import Any, TypeAlias, overload
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike
 from rbsdem.batch.work import (
     EndRequest,
     Processes,

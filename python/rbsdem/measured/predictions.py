@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, atomic_write, data_frame
 from rbsdem._package import code_digest
+from rbsdem._types import Array, DataFrame
 from rbsdem.batch.store import JSON_LINES, Store, digest
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.curves.scores import SCORES, Comparison, compare
@@ -29,8 +29,6 @@ from rbsdem.measured.specimens import Specimen
 from rbsdem.section.spread import Interval, Spread, numbers
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from rbsdem.curves.scores import Comparison
 
 
@@ -310,7 +308,7 @@ class Predictions(Tabular, Sequence[Prediction]):
         counted = [row for row in self._rows if row.status != "no history"]
         return self._some(sorted(counted, key=lambda row: -row.nrmse)[:n])
 
-    def summary(self, by: str = "failure_mode") -> pd.DataFrame:
+    def summary(self, by: str = "failure_mode") -> DataFrame:
         """Return medians and quartiles of groups, a row for each, the last one that of all tests.
 
         Parameters
@@ -343,7 +341,7 @@ class Predictions(Tabular, Sequence[Prediction]):
         groups.sort(key=lambda group: -group["tests"])
         return data_frame([*groups, {by: "all"} | _statistics(self._rows)]).set_index(by)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a row for each test: properties that group tests, scores, times.
 
         If limit states were asked for, "drift_first_yield", "drift_spalling", ... are the drifts at
@@ -352,7 +350,7 @@ class Predictions(Tabular, Sequence[Prediction]):
         states = any(row.limit_states is not None for row in self._rows)
         return data_frame([_scores(row, states) for row in self._rows])
 
-    def bands(self) -> pd.DataFrame:
+    def bands(self) -> DataFrame:
         """Return a row for each test that has a band: intervals, and what its test was."""
         return data_frame([band_record(row) for row in self._rows if row.band is not None])
 

@@ -11,17 +11,14 @@ from dataclasses import asdict, dataclass, field, fields
 from difflib import get_close_matches
 from functools import cache, partial
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING, Any, overload
+from typing import Any, overload
 
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import DataFrame
 from rbsdem.errors import InputError
 from rbsdem.measured.measured import MeasuredTest, PeerTest, net_force, read_peer, top_displacement
 from rbsdem.section.columns import CONCRETE_DENSITY
-
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 # Spellings of one author.
 _AUTHORS = {"Petrovsky": "Petrovski"}
@@ -487,7 +484,7 @@ class Specimens(Tabular, Sequence[Specimen]):
             parts.setdefault(row.series, []).append(row)
         return {key: Specimens(rows) for key, rows in parts.items()}
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a row for each test."""
         rows = [asdict(row) for row in self._rows]
         return data_frame([{**row, **row.pop("observed")} for row in rows])

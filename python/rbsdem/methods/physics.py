@@ -6,11 +6,12 @@ import dataclasses
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import DataFrame
 from rbsdem.errors import InputError
 from rbsdem.methods.ladder import LEVELS, Trials, too_expensive
 from rbsdem.methods.reference import Reference
@@ -20,9 +21,6 @@ from rbsdem.model.damping import Damping
 from rbsdem.model.springs import Spring
 from rbsdem.results.accuracy import Answer, errors_of
 from rbsdem.solve.solver import IMPLICIT
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 #: Share of the rotary inertia that stays when it is taken off: a body without any has no equation
 #: of motion.
@@ -114,7 +112,7 @@ class Physics(Tabular):
     resolution: float
     tolerance: float
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame with a row for each part of the model."""
         rows = [
             [

@@ -12,10 +12,9 @@ from itertools import pairwise
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike, NDArray
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError
 from rbsdem.model.column import Column, Kinematics, checked_column, without_notes
 from rbsdem.results.accuracy import Answer, answer_of

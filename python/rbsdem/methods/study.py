@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING
-
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import ArrayLike, DataFrame
 from rbsdem.batch.work import progress_bar
 from rbsdem.errors import InputError, SolveError
 from rbsdem.methods.ladder import Budget, Trials, checked_methods, ladders, own_setting, probe
@@ -22,9 +20,6 @@ from rbsdem.model.springs import Spring
 from rbsdem.motions.motion import GroundMotion, acting
 from rbsdem.results.accuracy import Errors, errors_of
 from rbsdem.solve.solver import IMPLICIT, Solver
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 __all__ = ["Choice", "MethodStudy", "Row", "compare_methods", "seconds_text"]
 
@@ -216,7 +211,7 @@ class MethodStudy(Tabular):
         """
         return cheapest(self.rows, tolerance)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame with a row for each setting: its cost, its errors, the front."""
         rows = [
             {

@@ -10,17 +10,13 @@ from contextvars import ContextVar
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, cast, runtime_checkable
 
-from numpy.typing import ArrayLike
-
 from rbsdem import _arguments, _core
 from rbsdem._tables import STANDARD_GRAVITY
+from rbsdem._types import ArrayLike, Self
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.damping import Damping
 from rbsdem.model.shape import Section
 from rbsdem.model.springs import Gauge, Layered, Spring, checked_spring, layer_springs, whole_column
-
-if TYPE_CHECKING:
-    from typing_extensions import Self
 
 
 @dataclass(frozen=True, slots=True)

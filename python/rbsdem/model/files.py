@@ -6,19 +6,16 @@ import json
 import os
 from collections.abc import Mapping
 from dataclasses import fields
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
 from rbsdem._files import atomic_write
 from rbsdem._package import extra
+from rbsdem._types import Array, DataFrame
 from rbsdem.errors import InputError
 from rbsdem.model.response import STATE_HEAD, Ended, Response, last_state
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 FORMAT = "rbsdem result"
 FORMAT_VERSION = 1
@@ -47,7 +44,7 @@ def columns(result: Response) -> dict[str, Array]:
     return found
 
 
-def to_pandas(result: Response) -> pd.DataFrame:
+def to_pandas(result: Response) -> DataFrame:
     """Return a DataFrame with the columns of the csv."""
     import pandas  # noqa: PLC0415
 

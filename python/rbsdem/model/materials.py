@@ -8,10 +8,10 @@ from dataclasses import dataclass, fields
 from typing import ClassVar, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array, Derived, given
+from rbsdem._arguments import Derived, given
+from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
 
 Tension = Literal["ts", "bare", "zero"]

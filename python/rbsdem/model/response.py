@@ -11,8 +11,8 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 import numpy as np
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
 from rbsdem._files import Reported
+from rbsdem._types import Array
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
 from rbsdem.model.springs import Gauge, Layered, Strains, strains_of

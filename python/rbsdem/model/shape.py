@@ -15,13 +15,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array, Derived, given
+from rbsdem._arguments import Derived, given
 from rbsdem._files import Reported
+from rbsdem._types import Array, Self
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Bar, Concrete, Layout, Spiral, Steel, Ties, share_in_tension
-
-if TYPE_CHECKING:
-    from typing_extensions import Self
 
 
 @dataclass(frozen=True, slots=True)

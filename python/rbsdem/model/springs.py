@@ -12,19 +12,14 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields, replace
 from functools import cache
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, TypeVar, get_args
+from typing import Any, ClassVar, Literal, NamedTuple, TypeVar, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
 from rbsdem._files import atomic_write
+from rbsdem._types import Array, ArrayLike, Self
 from rbsdem.errors import InputError
-
-if TYPE_CHECKING:
-    from typing_extensions import Self
-
 
 AnySpring = TypeVar("AnySpring", bound="Spring")
 

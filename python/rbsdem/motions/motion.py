@@ -7,12 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, atomic_write
 from rbsdem._tables import STANDARD_GRAVITY
+from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
 
 _MOST_DAMPING = 10.0

@@ -17,8 +17,8 @@ from pathlib import Path
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._tables import STANDARD_GRAVITY, NumberTable, read_lines, read_table
+from rbsdem._types import Array
 from rbsdem.errors import InputError, RepairWarning
 from rbsdem.motions.motion import GroundMotion
 

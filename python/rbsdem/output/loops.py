@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike, Axes, NDArray
 from rbsdem.calibration.outcome import Calibration
 from rbsdem.checks.code_values import CodeComparison
 from rbsdem.checks.limit_states import LimitStates
@@ -33,10 +32,6 @@ from rbsdem.output.style import (
     style,
 )
 from rbsdem.results.lumped import LumpedHinge, Material
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 FIGURE_SIZE = (6.9, 6.0)
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from rbsdem._types import Axes
 from rbsdem.errors import InputError
 from rbsdem.many.cloud import Cloud
 from rbsdem.many.fragility import Capacities, Counts, Fragility
@@ -15,10 +16,6 @@ from rbsdem.many.ida import IDA, Stripes
 from rbsdem.many.runs import Runs
 from rbsdem.motions.motion import GroundMotion, Spectrum
 from rbsdem.output.style import MODEL_LINE, axes_or_new, line_of
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 _RECORD: dict[str, Any] = {"color": "0.72", "linewidth": 0.5}
 _POINT: dict[str, Any] = {"color": "0.35", "marker": ".", "linestyle": "none", "markersize": 4}

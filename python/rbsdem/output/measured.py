@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rbsdem._files import write_figure
+from rbsdem._types import Axes
 from rbsdem.measured.predictions import Prediction, Predictions, band_record
 from rbsdem.measured.specimens import Specimen
 from rbsdem.output.style import (
@@ -28,7 +29,6 @@ from rbsdem.output.tables import table
 from rbsdem.section.spread import Spread
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from rich.table import Table
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rbsdem._files import write_figure
+from rbsdem._types import Axes, DataFrame
 from rbsdem.errors import InputError
 from rbsdem.methods.ladder import LEVELS
 from rbsdem.methods.study import MethodStudy
@@ -15,9 +16,6 @@ from rbsdem.output.style import axes_or_new, line_of, style
 from rbsdem.output.tables import console, plain, table
 
 if TYPE_CHECKING:
-    import pandas as pd
-    from matplotlib.axes import Axes
-
     from rbsdem.methods.study import Row
 
 #: Marker, filling and gray of each method; located events are filled.
@@ -213,7 +211,7 @@ def report(study: MethodStudy, title: str) -> None:
     say(f"\nDone in {study.seconds:.1f} s of {study.budget:g} s.")
 
 
-def _settings(study: MethodStudy) -> pd.DataFrame:
+def _settings(study: MethodStudy) -> DataFrame:
     """Return the settings as they are printed."""
     import pandas  # noqa: PLC0415
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike, Axes
 from rbsdem.errors import InputError
 from rbsdem.model.column import bodies
 from rbsdem.model.response import ENERGIES, Response
@@ -22,10 +21,6 @@ from rbsdem.output.style import (
     new_axes,
     style_of,
 )
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 Over = Literal["displacement", "drift", "force", "base_shear", "base_moment"]
 

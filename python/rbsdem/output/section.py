@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike, Axes
 from rbsdem.checks.criteria import buckling_strain
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Tension
@@ -32,10 +31,6 @@ from rbsdem.section.curvature import Diagram, Events, strains
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.paper_springs import SectionSprings
 from rbsdem.section.shear import ShearDiagram, ShearSpring
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 EVENT_MARKS: dict[str, dict[str, Any]] = {
     "cracking": {"marker": "o", "markerfacecolor": "white"},

@@ -10,18 +10,15 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from weakref import WeakSet
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rbsdem import _arguments
 from rbsdem._files import write_figure
+from rbsdem._types import Axes, NDArray
 from rbsdem.errors import InputError
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 #: What functions with several axes return: an array of them, as ``pyplot.subplots`` does.
 AxesArray = NDArray[np.object_]

@@ -12,9 +12,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from rbsdem._files import Tabular, atomic_write
+from rbsdem._types import DataFrame
 
 if TYPE_CHECKING:
-    import pandas as pd
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
@@ -41,7 +41,7 @@ _WIDE = 200
 _WIDEST = 60
 
 
-def write_parquet(frame: pd.DataFrame, path: str | os.PathLike[str]) -> None:
+def write_parquet(frame: DataFrame, path: str | os.PathLike[str]) -> None:
     """Write a frame as Parquet, whole or not at all; needs pyarrow.
 
     Parameters
@@ -56,7 +56,7 @@ def write_parquet(frame: pd.DataFrame, path: str | os.PathLike[str]) -> None:
 
 
 def table(
-    record: Tabular | pd.DataFrame,
+    record: Tabular | DataFrame,
     *,
     styles: Sequence[str | None] | None = None,
     caption: str | None = None,
@@ -109,7 +109,7 @@ def table(
     return made
 
 
-def cells(record: Tabular | pd.DataFrame) -> list[tuple[str, bool, list[str]]]:
+def cells(record: Tabular | DataFrame) -> list[tuple[str, bool, list[str]]]:
     """Return heading, whether they are numbers, and texts of each column of a table.
 
     Parameters

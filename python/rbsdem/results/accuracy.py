@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from rbsdem._arguments import Array
+from rbsdem._types import Array
 from rbsdem.errors import AccuracyWarning
 from rbsdem.model.response import Response
 from rbsdem.solve.analysis import cyclic, no_watch, time_history

@@ -13,8 +13,8 @@ from typing import Any, cast
 import numpy as np
 
 from rbsdem import _core
-from rbsdem._arguments import Array
 from rbsdem._package import extra
+from rbsdem._types import Array
 from rbsdem.errors import InputError, SolveError
 from rbsdem.model.column import Column, Footing, without_notes
 from rbsdem.model.damping import Damping

@@ -13,21 +13,18 @@ import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
+from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import Array, DataFrame
 from rbsdem.curves.envelope import Envelope, envelope
 from rbsdem.errors import AccuracyWarning, InputError, SolveError
 from rbsdem.model.response import Response
 from rbsdem.model.springs import PeakOriented
 from rbsdem.solve.analysis import cyclic
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Material = Literal["Hysteretic", "IMKPeakOriented"]
 Language = Literal["tcl", "py"]
@@ -262,7 +259,7 @@ class LumpedHinge(Tabular):
         found += [(f"c_{kind}", 1.0, "") for kind in "SCAK"]
         return [*found, ("D_pos", 1.0, ""), ("D_neg", 1.0, "")]
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each backbone."""
         units = {
             "stiffness": "K_e_N_m/rad",

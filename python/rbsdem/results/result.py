@@ -9,11 +9,12 @@ import math
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Concatenate, Literal, ParamSpec, Protocol, cast, overload
+from typing import Any, Concatenate, Literal, ParamSpec, Protocol, cast, overload
 
 import numpy as np
 
 from rbsdem import _arguments
+from rbsdem._types import DataFrame
 from rbsdem.checks.criteria import all_watches
 from rbsdem.checks.limit_states import Hinge, LimitStates
 from rbsdem.checks.limit_states import hinge as hinge_of
@@ -32,9 +33,6 @@ from rbsdem.results.accuracy import Errors, refined_error
 from rbsdem.results.lumped import LumpedHinge, lumped_hinge
 from rbsdem.solve import analysis
 from rbsdem.solve.solver import METHODS
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 P = ParamSpec("P")
 
@@ -172,7 +170,7 @@ class Result(Response):
         """
         return lumped_hinge(self)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each of the result, with units in the names.
 
         The names are those of the columns of the executable's csv.

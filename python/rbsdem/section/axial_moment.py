@@ -17,11 +17,10 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular
+from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Spiral, Steel
 from rbsdem.model.shape import Section, checked_section

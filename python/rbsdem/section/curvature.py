@@ -4,21 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import Array, ArrayLike, DataFrame
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Tension
 from rbsdem.model.shape import Section
 from rbsdem.section.ranges import checked_load, column_length, is_confined
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 #: Points of a diagram at the most.
 _MOST_POINTS = 100_000
@@ -102,7 +98,7 @@ class Diagram(Tabular):
     end: Point
     lost: bool
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each point; "event" names those that are events."""
         frame = data_frame(
             {"curvature_1/m": self.curvature, "moment_Nm": self.moment, "strain": self.strain}
@@ -274,7 +270,7 @@ class BilinearDiagram(Tabular):
         most = elastic * lever**2 / 3.0 + turned * (lever - 0.5 * hinge)
         return DisplacementCapacity(self.method, span, hinge, at_yield, most, turned)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame with the three corners of the lines."""
         curvature = [0.0, self.yield_curvature, self.ultimate.curvature]
         moment = [0.0, self.yield_moment, self.ultimate_moment]

@@ -21,11 +21,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular
+from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.materials import Tension
 from rbsdem.model.shape import Section, checked_section

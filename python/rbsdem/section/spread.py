@@ -21,11 +21,10 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _package
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular
+from rbsdem._types import Array, ArrayLike
 from rbsdem.curves.envelope import strength_loss
 from rbsdem.curves.metrics import PathPoints, work
 from rbsdem.errors import AccuracyWarning, InputError, SolveError

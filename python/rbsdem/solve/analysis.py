@@ -8,13 +8,12 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import Any, Literal, overload
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike, Unpack
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning
 from rbsdem.model.column import Column
 from rbsdem.model.frame import Frame, Structure, checked_structure
@@ -22,9 +21,6 @@ from rbsdem.model.frame_result import FrameResult, frame_result_of
 from rbsdem.model.response import Ended, Response, response_of, settings_of, state_of
 from rbsdem.motions.motion import GroundMotion, acting
 from rbsdem.solve.solver import Solver, checked_solver
-
-if TYPE_CHECKING:
-    from typing_extensions import Unpack
 
 #: What a run in time is watched for: limit states of the column as criteria in numbers, shape
 #: (criteria, 6), given whether openings are kept.

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
 
 _NONE = np.empty(0)

@@ -19,10 +19,9 @@ from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._types import Array, NDArray
 from rbsdem.checks.code_values import code_values
 from rbsdem.errors import InputError, RbsdemError, SolveError
 from rbsdem.measured.predict import nearest, predict_one

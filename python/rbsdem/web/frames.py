@@ -12,11 +12,10 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._tables import STANDARD_GRAVITY
+from rbsdem._types import Array, NDArray
 from rbsdem.errors import InputError, RbsdemError, SolveError
 from rbsdem.model.frame import Frame, FrameMember
 from rbsdem.model.frame_result import FrameResult

@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from rbsdem._arguments import Array
 from rbsdem._files import atomic_write
+from rbsdem._types import Array
 from rbsdem.measured.predictions import Picture, Prediction, Predictions
 
 #: Modules of the page, each after those that it imports.

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._tables import STANDARD_GRAVITY
+from rbsdem._types import Array
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import Column, Footing
 from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
