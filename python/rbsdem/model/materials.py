@@ -150,25 +150,13 @@ class Steel:
         return stress.reshape(strains.shape)[()]
 
 
-#: Bars at mid-depth count half in tension; the others whole from this share of the depth on.
-_MIDDLE = 0.05
-
-#: Bars of a layout; more are a mistake, and fill the memory.
 #: Diameter of the thickest bar [m], as in the Fortran part.
 THICKEST = 0.075
+#: Bars of a layout; more are a mistake, and fill the memory.
 _MOST_BARS = 1000
 
 Bar = tuple[float, float, Steel]
 """One bar: distance from mid-depth [m], positive to the tension face; area [m2]; steel."""
-
-
-def share_in_tension(y: float, depth: float) -> float:
-    """Return the share of a bar that counts in the half in tension, y > 0.
-
-    From 0 to 1 in a straight line over a tenth of the depth around mid-depth, so that no strength
-    jumps when a bar is moved.
-    """
-    return min(max(0.5 + 0.5 * y / (_MIDDLE * depth), 0.0), 1.0)
 
 
 @dataclass(frozen=True)

@@ -120,15 +120,13 @@ class ModelParameters:
             if not math.isfinite(number):
                 raise InputError(f"parameters: {name} = {number} must be a finite number")
             values[name] = number
-        object.__setattr__(self, "values", values)
+        # Each value is an attribute too.
+        self.__dict__.update(values, values=values)
 
     def __hash__(self) -> int:
         return hash((self.version, tuple(self.values.values())))
 
     def __getattr__(self, name: str) -> float:
-        """Return a value by its name."""
-        if name != "values" and name in self.values:
-            return self.values[name]
         raise AttributeError(f"there is no parameter {name!r}")
 
     @property

@@ -12,7 +12,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from rbsdem.errors import InputError
-from rbsdem.model.materials import share_in_tension
 from rbsdem.model.shape import Section
 from rbsdem.section.ranges import carried_load, checked_load, column_length
 
@@ -79,7 +78,6 @@ def shear_sizes(section: Section) -> ShearSizes:
     ShearSizes
         Its sizes.
     """
-    steel = sum(area * share_in_tension(y, section.depth) for y, area, _ in section.bars)
     ties = section.ties
     area = spacing = tie_yield = 0.0
     core = section.depth
@@ -94,7 +92,7 @@ def shear_sizes(section: Section) -> ShearSizes:
         section.depth,
         section.effective_depth,
         section.gross_area,
-        steel,
+        section.tension_steel,
         area,
         spacing,
         tie_yield,
