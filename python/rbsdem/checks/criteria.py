@@ -76,7 +76,7 @@ class Criterion:
 
     def values(self, result: Response) -> Array:
         """Return what is compared with the threshold, shape (rows,)."""
-        at = result.column.place_of(self.joint)
+        at = result.column.joint_numbers.index(self.joint)
         if self.slip:
             return np.asarray(self.slip * result.slip[:, at])
         turned = result.rotation[:, at]

@@ -121,7 +121,7 @@ def limit_states(result: Response) -> LimitStates:
     first: dict[str, LimitState] = {}
     for place, criterion in enumerate(watched):
         if result.reached is None:
-            found = _in_rows(result, criterion)
+            found = _in_rows(result, path, criterion)
         else:
             found = _in_time(result, criterion, *result.reached[place])
         if found is not None and (found.name not in first or found.time < first[found.name].time):
@@ -149,8 +149,8 @@ def _in_time(
     return replace(state, time=float(time), displacement=at, drift=at / result.column.height)
 
 
-def _in_rows(result: Response, criterion: Criterion) -> LimitState | None:
-    values, threshold = criterion.values(result.path), criterion.threshold
+def _in_rows(result: Response, path: Response, criterion: Criterion) -> LimitState | None:
+    values, threshold = criterion.values(path), criterion.threshold
     rows = np.flatnonzero(values >= threshold)
     if rows.size == 0:
         return None
@@ -203,16 +203,8 @@ def _state(result: Response, name: str, place: float, threshold: float, source: 
     )
     # Round-off of a time that is one of the rows does not take the next one.
     row = np.searchsorted(result.time, time - 1e-12 * abs(time))
-    return LimitState(
-        name,
-        min(int(row), result.time.size - 1),
-        time,
-        displacement,
-        displacement / result.column.height,
-        force,
-        threshold,
-        source,
-    )
+    at, drift = min(int(row), result.time.size - 1), displacement / result.column.height
+    return LimitState(name, at, time, displacement, drift, force, threshold, source)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

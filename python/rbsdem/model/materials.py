@@ -124,7 +124,7 @@ class Steel:
 
     def statement(self, number: int | None = None) -> _core.Statement:
         """Return the keys of the steel with their values; `number` is what bars refer to."""
-        values = {f.name: given(getattr(self, f.name)) for f in fields(self)}
+        values = {f.name: getattr(self, f.name) for f in fields(self)} | {"fu": given(self.fu)}
         return _core.group("steel", {"id": number} | values)
 
     def stress(self, strain: ArrayLike) -> Array:

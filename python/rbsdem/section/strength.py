@@ -78,26 +78,18 @@ def shear_sizes(section: Section) -> ShearSizes:
     ShearSizes
         Its sizes.
     """
-    ties = section.ties
-    area = spacing = tie_yield = 0.0
-    core = section.depth
-    if ties is not None:
-        area = ties.legs * 0.25 * math.pi * ties.diameter**2
-        tie_yield = ties.steel.fy
-        core = section.depth - 2.0 * section.cover - ties.diameter
-    spacing = ties.spacing if ties is not None else math.inf
-    return ShearSizes(
-        section.concrete_law["fc"],
-        section.web_width,
-        section.depth,
-        section.effective_depth,
-        section.gross_area,
-        section.tension_steel,
-        area,
-        spacing,
-        tie_yield,
-        core,
-    )
+    known, ties = section.__dict__, section.ties
+    if "_shear_sizes" not in known:
+        fc, width, depth = section.concrete_law["fc"], section.web_width, section.depth
+        held = 0.0, math.inf, 0.0, depth
+        if ties is not None:
+            area = ties.legs * 0.25 * math.pi * ties.diameter**2
+            core = depth - 2.0 * section.cover - ties.diameter
+            held = area, ties.spacing, ties.steel.fy, core
+        steel = section.gross_area, section.tension_steel
+        known["_shear_sizes"] = ShearSizes(fc, width, depth, section.effective_depth, *steel, *held)
+    sizes: ShearSizes = known["_shear_sizes"]
+    return sizes
 
 
 def shear_strength(section: Section, length: float, axial_load: float) -> float:
