@@ -13,20 +13,15 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._types import Array, ArrayLike
 from rbsdem.batch.work import progress_bar
-from rbsdem.calibration.determined import (
-    Determined,
-    determine,
-    refuse,
-    warnings_of,
-    without_effect,
-)
-from rbsdem.calibration.misfit import LOSSES, Misfit, Target, forces
+from rbsdem.calibration.determined import Determined, determine, refuse, warnings_of, without_effect
+from rbsdem.calibration.misfit import LOSSES, Misfit, Target
 from rbsdem.calibration.names import Parameters, free_parameters
 from rbsdem.calibration.outcome import Calibration, Fitted
 from rbsdem.calibration.search import Search
 from rbsdem.curves.scores import Comparison, compare
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.errors import AccuracyWarning, InputError, unwarned
 from rbsdem.model.column import Column, Parameter
+from rbsdem.solve.analysis import reached_force
 
 #: Number of random points, besides the start, at which the effect of a parameter is tried.
 _LOOKS = 3
@@ -79,12 +74,11 @@ def undetermined(
     """
     target, parameters = Target(test), Parameters(column)
     chosen = free_parameters(parameters, free, bounds)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AccuracyWarning)
-        with Misfit(
-            parameters.build, chosen, target, "nrmse", 1, lambda done, best: None
-        ) as misfit:
-            return without_effect(misfit, _looks(misfit.start_places(), 0))
+    with (
+        unwarned(),
+        Misfit(parameters.build, chosen, target, "nrmse", 1, lambda done, best: None) as misfit,
+    ):
+        return without_effect(misfit, _looks(misfit.start_places(), 0))
 
 
 def calibrate(
@@ -159,8 +153,7 @@ def calibrate(
     wanted = _arguments.boolean(progress, "calibrate: progress")
     showing = progress_bar(wanted, evaluations, "analyses")
     # Warnings about the many columns of the search do not help the user.
-    with warnings.catch_warnings(), showing as show:
-        warnings.simplefilter("ignore", AccuracyWarning)
+    with unwarned(), showing as show:
         with Misfit(parameters.build, chosen, target, loss, jobs, show) as misfit:
             start = misfit.start_places()
             misfit.column(start)
@@ -227,7 +220,7 @@ def _fitted(misfit: Misfit, places: ArrayLike, found: Determined) -> tuple[Fitte
 
 def _compared(column: Column, target: Target, start: Column) -> Comparison:
     """Return the scores of a column; the force is NaN after the end of a failed analysis."""
-    reached, _ = forces(column, target.displacement)
+    reached, _ = reached_force(column, target.displacement)
     force = np.full(target.force.size, np.nan)
     force[: reached.size] = reached
     loop = target.displacement, force

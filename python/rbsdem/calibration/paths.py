@@ -89,10 +89,7 @@ def ends(column: Column, way: Way) -> tuple[float, float]:
     """Return the least and the largest value that the key of a parameter takes."""
     key = _key(column, way)
     least, most = key.get("least"), key.get("most")
-    return (
-        -math.inf if least is None else float(least),
-        math.inf if most is None else float(most),
-    )
+    return (-math.inf if least is None else float(least), math.inf if most is None else float(most))
 
 
 def _key(column: Column, way: Way) -> dict[str, Any]:

@@ -24,11 +24,7 @@ from rbsdem.model.response import Response
 from rbsdem.model.shape import Section
 from rbsdem.section.axial_moment import nominal_moment
 from rbsdem.section.layered import LayeredColumn
-from rbsdem.section.strength import (
-    axial_failure_drift,
-    shear_failure_drift,
-    shear_strength_sezen,
-)
+from rbsdem.section.strength import axial_failure_drift, shear_failure_drift, shear_strength_sezen
 
 
 @dataclass(frozen=True)

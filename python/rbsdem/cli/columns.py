@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import sys
 import threading
-import warnings
 import webbrowser
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -20,7 +19,7 @@ from rbsdem._tables import read_table
 from rbsdem._types import DataFrame
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
-from rbsdem.errors import InputError, RepairWarning
+from rbsdem.errors import InputError, RepairWarning, recorded
 from rbsdem.many.ensemble import ensemble as run_ensemble
 from rbsdem.many.fragility import Fragility, Hazard
 from rbsdem.many.ida import IDA
@@ -119,8 +118,7 @@ def _records(words: Sequence[str], units: str | None) -> list[GroundMotion]:
     """Return the records of folders and files, or synthetic ones; report all that is wrong."""
     records: list[GroundMotion] = []
     faults = []
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", RepairWarning)
+    with recorded(RepairWarning) as caught:
         for word in words:
             try:
                 records += _records_of(word, units)
@@ -434,11 +432,7 @@ def _fragilities(
 
 
 def _write(
-    analysis: IDA,
-    curves: Mapping[str, Fragility],
-    frame: DataFrame,
-    folder: Path,
-    parquet: bool,
+    analysis: IDA, curves: Mapping[str, Fragility], frame: DataFrame, folder: Path, parquet: bool
 ) -> list[Path]:
     written = [folder / "ida.csv", folder / "fractiles.csv", folder / "fragility.csv"]
     analysis.runs.to_csv(written[0])

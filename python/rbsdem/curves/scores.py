@@ -312,10 +312,7 @@ def displacement_metrics(
     points = PathPoints(f, name="force")
     error = rms(points(model - test))
     return DisplacementMetrics(
-        test=loop_of(test, f),
-        model=loop_of(model, f),
-        nrmse=error / largest,
-        rms_error=error,
+        test=loop_of(test, f), model=loop_of(model, f), nrmse=error / largest, rms_error=error
     )
 
 

@@ -473,10 +473,7 @@ class Fragility:
 
 
 def fit_fragility(
-    name: str,
-    data: Counts | Capacities,
-    intensity_name: str = "",
-    beta: float | None = None,
+    name: str, data: Counts | Capacities, intensity_name: str = "", beta: float | None = None
 ) -> Fragility:
     """Return the lognormal curve of largest likelihood.
 

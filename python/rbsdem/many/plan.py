@@ -23,14 +23,7 @@ from rbsdem._types import Array, NDArray
 from rbsdem.batch.store import PARQUET, Store, digest
 from rbsdem.checks.criteria import criteria, watches
 from rbsdem.errors import InputError, RbsdemError
-from rbsdem.many.inputs import (
-    AT_REST,
-    STATUSES,
-    Measure,
-    Motion,
-    core_measures,
-    storey_measures,
-)
+from rbsdem.many.inputs import AT_REST, STATUSES, Measure, Motion, core_measures, storey_measures
 from rbsdem.model.column import Column
 from rbsdem.model.frame import Structure
 from rbsdem.model.springs import Layered
@@ -214,11 +207,7 @@ def _name_joints(task: Plan, values: Array) -> None:
 
 
 def _call_functions(
-    task: Plan,
-    control: Integers,
-    fates: Integers,
-    errors: dict[int, str],
-    extra: dict[str, Array],
+    task: Plan, control: Integers, fates: Integers, errors: dict[int, str], extra: dict[str, Array]
 ) -> None:
     """Fill the measures of functions, each run with its history, which is then dropped."""
     for run in np.flatnonzero(fates):

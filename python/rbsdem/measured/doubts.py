@@ -35,7 +35,6 @@ from __future__ import annotations
 
 import math
 import statistics
-import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
 from typing import Any
@@ -44,7 +43,7 @@ import numpy as np
 
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame
-from rbsdem.errors import AccuracyWarning, RbsdemError
+from rbsdem.errors import RbsdemError, unwarned
 from rbsdem.measured.drawing import checked_specimen, draw
 from rbsdem.measured.measured import MeasuredTest
 from rbsdem.measured.specimens import Specimen, Specimens
@@ -115,9 +114,8 @@ def indicators(specimen: Specimen) -> Indicators:
     InputError
         If the test has no history, or its section is refused.
     """
-    with warnings.catch_warnings():
+    with unwarned():
         # What a drawing assumes is said where a column is made.
-        warnings.simplefilter("ignore", AccuracyWarning)
         return _indicators(specimen)
 
 
@@ -141,17 +139,9 @@ def _indicators(specimen: Specimen) -> Indicators:
             slopes.append(_slope_behind_peak(drift, force) * length / load)
         for name, moment in moments.items():
             growths[name].append(_growth(*_envelope(test.displacement, moment, side)))
-    return Indicators(
-        specimen=specimen,
-        second_order_share=_mean(shares),
-        slope=_mean(slopes),
-        growth_labelled=_mean(growths["labelled"]),
-        growth_net=_mean(growths["net"]),
-        growth_effective=_mean(growths["effective"]),
-        strength=_strength(specimen, test),
-        stiffness=_stiffness(specimen, test),
-        symmetry=_symmetry(test),
-    )
+    figures = [_mean(values) for values in (shares, slopes, *growths.values())]
+    figures += [_strength(specimen, test), _stiffness(specimen, test), _symmetry(test)]
+    return Indicators(specimen, *figures)
 
 
 def _envelope(displacement: Array, force: Array, side: int) -> tuple[Array, Array]:
@@ -317,8 +307,7 @@ class Checked(Tabular):
             }
             for doubt in sorted(self.doubts, key=lambda doubt: not doubt.sure)
         ]
-        columns = ["test", "about", "certainty", "why", "for_the_second_score"]
-        return data_frame(rows, columns=columns)
+        return data_frame(rows, ["test", "about", "certainty", "why", "for_the_second_score"])
 
     def by_test(self) -> DataFrame:
         """Return a DataFrame, a row for each test: its indicators and its doubts."""

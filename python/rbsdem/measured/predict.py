@@ -28,7 +28,7 @@ from rbsdem.batch.work import (
     work_through,
 )
 from rbsdem.curves.scores import compare
-from rbsdem.errors import AccuracyWarning, InputError, RbsdemError, SolveError
+from rbsdem.errors import AccuracyWarning, InputError, RbsdemError, SolveError, recorded, unwarned
 from rbsdem.measured.drawing import check_options, checked_specimen, draw
 from rbsdem.measured.drawing import column as column_of
 from rbsdem.measured.predictions import Neighbour, Prediction, Predictions, PredictionStore
@@ -70,9 +70,7 @@ class PredictionOptions:
 
     def given(self, options: dict[str, Any]) -> dict[str, Any]:
         """Return the options of a store: those of the model, and what differs from the usual."""
-        own = {
-            name: value for name, value in vars(self).items() if value != getattr(type(self), name)
-        }
+        own = {name: v for name, v in vars(self).items() if v != getattr(type(self), name)}
         return options | ({"how": own} if own else {})
 
 
@@ -293,9 +291,7 @@ def _alone(
     return row
 
 
-def _tests(
-    specimens: Specimen | Iterable[Specimen] | str | os.PathLike[str],
-) -> Sequence[Specimen]:
+def _tests(specimens: Specimen | Iterable[Specimen] | str | os.PathLike[str]) -> Sequence[Specimen]:
     """Return the tests that are asked for."""
     if isinstance(specimens, Specimen):
         return [specimens]
@@ -352,8 +348,7 @@ def _with_nearest(
             continue
         near: list[Neighbour] = []
         s = row.specimen
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", AccuracyWarning)
+        with unwarned():
             section = draw(s).section
         number = max(len(tests), 1)
         for one in nearest(section, s.length, s.axial_load, tests, number, but=s):
@@ -408,8 +403,7 @@ def predict_one(
     except RbsdemError as error:
         return Prediction(specimen, name, "no history", error=str(error))
     path = np.array(how.displacement) if test is None else test.displacement
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
+    with recorded() as caught:
         row, result = _analyse(Prediction(specimen, name, "completed"), path, model, how, options)
     if test is not None:
         comparison = compare(result, test)
@@ -550,7 +544,6 @@ def _is_round(specimen: Specimen) -> bool:
 
 @lru_cache(maxsize=4096)
 def _place(specimen: Specimen) -> tuple[float, ...]:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AccuracyWarning)
+    with unwarned():
         section = draw(specimen).section
     return place_of(section, specimen.length, specimen.axial_load)

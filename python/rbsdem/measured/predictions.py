@@ -14,23 +14,19 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING, Any, overload
+from typing import Any
 
 import numpy as np
 
-from rbsdem._files import Tabular, atomic_write, data_frame
+from rbsdem._files import atomic_write, data_frame
 from rbsdem._package import code_digest
 from rbsdem._types import Array, DataFrame
 from rbsdem.batch.store import JSON_LINES, Store, digest
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.curves.scores import SCORES, Comparison, compare
 from rbsdem.errors import InputError, RbsdemError
-from rbsdem.measured.specimens import Specimen
+from rbsdem.measured.specimens import Rows, Specimen
 from rbsdem.section.spread import Interval, Spread, numbers
-
-if TYPE_CHECKING:
-    from rbsdem.curves.scores import Comparison
-
 
 #: How far a model is drawn beyond its test: of the largest force that is in the box.
 _BEYOND = 1.08
@@ -227,7 +223,7 @@ class Prediction:
         return self.band.holds(self.comparison.test_force)
 
 
-class Predictions(Tabular, Sequence[Prediction]):
+class Predictions(Rows[Prediction]):
     """Predictions in the order of the tests.
 
     A sequence of `Prediction`: ``predictions[0]``, ``for row in predictions``; a text finds one as
@@ -256,31 +252,17 @@ class Predictions(Tabular, Sequence[Prediction]):
         interrupted: bool = False,
         resumed: int = 0,
     ) -> None:
-        self._rows = tuple(rows)
+        super().__init__(rows)
         self.model = model
         self.seconds = seconds
         self.interrupted = interrupted
         self.resumed = resumed
 
-    def __len__(self) -> int:
-        return len(self._rows)
-
-    def __iter__(self) -> Iterator[Prediction]:
-        return iter(self._rows)
-
-    @overload
-    def __getitem__(self, key: int | str) -> Prediction: ...
-    @overload
-    def __getitem__(self, key: slice) -> Predictions: ...
-    def __getitem__(self, key: int | str | slice) -> Prediction | Predictions:
-        if isinstance(key, slice):
-            return self._some(self._rows[key])
-        if isinstance(key, str):
-            for row in self._rows:
-                if row.specimen.is_called(key):
-                    return row
-            raise InputError(f"no prediction of {key!r}; it was not among the tests")
-        return self._rows[key]
+    def _named(self, key: str) -> Prediction:
+        for row in self._rows:
+            if row.specimen.is_called(key):
+                return row
+        raise InputError(f"no prediction of {key!r}; it was not among the tests")
 
     def __repr__(self) -> str:
         return f"<Predictions: {len(self)} tests by the model {self.model!r}>"

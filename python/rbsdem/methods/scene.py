@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import math
 import time as clock
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -15,7 +14,7 @@ import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._types import Array, ArrayLike, NDArray
-from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError
+from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError, unwarned
 from rbsdem.model.column import Column, Kinematics, checked_column, without_notes
 from rbsdem.results.accuracy import Answer, answer_of
 from rbsdem.solve.analysis import cyclic, no_watch, time_history
@@ -171,9 +170,7 @@ class Scene:
         if column.kinematics != setting.kinematics:
             with without_notes():
                 column = dataclasses.replace(column, kinematics=setting.kinematics)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", AccuracyWarning)
-            warnings.simplefilter("ignore", LongRunWarning)
+        with unwarned(AccuracyWarning, LongRunWarning):
             if self.static:
                 return self._solve_static(setting, column)
             result: Any = time_history(

@@ -65,10 +65,7 @@ def to_xarray(result: Response) -> Any:
     }
     return extra("xarray").Dataset(
         variables,
-        {
-            along: (along, time, units[along]),
-            "joint": np.array(result.column.joint_numbers),
-        },
+        {along: (along, time, units[along]), "joint": np.array(result.column.joint_numbers)},
         {"program": "rbsdem", "version": _core.version(), "column": result.column.to_namelist()}
         | {name: value for name, value in result.summary.items() if not isinstance(value, dict)},
     )

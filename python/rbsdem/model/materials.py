@@ -254,10 +254,7 @@ class Layout:
             )
         edge = self._edge(depth, inset)
         corner = (_area(self.diameter), self.steel)
-        between = (
-            _area(self.between_diameter or self.diameter),
-            self.between_steel or self.steel,
-        )
+        between = (_area(self.between_diameter or self.diameter), self.between_steel or self.steel)
         rows = np.linspace(edge, -edge, side // 2 + 2).tolist()
         bars: list[Bar] = []
         for place, y in enumerate(rows):

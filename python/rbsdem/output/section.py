@@ -221,11 +221,7 @@ def hoop_lines(section: Section) -> list[Array]:
 
 
 def shear_diagram(
-    diagram: ShearDiagram,
-    *,
-    spring: ShearSpring | None = None,
-    ax: Axes | None = None,
-    **line: Any,
+    diagram: ShearDiagram, *, spring: ShearSpring | None = None, ax: Axes | None = None, **line: Any
 ) -> Axes:
     """Draw shear force against shear strain with its knee, in kN and mm/m.
 

@@ -52,12 +52,7 @@ RC: dict[Any, Any] = {
 """The style of every figure, as matplotlib parameters."""
 
 MODEL_LINE: Line = {"color": "black", "linestyle": "-", "linewidth": 0.75, "zorder": 3}
-TEST_LINE: Line = {
-    "color": "0.55",
-    "linestyle": (0, (3.2, 1.4)),
-    "linewidth": 0.85,
-    "zorder": 2,
-}
+TEST_LINE: Line = {"color": "0.55", "linestyle": (0, (3.2, 1.4)), "linewidth": 0.85, "zorder": 2}
 TEST_POINTS: Line = {
     "color": "0.45",
     "linestyle": "none",

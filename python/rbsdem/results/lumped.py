@@ -9,7 +9,6 @@ an unloading stiffness that falls with ductility; Pinching4 (Lowes, Mitra, Altoo
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -21,7 +20,7 @@ from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame
 from rbsdem.curves.envelope import Envelope, envelope
-from rbsdem.errors import AccuracyWarning, InputError, SolveError
+from rbsdem.errors import InputError, SolveError, unwarned
 from rbsdem.model.response import Response
 from rbsdem.model.springs import PeakOriented
 from rbsdem.solve.analysis import cyclic
@@ -347,8 +346,7 @@ def _loop(result: Response) -> tuple[Array, Array]:
 
 def _push(column: Any, reach: float) -> Response:
     """Return the push to one side, up to where it can be followed."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AccuracyWarning)
+    with unwarned():
         try:
             run: Any = cyclic(column, displacement=np.linspace(0, reach, _PUSH_POINTS + 1)[1:])
             # With its corners.

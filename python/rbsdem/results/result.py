@@ -96,11 +96,7 @@ class Result(Response):
         return curve_envelope(self, side)
 
     def idealise(
-        self,
-        method: Method = "asce_41",
-        side: Literal[1, -1] = 1,
-        *,
-        end: float | None = None,
+        self, method: Method = "asce_41", side: Literal[1, -1] = 1, *, end: float | None = None
     ) -> Idealisation:
         """Replace the envelope of a side by two straight lines; see `Envelope.idealise`."""
         return self.envelope(side).idealise(method, end=end)

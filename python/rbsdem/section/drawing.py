@@ -27,12 +27,7 @@ SHAPES: dict[str, type[Section]] = {
 }
 
 #: What groups with steels stand for.
-_PARTS: dict[str, type] = {
-    "layout": Layout,
-    "inner_layout": Layout,
-    "ties": Ties,
-    "spiral": Spiral,
-}
+_PARTS: dict[str, type] = {"layout": Layout, "inner_layout": Layout, "ties": Ties, "spiral": Spiral}
 
 
 def layered_column(recipe: LayeredModel, given: Mapping[str, Any]) -> Column:

@@ -16,7 +16,6 @@ shear: one that yields in flexure first never leaves the lines before yield.
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -25,7 +24,7 @@ import numpy as np
 from rbsdem import _arguments, _core
 from rbsdem._files import Tabular
 from rbsdem._types import Array, ArrayLike
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.errors import InputError, unwarned
 from rbsdem.model.materials import Tension
 from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Bilinear, Pinching, unchecked
@@ -285,11 +284,7 @@ class ShearSpring:
 
 
 def fit_shear_spring(
-    section: Section,
-    length: float,
-    axial_load: float,
-    ultimate_curvature: float,
-    **options: Any,
+    section: Section, length: float, axial_load: float, ultimate_curvature: float, **options: Any
 ) -> ShearSpring:
     """Fit the bilinear shear spring of a column with V = M/length.
 
@@ -321,9 +316,8 @@ def fit_shear_spring(
     InputError
         If a value is refused, or the section carries no shear.
     """
-    with warnings.catch_warnings():
+    with unwarned():
         # Who asks for springs is told of an odd axial load once.
-        warnings.simplefilter("ignore", AccuracyWarning)
         diagram = shear_diagram(section, length, axial_load, furthest=ultimate_curvature, **options)
     strength = shear_strength_mcft(section, length, axial_load)
     notes = []
@@ -509,11 +503,7 @@ def shear_spring(
 
 
 def shear_limits(
-    section: Section,
-    length: float,
-    axial_load: float,
-    stiffness: float,
-    given: ModelParameters,
+    section: Section, length: float, axial_load: float, stiffness: float, given: ModelParameters
 ) -> dict[str, tuple[float, float]]:
     """Return least and largest values of parameters, beyond which they would change nothing.
 

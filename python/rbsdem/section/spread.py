@@ -27,13 +27,13 @@ from rbsdem._files import Tabular
 from rbsdem._types import Array, ArrayLike
 from rbsdem.curves.envelope import strength_loss
 from rbsdem.curves.metrics import PathPoints, work
-from rbsdem.errors import AccuracyWarning, InputError, SolveError
+from rbsdem.errors import AccuracyWarning, InputError, unwarned
 from rbsdem.model.column import Column
 from rbsdem.model.shape import Section
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.parameters import VERSION
 from rbsdem.section.strength import shear_sizes
-from rbsdem.solve.analysis import cyclic
+from rbsdem.solve.analysis import reached_force
 
 LEAST, MOST = 8, 4096
 """Fewest and most samples of a band."""
@@ -576,13 +576,8 @@ def _degraded(column: LayeredColumn, factor: float) -> Column:
 
 def path_force(column: Column, displacement: Array) -> Array:
     """Return the lateral force along a path; zero behind the end of the analysis."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AccuracyWarning)
-        try:
-            found = cyclic(column, displacement=displacement).force
-        except SolveError as stopped:
-            found = np.empty(0) if stopped.result is None else stopped.result.force[:-1]
     force = np.zeros(displacement.size)
-    found = found[: displacement.size]
-    force[: found.size] = np.where(np.isfinite(found), found, 0.0)
+    with unwarned():
+        found, _ = reached_force(column, displacement)
+    force[: found.size] = found
     return force

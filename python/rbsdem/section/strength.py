@@ -114,11 +114,7 @@ def shear_strength(section: Section, length: float, axial_load: float) -> float:
 
 
 def shear_strength_mcft(
-    section: Section,
-    length: float,
-    axial_load: float,
-    aggregate: float = 0.019,
-    arch: float = 1.0,
+    section: Section, length: float, axial_load: float, aggregate: float = 0.019, arch: float = 1.0
 ) -> float:
     """Return the shear strength of the simplified modified compression field theory.
 

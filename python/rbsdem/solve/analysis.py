@@ -14,7 +14,7 @@ import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem._types import Array, ArrayLike, Unpack
-from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning
+from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError
 from rbsdem.model.column import Column
 from rbsdem.model.frame import Frame, Structure, checked_structure
 from rbsdem.model.frame_result import FrameResult, frame_result_of
@@ -274,6 +274,23 @@ def cyclic(
         "collapse_drift": collapse_drift,
     }
     return _return(column, run, {"analysis": "static", "driven": name}, call)
+
+
+def reached_force(column: Column, displacement: ArrayLike) -> tuple[Array, SolveError | None]:
+    """Return the lateral forces along a path up to its end or the first that is not finite [N].
+
+    The last row of an analysis that stopped is where it failed, and left out; the error is returned
+    with the forces.
+    """
+    error = None
+    try:
+        force = cyclic(column, displacement=displacement).force
+    except SolveError as stopped:
+        error = stopped
+        force = np.empty(0) if stopped.result is None else stopped.result.force[:-1]
+    force = force[: np.size(displacement)]
+    bad = np.flatnonzero(~np.isfinite(force))
+    return (force[: bad[0]] if bad.size else force), error
 
 
 def time_history(

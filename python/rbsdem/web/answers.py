@@ -11,7 +11,6 @@ import math
 import re
 import time
 import traceback
-import warnings
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -23,7 +22,7 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._types import Array, NDArray
 from rbsdem.checks.code_values import code_values
-from rbsdem.errors import InputError, RbsdemError, SolveError
+from rbsdem.errors import InputError, RbsdemError, SolveError, recorded, unwarned
 from rbsdem.measured.predict import nearest, predict_one
 from rbsdem.measured.predictions import Prediction, picture
 from rbsdem.measured.specimens import Specimen, read_specimens
@@ -141,8 +140,7 @@ class Answers:
         faults, drawn, case = Faults(), None, None
         notes: list[str] = []
         if "case" in given:
-            with warnings.catch_warnings(record=True) as told:
-                warnings.simplefilter("always")
+            with recorded() as told:
                 try:
                     case = exports.own_case(given["case"])
                 except RbsdemError as error:
@@ -156,8 +154,7 @@ class Answers:
         if case is None:
             return Answered(faults=faults.listed, notes=notes)
         stopped = ""
-        with warnings.catch_warnings(record=True) as told:
-            warnings.simplefilter("always")
+        with recorded() as told:
             try:
                 # The strains of a layered hinge follow from its openings.
                 result = cast(Result, case.run(case.plain_column("the page"), openings=True))
@@ -423,8 +420,7 @@ def _band(found: Answered) -> dict[str, Any]:
         return {"none": "a band is for the layered model"}
     if column.top == "fixed":
         return {"none": "no band: its scatter is that of columns with one hinge"}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    with unwarned(Warning):
         try:
             spread = spread_of(column, result.displacement)
         except InputError as error:
@@ -457,8 +453,7 @@ def defect(error: Exception) -> str:
 
 def _tried(make: Callable[..., Any], *given: Any) -> Any:
     """Return what a function makes, or the text of its error."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    with unwarned(Warning):
         try:
             return make(*given)
         except RbsdemError as error:
@@ -590,7 +585,6 @@ class NearestTests:
 
     def _predicted(self, test: Specimen) -> Prediction:
         if test.name not in self._found:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
+            with unwarned(Warning):
                 self._found[test.name] = predict_one(test)
         return self._found[test.name]

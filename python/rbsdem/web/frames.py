@@ -7,7 +7,6 @@ beams; widths of the bays; and the loads. What is wrong goes beside its field, a
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Mapping
 from typing import Any
 
@@ -16,7 +15,7 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, NDArray
-from rbsdem.errors import InputError, RbsdemError, SolveError
+from rbsdem.errors import InputError, RbsdemError, SolveError, recorded
 from rbsdem.model.frame import Frame, FrameMember
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.results.result import pushover
@@ -128,8 +127,7 @@ def pushed(state: Mapping[str, Any]) -> dict[str, Any]:
     """Return the frame of a state, pushed to one side: curve, pictures on the way, hinges."""
     faults, stopped = Faults(), ""
     try:
-        with warnings.catch_warnings(record=True) as told:
-            warnings.simplefilter("always")
+        with recorded() as told:
             made = frame_of(state, faults)
             if made is None:
                 return {"faults": faults.listed}

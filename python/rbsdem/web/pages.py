@@ -117,13 +117,7 @@ def plain(text: str) -> str:
 
 
 #: Scores of a card, with their digits.
-SCORES = {
-    "nrmse": 3,
-    "peak_ratio": 2,
-    "energy_ratio": 2,
-    "stiffness_ratio": 2,
-    "end_ratio": 2,
-}
+SCORES = {"nrmse": 3, "peak_ratio": 2, "energy_ratio": 2, "stiffness_ratio": 2, "end_ratio": 2}
 
 
 def card(row: Prediction, drawn: Picture | None) -> dict[str, Any]:

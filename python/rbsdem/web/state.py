@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import warnings
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -19,14 +18,10 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.errors import AccuracyWarning, InputError, recorded
 from rbsdem.model.column import Column, Footing
 from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
-from rbsdem.model.shape import (
-    CircularSection,
-    RectangularSection,
-    Section,
-)
+from rbsdem.model.shape import CircularSection, RectangularSection, Section
 from rbsdem.model.springs import Elastic
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.shaping import synthetic
@@ -233,8 +228,7 @@ def column_of(
         if section is None or len(faults.listed) > before:
             return None, []
         part = 1.0 if whole or footing else ENDS[ends]
-        with warnings.catch_warnings(record=True) as told:
-            warnings.simplefilter("always")
+        with recorded() as told:
             column: Column = columns.column(
                 section,
                 height / part,
