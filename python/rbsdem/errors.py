@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import re
-import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 __all__ = [
@@ -24,23 +21,6 @@ _FIELD = re.compile(
     r"(?:.* line \d+: )?(?:([\w ]+?)(?:\(\d+\))?: )?([a-z]\w*)(?:\(\d+\))?"
     r"(?: = |: value \d| is missing)"
 )
-
-
-@contextmanager
-def unwarned(*kinds: type[Warning]) -> Iterator[None]:
-    """Ignore warnings of some kinds; without any named, those of accuracy."""
-    with warnings.catch_warnings():
-        for kind in kinds or (AccuracyWarning,):
-            warnings.simplefilter("ignore", kind)
-        yield
-
-
-@contextmanager
-def recorded(kind: type[Warning] = Warning) -> Iterator[list[warnings.WarningMessage]]:
-    """Put warnings of a kind into a list instead of telling them."""
-    with warnings.catch_warnings(record=True) as told:
-        warnings.simplefilter("always", kind)
-        yield told
 
 
 class RbsdemError(Exception):

@@ -11,15 +11,17 @@ from typing import Any
 import numpy as np
 
 from rbsdem import _arguments
+from rbsdem._package import unwarned
 from rbsdem._types import Array, ArrayLike
 from rbsdem.batch.work import progress_bar
-from rbsdem.calibration.determined import Determined, determine, refuse, warnings_of, without_effect
+from rbsdem.calibration import determined
+from rbsdem.calibration.determined import Determined, without_effect
 from rbsdem.calibration.misfit import LOSSES, Misfit, Target
 from rbsdem.calibration.names import Parameters, free_parameters
 from rbsdem.calibration.outcome import Calibration, Fitted
 from rbsdem.calibration.search import Search
 from rbsdem.curves.scores import Comparison, compare
-from rbsdem.errors import AccuracyWarning, InputError, unwarned
+from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import Column, Parameter
 from rbsdem.solve.analysis import reached_force
 
@@ -157,13 +159,13 @@ def calibrate(
         with Misfit(parameters.build, chosen, target, loss, jobs, show) as misfit:
             start = misfit.start_places()
             misfit.column(start)
-            refuse(misfit, without_effect(misfit, _looks(start, seed)))
+            determined.refuse(misfit, without_effect(misfit, _looks(start, seed)))
             status = Search(misfit, seed, evaluations, seconds).run()
             places = misfit.best_places.copy()
-            found = determine(misfit, places)
+            found = determined.determine(misfit, places)
         fitted = misfit.column(places)
         before, after = (_compared(tried, target, column) for tried in (column, fitted))
-    lines = tuple(warnings_of(list(chosen), found))
+    lines = tuple(determined.warnings_of(list(chosen), found))
     for line in lines:
         warnings.warn(f"calibrate: {line}", AccuracyWarning, stacklevel=2)
     return Calibration(

@@ -15,6 +15,12 @@ from rbsdem.model.column import Column
 _HEAD = ("", "Unit", "Start", "Low", "High", "Fitted", "Std. error", "Effect", "Rise", "At")
 
 
+_LEGEND = (
+    "Effect: rms change of the force over the peak, if the parameter changes by 10 % (of",
+    "the distance between its bounds, if it may be 0). Rise: growth of the loss by that.",
+)
+
+
 @dataclass(frozen=True, slots=True)
 class Fitted:
     """One parameter after a calibration.
@@ -122,13 +128,7 @@ class Calibration(Tabular):
             first = row[0].ljust(widths[0]) + "  " + row[1].ljust(widths[1])
             rest = (cell.rjust(width) for cell, width in zip(row[2:], widths[2:], strict=True))
             lines.append(f"{first}  {'  '.join(rest)}".rstrip())
-        lines += [
-            "",
-            "Effect: rms change of the force over the peak, if the parameter changes by 10 % (of",
-        ]
-        lines += [
-            "the distance between its bounds, if it may be 0). Rise: growth of the loss by that."
-        ]
+        lines += ["", *_LEGEND]
         if len(self.parameters) > 1:
             lines += ["", "Correlation", *self._correlations()]
         if self.warnings:

@@ -29,13 +29,8 @@ MEASURED = 0.2
 #: Names with a range of their own, within the bounds of their keys. Exponents of unloading
 #: stiffness are reported from 0 (none) to 0.5, the ratio B_1 from 0.1 to 1 (paper, table 3; Otani
 #: 1981), the exponent of deterioration from 1 to 2 (Ibarra, Medina, Krawinkler 2005).
-LIMITS = {
-    "b0": (0.0, 1.0),
-    "b1": (0.02, 1.0),
-    "c": (1.0, 2.0),
-    "kappa_f": (0.02, 1.0),
-    "kappa_d": (0.02, 1.0),
-}
+LIMITS = {"b0": (0.0, 1.0), "c": (1.0, 2.0)}
+LIMITS |= dict.fromkeys(("b1", "kappa_f", "kappa_d"), (0.02, 1.0))
 
 #: Stiffnesses after yield, which may be zero.
 AFTER_YIELD = ("k_u", "k_post")
@@ -142,13 +137,10 @@ def with_values(column: Column, ways: Mapping[str, Way], values: Mapping[str, fl
     for name, value in values.items():
         way = ways[name]
         changes.setdefault(str(way[0]), {})[way[1:]] = value
-    return replace(
-        column,
-        **{
-            name: _changed_part(column, getattr(column, name), ways)
-            for name, ways in changes.items()
-        },
-    )
+    parts: Any = {
+        name: _changed_part(column, getattr(column, name), own) for name, own in changes.items()
+    }
+    return replace(column, **parts)
 
 
 def _changed_part(column: Column, part: Any, changes: dict[Way, float]) -> Any:

@@ -131,9 +131,8 @@ def code_values(section: Section, height: float, axial_load: float) -> CodeValue
         value = _FORMULAS[row["name"]](c)
         if math.isfinite(value):
             source = (c.q.round and row["source_of_circles"]) or row["source"]
-            names = row["name"], row["meaning"]
-            confirmed = row["confirmed"] == "1"
-            found.append(CodeValue(*names, value, row["unit"], source, confirmed))
+            known = row["unit"], source, row["confirmed"] == "1"
+            found.append(CodeValue(row["name"], row["meaning"], value, *known))
     return CodeValues(found, c.q)
 
 

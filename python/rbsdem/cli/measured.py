@@ -12,9 +12,10 @@ import click
 import numpy as np
 
 from rbsdem._files import save_frame, write_figure
+from rbsdem._package import unwarned
 from rbsdem._types import Array
 from rbsdem.cli import FILE, FOLDER, INTERRUPTED, Command, Values, quiet, tell
-from rbsdem.errors import InputError, unwarned
+from rbsdem.errors import InputError
 from rbsdem.measured.doubts import Checked
 from rbsdem.measured.doubts import check as check_tests
 from rbsdem.measured.predict import PredictionOptions

@@ -274,18 +274,9 @@ def ensemble(
     raise_faults(faults)
     wanted = np.flatnonzero(~np.isnan(full).ravel())
     column, motion, _ = np.unravel_index(wanted, full.shape)
-    plan = Plan(
-        column_items,
-        motion_items,
-        settings,
-        column.astype(np.int32),
-        motion.astype(np.int32),
-        full.ravel()[wanted],
-        functions,
-        limit_states_among(names),
-        storeys_among(names),
-        before,
-    )
+    runs = column.astype(np.int32), motion.astype(np.int32), full.ravel()[wanted]
+    asked = functions, limit_states_among(names), storeys_among(names)
+    plan = Plan(column_items, motion_items, settings, *runs, *asked, before)
     seconds, in_lanes, wrong = expected(plan)
     each, lanes = seconds[plan.motion, plan.column], in_lanes[plan.motion, plan.column]
     raise_faults([f"column {column_names[i]!r}: {text}" for i, text in wrong])
@@ -295,16 +286,13 @@ def ensemble(
         kept = RunStore(_arguments.path(store), plan, own_names, part, seeds)
     own = _of_part(each, lanes, part)
     outcome, resumed, end = _carried_out(plan, own, (each, lanes), kept, client, jobs, progress)
+    states = zip(column_names, before, strict=True)
     whole = Ensemble(
-        columns=dict(zip(column_names, column_items, strict=True)),
-        motions={item.name: item for item in motion_items},
-        settings=settings,
-        initial={
-            name: state for name, state in zip(column_names, before, strict=True) if state.size
-        },
-        column=plan.column,
-        motion=plan.motion,
-        scale=plan.scale,
+        dict(zip(column_names, column_items, strict=True)),
+        {item.name: item for item in motion_items},
+        settings,
+        {name: state for name, state in states if state.size},
+        *(plan.column, plan.motion, plan.scale),
         status=np.array(STATUSES)[outcome.fates],
         measures=_named(names, outcome, plan) | outcome.extra,
         errors=dict(sorted(outcome.errors.items())),
@@ -357,15 +345,8 @@ def _carried_out(
             if kept is not None:
                 kept.write_if_due()
 
-        work_through(
-            workers.submit,
-            cut(each, pace.longest),
-            take,
-            ahead=workers.ahead,
-            end=end,
-            beat=beat,
-            stop=workers.stop,
-        )
+        pieces, how = cut(each, pace.longest), {"beat": beat, "stop": workers.stop}
+        work_through(workers.submit, pieces, take, ahead=workers.ahead, end=end, **how)
     return outcome, resumed, end
 
 

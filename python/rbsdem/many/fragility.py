@@ -317,16 +317,18 @@ class Capacities:
 
     def _bounds(self, draws: NDArray[np.int_]) -> Bounds:
         known = self.known
+        ends = (self.values, self.values) if known else (self.lower, self.upper)
         with np.errstate(divide="ignore"):
-            low, high = (
-                np.log((self.values if known else end)[draws]) for end in (self.lower, self.upper)
-            )
+            low, high = (np.log(end[draws]) for end in ends)
         return Bounds(low, high, np.ones(draws.shape))
 
     @property
     def size(self) -> int:
         """Number of records."""
         return self.lower.size
+
+
+MAKER = "Hazard(intensities, frequencies) makes one"
 
 
 def checked_probability(probability: ArrayLike) -> Array:
@@ -373,11 +375,8 @@ class Fragility:
         from scipy import special  # noqa: PLC0415
 
         with np.errstate(divide="ignore"):
-            z = (
-                np.log(_arguments.vector(intensity, "intensity", shape="any") / self.theta)
-                / self.beta
-            )
-        return np.asarray(special.ndtr(z))
+            u = np.log(_arguments.vector(intensity, "intensity", shape="any") / self.theta)
+        return np.asarray(special.ndtr(u / self.beta))
 
     def intensity(self, probability: ArrayLike) -> Array:
         """Return the intensities at which the limit state has given probabilities."""
@@ -458,10 +457,7 @@ class Fragility:
         AccuracyWarning
             If more than a tenth comes from intensities beyond the points of the hazard.
         """
-        if not isinstance(hazard, Hazard):
-            raise InputError(
-                f"hazard = {hazard!r} must be a Hazard; Hazard(intensities, frequencies) makes one"
-            )
+        _arguments.instance(hazard, "hazard", Hazard, MAKER)
         return hazard.frequency_of(float(np.log(self.theta)), self.beta)
 
     def __repr__(self) -> str:
@@ -520,16 +516,10 @@ def fit_fragility(
             )
         if np.isnan(mu):
             raise InputError(who + _undetermined(bounds))
-    to_theta = np.diag([np.exp(mu), 1.0])
-    return Fragility(
-        name,
-        float(np.exp(mu)),
-        spread,
-        np.asarray(to_theta @ covariance @ to_theta),
-        data,
-        intensity_name,
-        beta is not None,
-    )
+    to_theta, theta = np.diag([np.exp(mu), 1.0]), float(np.exp(mu))
+    covariance = np.asarray(to_theta @ covariance @ to_theta)
+    stated = beta is not None
+    return Fragility(name, theta, spread, covariance, data, intensity_name, stated)
 
 
 def _check(who: str, data: Counts | Capacities, beta: float | None) -> None:

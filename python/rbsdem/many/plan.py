@@ -36,9 +36,8 @@ Integers = NDArray[np.int32]
 Piece: TypeAlias = tuple[int, int]
 
 #: Watches for a rotation that no joint reaches.
-_NO_WATCH: Array = np.array(
-    [(1, 1, 0.0, side, 0.0, np.finfo(np.float64).max) for side in (1.0, -1.0)]
-)
+_NEVER = np.finfo(np.float64).max
+_NO_WATCH: Array = np.array([(1, 1, 0.0, side, 0.0, _NEVER) for side in (1.0, -1.0)])
 
 #: Runs of a task at the most: each takes about 1 kB while the task lasts.
 _MOST_RUNS = 16384
@@ -218,13 +217,9 @@ def _call_functions(
             continue
         try:
             with without_notes():
-                result = one_run(
-                    task.columns[task.column[run]],
-                    task.motions[task.motion[run]],
-                    float(task.scale[run]),
-                    task.settings,
-                    task.before[task.column[run]],
-                )
+                at, scale = task.column[run], float(task.scale[run])
+                run_of = task.columns[at], task.motions[task.motion[run]], scale
+                result = one_run(*run_of, task.settings, task.before[at])
         except RbsdemError as error:
             fates[run], errors[int(run)] = _FAILED, str(error)
             continue
@@ -246,17 +241,11 @@ def one_run(
     column: Any, motion: Motion, scale: float, settings: dict[str, Any], initial: Array
 ) -> Any:
     """Return the `Result` of one run, with its history; an empty state is at rest."""
-    layered = isinstance(column, Column) and any(
-        isinstance(spring, Layered) for spring in column.joints("flexure")
-    )
-    return time_history(
-        column,
-        motion.time,
-        ground_acceleration=scale * motion.acceleration,
-        initial=initial if initial.size else None,  # type: ignore[arg-type]
-        openings=layered,
-        **settings,
-    )
+    springs = column.joints("flexure") if isinstance(column, Column) else ()
+    settings = settings | {"openings": any(isinstance(each, Layered) for each in springs)}
+    settings["initial"] = initial if initial.size else None
+    ground = scale * motion.acceleration
+    return time_history(column, motion.time, ground_acceleration=ground, **settings)
 
 
 def watched(column: Structure, states: tuple[str, ...]) -> Array:

@@ -345,13 +345,8 @@ class Collector:
             )
 
     def _ensemble(self, scales: Array, settings: dict[str, Any]) -> Any:
-        found = ensemble(
-            dict(self.columns),
-            dict(self.motions),
-            scales=scales,
-            measures=list(self.names),
-            **settings,
-        )
+        given = settings | {"scales": scales, "measures": list(self.names)}
+        found = ensemble(dict(self.columns), dict(self.motions), **given)
         for text in found.errors.values():
             # Else the runs would count as collapses.
             if text.startswith(FAULT_OF_MEASURE):
@@ -372,17 +367,10 @@ class Collector:
                 stacklevel=4,
             )
         start = len("measure ")
-        return Runs(
-            dict(self.columns),
-            dict(self.motions),
-            self.measure,
-            whole["column"].astype(int),
-            whole["motion"].astype(int),
-            whole["intensity"],
-            whole["scale"],
-            whole["status"],
-            {name[start:]: v for name, v in whole.items() if name.startswith("measure ")},
-        )
+        found = {name[start:]: v for name, v in whole.items() if name.startswith("measure ")}
+        column, motion = whole["column"].astype(int), whole["motion"].astype(int)
+        runs = column, motion, whole["intensity"], whole["scale"], whole["status"], found
+        return Runs(dict(self.columns), dict(self.motions), self.measure, *runs)
 
 
 #: Settings that a second attempt by another method keeps.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
 import numpy as np
@@ -209,15 +209,14 @@ class VarianceSplit:
     @property
     def beta(self) -> dict[str, float]:
         """Standard deviations of the logarithm, by name, and "total"."""
-        parts = {"record": self.record, "model": self.model, "residual": self.residual}
-        parts["total"] = self.total
+        parts = asdict(self) | {"total": self.total}
         return {name: float(np.sqrt(value)) for name, value in parts.items()}
 
     @property
     def share(self) -> dict[str, float]:
         """Parts of the total variance, by name."""
-        parts = {"record": self.record, "model": self.model, "residual": self.residual}
-        return {name: value / self.total if self.total else 0.0 for name, value in parts.items()}
+        whole = self.total
+        return {name: value / whole if whole else 0.0 for name, value in asdict(self).items()}
 
 
 def variance_split(capacity: ArrayLike) -> VarianceSplit:

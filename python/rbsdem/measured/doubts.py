@@ -42,8 +42,9 @@ from typing import Any
 import numpy as np
 
 from rbsdem._files import Tabular, data_frame
+from rbsdem._package import unwarned
 from rbsdem._types import Array, DataFrame
-from rbsdem.errors import RbsdemError, unwarned
+from rbsdem.errors import RbsdemError
 from rbsdem.measured.drawing import checked_specimen, draw
 from rbsdem.measured.measured import MeasuredTest
 from rbsdem.measured.specimens import Specimen, Specimens

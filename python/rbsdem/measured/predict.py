@@ -17,6 +17,7 @@ from typing import Any, TypeAlias, overload
 import numpy as np
 
 from rbsdem import _arguments
+from rbsdem._package import recorded, unwarned
 from rbsdem._types import Array, ArrayLike
 from rbsdem.batch.work import (
     EndRequest,
@@ -28,7 +29,7 @@ from rbsdem.batch.work import (
     work_through,
 )
 from rbsdem.curves.scores import compare
-from rbsdem.errors import AccuracyWarning, InputError, RbsdemError, SolveError, recorded, unwarned
+from rbsdem.errors import AccuracyWarning, InputError, RbsdemError, SolveError
 from rbsdem.measured.drawing import check_options, checked_specimen, draw
 from rbsdem.measured.drawing import column as column_of
 from rbsdem.measured.predictions import Neighbour, Prediction, Predictions, PredictionStore

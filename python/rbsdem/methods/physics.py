@@ -19,7 +19,7 @@ from rbsdem.methods.scene import VERTICAL, Run, Scene, Setting
 from rbsdem.model.column import PLACES, Column, bodies, without_notes
 from rbsdem.model.damping import Damping
 from rbsdem.model.springs import Spring
-from rbsdem.results.accuracy import Answer, errors_of
+from rbsdem.results.accuracy import errors_of
 from rbsdem.solve.solver import IMPLICIT
 
 #: Share of the rotary inertia that stays when it is taken off: a body without any has no equation
@@ -38,6 +38,7 @@ _COLUMNS = {
     "energy": "energy",
     "response_rms": "history",
     "wall_time_ratio": "time_ratio",
+    **{name: name for name in ("matters", "status", "reason")},
 }
 
 #: Cost of twice the bodies: twice the work of a step, and a stable step of less than half.
@@ -114,16 +115,13 @@ class Physics(Tabular):
 
     def to_pandas(self) -> DataFrame:
         """Return a DataFrame with a row for each part of the model."""
+        words = {True: "yes", False: "no", None: ""}
         rows = [
-            [
-                *(getattr(effect, name) for name in _COLUMNS.values()),
-                {True: "yes", False: "no", None: ""}[effect.matters],
-                effect.status,
-                effect.reason,
-            ]
+            {title: getattr(effect, name) for title, name in _COLUMNS.items()}
+            | {"matters": words[effect.matters]}
             for effect in self.effects
         ]
-        return data_frame(rows, columns=[*_COLUMNS, "matters", "status", "reason"])
+        return data_frame(rows, list(_COLUMNS))
 
 
 class Variant(NamedTuple):
@@ -284,15 +282,13 @@ def _effect(trials: Trials, variant: Variant, base: Run, tolerance: float) -> Ef
 def _compare(name: str, run: Run, base: Run, tolerance: float) -> Effect:
     old, new = base.answer, run.answer
 
-    def change(quantity: Callable[[Answer], float], scale: float) -> float:
-        return (quantity(new) - quantity(old)) / scale if scale > 0 else 0.0
+    def change(quantity: str, scale: float) -> float:
+        return (getattr(new, quantity) - getattr(old, quantity)) / scale if scale > 0 else 0.0
 
     effect = Effect(
         name,
-        peak=change(lambda a: a.peak, old.peak),
-        residual=change(lambda a: a.residual, old.peak),
-        moment=change(lambda a: a.peak_moment, old.peak_moment),
-        energy=change(lambda a: a.energy, old.largest_energy),
+        *(change("peak", old.peak), change("residual", old.peak)),
+        *(change("peak_moment", old.peak_moment), change("energy", old.largest_energy)),
         history=errors_of(new, old).response_rms,
         time_ratio=run.seconds / base.seconds,
         status=run.status,

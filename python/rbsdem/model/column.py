@@ -172,9 +172,8 @@ Top = Literal["free", "fixed"]
 TELLING: ContextVar[bool] = ContextVar("TELLING", default=True)
 
 #: Bodies of a column at the most.
-MOST_BODIES: int = next(
-    key["most"] for key in _core.keys()["groups"]["column"] if key["name"] == "n"
-)
+_KEYS = {key["name"]: key for key in _core.keys()["groups"]["column"]}
+MOST_BODIES: int = _KEYS["n"]["most"]
 Place = Literal["shear", "flexure", "axial_spring"]
 PLACES: tuple[Place, ...] = ("shear", "flexure", "axial_spring")
 _LISTS = ("lengths", "masses", "rotary_inertia")
@@ -448,13 +447,9 @@ class Column:
                 )
         n = 2 * self.n - 1
         lengths, masses, inertias = bodies(self)
-        changes: dict[str, Any] = {
-            "height": 2 * self.height,
-            "n": n,
-            "lengths": _doubled(lengths),
-            "top": "fixed",
-            "top_mass": _arguments.number(top_mass, "double_curvature: top_mass"),
-        }
+        changes: dict[str, Any] = {"height": 2 * self.height, "n": n, "top": "fixed"}
+        changes["lengths"] = _doubled(lengths)
+        changes["top_mass"] = _arguments.number(top_mass, "double_curvature: top_mass")
         if self.mass is not None:
             changes["mass"] = 2 * self.mass
         if self.masses is not None:
@@ -596,10 +591,8 @@ def _springs(springs: Any, name: str, n: int) -> Spring | tuple[Spring, ...]:
             f"column: {name} has {len(several)} springs for n = {n} joints; "
             "give one, or one for each joint"
         )
-    if all(spring == several[0] for spring in several[1:]):
-        first: Spring = several[0]
-        return first
-    return several
+    same = all(spring == several[0] for spring in several[1:])
+    return cast(Spring, several[0]) if same else several
 
 
 def checked_column(column: object, who: str = "") -> Column:

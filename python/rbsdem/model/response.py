@@ -22,6 +22,7 @@ ENERGIES = ("input", "kinetic", "spring", "damping", "axial", "residual")
 
 #: First line of a file with a state.
 STATE_HEAD = "# rbsdem state"
+_NO_ROWS = ("state", "reached")
 
 R = TypeVar("R", bound="Response")
 
@@ -331,12 +332,9 @@ class Response(Reported):
         """
         if not self.displacement.size:
             return math.nan
-        left = (
-            float(self.displacement[-1])
-            if self.dynamic
-            else _last_zero(self.path.displacement, self.path.force)
-        )
-        return left / self.column.height
+        if self.dynamic:
+            return float(self.displacement[-1]) / self.column.height
+        return _last_zero(self.path.displacement, self.path.force) / self.column.height
 
     def at(self, time: float) -> dict[str, Any]:
         """Return the state at a time, or at a point of a static path, linear between rows.
@@ -376,24 +374,18 @@ class Response(Reported):
             mixed = values[row] if share == 0 else (1 - share) * values[row] + share * values[after]
             return float(mixed) if np.ndim(mixed) == 0 else np.array(mixed)
 
-        arrays = {
-            name: value
-            for name, value in vars(path).items()
-            if isinstance(value, np.ndarray) and name not in ("state", "reached")
+        arrays = {name: value for name, value in vars(path).items() if name not in _NO_ROWS}
+        state: dict[str, Any] = {
+            name: between(value) for name, value in arrays.items() if isinstance(value, np.ndarray)
         }
-        state: dict[str, Any] = {name: between(values) for name, values in arrays.items()}
         return state | {"energy": between(path.energy), "time": at}
 
     def __repr__(self) -> str:
-        about = self.summary
+        about, key = self.summary, "peak_base_shear" if self.dynamic else "peak_force"
         return (
             f"{type(self).__name__}({about['method']}, {self.time.size} rows, {about['status']}, "
             f"peak displacement {about['peak_displacement']:.4g} m, "
-            + (
-                f"peak base shear {about['peak_base_shear']:.4g} N)"
-                if self.dynamic
-                else f"peak force {about['peak_force']:.4g} N)"
-            )
+            f"{key.replace('_', ' ')} {about[key]:.4g} N)"
         )
 
     def __eq__(self, other: object) -> bool:

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from rbsdem._package import unwarned
 from rbsdem._types import Array
-from rbsdem.errors import unwarned
 from rbsdem.model.response import Response
 from rbsdem.solve.analysis import cyclic, no_watch, time_history
 from rbsdem.solve.solver import METHODS

@@ -18,9 +18,10 @@ import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
+from rbsdem._package import unwarned
 from rbsdem._types import Array, DataFrame
 from rbsdem.curves.envelope import Envelope, envelope
-from rbsdem.errors import InputError, SolveError, unwarned
+from rbsdem.errors import InputError, SolveError
 from rbsdem.model.response import Response
 from rbsdem.model.springs import PeakOriented
 from rbsdem.solve.analysis import cyclic
@@ -235,14 +236,9 @@ class LumpedHinge(Tabular):
             for i, ((m, t), sign) in enumerate(zip(self._points, sides, strict=True)):
                 name = f"{i % 3 + 1}{'p' if sign > 0 else 'n'}"
                 found += [(f"s{name}", sign * m, "N m"), (f"e{name}", sign * t, "rad")]
-            return [
-                *found,
-                ("pinchX", self.pinch_rotation, ""),
-                ("pinchY", self.pinch_moment, ""),
-                ("damage1", 0.0, ""),
-                ("damage2", self.damage, ""),
-                ("beta", self.unloading, ""),
-            ]
+            own = {"pinchX": self.pinch_rotation, "pinchY": self.pinch_moment, "damage1": 0.0}
+            own |= {"damage2": self.damage, "beta": self.unloading}
+            return [*found, *((name, value, "") for name, value in own.items())]
         plus, minus = self._of_peak_oriented
         found = [("Ke", 0.5 * (plus.stiffness + minus.stiffness), "N m/rad")]
         for name, each in (("pos", plus), ("neg", minus)):
@@ -260,22 +256,11 @@ class LumpedHinge(Tabular):
 
     def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each backbone."""
-        units = {
-            "stiffness": "K_e_N_m/rad",
-            "yield_moment": "M_y_N_m",
-            "hardening": "M_c/M_y",
-            "theta_y": "theta_y_rad",
-            "theta_p": "theta_p_rad",
-            "theta_pc": "theta_pc_rad",
-            "theta_u": "theta_u_rad",
-        }
-        return data_frame(
-            [
-                {"backbone": each.kind, "method": each.method, "side": each.side}
-                | {name: getattr(each, key) for key, name in units.items()}
-                for each in self.backbones
-            ]
-        )
+        names = {"backbone": "kind", "method": "method", "side": "side"}
+        names |= {"K_e_N_m/rad": "stiffness", "M_y_N_m": "yield_moment", "M_c/M_y": "hardening"}
+        names |= {f"{name}_rad": name for name in ("theta_y", "theta_p", "theta_pc", "theta_u")}
+        each = ({name: getattr(one, key) for name, key in names.items()} for one in self.backbones)
+        return data_frame(list(each))
 
     def __repr__(self) -> str:
         first = self.backbones[2]
@@ -307,7 +292,7 @@ def lumped_hinge(result: Response) -> LumpedHinge:
         path = run.displacement / column.height, run.base_moment
         backbones.append(_backbone("monotonic", envelope(path, side)))
     points = [point for each in backbones[:2] for point in _three_points(each)]
-    pinch_x, pinch_y, damage, beta = _fitted(
+    own = _fitted(
         partial(_hysteretic, points),
         ((0.8, 0.2, 0.0, 0.3), (0.5, 0.5, 0.05, 0.5), (0.9, 0.9, 0.02, 0.0)),
         ((0.01, 0.01, 0.0, 0.0), (1.0, 1.0, 1.0, 1.0)),
@@ -317,19 +302,8 @@ def lumped_hinge(result: Response) -> LumpedHinge:
     kinds = {"cyclic": backbones[:2], "monotonic": backbones[2:]}
     tried = {kind: _endurance(pair, rotation, moment) for kind, pair in kinds.items()}
     kind = min(tried, key=lambda name: tried[name][1])
-    return LumpedHinge(
-        rotation=rotation,
-        moment=moment,
-        height=column.height,
-        axial_load=column.axial_load,
-        backbones=tuple(backbones),
-        pinch_rotation=pinch_x,
-        pinch_moment=pinch_y,
-        damage=damage,
-        unloading=beta,
-        endurance=tried[kind][0],
-        peak_oriented_backbone=kind,
-    )
+    loop = rotation, moment, column.height, column.axial_load
+    return LumpedHinge(*loop, tuple(backbones), *own, tried[kind][0], kind)
 
 
 def _loop(result: Response) -> tuple[Array, Array]:
@@ -375,17 +349,11 @@ def _backbone(kind: str, curve: Envelope) -> HingeBackbone:
     over, under = (float(np.sum(0.5 * (v[1:] + v[:-1]) * width)) for v in (x * y, x**2))
     slope = over / under if under > 0 else 0.0
     lost = slope * _FLAT * at > curve.peak_force
-    return HingeBackbone(
-        kind,
-        lines.method,
-        curve.side,
-        lines.yield_force / theta_y,
-        min(lines.yield_force, curve.peak_force),
-        curve.peak_force,
-        at - theta_y,
-        curve.peak_force / slope if lost else math.inf,
-        curve.largest_displacement,
-    )
+    moments = min(lines.yield_force, curve.peak_force), curve.peak_force
+    after = curve.peak_force / slope if lost else math.inf
+    turns = at - theta_y, after, curve.largest_displacement
+    stiffness = lines.yield_force / theta_y
+    return HingeBackbone(kind, lines.method, curve.side, stiffness, *moments, *turns)
 
 
 def _three_points(each: HingeBackbone) -> list[tuple[float, float]]:
@@ -409,24 +377,19 @@ def _fitted(
     bounds: tuple[Sequence[float], Sequence[float]],
     rotation: Array,
     moment: Array,
-) -> tuple[float, ...]:
+) -> tuple[float, float, float, float]:
     """Return the numbers of least squares, of the best of several starts."""
     from scipy import optimize  # noqa: PLC0415
 
     largest = np.abs(moment).max()
-    found = [
-        optimize.least_squares(
-            lambda x: (make(x, rotation) - moment) / largest,
-            start,
-            bounds=bounds,
-            diff_step=1e-3,
-            max_nfev=30,
-            ftol=1e-4,
-        )
-        for start in starts
-    ]
-    best = min(found, key=lambda each: float(each.cost))
-    return tuple(float(value) for value in best.x)
+    how: Any = {"bounds": bounds, "diff_step": 1e-3, "max_nfev": 30, "ftol": 1e-4}
+
+    def off(x: Sequence[float]) -> Array:
+        return np.asarray((make(x, rotation) - moment) / largest)
+
+    found = [optimize.least_squares(off, start, **how) for start in starts]
+    pinch_x, pinch_y, damage, beta = min(found, key=lambda each: float(each.cost)).x.tolist()
+    return pinch_x, pinch_y, damage, beta
 
 
 def _endurance(
@@ -458,22 +421,12 @@ def _peak_oriented(backbones: Sequence[HingeBackbone], endurance: float) -> Peak
     d_y, d_n = (each.yield_moment / stiffness for each in (plus, minus))
     ratio = endurance * (plus.yield_moment + minus.yield_moment)
     ratio /= plus.yield_moment * d_y + minus.yield_moment * d_n
-    return PeakOriented(
-        d_y=d_y,
-        f_y=plus.yield_moment,
-        d_cap=d_y + plus.theta_p,
-        f_cap=plus.cap_moment,
-        d_pc=plus.softening_length,
-        lambda_s=ratio,
-        lambda_c=ratio,
-        lambda_k=ratio,
-        lambda_a=ratio,
-        d_y_neg=d_n,
-        f_y_neg=minus.yield_moment,
-        d_cap_neg=d_n + minus.theta_p,
-        f_cap_neg=minus.cap_moment,
-        d_pc_neg=minus.softening_length,
-    )
+    given: dict[str, Any] = {f"lambda_{kind}": ratio for kind in "scka"}
+    for end, each, at in (("", plus, d_y), ("_neg", minus, d_n)):
+        given |= {f"d_y{end}": at, f"f_y{end}": each.yield_moment}
+        given |= {f"d_cap{end}": at + each.theta_p, f"f_cap{end}": each.cap_moment}
+        given[f"d_pc{end}"] = each.softening_length
+    return PeakOriented(**given)
 
 
 #: Yield, cap and a point of the softening line: (moment, rotation).

@@ -70,18 +70,9 @@ def table() -> Mapping[str, Row]:
     """Return the parameters of the model by name, those of the hinge first."""
     rows = {}
     for row in _package.rows("layered_parameters.csv"):
-        rows[row["name"]] = Row(
-            name=row["name"],
-            value=float(row["value"]),
-            low=float(row["low"] or "nan"),
-            high=float(row["high"] or "nan"),
-            rank=int(row["rank"] or 0),
-            prior=float(row["prior"] or "nan"),
-            spread=float(row["spread"] or 0),
-            unit=row["unit"],
-            meaning=row["meaning"],
-            source=row["source"],
-        )
+        numbers = {name: float(row[name] or "nan") for name in ("value", "low", "high", "prior")}
+        numbers |= {"rank": int(row["rank"] or 0), "spread": float(row["spread"] or 0)}
+        rows[row["name"]] = Row(**row | numbers)  # type: ignore[arg-type]
     return MappingProxyType(rows)
 
 

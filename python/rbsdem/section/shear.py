@@ -23,11 +23,13 @@ import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem._files import Tabular
+from rbsdem._package import unwarned
 from rbsdem._types import Array, ArrayLike
-from rbsdem.errors import InputError, unwarned
+from rbsdem.errors import InputError
 from rbsdem.model.materials import Tension
 from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Bilinear, Pinching, unchecked
+from rbsdem.section.curvature import checked_furthest
 from rbsdem.section.hinge import HingeJoint
 from rbsdem.section.parameters import ModelParameters
 from rbsdem.section.ranges import checked_load, column_length, is_confined
@@ -203,9 +205,7 @@ def shear_diagram(
         points = _arguments.integer(points, "points", least=2, most=MOST_POINTS)
         last = _FURTHEST / section.depth
         if furthest is not None:
-            last = _arguments.number(furthest, "furthest")
-            if not 0.0 < last * section.depth <= 1.0:
-                raise InputError(f"furthest = {last} 1/m must be above zero and below 1/depth")
+            last = checked_furthest(furthest, section)
         path = last * np.linspace(0.0, 1.0, points + 1)[1:] ** 2
     else:
         path = _arguments.finite_vector(curvature, "curvature")
@@ -400,8 +400,11 @@ def _last_useful(diagram: ShearDiagram) -> ShearPoint:
     if not diagram.force.size or diagram.end.force >= _FALLEN * diagram.force.max():
         return diagram.end
     peak = int(np.argmax(diagram.force))
-    rows = (diagram.curvature, diagram.moment, diagram.force, diagram.strain)
-    return ShearPoint(*(float(row[peak]) for row in rows))
+    return ShearPoint(*_rows(diagram)[:, peak].tolist())
+
+
+def _rows(diagram: ShearDiagram) -> Array:
+    return np.vstack([getattr(diagram, name) for name in ShearPoint.__dataclass_fields__])
 
 
 def _at_force(diagram: ShearDiagram, force: float) -> ShearPoint | None:
@@ -410,7 +413,7 @@ def _at_force(diagram: ShearDiagram, force: float) -> ShearPoint | None:
     if not reached.size:
         return None
     i = int(reached[0])
-    rows = np.vstack([diagram.curvature, diagram.moment, diagram.force, diagram.strain])
+    rows = _rows(diagram)
     first = np.zeros(4) if i == 0 else rows[:, i - 1]
     share = (force - first[2]) / (rows[2, i] - first[2])
     return ShearPoint(*(first + share * (rows[:, i] - first)).tolist())
@@ -467,7 +470,7 @@ def shear_spring(
     stiffness: float,
     given: ModelParameters,
     joint: HingeJoint | None = None,
-) -> Pinching:
+) -> tuple[Pinching, dict[str, tuple[float, float]]]:
     """Make the shear spring of a column.
 
     Parameters
@@ -493,48 +496,19 @@ def shear_spring(
         near `rbsdem.section.strength.shear_strength_mcft` with its `arch_factor`; loses its force
         by the drift at axial failure of Elwood and Moehle (2005). A section that is not symmetric
         has a negative side of its own, that of the section upside down.
+    dict of str to (float, float)
+        Least and largest values of parameters, beyond which they would change nothing.
 
     Raises
     ------
     InputError
         If the length is not positive.
     """
-    return _shear(section, length, axial_load, stiffness, given, joint)[0]
-
-
-def shear_limits(
-    section: Section, length: float, axial_load: float, stiffness: float, given: ModelParameters
-) -> dict[str, tuple[float, float]]:
-    """Return least and largest values of parameters, beyond which they would change nothing.
-
-    Parameters
-    ----------
-    section, length, axial_load, stiffness, given
-        As for `shear_spring`.
-
-    Returns
-    -------
-    dict of str to (float, float)
-        By the names of `ModelParameters.values`.
-    """
-    return _shear(section, length, axial_load, stiffness, given)[1]
-
-
-def _shear(
-    section: Section,
-    length: float,
-    axial_load: float,
-    stiffness: float,
-    given: ModelParameters,
-    joint: HingeJoint | None = None,
-) -> tuple[Pinching, dict[str, tuple[float, float]]]:
-    """Return the spring and the limits of its parameters."""
-    mirrored = section.mirrored
-    sides = [_side(section, length, axial_load, stiffness, given)]
-    lines = sides[0].line
-    if mirrored is not section:
-        sides.append(_side(mirrored, length, axial_load, stiffness, given))
-        lines = lines | {f"{name}_neg": value for name, value in sides[1].line.items()}
+    drawn = [section] if section.symmetric else [section, section.mirrored]
+    sides = [_side(each, length, axial_load, stiffness, given) for each in drawn]
+    lines = {**sides[0].line}
+    for side in sides[1:]:
+        lines |= {f"{name}_neg": value for name, value in side.line.items()}
     # What both sides share is that of their mean.
     unit = sum(side.line["f_y"] * side.line["d_y"] for side in sides) / len(sides)
     f_y = sum(side.line["f_y"] for side in sides) / len(sides)
@@ -554,10 +528,9 @@ def _shear(
         strut = given.shear_decay_strut * sizes.fc * sizes.width * sizes.d
         stays = given.shear_decay_ties * ties + axial_strut(section, length, axial_load)
         s_min = min(0.95, stays / f_y, strut / f_y)
-    names = sides[0].limits
     limits = {
         name: (min(s.limits[name][0] for s in sides), max(s.limits[name][1] for s in sides))
-        for name in names
+        for name in sides[0].limits
     }
     spring = unchecked(
         Pinching,

@@ -24,10 +24,11 @@ import numpy as np
 
 from rbsdem import _arguments, _package
 from rbsdem._files import Tabular
+from rbsdem._package import unwarned
 from rbsdem._types import Array, ArrayLike
 from rbsdem.curves.envelope import strength_loss
 from rbsdem.curves.metrics import PathPoints, work
-from rbsdem.errors import AccuracyWarning, InputError, unwarned
+from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import Column
 from rbsdem.model.shape import Section
 from rbsdem.section.layered import LayeredColumn
@@ -313,13 +314,7 @@ def place_of(section: Section, height: float, axial_load: float) -> tuple[float,
     The axial load ratio, and logarithms of the others: of the concrete strength over 30 MPa.
     """
     axial, span, strength, bars, ties = likeness(section, height, axial_load).values()
-    return (
-        axial,
-        math.log(span),
-        math.log(strength / 30e6),
-        math.log(max(bars, _NONE)),
-        math.log(max(ties, _NONE)),
-    )
+    return axial, *map(math.log, (span, strength / 30e6, max(bars, _NONE), max(ties, _NONE)))
 
 
 def has_bands(version: str) -> bool:
@@ -436,16 +431,14 @@ def sample(column: LayeredColumn, displacement: Array, scatter: Scatter, number:
                 f"spread: {name} of this column is not that of its model, whose scatter is known; "
                 "change parameters by with_parameters"
             )
-    size = {
-        name: math.hypot(*getattr(scatter, name))
-        for name in ("strength", "stiffness", "degradation")
-    }
+    sizes = [math.hypot(*two) for two in (scatter.strength, scatter.stiffness, scatter.degradation)]
     rows = np.empty((number, displacement.size))
-    for row, (strength, stiffness, degradation) in zip(rows, _normal_points(number), strict=True):
-        other = _degraded(column, math.exp(size["degradation"] * degradation))
+    for row, point in zip(rows, _normal_points(number).tolist(), strict=True):
+        factors = (math.exp(size * at) for size, at in zip(sizes, point, strict=True))
+        strength, stiffness, degradation = factors
+        other = _degraded(column, degradation)
         # A column that is softer by a factor is where the other is at a smaller displacement.
-        path = displacement * math.exp(size["stiffness"] * stiffness)
-        row[:] = math.exp(size["strength"] * strength) * path_force(other, path)
+        row[:] = strength * path_force(other, displacement * stiffness)
     return rows
 
 

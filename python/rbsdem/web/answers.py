@@ -13,16 +13,18 @@ import time
 import traceback
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
 
 from rbsdem import _arguments
+from rbsdem._package import recorded, unwarned
 from rbsdem._types import Array, NDArray
 from rbsdem.checks.code_values import code_values
-from rbsdem.errors import InputError, RbsdemError, SolveError, recorded, unwarned
+from rbsdem.errors import InputError, RbsdemError, SolveError
 from rbsdem.measured.predict import nearest, predict_one
 from rbsdem.measured.predictions import Prediction, picture
 from rbsdem.measured.specimens import Specimen, read_specimens
@@ -222,9 +224,8 @@ class Answers:
                 column = found.drawn.column
                 answer["section"] = _tried(_interaction, found.drawn.section, None)
                 if isinstance(column, LayeredColumn):
-                    answer["joint"] = _tried(
-                        lambda of: _curve(of.interaction(points=_POINTS)), column
-                    )
+                    joint = partial(column.interaction, points=_POINTS)
+                    answer["joint"] = _tried(lambda of: _curve(of()), joint)
             columns.append(answer)
         return {"columns": columns}
 
@@ -325,21 +326,8 @@ class Answers:
 
 
 #: What can be asked, by the last part of the path.
-LANES = (
-    "loops",
-    "sections",
-    "own",
-    "bands",
-    "scales",
-    "nearest",
-    "export",
-    "open",
-    "record",
-    "frame",
-)
-
-#: What is asked for once: a newer question takes nothing from it.
 ONCE = ("export", "open", "record")
+LANES = ("loops", "sections", "own", "bands", "scales", "nearest", "frame", *ONCE)
 
 
 # ---- a response as JSON -------------------------------------------------------------------------
@@ -357,9 +345,10 @@ def to_json(result: Result, factor: float = 1.0) -> dict[str, Any]:
     """
     force = result.base_shear if result.dynamic else result.force
     rows = shown_rows(result.displacement, force)
-    height = result.column.height
-    spring = result.energy["spring"]
-    footing = result.column.footing is not None
+    height, spring = result.column.height, result.energy["spring"]
+    footing, loss = result.column.footing is not None, None
+    if not result.dynamic:
+        loss = number(abs(result.strength_loss()) / height)
     answer: dict[str, Any] = {
         "displacement": numbers(factor * result.displacement[rows]),
         "force": numbers(force[rows]),
@@ -368,14 +357,9 @@ def to_json(result: Result, factor: float = 1.0) -> dict[str, Any]:
         "method": result.summary["method"],
         "dynamic": result.dynamic,
         "states": [
-            {
-                "name": state.name,
-                "displacement": number(factor * state.displacement),
-                "force": number(state.force),
-                "drift": number(state.drift),
-                "threshold": number(state.threshold),
-                "source": state.source,
-            }
+            {"name": state.name, "displacement": number(factor * state.displacement)}
+            | {name: number(getattr(state, name)) for name in ("force", "drift", "threshold")}
+            | {"source": state.source}
             for state in result.limit_states()
         ],
         "figures": {
@@ -383,9 +367,7 @@ def to_json(result: Result, factor: float = 1.0) -> dict[str, Any]:
             # That of the column, not of the ground beneath its footing.
             "peak_moment": _peak(result.moment[:, 1] if footing else result.base_moment),
             "peak_drift": _peak(result.drift),
-            "drift_at_loss": None
-            if result.dynamic
-            else number(abs(result.strength_loss()) / height),
+            "drift_at_loss": loss,
             "residual_drift": number(result.residual_drift),
             "energy": number(factor * float(spring[-1])) if spring.size else None,
         },
@@ -478,16 +460,10 @@ def _figure(section: Section) -> dict[str, Any]:
 def _curvature(section: Section, load: float, confined: bool) -> dict[str, Any]:
     options: dict[str, Any] = {"ultimate": "mander"} if confined else {}
     diagram = diagram_of(section, load, confined=confined, **options)
-    events = {
-        name: [number(point.curvature), number(point.moment)]
-        for name in ("cracking", "yielding", "peak", "ultimate")
-        if (point := getattr(diagram.events, name)) is not None
-    }
-    return {
-        "curvature": numbers(diagram.curvature),
-        "moment": numbers(diagram.moment),
-        "events": events,
-    }
+    found = asdict(diagram.events).items()
+    events = {name: [number(p["curvature"]), number(p["moment"])] for name, p in found if p}
+    points = {"curvature": numbers(diagram.curvature), "moment": numbers(diagram.moment)}
+    return points | {"events": events}
 
 
 def _interaction(section: Section, code: str | None) -> dict[str, Any]:
@@ -505,17 +481,7 @@ def _curve(diagram: InteractionDiagram) -> dict[str, Any]:
 
 
 def _codes(section: Section, span: float, load: float) -> list[dict[str, Any]]:
-    return [
-        {
-            "name": value.name,
-            "meaning": value.meaning,
-            "value": number(value.value),
-            "unit": value.unit,
-            "source": value.source,
-            "confirmed": value.confirmed,
-        }
-        for value in code_values(section, span, load)
-    ]
+    return [asdict(one) | {"value": number(one.value)} for one in code_values(section, span, load)]
 
 
 def numbers(values: Array) -> list[float | None]:
@@ -568,9 +534,8 @@ class NearestTests:
                 continue
             try:
                 column = drawn.column
-                near = nearest(
-                    drawn.section, drawn.span, column.axial_load, self._tests, self._number
-                )
+                place = drawn.section, drawn.span, column.axial_load
+                near = nearest(*place, self._tests, self._number)
             except (RbsdemError, ValueError) as error:
                 columns.append({"none": str(error)})
                 continue

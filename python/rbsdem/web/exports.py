@@ -16,7 +16,8 @@ from pathlib import Path
 from typing import Any
 
 from rbsdem._arguments import Derived
-from rbsdem.errors import InputError, unwarned
+from rbsdem._package import unwarned
+from rbsdem.errors import InputError
 from rbsdem.model.springs import Spring
 from rbsdem.results.case import Case, case_of_text
 from rbsdem.results.result import Result

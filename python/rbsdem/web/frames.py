@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 
 from rbsdem import _arguments
+from rbsdem._package import recorded
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, NDArray
-from rbsdem.errors import InputError, RbsdemError, SolveError, recorded
+from rbsdem.errors import InputError, RbsdemError, SolveError
 from rbsdem.model.frame import Frame, FrameMember
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.results.result import pushover

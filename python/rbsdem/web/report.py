@@ -10,7 +10,7 @@ import base64
 import datetime
 import os
 import platform
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial, singledispatch
@@ -266,17 +266,15 @@ def _image(draw: Callable[[], Any]) -> str:
 def _table(frame: DataFrame) -> str:
     columns = cells(frame)
     kinds = ["" if numbers else ' class="text"' for _, numbers, _ in columns]
-    head = "".join(
-        f'<th scope="col"{kind}>{plain(heading)}</th>'
-        for kind, (heading, *_) in zip(kinds, columns, strict=True)
-    )
-    rows = "".join(
-        "<tr>"
-        + "".join(f"<td{kind}>{plain(text)}</td>" for kind, text in zip(kinds, row, strict=True))
-        + "</tr>"
-        for row in zip(*(texts for *_, texts in columns), strict=True)
-    )
-    return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+
+    def line(tag: str, texts: Iterable[str]) -> str:
+        cells = (f"{kind}>{plain(text)}</" for kind, text in zip(kinds, texts, strict=True))
+        return f"<tr>{''.join(f'<{tag}{cell}{tag[:2]}>' for cell in cells)}</tr>"
+
+    head = line('th scope="col"', (heading for heading, *_ in columns))
+    rows = zip(*(texts for *_, texts in columns), strict=True)
+    body = "".join(line("td", row) for row in rows)
+    return f"<table><thead>{head}</thead><tbody>{body}</tbody></table>"
 
 
 # ---- sheets --------------------------------------------------------------------------------------

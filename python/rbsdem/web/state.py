@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 
 from rbsdem import _arguments
+from rbsdem._package import recorded
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array
-from rbsdem.errors import AccuracyWarning, InputError, recorded
+from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import Column, Footing
 from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection, Section
@@ -190,9 +191,8 @@ def drawn_case(
     # Displacement, force, horizontal and vertical ground acceleration, axial load.
     if isinstance(load, GroundMotion):
         loads = (None, None, load.acceleration, None, None)
-        case = Case(
-            title, drawn.column, "auto", load.time, *loads, {"collapse_drift": COLLAPSE_DRIFT}
-        )
+        settings = {"collapse_drift": COLLAPSE_DRIFT}
+        case = Case(title, drawn.column, "auto", load.time, *loads, settings)
     else:
         path = drawn.column.height * load
         points = np.arange(float(path.size))
@@ -326,9 +326,8 @@ def _loading_of(
     with faults.of("loading", "kind"):
         if kind == "amplitudes":
             steps, cycles = given.get("amplitudes", ()), given.get("cycles")
-            many = _arguments.integer(cycles, "cycles") * len(
-                _arguments.vector(steps, "amplitudes")
-            )
+            number = _arguments.integer(cycles, "cycles")
+            many = number * len(_arguments.vector(steps, "amplitudes"))
             if many > _MOST_CYCLES:
                 raise InputError(
                     f"cycles = {cycles}: {many} cycles are too many here; at most {_MOST_CYCLES}"
@@ -336,9 +335,8 @@ def _loading_of(
             return protocol(steps, cycles)
         if kind == "named":
             name = _arguments.text(given.get("name"), "name")
-            return protocol(
-                name, reference=_drift(given, "reference"), largest=_drift(given, "largest")
-            )
+            reference, largest = (_drift(given, drift) for drift in ("reference", "largest"))
+            return protocol(name, reference=reference, largest=largest)
         if kind == "synthetic":
             seed = _arguments.integer(given.get("seed", 1), "seed")
             return synthetic(1, seed, dt=0.01)[0].scaled(_factor(given))
