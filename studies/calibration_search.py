@@ -20,7 +20,7 @@ from scipy.optimize import differential_evolution, dual_annealing, minimize
 import rbsdem
 from rbsdem.calibration import search
 from rbsdem.calibration.misfit import Misfit, Target, rms
-from rbsdem.calibration.names import Parameters, free_parameters
+from rbsdem.calibration.paths import Parameters, free_parameters
 from rbsdem.calibration.search import Ended, Search
 from rbsdem.peer import find_history, read_peer
 from rbsdem.solve.analysis import reached_force

@@ -17,8 +17,8 @@ from rbsdem.batch.work import progress_bar
 from rbsdem.calibration import determined
 from rbsdem.calibration.determined import Determined, without_effect
 from rbsdem.calibration.misfit import LOSSES, Misfit, Target
-from rbsdem.calibration.names import Parameters, free_parameters
 from rbsdem.calibration.outcome import Calibration, Fitted
+from rbsdem.calibration.paths import Parameters, free_parameters
 from rbsdem.calibration.search import Search
 from rbsdem.curves.scores import Comparison, compare
 from rbsdem.errors import AccuracyWarning, InputError
