@@ -270,15 +270,8 @@ def cyclic(
     `before` the column is virgin. With `corners` there are rows between the targets too, where a
     spring leaves its line.
     """
-    answer = _ask(
-        "cyclic",
-        column,
-        by_force=by_force,
-        target=target,
-        axial_load=axial_load,
-        before=before,
-        corners=corners,
-    )
+    given: dict[str, Any] = {"by_force": by_force, "target": target, "axial_load": axial_load}
+    answer = _ask("cyclic", column, before=before, corners=corners, **given)
     return _finish(answer, answer.values)
 
 
@@ -298,20 +291,11 @@ def time_history(
     `run_ensemble`; of each the time [s] and the displacement of the top [m] are returned, NaN where
     it is not reached.
     """
-    acting: dict[str, Any] = dict(loads)
+    given: dict[str, Any] = {"time": time, "watches": watches, "initial": initial}
+    given |= {"opening_given": opening_given, "before": before, **loads}
     told = False
     while True:
-        answer = _ask(
-            "time_history",
-            column,
-            time=time,
-            watches=watches,
-            initial=initial,
-            opening_given=opening_given,
-            before=before,
-            told=told,
-            **acting,
-        )
+        answer = _ask("time_history", column, told=told, **given)
         if answer.status != _LONG_RUN:
             break
         tell(answer.text)

@@ -291,15 +291,9 @@ def hinge(result: Response, joint: int, length: float | None) -> Hinge:
     path = result.path
     turned = path.rotation[:, at]
     limits = _yield_rotation(path, turned, yields)
-    return Hinge(
-        joint,
-        result.time,
-        result.rotation[:, at],
-        result.moment[:, at],
-        limits,
-        length,
-        float((np.abs(turned) / np.where(turned >= 0, *limits)).max(initial=0.0)),
-    )
+    ductility = float((np.abs(turned) / np.where(turned >= 0, *limits)).max(initial=0.0))
+    rows = result.time, result.rotation[:, at], result.moment[:, at]
+    return Hinge(joint, *rows, limits, length, ductility)
 
 
 def _yield_rotation(

@@ -17,16 +17,8 @@ from rbsdem.curves.envelope import strength_loss
 from rbsdem.curves.metrics import Curve, Loop, PathPoints, columns, loop_of, pair, ratio, rms
 from rbsdem.errors import InputError
 
-SCORES = (
-    "nrmse",
-    "peak_ratio",
-    "energy_ratio",
-    "stiffness_ratio",
-    "end_ratio",
-    "rms_best",
-    "path_fraction",
-    "nrmse_reached",
-)
+_RATIOS = ("peak_ratio", "energy_ratio", "stiffness_ratio", "end_ratio")
+SCORES = ("nrmse", *_RATIOS, "rms_best", "path_fraction", "nrmse_reached")
 """Names of the scores, in the order of tables."""
 
 #: What a half-cycle has in the table of a comparison, with the unit in the name.

@@ -220,16 +220,8 @@ def _symmetry(test: MeasuredTest) -> float:
 _WEIGHS, _HINTS = 0.3, 0.2
 #: Largest difference of twins, and of what makes them twins: sizes, axial load ratio.
 _TWINS, _ALIKE, _ALIKE_LOAD = 0.15, 0.02, 0.02
-_SAME = (
-    "length",
-    "width",
-    "depth",
-    "corner_diameter",
-    "intermediate_diameter",
-    "transverse_diameter",
-    "transverse_spacing",
-    "shear_legs",
-)
+_SAME = ("length", "width", "depth", "corner_diameter", "intermediate_diameter")
+_SAME_TIES = ("transverse_diameter", "transverse_spacing", "shear_legs")
 _STRENGTH = (0.75, 1.5)
 _STIFFNESS = (0.1, 1.3)
 _SYMMETRY = 1.25
@@ -450,7 +442,7 @@ def _alike(one: Specimen, other: Specimen) -> bool:
         return False
     if abs(one.axial_load_ratio - other.axial_load_ratio) > _ALIKE_LOAD:
         return False
-    pairs = [(getattr(one, name), getattr(other, name)) for name in _SAME]
+    pairs = [(getattr(one, name), getattr(other, name)) for name in (*_SAME, *_SAME_TIES)]
     return all(a == b or (a and b and abs(a - b) <= _ALIKE * abs(a)) for a, b in pairs)
 
 

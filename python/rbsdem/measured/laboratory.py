@@ -6,7 +6,7 @@ import math
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -149,18 +149,11 @@ def read_test(
         _check_sizes(d, f, given, length, where)
         _check_offset(d, f, zero, where)
         _check_order(d, f, where)
-    return measured_test(
-        name or Path(where).stem,
-        d,
-        f,
-        code,
-        where,
-        length=math.nan if length is None else length,
-        axial_load=math.nan if axial_load is None else axial_load,
-        measured_length=measured_length,
-        top_length=top_length,
-        bottom_length=bottom_length,
-    )
+    known = {"length": length, "axial_load": axial_load}
+    lengths: Any = {key: math.nan if value is None else value for key, value in known.items()}
+    lengths |= {"measured_length": measured_length, "top_length": top_length}
+    name = name or Path(where).stem
+    return measured_test(name, d, f, code, where, bottom_length=bottom_length, **lengths)
 
 
 def _code(code: int | None, length: float | None, axial_load: float | None) -> int:

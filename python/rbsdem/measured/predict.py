@@ -245,15 +245,8 @@ def _carried_out(
 
         def run(numbers: list[int], jobs: int, ahead: int, take: Callable[..., None]) -> None:
             with Processes(jobs, __name__) if jobs else Serial() as executor:
-                work_through(
-                    lambda number: executor.submit(work, tests[number]),
-                    numbers,
-                    take,
-                    ahead=ahead,
-                    end=end,
-                    beat=beat,
-                    stop=lambda: None,
-                )
+                how: Any = {"ahead": ahead, "end": end, "beat": beat, "stop": lambda: None}
+                work_through(lambda i: executor.submit(work, tests[i]), numbers, take, **how)
 
         try:
             if jobs == 1 or len(left) <= 1:
@@ -446,17 +439,9 @@ def _analyse(
     band = None
     if how.bands and status != "failed":
         band = spread(column, path, samples=how.samples)
-    row = replace(
-        row,
-        status=status,
-        error=error,
-        seconds_model=built - begin,
-        seconds_analysis=end - built,
-        band=band,
-        remarks=getattr(column, "outside", ()),
-        limit_states=states,
-    )
-    return row, result
+    found: Any = {"status": status, "error": error, "band": band, "limit_states": states}
+    times: Any = {"seconds_model": built - begin, "seconds_analysis": end - built}
+    return replace(row, remarks=getattr(column, "outside", ()), **found, **times), result
 
 
 def name_of(model: Model, options: dict[str, Any]) -> str:

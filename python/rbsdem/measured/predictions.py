@@ -398,6 +398,10 @@ def _statistics(rows: Iterable[Prediction]) -> dict[str, Any]:
     return found
 
 
+_RATIOS = ("axial_load_ratio", "span_depth_ratio")
+_OF_SPECIMEN = ("peer_id", "series", "section", "failure_mode", *_RATIOS)
+
+
 def _scores(row: Prediction, limit_states: bool) -> dict[str, Any]:
     """Return properties that group tests, scores and times by the names of the columns."""
     s = row.specimen
@@ -406,17 +410,11 @@ def _scores(row: Prediction, limit_states: bool) -> dict[str, Any]:
     return {
         "name": s.name,
         "file": s.file or "",
-        "peer_id": s.peer_id,
-        "series": s.series,
-        "section": s.section,
-        "failure_mode": s.failure_mode,
-        "axial_load_ratio": s.axial_load_ratio,
-        "span_depth_ratio": s.span_depth_ratio,
+        **{name: getattr(s, name) for name in _OF_SPECIMEN},
         "model": row.model,
         "status": row.status,
         **{name: row.score(name) for name in SCORES},
-        "test_drift_at_loss": row.score("test_drift_at_loss"),
-        "model_drift_at_loss": row.score("model_drift_at_loss"),
+        **{name: row.score(name) for name in ("test_drift_at_loss", "model_drift_at_loss")},
         **(reached if limit_states else {}),
         "seconds_model": row.seconds_model,
         "seconds_analysis": row.seconds_analysis,

@@ -23,6 +23,7 @@ ENERGIES = ("input", "kinetic", "spring", "damping", "axial", "residual")
 #: First line of a file with a state.
 STATE_HEAD = "# rbsdem state"
 _NO_ROWS = ("state", "reached")
+_CHANNELS = ("displacement", "force", "slip", "rotation", "shear", "moment")
 
 R = TypeVar("R", bound="Response")
 
@@ -434,18 +435,14 @@ def response_of(
     reached: Array | None = None,
 ) -> R:
     """Return the response of the arrays of a run."""
+    channels: Any = {name: arrays[name] for name in _CHANNELS}
     motion = None
     if "velocity" in arrays:
         names = ("velocity", "acceleration", "ground_acceleration")
         motion = np.column_stack([arrays[name] for name in names])
     return kind(
         time=arrays["time" if "time" in arrays else "step"],
-        displacement=arrays["displacement"],
-        force=arrays["force"],
-        slip=arrays["slip"],
-        rotation=arrays["rotation"],
-        shear=arrays["shear"],
-        moment=arrays["moment"],
+        **channels,
         base_shear=arrays.get("base_shear", arrays["shear"][:, 0]),
         base_moment=arrays.get("base_moment", arrays["moment"][:, 0]),
         energy={name: arrays[name] for name in ENERGIES},

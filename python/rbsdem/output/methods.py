@@ -185,7 +185,7 @@ def _settings(study: MethodStudy) -> DataFrame:
     """Return the settings as they are printed."""
     import pandas  # noqa: PLC0415
 
-    rows = []
+    rows, errors = [], ("moment", "energy", "peak", "error")
     for row in study.rows:
         value = row.setting.value
         if row.setting.method == "auto" and row.reason:
@@ -200,10 +200,7 @@ def _settings(study: MethodStudy) -> DataFrame:
                 "Setting": value,
                 "Time, s": row.seconds,
                 study.response.capitalize(): row.response_rms,
-                "Moment": row.moment,
-                "Energy": row.energy,
-                "Peak": row.peak,
-                "Error": row.error,
+                **{name.capitalize(): getattr(row, name) for name in errors},
                 "To finer": row.move,
             }
         )

@@ -208,20 +208,15 @@ def frame_of(groups: Groups) -> Frame:
         floor_mass=_by_floor("mass", storeys, groups),
         beam_load=_by_floor("load", storeys, groups),
         nodes=_nodes(groups, len(frame.get("bays", ())) + 1),
-        members=[
-            Member(
-                given["name"],
-                given["from"],
-                given["to"],
-                kinds[given["kind"]],
-                (given.get("panel_from", 0.0), given.get("panel_to", 0.0)),
-                given.get("load", 0.0),
-            )
-            for given in groups.get("member", [])
-        ],
+        members=[_member(given, kinds[given["kind"]]) for given in groups.get("member", [])],
         damping=Damping(**_core.typed("damping", damping[-1])) if damping else None,
         panel=next((_spring(own) for own in panels if own["panel"] == "all"), None),
     )
+
+
+def _member(given: Mapping[str, Any], kind: FrameMember) -> Member:
+    panel = given.get("panel_from", 0.0), given.get("panel_to", 0.0)
+    return Member(given["name"], given["from"], given["to"], kind, panel, given.get("load", 0.0))
 
 
 def _kind(given: dict[str, Any], groups: Groups) -> FrameMember:

@@ -231,15 +231,10 @@ class Result(Response):
         if short and about["status"] == "completed":
             with contextlib.suppress(SolveError):
                 measured = self.refined_error().largest
-        return ErrorEstimate(
-            method.name,
-            measured,
-            method.usual_error,
-            method.largest_error,
-            method.responses,
-            not {"dt", "tolerance", "rho_infinity"} & set(self.call),
-            about["relative_energy_residual"],
-        )
+        usual = method.usual_error, method.largest_error, method.responses
+        own = not {"dt", "tolerance", "rho_infinity"} & set(self.call)
+        energy = about["relative_energy_residual"]
+        return ErrorEstimate(method.name, measured, *usual, own, energy)
 
     def refined_error(self) -> Errors:
         """Solve once more by the next finer setting and return the distance to it.

@@ -308,11 +308,8 @@ def hinge_joint(
             f_peak=stress * area,
             d_peak=strain * concrete_length,
             k_soft=max(softening, _LEAST_SOFTENING) * area / concrete_length,
-            plastic=given.plastic,
             contact=contact,
-            misfit=given.misfit,
-            wear=given.wear,
-            friction=given.friction,
+            **{name: getattr(given, name) for name in ("plastic", "misfit", "wear", "friction")},
         )
 
     layers: list[tuple[float, ConcreteSpring | SteelSpring]] = []
@@ -340,9 +337,7 @@ def hinge_joint(
             f_y=fy * area,
             k_post=stiffness * max(_LEAST_HARDENING, given.hardening * (fu - fy) / 0.08 / steel.es),
             r0=given.r0 * by_stress,
-            cr1=given.cr1,
-            cr2=given.cr2,
-            isotropic_hardening=given.isotropic_hardening,
+            **{name: getattr(given, name) for name in ("cr1", "cr2", "isotropic_hardening")},
             endurance=max(1 / given.fatigue, _LEAST_ENDURANCE) if given.fatigue > 0 else 0.0,
             d_buckle=bows if buckles else None,
             buckling=given.buckling if buckles else 0.0,

@@ -8,6 +8,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Literal, overload
 
 import numpy as np
@@ -266,13 +267,8 @@ def cyclic(
         None if initial is None else state_of(initial, "cyclic"),
         _arguments.boolean(corners, "corners"),
     )
-    call = {
-        name: values,
-        "axial_load": load,
-        "initial": _recorded_state(initial),
-        "every": every,
-        "collapse_drift": collapse_drift,
-    }
+    call = {name: values, "axial_load": load, "initial": _recorded_state(initial)}
+    call |= {"every": every, "collapse_drift": collapse_drift}
     return _return(column, run, {"analysis": "static", "driven": name}, call)
 
 
@@ -402,15 +398,9 @@ def time_history(
     else:
         begin, state = (_NONE, False), state_of(initial, "time_history")
         kept_initial = _recorded_state(initial)
-    run, reached = _core.time_history(
-        column._statement + settings,
-        times,
-        loads,
-        *begin,
-        state,
-        watch(column, kept),
-        lambda note: _tell(note, LongRunWarning, 6),
-    )
+    statement, watches = column._statement + settings, watch(column, kept)
+    tell = partial(_tell, kind=LongRunWarning, stacklevel=5)
+    run, reached = _core.time_history(statement, times, loads, *begin, state, watches, tell)
     call = {"time": times, **loads, "initial": kept_initial, **chosen, "every": every}
     return _return(column, run, {"analysis": "dynamic"}, call, reached)
 

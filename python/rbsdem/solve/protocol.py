@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -101,15 +102,9 @@ def protocol(
     size = 4 * points * number * repeats + 1
     if size > np.iinfo(np.int32).max:
         raise InputError(f"protocol: {size} points are too many; reduce cycles, repeats or points")
-    loading = {
-        "drive": "force",
-        "source": "protocol",
-        "amplitudes": steps,
-        "negative_amplitudes": one_side,
-        "cycles": counts,
-        "repeats": repeats,
-        "points": points,
-    }
+    loading: dict[str, Any] = {"drive": "force", "source": "protocol", "amplitudes": steps}
+    loading |= {"negative_amplitudes": one_side, "cycles": counts}
+    loading |= {"repeats": repeats, "points": points}
     return _core.evaluate("protocol", _core.group("loading", loading)).values
 
 
