@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Literal, TypeAlias, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -430,28 +430,58 @@ def _peak_oriented(backbones: Sequence[HingeBackbone], endurance: float) -> Peak
 
 
 #: Yield, cap and a point of the softening line: (moment, rotation).
-_Side: TypeAlias = Sequence[tuple[float, float]]
-
-
 def _hysteretic(
     points: Sequence[tuple[float, float]], own: Sequence[float], rotation: Array
 ) -> Array:
-    """Return the moments of "Hysteretic" of OpenSees along a path, in steps of its size.
+    """Return the moments of "Hysteretic" of OpenSees along a path, in steps of its size."""
+    spring, largest = _Hysteretic(points, own), np.abs(rotation).max() / _STEPS
+    found = np.empty(rotation.size)
+    for i, target in enumerate(rotation.tolist()):
+        begin, count = spring.strain, max(1, math.ceil(abs(target - spring.strain) / largest))
+        for k in range(1, count + 1):
+            spring.step(begin + (target - begin) * k / count)
+        found[i] = spring.moment
+    return found
+
+
+class _Hysteretic:
+    """The material "Hysteretic" of OpenSees.
 
     After its source (HystereticMaterial.cpp, M. Scott and F. Filippou), `damage1` left out. The
     negative side is followed as the positive one of the mirrored material.
     """
-    pinch_x, pinch_y, damage, beta = (float(value) for value in own)
-    curves = [points[:3], points[3:]]
-    first = [side[0][0] / side[0][1] for side in curves]
-    energy_a = sum(
-        0.5 * (t1 - t0) * (m1 + m0)
-        for side in curves
-        for (m0, t0), (m1, t1) in zip(((0.0, 0.0), *side[:2]), side, strict=True)
-    )
 
-    def stress(side: int, strain: float) -> float:
-        (m1, t1), (m2, t2), (m3, t3) = curves[side]
+    def __init__(self, points: Sequence[tuple[float, float]], own: Sequence[float]) -> None:
+        self.pinch_x, self.pinch_y, self.damage, self.beta = map(float, own)
+        self.curves = points[:3], points[3:]
+        self.first = [side[0][0] / side[0][1] for side in self.curves]
+        self.energy_a = sum(
+            0.5 * (t1 - t0) * (m1 + m0)
+            for side in self.curves
+            for (m0, t0), (m1, t1) in zip(((0.0, 0.0), *side[:2]), side, strict=True)
+        )
+        # Largest rotation and where unloading ends, of either side and counted to it.
+        self.reached, self.zero = [0.0, 0.0], [0.0, 0.0]
+        self.strain = self.moment = self.energy = 0.0
+        self.heading = -1
+
+    def step(self, new: float) -> None:
+        """Go to a rotation."""
+        step = new - self.strain
+        if step == 0.0:
+            return
+        side, sign = (0, 1.0) if step > 0 else (1, -1.0)
+        at, force, go = sign * new, sign * self.moment, abs(step)
+        if at >= self.reached[side]:
+            self.reached[side], value = at, self._stress(side, at)
+        else:
+            value = self._inside(side, at, force, go)
+        self.heading = side
+        self.energy += 0.5 * (force + value) * go
+        self.strain, self.moment = new, sign * value
+
+    def _stress(self, side: int, strain: float) -> float:
+        (m1, t1), (m2, t2), (m3, t3) = self.curves[side]
         if strain <= 0.0:
             return 0.0
         if strain <= t1:
@@ -460,82 +490,40 @@ def _hysteretic(
             return m1 + (m2 - m1) / (t2 - t1) * (strain - t1)
         return m2 + (m3 - m2) / (t3 - t2) * (strain - t2) if strain <= t3 else m3
 
-    largest = np.abs(rotation).max() / _STEPS
-    # Largest rotation and where unloading ends, of either side and counted to it.
-    reached, zero = [0.0, 0.0], [0.0, 0.0]
-    strain = moment = energy = 0.0
-    heading = -1
-    found = np.empty(rotation.size)
-    for i, target in enumerate(rotation.tolist()):
-        begin, count = strain, max(1, math.ceil(abs(target - strain) / largest))
-        for k in range(1, count + 1):
-            new = begin + (target - begin) * k / count
-            step = new - strain
-            if step == 0.0:
-                continue
-            side = 0 if step > 0 else 1
-            sign = 1.0 if step > 0 else -1.0
-            at, force, go = sign * new, sign * moment, abs(step)
-            if at >= reached[side]:
-                reached[side], value = at, stress(side, at)
-            else:
-                value = _inside(
-                    curves, first, stress, reached, zero, side, heading == 1 - side,
-                    (at, force, go, energy), (pinch_x, pinch_y, damage, beta, energy_a),
-                )  # fmt: skip
-            heading = side
-            energy += 0.5 * (force + value) * go
-            strain, moment = new, sign * value
-        found[i] = moment
-    return found
+    def _inside(self, side: int, at: float, force: float, go: float) -> float:
+        """Return the moment of a step to a side inside of the envelopes, counted to that side."""
+        reached, zero, other, first = self.reached, self.zero, 1 - side, self.first
+        yields = [each[0][1] for each in self.curves]
+        soft = [max(1.0, math.pow(reached[each] / yields[each], self.beta)) for each in (0, 1)]
+        unload, load = first[other] / soft[other], first[side] / soft[side]
+        if self.heading == other and force <= 0.0:
+            zero[side] = at - go - force / unload
+            lost = 0.0
+            if reached[other] > yields[other]:
+                lost = self.damage * (self.energy - 0.5 * force / unload * force) / self.energy_a
+            reached[side] *= 1.0 + lost
+        reached[side] = max(reached[side], yields[side])
+        top, pinch_y = self._stress(side, reached[side]), self.pinch_y
+        start = max(zero[side], -self._limit(other))
+        corner = reached[side] - (1.0 - pinch_y) * top / load
+        corner = start + (corner - start) * self.pinch_x
+        if at < zero[side]:
+            return min(force + unload * go, 0.0)
+        if at < corner:
+            if at <= start:
+                return 0.0
+            return min(force + load * go, (at - start) * top * pinch_y / (corner - start))
+        slope = (1.0 - pinch_y) * top / (reached[side] - corner)
+        return min(force + load * go, pinch_y * top + (at - corner) * slope)
 
-
-def _inside(
-    curves: Sequence[_Side],
-    first: Sequence[float],
-    stress: Callable[[int, float], float],
-    reached: list[float],
-    zero: list[float],
-    side: int,
-    turned: bool,
-    state: tuple[float, float, float, float],
-    own: tuple[float, float, float, float, float],
-) -> float:
-    """Return the moment of a step to a side inside of the envelopes, counted to that side."""
-    at, force, go, energy = state
-    pinch_x, pinch_y, damage, beta, energy_a = own
-    other = 1 - side
-    soft = [max(1.0, math.pow(reached[each] / curves[each][0][1], beta)) for each in (0, 1)]
-    unload, load = first[other] / soft[other], first[side] / soft[side]
-    if turned and force <= 0.0:
-        zero[side] = at - go - force / unload
-        lost = 0.0
-        if reached[other] > curves[other][0][1]:
-            lost = damage * (energy - 0.5 * force / unload * force) / energy_a
-        reached[side] *= 1.0 + lost
-    reached[side] = max(reached[side], curves[side][0][1])
-    top = stress(side, reached[side])
-    start = max(zero[side], -_limit(curves[other], stress, other, reached[other]))
-    corner = reached[side] - (1.0 - pinch_y) * top / load
-    corner = start + (corner - start) * pinch_x
-    if at < zero[side]:
-        return min(force + unload * go, 0.0)
-    if at < corner:
-        if at <= start:
-            return 0.0
-        return min(force + load * go, (at - start) * top * pinch_y / (corner - start))
-    slope = (1.0 - pinch_y) * top / (reached[side] - corner)
-    return min(force + load * go, pinch_y * top + (at - corner) * slope)
-
-
-def _limit(side: _Side, stress: Callable[[int, float], float], number: int, strain: float) -> float:
-    """Return where the softening line of a side is at zero, infinity if it is not beyond it."""
-    (_, t1), (m2, t2), (m3, t3) = side
-    slope = (m3 - m2) / (t3 - t2)
-    if strain <= t1 or strain <= t2 or slope >= 0.0:
-        return math.inf
-    zero = t2 - m2 / slope
-    return math.inf if stress(number, zero) > 0.0 else zero
+    def _limit(self, side: int) -> float:
+        """Return where the softening line of a side is at zero, infinity if it is not beyond it."""
+        (_, t1), (m2, t2), (m3, t3) = self.curves[side]
+        slope, strain = (m3 - m2) / (t3 - t2), self.reached[side]
+        if strain <= t1 or strain <= t2 or slope >= 0.0:
+            return math.inf
+        zero = t2 - m2 / slope
+        return math.inf if self._stress(side, zero) > 0.0 else zero
 
 
 def _number(value: object) -> str:
