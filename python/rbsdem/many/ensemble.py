@@ -17,32 +17,9 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, ArrayLike, DataFrame, NDArray, Unpack
-from rbsdem.batch.work import (
-    Cluster,
-    EndRequest,
-    available_processors,
-    check_client,
-    check_jobs,
-    progress_bar,
-    work_through,
-)
+from rbsdem.batch import work
 from rbsdem.errors import InputError, Interrupted
-from rbsdem.many.inputs import (
-    AT_REST,
-    COUNTS,
-    STATUSES,
-    Measure,
-    Motion,
-    checked_measures,
-    collected,
-    limit_states_among,
-    named_columns,
-    named_motions,
-    raise_faults,
-    scale_array,
-    states_of_columns,
-    storeys_among,
-)
+from rbsdem.many import inputs
 from rbsdem.many.plan import Outcome, Piece, Plan, RunStore, compute, cut, expected, one_run
 from rbsdem.model.frame import Structure
 from rbsdem.results.result import Result
@@ -89,7 +66,7 @@ class Ensemble(Tabular):
     """
 
     columns: Mapping[str | int, Structure]
-    motions: Mapping[str | int, Motion]
+    motions: Mapping[str | int, inputs.Motion]
     settings: dict[str, Any]
     initial: dict[str | int, Array]
     column: NDArray[np.int32]
@@ -116,7 +93,7 @@ class Ensemble(Tabular):
     @property
     def counts(self) -> dict[str, int]:
         """Number of runs of each status that occurs."""
-        found = {status: int((self.status == status).sum()) for status in STATUSES}
+        found = {status: int((self.status == status).sum()) for status in inputs.STATUSES}
         return {status or "not started": number for status, number in found.items() if number}
 
     def to_pandas(self) -> DataFrame:
@@ -127,10 +104,10 @@ class Ensemble(Tabular):
             "column": pandas.Categorical.from_codes(self.column, list(self.columns)),
             "motion": pandas.Categorical.from_codes(self.motion, list(self.motions)),
             "scale": self.scale,
-            "status": pandas.Categorical(self.status, STATUSES),
+            "status": pandas.Categorical(self.status, inputs.STATUSES),
         }
         for name, numbers in self.measures.items():
-            whole = name in COUNTS and not self.errors and (self.status != "").all()
+            whole = name in inputs.COUNTS and not self.errors and (self.status != "").all()
             values[name] = numbers.astype(int) if whole else numbers
         errors = pandas.Series("", index=range(len(self)), dtype=object)
         for run, text in self.errors.items():
@@ -160,7 +137,7 @@ class Ensemble(Tabular):
         _arguments.integer(run, "run", least=0, most=len(self) - 1)
         name, column = list(self.columns.items())[self.column[run]]
         motion = list(self.motions.values())[self.motion[run]]
-        state = self.initial.get(name, AT_REST)
+        state = self.initial.get(name, inputs.AT_REST)
         result: Result = one_run(column, motion, float(self.scale[run]), self.settings, state)
         return result
 
@@ -170,7 +147,7 @@ def ensemble(
     motions: Any,
     *,
     scales: ArrayLike = 1.0,
-    measures: Sequence[str | Measure] | None = None,
+    measures: Sequence[str | inputs.Measure] | None = None,
     collapse_drift: float | None = None,
     initial: Any = None,
     jobs: int | None = None,
@@ -253,33 +230,33 @@ def ensemble(
         settings["collapse_drift"] = collapse_drift
     settings = {name: _plain(value) for name, value in settings.items()}
     faults: list[str] = []
-    column_names, column_items = named_columns(columns, faults)
-    given, motion_items = named_motions(motions, faults)
-    before = states_of_columns(initial, column_names, faults)
-    full = scale_array(scales, len(column_names), given, faults)
+    column_names, column_items = inputs.named_columns(columns, faults)
+    given, motion_items = inputs.named_motions(motions, faults)
+    before = inputs.states_of_columns(initial, column_names, faults)
+    full = inputs.scale_array(scales, len(column_names), given, faults)
     names: tuple[str, ...] = ()
-    functions: dict[str, Measure] = {}
-    with collected(faults):
-        names, functions = checked_measures(measures, column_items)
+    functions: dict[str, inputs.Measure] = {}
+    with inputs.collected(faults):
+        names, functions = inputs.checked_measures(measures, column_items)
     part = _checked_part(shard, store, faults)
-    with collected(faults):
+    with inputs.collected(faults):
         if jobs is not None:
-            check_jobs(jobs)
-    with collected(faults):
+            work.check_jobs(jobs)
+    with inputs.collected(faults):
         if client is not None:
-            check_client(client)
+            work.check_client(client)
     for name, value in (("progress", progress), ("allow_partial", allow_partial)):
-        with collected(faults):
+        with inputs.collected(faults):
             _arguments.boolean(value, name)
-    raise_faults(faults)
+    inputs.raise_faults(faults)
     wanted = np.flatnonzero(~np.isnan(full).ravel())
     column, motion, _ = np.unravel_index(wanted, full.shape)
     runs = column.astype(np.int32), motion.astype(np.int32), full.ravel()[wanted]
-    asked = functions, limit_states_among(names), storeys_among(names)
+    asked = functions, inputs.limit_states_among(names), inputs.storeys_among(names)
     plan = Plan(column_items, motion_items, settings, *runs, *asked, before)
     seconds, in_lanes, wrong = expected(plan)
     each, lanes = seconds[plan.motion, plan.column], in_lanes[plan.motion, plan.column]
-    raise_faults([f"column {column_names[i]!r}: {text}" for i, text in wrong])
+    inputs.raise_faults([f"column {column_names[i]!r}: {text}" for i, text in wrong])
     kept = None
     if store is not None:
         own_names = column_names, [item.name for item in motion_items]
@@ -293,7 +270,7 @@ def ensemble(
         settings,
         {name: state for name, state in states if state.size},
         *(plan.column, plan.motion, plan.scale),
-        status=np.array(STATUSES)[outcome.fates],
+        status=np.array(inputs.STATUSES)[outcome.fates],
         measures=_named(names, outcome, plan) | outcome.extra,
         errors=dict(sorted(outcome.errors.items())),
         seconds=time.perf_counter() - begin,
@@ -313,13 +290,13 @@ def _carried_out(
     client: Any,
     jobs: int | None,
     progress: bool,
-) -> tuple[Outcome, int, EndRequest]:
+) -> tuple[Outcome, int, work.EndRequest]:
     """Do the runs of this process that no store has.
 
     Return the outcome, how many runs a store had, and whether the work was asked to end.
     """
-    outcome, resumed, end = Outcome.none(plan), 0, EndRequest()
-    threads = jobs or available_processors()
+    outcome, resumed, end = Outcome.none(plan), 0, work.EndRequest()
+    threads = jobs or work.available_processors()
     with ExitStack() as stack:
         stack.enter_context(end.listening(also_terminated=kept is not None))
         if kept is not None:
@@ -328,7 +305,7 @@ def _carried_out(
         missing = own[outcome.fates[own] == 0]
         each, lanes = (values[missing] for values in cost)
         pace = _Pace(each, lanes, threads)
-        show = stack.enter_context(progress_bar(progress, missing.size))
+        show = stack.enter_context(work.progress_bar(progress, missing.size))
         workers = _Workers(plan.only(missing), client, threads)
         stack.enter_context(workers.executor)
 
@@ -346,7 +323,7 @@ def _carried_out(
                 kept.write_if_due()
 
         pieces, how = cut(each, pace.longest), {"beat": beat, "stop": workers.stop}
-        work_through(workers.submit, pieces, take, ahead=workers.ahead, end=end, **how)
+        work.work_through(workers.submit, pieces, take, ahead=workers.ahead, end=end, **how)
     return outcome, resumed, end
 
 
@@ -360,7 +337,7 @@ class _Workers:
         self._done = 0
         # Shared with the threads: the first number ends a task, the second counts its runs.
         self._controls: list[NDArray[np.int32]] = []
-        self._cluster = None if client is None else Cluster(client)
+        self._cluster = None if client is None else work.Cluster(client)
         if self._cluster is None:
             self.executor = ThreadPoolExecutor(threads)
             #: Tasks under way or next in line, so that no thread waits for one.
@@ -473,7 +450,7 @@ def _plain(value: Any) -> Any:
 
 def _checked_part(shard: Any, store: Any, faults: list[str]) -> tuple[int, int]:
     """Return which part of how many this process does; without parts the first of one."""
-    with collected(faults):
+    with inputs.collected(faults):
         if store is not None:
             _arguments.path(store, "store")
     if shard is None:

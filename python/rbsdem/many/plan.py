@@ -23,7 +23,7 @@ from rbsdem._types import Array, NDArray
 from rbsdem.batch.store import PARQUET, Store, digest
 from rbsdem.checks.criteria import criteria, watches
 from rbsdem.errors import InputError, RbsdemError
-from rbsdem.many.inputs import AT_REST, STATUSES, Measure, Motion, core_measures, storey_measures
+from rbsdem.many import inputs
 from rbsdem.model.column import Column
 from rbsdem.model.frame import Structure
 from rbsdem.model.springs import Layered
@@ -42,7 +42,7 @@ _NO_WATCH: Array = np.array([(1, 1, 0.0, side, 0.0, _NEVER) for side in (1.0, -1
 #: Runs of a task at the most: each takes about 1 kB while the task lasts.
 _MOST_RUNS = 16384
 
-_FAILED = STATUSES.index("failed")
+_FAILED = inputs.STATUSES.index("failed")
 
 #: How the error of a run begins whose measure raised one.
 FAULT_OF_MEASURE = "measure "
@@ -58,12 +58,12 @@ class Plan:
     """
 
     columns: list[Structure]
-    motions: list[Motion]
+    motions: list[inputs.Motion]
     settings: dict[str, Any]
     column: Integers
     motion: Integers
     scale: Array
-    functions: dict[str, Measure] = field(default_factory=dict)
+    functions: dict[str, inputs.Measure] = field(default_factory=dict)
     states: tuple[str, ...] = ()
     storeys: int = 0
     initial: list[Array] = field(default_factory=list)
@@ -71,7 +71,7 @@ class Plan:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the measures, those of functions left out."""
-        return core_measures() + self.states + storey_measures(self.storeys)
+        return inputs.core_measures() + self.states + inputs.storey_measures(self.storeys)
 
     def __len__(self) -> int:
         """Return the number of runs."""
@@ -80,7 +80,7 @@ class Plan:
     @property
     def before(self) -> list[Array]:
         """States that the runs of each column begin in."""
-        return self.initial or [AT_REST] * len(self.columns)
+        return self.initial or [inputs.AT_REST] * len(self.columns)
 
     def only(self, runs: NDArray[np.int_]) -> Plan:
         """Return the plan of some of the runs."""
@@ -121,7 +121,7 @@ class Outcome:
         """Return the outcome of runs of which nothing came back."""
         runs = len(plan)
         return cls(
-            np.full(runs, STATUSES.index(status), dtype=np.int8),
+            np.full(runs, inputs.STATUSES.index(status), dtype=np.int8),
             np.full((len(plan.names), runs), np.nan),
             {name: np.full(runs, np.nan) for name in plan.functions},
             dict.fromkeys(range(runs), error) if error else {},
@@ -182,7 +182,7 @@ def compute(task: Plan, control: Integers | None = None, kernel: int = 0) -> Out
         [(motion.time, motion.acceleration) for motion in task.motions],
         (task.column, task.motion, task.scale),
         control,
-        len(core_measures()) + len(task.states),
+        len(inputs.core_measures()) + len(task.states),
         task.storeys,
         kernel,
     )
@@ -199,7 +199,7 @@ def _name_joints(task: Plan, values: Array) -> None:
 
     The solver counts them from the ground, from 1, a footing's included.
     """
-    lost = values[core_measures().index("lost_joint")]
+    lost = values[inputs.core_measures().index("lost_joint")]
     lost[lost == 0] = np.nan
     for run in np.flatnonzero(lost > 0):
         lost[run] = task.columns[task.column[run]].joint_numbers[int(lost[run]) - 1]
@@ -238,7 +238,7 @@ def _number(value: Any) -> float:
 
 
 def one_run(
-    column: Any, motion: Motion, scale: float, settings: dict[str, Any], initial: Array
+    column: Any, motion: inputs.Motion, scale: float, settings: dict[str, Any], initial: Array
 ) -> Any:
     """Return the `Result` of one run, with its history; an empty state is at rest."""
     springs = column.joints("flexure") if isinstance(column, Column) else ()
@@ -308,7 +308,7 @@ class RunStore:
             "digests": {
                 "settings": digest(json.dumps(plan.settings, sort_keys=True).encode()),
                 "measures": digest(
-                    *(name.encode() for name in plan.names[len(core_measures()) :]),
+                    *(name.encode() for name in plan.names[len(inputs.core_measures()) :]),
                     *(f"{name}\0{_source(f)}".encode() for name, f in plan.functions.items()),
                 ),
             },
@@ -347,7 +347,7 @@ class RunStore:
         )
         runs = np.flatnonzero(rows >= 0)
         table = table.take(rows[runs])
-        codes = [STATUSES.index(word) for word in table["status"].to_pylist()]
+        codes = [inputs.STATUSES.index(word) for word in table["status"].to_pylist()]
         known = Outcome(
             np.array(codes, dtype=np.int8),
             np.array([table[name].to_numpy() for name in plan.names]),
@@ -374,7 +374,7 @@ class RunStore:
             "column": coded(plan.column[runs], columns),
             "motion": coded(plan.motion[runs], motions),
             "scale": pa.array(plan.scale[runs]),
-            "status": coded(result.fates[done], list(STATUSES)),
+            "status": coded(result.fates[done], list(inputs.STATUSES)),
             **{name: pa.array(values[done]) for name, values in measures.items()},
             "error": pa.array(errors[done]),
             "column_key": coded(plan.column[runs], self._columns),
@@ -393,7 +393,7 @@ def _column_key(plan: Plan, i: int) -> str:
     return digest(text, watches, plan.initial[i].tobytes())
 
 
-def _source(function: Measure) -> str:
+def _source(function: inputs.Measure) -> str:
     """Return the source of a measure, by which it is known again."""
     try:
         return inspect.getsource(function)

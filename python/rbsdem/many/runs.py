@@ -15,17 +15,8 @@ from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame, NDArray, Unpack
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.many import inputs
 from rbsdem.many.ensemble import ensemble
-from rbsdem.many.inputs import (
-    STOREY_MEASURES,
-    Measure,
-    check_names,
-    collected,
-    measures_in_a_list,
-    named,
-    named_columns,
-    raise_faults,
-)
 from rbsdem.many.plan import FAULT_OF_MEASURE
 from rbsdem.model.column import Column
 from rbsdem.model.frame import Frame, Structure
@@ -94,15 +85,15 @@ def motions_by_name(motions: Any) -> dict[str, GroundMotion]:
     """Return motions under their names, or raise `InputError` with all that is wrong."""
     faults: list[str] = []
     given = [motions] if isinstance(motions, GroundMotion) else motions
-    names, items = named(given, "motions", "GroundMotion", faults)
+    names, items = inputs.named(given, "motions", "GroundMotion", faults)
     found: dict[str, GroundMotion] = {}
     for name, item in zip(names, items, strict=True):
-        with collected(faults):
+        with inputs.collected(faults):
             motion = found[str(name)] = checked_motion(item, f"motion {name}: ")
             if motion.pga == 0:
                 raise InputError(f"motion {name}: has no acceleration")
-    check_names(names, "motions", "motion", faults)
-    raise_faults(faults)
+    inputs.check_names(names, "motions", "motion", faults)
+    inputs.raise_faults(faults)
     return found
 
 
@@ -159,7 +150,7 @@ class RunOptions(Solver, total=False):
     period: float | None
     damping: float
     collapse_drift: float
-    measures: Sequence[str | Measure]
+    measures: Sequence[str | inputs.Measure]
     initial: Any
     jobs: int | None
     progress: bool
@@ -386,7 +377,7 @@ def make_collector(
     period: float | None = None,
     damping: float = 0.05,
     collapse_drift: float = COLLAPSE_DRIFT,
-    measures: Sequence[str | Measure] | None = None,
+    measures: Sequence[str | inputs.Measure] | None = None,
     initial: Any = None,
     jobs: int | None = None,
     progress: bool = False,
@@ -406,8 +397,8 @@ def make_collector(
     }
     if measures is None:
         frames = any(isinstance(structure, Frame) for structure in named.values())
-        measures = (*MEASURES, *(STOREY_MEASURES if frames else ()))
-    return Collector(named, motions, measure, measures_in_a_list(measures), settings)
+        measures = (*MEASURES, *(inputs.STOREY_MEASURES if frames else ()))
+    return Collector(named, motions, measure, inputs.measures_in_a_list(measures), settings)
 
 
 def columns_by_name(columns: Any) -> dict[str | int, Structure]:
@@ -415,8 +406,8 @@ def columns_by_name(columns: Any) -> dict[str | int, Structure]:
     if isinstance(columns, (Column, Frame)):
         return {"column": columns}
     faults: list[str] = []
-    names, items = named_columns(columns, faults)
-    raise_faults(faults)
+    names, items = inputs.named_columns(columns, faults)
+    inputs.raise_faults(faults)
     return dict(zip(names, items, strict=True))
 
 
