@@ -412,14 +412,9 @@ def _fragilities(
     rows, notes = [], []
     for name, curve in curves.items():
         errors = np.sqrt(curve.covariance.diagonal())
-        row = {
-            "limit_state": name,
-            "theta_m/s2": curve.theta,
-            "beta": curve.beta,
-            "se_theta_m/s2": errors[0],
-            "se_beta": math.nan if curve.stated else errors[1],
-            "records": curve.data.size,
-        }
+        row = {"limit_state": name, "theta_m/s2": curve.theta, "beta": curve.beta}
+        row |= {"se_theta_m/s2": errors[0], "se_beta": math.nan if curve.stated else errors[1]}
+        row["records"] = curve.data.size
         try:
             low, high = curve.band([curve.theta])
             row |= {"band_low": float(low[0]), "band_high": float(high[0])}
@@ -444,11 +439,8 @@ def _write(
     if parquet:
         written.append(folder / "ida.parquet")
         tables.write_parquet(analysis.runs.to_pandas(), written[-1])
-    figures = {
-        "ida.png": ensemble_figures.ida(analysis),
-        "fragility.png": ensemble_figures.fragilities(dict(curves)),
-    }
-    for name, ax in figures.items():
+    figures = ensemble_figures.ida(analysis), ensemble_figures.fragilities(dict(curves))
+    for name, ax in zip(("ida.png", "fragility.png"), figures, strict=True):
         written.append(folder / name)
         write_figure(ax, written[-1], dpi=150)
     return written

@@ -186,15 +186,9 @@ def half_cycles(
     carries = product > 0
     safe = np.where(carries, product, 1.0)
     energy = np.diff(zeros)
-    return HalfCycles(
-        row=rows,
-        displacement=d[rows],
-        force=f[rows],
-        peak_force=peaks,
-        energy=energy,
-        stiffness=np.where(carries, safe / np.where(carries, d[rows], 1.0) ** 2, np.nan),
-        damping=np.where(carries, energy / (np.pi * safe), np.nan),
-    )
+    stiffness = np.where(carries, safe / np.where(carries, d[rows], 1.0) ** 2, np.nan)
+    damping = np.where(carries, energy / (np.pi * safe), np.nan)
+    return HalfCycles(rows, d[rows], f[rows], peaks, energy, stiffness, damping)
 
 
 def tip_rows(d: Array, f: Array) -> np.ndarray:

@@ -256,21 +256,10 @@ def compare(result: Curve, test: Curve, *, height: float | None = None) -> Compa
     if reached.all():
         last = points.path >= 0.75 * points.path[-1]
         end = ratio(rms(m[last]), rms(t[last]))
-    return Comparison(
-        name=str(getattr(test, "name", "test")),
-        displacement=d,
-        test_force=f,
-        model_force=force,
-        height=_height(height, test, result),
-        rows=rows,
-        test=loop_of(d[:rows], f[:rows]),
-        model=loop_of(d[:rows], force[:rows]),
-        nrmse=rms(error),
-        path_fraction=float(np.mean(reached)),
-        nrmse_reached=nrmse_reached,
-        end_ratio=end,
-        rms_best=best,
-    )
+    loops = loop_of(d[:rows], f[:rows]), loop_of(d[:rows], force[:rows])
+    scores = rms(error), float(np.mean(reached)), nrmse_reached, end, best
+    name, height = str(getattr(test, "name", "test")), _height(height, test, result)
+    return Comparison(name, d, f, force, height, rows, *loops, *scores)
 
 
 def displacement_metrics(

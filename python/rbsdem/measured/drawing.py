@@ -212,15 +212,14 @@ def _check_bars(specimen: Specimen) -> None:
 
 
 # Plausible ranges in SI units, with a hint for values in other units.
+_YIELDS = [f"{bar}_yield_stress" for bar in ("corner", "intermediate", "transverse")]
 _RANGES = {
     "length": (0.05, 100.0, "m", "1600 mm is 1.6"),
     "width": (0.02, 20.0, "m", "400 mm is 0.4"),
     "depth": (0.02, 20.0, "m", "400 mm is 0.4"),
     "concrete_strength": (2e6, 300e6, "Pa", "40 MPa is 40e6"),
     "axial_load": (-1e9, 1e9, "N", "700 kN is 700e3"),
-    "corner_yield_stress": (50e6, 3e9, "Pa", "450 MPa is 450e6"),
-    "intermediate_yield_stress": (50e6, 3e9, "Pa", "450 MPa is 450e6"),
-    "transverse_yield_stress": (50e6, 3e9, "Pa", "450 MPa is 450e6"),
+    **dict.fromkeys(_YIELDS, (50e6, 3e9, "Pa", "450 MPa is 450e6")),
     "longitudinal_ultimate_stress": (50e6, 4e9, "Pa", "600 MPa is 600e6"),
     "transverse_diameter": (1e-3, 0.1, "m", "10 mm is 0.010"),
     "transverse_spacing": (2e-3, 10.0, "m", "80 mm is 0.080"),

@@ -254,13 +254,14 @@ class Layout:
             )
         edge = self._edge(depth, inset)
         corner = (_area(self.diameter), self.steel)
-        between = (_area(self.between_diameter or self.diameter), self.between_steel or self.steel)
+        inner = self.between_diameter or self.diameter
+        between = (_area(inner), self.between_steel or self.steel)
         rows = np.linspace(edge, -edge, side // 2 + 2).tolist()
         bars: list[Bar] = []
         for place, y in enumerate(rows):
             if place in (0, len(rows) - 1):
                 # Thinner bars between the corners touch the tie as well.
-                shift = 0.5 * (self.diameter - (self.between_diameter or self.diameter))
+                shift = 0.5 * (self.diameter - inner)
                 bars += [(y, *corner)] * 2
                 bars += [(y + math.copysign(shift, y), *between)] * (face - 2)
             else:
