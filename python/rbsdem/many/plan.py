@@ -24,11 +24,10 @@ from rbsdem.batch.store import PARQUET, Store, digest
 from rbsdem.checks.criteria import criteria, watches
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.many import inputs
-from rbsdem.model.column import Column
+from rbsdem.model.column import Column, without_notes
 from rbsdem.model.frame import Structure
 from rbsdem.model.springs import Layered
 from rbsdem.results.result import time_history
-from rbsdem.solve.analysis import without_notes
 
 Integers = NDArray[np.int32]
 

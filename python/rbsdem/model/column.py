@@ -168,11 +168,11 @@ Kinematics = Literal["small", "pdelta", "finite"]
 #: What the top of a column can do.
 Top = Literal["free", "fixed"]
 
-#: Whether notes on new columns are told. A context variable, as columns are made in threads too.
+#: Whether notes on new columns and on runs are told. A context variable: threads make them too.
 TELLING: ContextVar[bool] = ContextVar("TELLING", default=True)
 
-#: Bodies of a column at the most.
 _KEYS = {key["name"]: key for key in _core.keys()["groups"]["column"]}
+#: Bodies of a column at the most.
 MOST_BODIES: int = _KEYS["n"]["most"]
 Place = Literal["shear", "flexure", "axial_spring"]
 PLACES: tuple[Place, ...] = ("shear", "flexure", "axial_spring")
@@ -181,7 +181,7 @@ _LISTS = ("lengths", "masses", "rotary_inertia")
 
 @contextmanager
 def without_notes() -> Iterator[None]:
-    """Make columns without a word on what does nothing in them, where that is known and meant."""
+    """Make and run columns without a word on them, where it is known or they are some of many."""
     token = TELLING.set(False)
     try:
         yield

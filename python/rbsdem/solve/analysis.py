@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import os
-import threading
 import warnings
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal, overload
@@ -16,7 +14,7 @@ import numpy as np
 from rbsdem import _arguments, _core
 from rbsdem._types import Array, ArrayLike, Unpack
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError
-from rbsdem.model.column import Column
+from rbsdem.model.column import TELLING, Column
 from rbsdem.model.frame import Frame, Structure, checked_structure
 from rbsdem.model.frame_result import FrameResult, frame_result_of
 from rbsdem.model.response import Ended, Response, response_of, settings_of, state_of
@@ -36,10 +34,6 @@ _NO_CRITERIA = np.empty((0, 6))
 def no_watch(column: Structure, openings: bool) -> Array:
     """Watch for nothing."""
     return _NO_CRITERIA
-
-
-#: Threads whose runs are told nothing about.
-_silent = threading.local()
 
 
 @dataclass(frozen=True)
@@ -405,21 +399,8 @@ def time_history(
     return _return(column, run, {"analysis": "dynamic"}, call, reached)
 
 
-@contextmanager
-def without_notes() -> Iterator[None]:
-    """Issue no warnings about runs of this thread: they are some of many.
-
-    The filters of warnings are those of all threads and cannot say so.
-    """
-    _silent.now = True
-    try:
-        yield
-    finally:
-        _silent.now = False
-
-
 def _tell(note: str, kind: type[Warning], stacklevel: int) -> None:
-    if not getattr(_silent, "now", False):
+    if TELLING.get():
         warnings.warn(note, kind, stacklevel=stacklevel)
 
 
