@@ -179,9 +179,7 @@ def calibrate(
         warnings=lines,
         loss=loss,
         seed=seed,
-        evaluations=misfit.evaluations,
-        failed=misfit.failed,
-        refused=misfit.refused,
+        **{name: getattr(misfit, name) for name in ("evaluations", "failed", "refused")},
         seconds=time.perf_counter() - started,
     )
 
@@ -202,20 +200,14 @@ def _looks(start: Array, seed: int) -> list[Array]:
 
 def _fitted(misfit: Misfit, places: ArrayLike, found: Determined) -> tuple[Fitted, ...]:
     values = misfit.values(np.asarray(places))
+
+    def figures(i: int) -> dict[str, Any]:
+        names = ("standard_error", "effect", "rise")
+        numbers = {name: float(getattr(found, name)[i]) for name in names}
+        return numbers | {"at_bound": found.at_bound[i]}
+
     return tuple(
-        Fitted(
-            name,
-            one.unit,
-            one.what,
-            one.value,
-            one.low,
-            one.high,
-            values[name],
-            float(found.standard_error[i]),
-            float(found.effect[i]),
-            float(found.rise[i]),
-            found.at_bound[i],
-        )
+        Fitted(name, one.unit, one.what, one.value, one.low, one.high, values[name], **figures(i))
         for i, (name, one) in enumerate(misfit.free.items())
     )
 

@@ -244,6 +244,10 @@ def yield_drift(values: CodeValues, stiffness: str) -> float:
     return values["yield.moment"] * 1e3 * q.span / (3.0 * values[stiffness] * modulus * inertia)
 
 
+def _yield_and(values: CodeValues, stiffness: str, rotation: str) -> float:
+    return yield_drift(values, stiffness) + values[rotation]
+
+
 def _haselton(values: CodeValues, cap: float, post_cap: float) -> float:
     """Return the drift at which a fifth of the strength is lost behind the cap."""
     turned = cap * values["haselton.cap"] + 0.2 * post_cap * values["haselton.post_cap"]
@@ -252,9 +256,7 @@ def _haselton(values: CodeValues, cap: float, post_cap: float) -> float:
 
 #: Drift at a loss of 20 % of the strength by each source.
 DRIFTS_AT_LOSS: dict[str, Callable[[CodeValues], float]] = {
-    "ASCE 41-17, yield + a": lambda values: (
-        yield_drift(values, "asce_41.stiffness") + values["asce_41.a"]
-    ),
+    "ASCE 41-17, yield + a": lambda values: _yield_and(values, "asce_41.stiffness", "asce_41.a"),
     "EN 1998-3, theta_um (A.1)": lambda values: values["ec_8.ultimate"],
     "EN 1998-3, theta_y + theta_um,pl (A.3)": lambda values: (
         values["ec_8.yield"] + values["ec_8.plastic"]
@@ -264,8 +266,8 @@ DRIFTS_AT_LOSS: dict[str, Callable[[CodeValues], float]] = {
     "Haselton, cyclic envelope": lambda values: _haselton(values, 0.7, 0.5),
     "Elwood, Moehle 2005, shear": lambda values: values["elwood.shear_drift"],
     # Drifts at bar buckling, which come later.
-    "Berry, Eberhard 2005, yield + buckling": lambda values: (
-        yield_drift(values, "elwood.stiffness") + values["berry.rotation"]
+    "Berry, Eberhard 2005, yield + buckling": lambda values: _yield_and(
+        values, "elwood.stiffness", "berry.rotation"
     ),
     "Berry, Eberhard 2003, buckling": lambda values: values["berry.buckling"],
 }

@@ -24,6 +24,9 @@ TURN = 0.02
 """Share of its largest absolute value by which a displacement turns back at a turning point."""
 
 
+_OF_A_CYCLE = ("displacement m", "force N", "peak_force N", "energy J", "stiffness N/m")
+
+
 @dataclass(frozen=True, repr=False, slots=True, eq=False)
 class HalfCycles(Tabular):
     """The half-cycles of one curve, in their order.
@@ -49,15 +52,7 @@ class HalfCycles(Tabular):
         force and displacement of its tip; NaN as for the stiffness.
     """
 
-    _columns = (
-        "row",
-        "displacement m",
-        "force N",
-        "peak_force N",
-        "energy J",
-        "stiffness N/m",
-        "damping",
-    )
+    _columns = ("row", *_OF_A_CYCLE, "damping")
 
     row: np.ndarray
     displacement: Array

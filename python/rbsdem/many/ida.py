@@ -272,11 +272,8 @@ class IDA(Fragile[Fragility], Reported):
         tuple of ndarray
             The levels (k,), and the fractiles (3, k), infinite where that part has collapsed.
         """
-        at = (
-            np.linspace(0, self.runs.intensity.max(), 51)[1:]
-            if levels is None
-            else checked_levels(levels)
-        )
+        usual = np.linspace(0, self.runs.intensity.max(), 51)[1:]
+        at = usual if levels is None else checked_levels(levels)
         response = self.runs.response(edp)
         values = np.array([_at(at, *self._curve(c, m, response)) for c, m in self._pairs()])
         return at, np.percentile(values, FRACTILES, axis=0, method="inverted_cdf")
@@ -412,11 +409,8 @@ def ida(
         at = checked_levels(levels)
         collapsed = work.run(np.broadcast_to(at, (*work.shape, at.size)).copy())
         lower, upper = _first(at, collapsed)
-    about = {
-        n: v
-        for n, v in work.settings.items()
-        if v is not None and v is not False and n not in _OF_THE_RUN
-    }
+    own = {n: v for n, v in work.settings.items() if n not in _OF_THE_RUN}
+    about = {n: v for n, v in own.items() if v is not None and v is not False}
     about["levels"] = "hunt" if hunt is not None else "given"
     return IDA(work.finish(), lower, upper, about, time.perf_counter() - begin)
 

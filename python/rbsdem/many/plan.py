@@ -156,13 +156,13 @@ def expected(plan: Plan) -> tuple[Array, Integers, list[tuple[int, str]]]:
 
     The first two have shape (motions, columns).
     """
-    return _core.plan_ensemble(
-        [column._statement for column in plan.columns],
-        _core.settings(plan.settings),
-        [_NO_WATCH] * len(plan.columns),
-        plan.before,
-        [(motion.time, motion.acceleration) for motion in plan.motions],
-    )
+    return _core.plan_ensemble(_batch(plan, [_NO_WATCH] * len(plan.columns)))
+
+
+def _batch(plan: Plan, watches: list[Array]) -> dict[str, Any]:
+    columns = [column._statement for column in plan.columns]
+    motions = [(motion.time, motion.acceleration) for motion in plan.motions]
+    return _core.batch(columns, _core.settings(plan.settings), watches, plan.before, motions)
 
 
 def compute(task: Plan, control: Integers | None = None, kernel: int = 0) -> Outcome:
@@ -173,18 +173,11 @@ def compute(task: Plan, control: Integers | None = None, kernel: int = 0) -> Out
     """
     begin = time.monotonic()
     control = np.zeros(2, dtype=np.int32) if control is None else control
-    fates, values, errors = _core.run_ensemble(
-        [column._statement for column in task.columns],
-        _core.settings(task.settings),
-        [watched(column, task.states) for column in task.columns],
-        task.before,
-        [(motion.time, motion.acceleration) for motion in task.motions],
-        (task.column, task.motion, task.scale),
-        control,
-        len(inputs.core_measures()) + len(task.states),
-        task.storeys,
-        kernel,
-    )
+    batch = _batch(task, [watched(column, task.states) for column in task.columns])
+    runs = {"columns": task.column + 1, "motions": task.motion + 1, "scales": task.scale}
+    number = len(inputs.core_measures()) + len(task.states)
+    asked = {"measures": number, "storeys": task.storeys, "level": kernel}
+    fates, values, errors = _core.run_ensemble(batch, control, **runs, **asked)
     _name_joints(task, values)
     extra = {name: np.full(len(task), np.nan) for name in task.functions}
     if extra:
@@ -248,7 +241,7 @@ def one_run(
 
 
 def watched(column: Structure, states: tuple[str, ...]) -> Array:
-    """Return what runs of a column are watched for, as `_core.run_ensemble` takes it."""
+    """Return what runs of a column are watched for, as `_core.batch` takes it."""
     numbers = {name: number for number, name in enumerate(("first_yield", *states), 1)}
     found = criteria(column, numbers)
     if not found:

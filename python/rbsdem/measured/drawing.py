@@ -379,16 +379,11 @@ def column(specimen: Specimen, model: Model = DEFAULT, **options: Any) -> Column
     if model == "layered":
         options = {"restrained": drawn.restrained, "round_core": drawn.round_core} | options
     halves = 2 if tested and specimen.config == "DC" else 1
-    return column_of(
-        drawn.section,
-        halves * specimen.length,
-        axial_load=specimen.axial_load,
-        mass=halves * specimen.mass,
-        model=model,
-        axial_height=None if halves == 2 else specimen.axial_height,
-        top="fixed" if halves == 2 else "free",
-        **options,
-    )
+    options |= {"model": model, "axial_load": specimen.axial_load, "mass": halves * specimen.mass}
+    options["axial_height"] = None if halves == 2 else specimen.axial_height
+    options["top"] = "fixed" if halves == 2 else "free"
+    made: Column = column_of(drawn.section, halves * specimen.length, **options)
+    return made
 
 
 def _tested(specimen: Specimen, ends: str, footing: object) -> bool:

@@ -568,15 +568,8 @@ class PredictionStore:
                 states = {str(name): float(drift) for name, drift in states.items()}
         except (ValueError, TypeError, KeyError, AttributeError, RbsdemError):
             return None
-        return Prediction(
-            specimen,
-            self._model,
-            comparison=comparison,
-            band=band,
-            remarks=remarks,
-            limit_states=states,
-            **values,
-        )
+        values |= {"comparison": comparison, "band": band}
+        return Prediction(specimen, self._model, remarks=remarks, limit_states=states, **values)
 
 
 def _packed(values: Array) -> str:

@@ -30,16 +30,9 @@ LITTLE_INERTIA = 0.01
 USUAL_TOLERANCE = 0.01
 
 #: Columns of the table, and the attributes of `Effect` that they hold.
-_COLUMNS = {
-    "part": "part",
-    "peak": "peak",
-    "residual": "residual",
-    "peak_base_moment": "moment",
-    "energy": "energy",
-    "response_rms": "history",
-    "wall_time_ratio": "time_ratio",
-    **{name: name for name in ("matters", "status", "reason")},
-}
+_TITLES = {"moment": "peak_base_moment", "history": "response_rms", "time_ratio": "wall_time_ratio"}
+_NAMES = ("part", "peak", "residual", "moment", "energy", "history", "time_ratio")
+_COLUMNS = {_TITLES.get(name, name): name for name in (*_NAMES, "matters", "status", "reason")}
 
 #: Cost of twice the bodies: twice the work of a step, and a stable step of less than half.
 TWICE_THE_BODIES = 6

@@ -59,10 +59,8 @@ def to_xarray(result: Response) -> Any:
     arrays = quantities(result)
     along = result.channels[0]
     time = arrays.pop(along)
-    variables = {
-        name: ((along, "joint")[: values.ndim], values, units[name])
-        for name, values in arrays.items()
-    }
+    axes = along, "joint"
+    variables = {name: (axes[: v.ndim], v, units[name]) for name, v in arrays.items()}
     return extra("xarray").Dataset(
         variables,
         {along: (along, time, units[along]), "joint": np.array(result.column.joint_numbers)},
@@ -116,10 +114,8 @@ def save(result: Any, path: str | os.PathLike[str]) -> None:
         name.replace("/", ":"): ([f"{name}_{axis}" for axis in range(values.ndim)], values)
         for name, values in arrays.items()
     }
-    dataset = xarray.Dataset(
-        {name.replace("/", ":"): value for name, value in variables.items()},
-        attrs={"about": json.dumps(about), "units": json.dumps(_core.units())},
-    )
+    texts = {"about": json.dumps(about), "units": json.dumps(_core.units())}
+    dataset = xarray.Dataset(variables, attrs=texts)
     for name, variable in dataset.variables.items():
         if name in _core.units():
             variable.attrs["units"] = _core.units()[name]
@@ -140,11 +136,9 @@ def ending_of(path: str | os.PathLike[str]) -> str:
 def _parts(result: Any) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return what is written as text, and the arrays by name."""
     arrays: dict[str, Any] = {}
-    about: dict[str, Any] = {
-        "format": FORMAT,
-        "format_version": FORMAT_VERSION,
-        "version": _core.version(),
-        "units": _core.units(),
+    about: dict[str, Any] = {"format": FORMAT, "format_version": FORMAT_VERSION}
+    about |= {"version": _core.version(), "units": _core.units()}
+    about |= {
         "column": result.column.to_namelist(),
         "summary": result.summary,
         "arrays": {},

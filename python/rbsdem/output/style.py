@@ -24,27 +24,19 @@ from rbsdem.errors import InputError
 AxesArray = NDArray[np.object_]
 Line = dict[str, Any]
 
+_TICKS = {"labelsize": 8.0, "direction": "in", "major.width": 0.6, "major.size": 3.0}
+_LETTERS = ("font.size", "axes.labelsize", "axes.titlesize", "legend.fontsize")
 RC: dict[Any, Any] = {
+    **dict.fromkeys(_LETTERS, 9.0),
+    **{f"{axis}tick.{name}": value for axis in "xy" for name, value in _TICKS.items()},
     "font.family": "STIXGeneral",
-    "font.size": 9.0,
     "mathtext.fontset": "stix",
-    "axes.labelsize": 9.0,
-    "axes.titlesize": 9.0,
     "axes.linewidth": 0.6,
     "axes.unicode_minus": True,
     "axes.grid": False,
-    "xtick.labelsize": 8.0,
-    "ytick.labelsize": 8.0,
-    "xtick.direction": "in",
-    "ytick.direction": "in",
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
-    "xtick.major.size": 3.0,
-    "ytick.major.size": 3.0,
     "lines.linewidth": 0.8,
     "lines.solid_joinstyle": "round",
     "legend.frameon": False,
-    "legend.fontsize": 9.0,
     "figure.facecolor": "white",
     "savefig.facecolor": "white",
     "pdf.fonttype": 42,

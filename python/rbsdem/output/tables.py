@@ -21,19 +21,10 @@ if TYPE_CHECKING:
 
 
 #: Units of SI: factor to the unit on paper, and that unit.
-PAPER = {
-    "N": (1e-3, "kN"),
-    "J": (1e-3, "kJ"),
-    "m": (1e3, "mm"),
-    "N m": (1e-3, "kN m"),
-    "Nm": (1e-3, "kN m"),
-    "N/m": (1e-6, "kN/mm"),
-    "Pa": (1e-6, "MPa"),
-    "rad": (1e2, "%"),
-    "1/m": (1e3, "mrad/m"),
-    "Nm2": (1e-6, "MN m2"),
-    "drift": (1e2, "%"),
-}
+_THOUSANDS = {"N": "kN", "J": "kJ", "N m": "kN m", "Nm": "kN m"}
+PAPER = {unit: (1e-3, on_paper) for unit, on_paper in _THOUSANDS.items()}
+PAPER |= {"m": (1e3, "mm"), "1/m": (1e3, "mrad/m"), "rad": (1e2, "%"), "drift": (1e2, "%")}
+PAPER |= {"N/m": (1e-6, "kN/mm"), "Pa": (1e-6, "MPa"), "Nm2": (1e-6, "MN m2")}
 
 #: Letters of a line where standard output is no terminal.
 _WIDE = 200
@@ -97,13 +88,9 @@ def table(
     made = Printed(box=rich.box.SIMPLE_HEAD, padding=(0, 1), show_edge=False, caption=caption)
     columns = cells(record)
     for heading, numbers, _ in columns:
-        made.add_column(
-            heading,
-            justify="right" if numbers else "left",
-            no_wrap=True,
-            overflow="ellipsis",
-            max_width=None if numbers else _WIDEST,
-        )
+        width, side = (None, "right") if numbers else (_WIDEST, "left")
+        look: Any = {"justify": side, "no_wrap": True, "overflow": "ellipsis"}
+        made.add_column(heading, max_width=width, **look)
     for at, row in enumerate(zip(*(texts for _, _, texts in columns), strict=True)):
         made.add_row(*map(plain, row), style=styles[at] if styles else None)
     return made

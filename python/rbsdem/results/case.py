@@ -218,14 +218,8 @@ def _case_of(
         name: np.ascontiguousarray(values[:, i]) if acting[i] else None
         for i, name in enumerate(_DRIVES)
     }
-    return Case(
-        title=found.get("case", {}).get("title", ""),
-        column=structure,
-        method=settings.pop("method"),
-        time=time,
-        **loads,
-        settings=settings,
-    )
+    title, method = found.get("case", {}).get("title", ""), settings.pop("method")
+    return Case(title, structure, method, time, **loads, settings=settings)
 
 
 def case_of_text(text: str) -> Case:

@@ -231,17 +231,10 @@ def shear_diagram(
     knee, sheared, lost = (bool(event) for event in answer.values[:3])
     names = _core.section_quantities()["profile"]
     profile = answer.values[3:].reshape(len(names), -1)
-    return ShearDiagram(
-        section=section,
-        length=span,
-        axial_load=load,
-        **{name: np.array([row[name] for row in rows]) for name in at_end},
-        knee=ShearPoint(**at_knee) if knee else None,
-        end=ShearPoint(**at_end),
-        sheared=sheared,
-        lost=lost,
-        layers=ShearLayers(**dict(zip(names, profile, strict=True))),
-    )
+    cut = ShearLayers(**dict(zip(names, profile, strict=True)))
+    curves: Any = {name: np.array([row[name] for row in rows]) for name in at_end}
+    curves |= {"knee": ShearPoint(**at_knee) if knee else None, "end": ShearPoint(**at_end)}
+    return ShearDiagram(section, span, load, **curves, sheared=sheared, lost=lost, layers=cut)
 
 
 # ---- the bilinear spring of the paper ----------------------------------------------------------

@@ -56,14 +56,8 @@ _LEAST_WORK = 0.15
 _NONE = 1e-3
 
 #: Parameters of degradation, and whether more of them is more of it.
-_DEGRADATION = {
-    "fatigue": 1,
-    "wear": 1,
-    "shear_decay": 1,
-    "shear_endurance": -1,
-    "core_softening": 1,
-    "cover_softening": 1,
-}
+_FASTER = ("fatigue", "wear", "shear_decay", "core_softening", "cover_softening")
+_DEGRADATION = dict.fromkeys(_FASTER, 1) | {"shear_endurance": -1}
 
 
 @dataclass(frozen=True, slots=True)

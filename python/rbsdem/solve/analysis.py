@@ -253,14 +253,9 @@ def cyclic(
     load = None if axial_load is None else _arguments.vector(axial_load, "axial_load")
     kept = not checked_structure(column).opens and _arguments.boolean(openings, "openings")
     settings = settings_of(every, kept, collapse_drift=collapse_drift)
-    run = _core.cyclic(
-        column._statement + settings,
-        name == "force",
-        values,
-        load,
-        None if initial is None else state_of(initial, "cyclic"),
-        _arguments.boolean(corners, "corners"),
-    )
+    state = None if initial is None else state_of(initial, "cyclic")
+    wanted = _arguments.boolean(corners, "corners")
+    run = _core.cyclic(column._statement + settings, name == "force", values, load, state, wanted)
     call = {name: values, "axial_load": load, "initial": _recorded_state(initial)}
     call |= {"every": every, "collapse_drift": collapse_drift}
     return _return(column, run, {"analysis": "static", "driven": name}, call)

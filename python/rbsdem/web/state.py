@@ -229,13 +229,8 @@ def column_of(
             return None, []
         part = 1.0 if whole or footing else ENDS[ends]
         with recorded() as told:
-            column: Column = columns.column(
-                section,
-                height / part,
-                axial_load=load,
-                top="fixed" if part < ENDS[ends] else "free",
-                footing=footing,
-            )
+            given_ends: Any = {"top": "fixed" if part < ENDS[ends] else "free", "footing": footing}
+            column = columns.column(section, height / part, axial_load=load, **given_ends)
         notes = [str(one.message) for one in told if issubclass(one.category, AccuracyWarning)]
         return Drawn(column, section, height / ENDS[ends], part), notes
     return None, []
@@ -250,20 +245,14 @@ def _footing_of(given: Mapping[str, Any], faults: Faults) -> Footing | None:
         faults.add("footing.kind", f"kind = {kind!r} is not known; there are {', '.join(_GROUND)}")
         return None
     with faults.of("footing", "rotation"):
-        values = {
-            name: _arguments.number(given[name], name, above=0.0)
-            for name in ("rotation", "sliding", "height")
-        }
+        names = ("rotation", "sliding", "height")
+        values = {name: _arguments.number(given[name], name, above=0.0) for name in names}
         mass = _arguments.number(given["mass"], "mass", above=0.0) if given["mass"] else 0.0
         # A block of concrete with a square plan.
         square = mass / (columns.CONCRETE_DENSITY * values["height"])
-        return Footing(
-            Elastic(values["sliding"]),
-            Elastic(values["rotation"]),
-            mass=mass,
-            inertia=mass * (square + values["height"] ** 2) / 12.0,
-            height=values["height"],
-        )
+        inertia = mass * (square + values["height"] ** 2) / 12.0
+        sliding, rotation = Elastic(values["sliding"]), Elastic(values["rotation"])
+        return Footing(sliding, rotation, None, mass, inertia, values["height"])
     return None
 
 
