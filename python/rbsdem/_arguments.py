@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import fields
 from functools import cache, partial
 from pathlib import Path
@@ -287,3 +288,25 @@ def several(values: Any, name: str, of: str = "whole numbers") -> list[Any]:
         except Exception:  # Of any class of the caller.
             pass
     raise InputError(f"{name} = {shown(values)} must be a sequence of {of}")
+
+
+#: More faults than this are only counted.
+MOST_FAULTS = 25
+
+
+@contextmanager
+def collected(faults: list[str], who: str = "") -> Iterator[None]:
+    """Add what is wrong with an input to the faults, to tell all of them at once."""
+    try:
+        yield
+    except InputError as error:
+        faults.append(f"{who}{error}")
+
+
+def raise_faults(faults: list[str]) -> None:
+    """Raise `InputError` with a line for each fault, if there is any."""
+    if not faults:
+        return
+    more = len(faults) - MOST_FAULTS
+    text = "\n".join(faults[:MOST_FAULTS])
+    raise InputError(text + (f"\nand {more} more" if more > 0 else ""))

@@ -18,8 +18,6 @@ from click.shell_completion import CompletionItem, get_completion_class
 from rbsdem import _core
 from rbsdem.errors import InputError, RbsdemError
 
-__all__ = ["CASE", "FILE", "FOLDER", "INTERRUPTED", "Command", "Values", "app", "main", "quiet"]
-
 #: Variable of the environment by which a shell asks for completions.
 COMPLETE = "_RBSDEM_COMPLETE"
 #: Exit code after a keyboard interrupt.

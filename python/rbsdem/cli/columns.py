@@ -13,6 +13,7 @@ from typing import Any, cast
 import click
 import numpy as np
 
+from rbsdem import _arguments
 from rbsdem._files import data_frame, save_frame, write_figure
 from rbsdem._package import extra, recorded
 from rbsdem._tables import read_table
@@ -117,13 +118,11 @@ def _tell_files(paths: Sequence[Path]) -> None:
 def _records(words: Sequence[str], units: str | None) -> list[GroundMotion]:
     """Return the records of folders and files, or synthetic ones; report all that is wrong."""
     records: list[GroundMotion] = []
-    faults = []
+    faults: list[str] = []
     with recorded(RepairWarning) as caught:
         for word in words:
-            try:
+            with _arguments.collected(faults):
                 records += _records_of(word, units)
-            except InputError as error:
-                faults.append(str(error))
     for warning in caught:
         tell(str(warning.message))
     if faults:

@@ -236,19 +236,19 @@ def ensemble(
     full = inputs.scale_array(scales, len(column_names), given, faults)
     names: tuple[str, ...] = ()
     functions: dict[str, inputs.Measure] = {}
-    with inputs.collected(faults):
+    with _arguments.collected(faults):
         names, functions = inputs.checked_measures(measures, column_items)
     part = _checked_part(shard, store, faults)
-    with inputs.collected(faults):
+    with _arguments.collected(faults):
         if jobs is not None:
             work.check_jobs(jobs)
-    with inputs.collected(faults):
+    with _arguments.collected(faults):
         if client is not None:
             work.check_client(client)
     for name, value in (("progress", progress), ("allow_partial", allow_partial)):
-        with inputs.collected(faults):
+        with _arguments.collected(faults):
             _arguments.boolean(value, name)
-    inputs.raise_faults(faults)
+    _arguments.raise_faults(faults)
     wanted = np.flatnonzero(~np.isnan(full).ravel())
     column, motion, _ = np.unravel_index(wanted, full.shape)
     runs = column.astype(np.int32), motion.astype(np.int32), full.ravel()[wanted]
@@ -256,7 +256,7 @@ def ensemble(
     plan = Plan(column_items, motion_items, settings, *runs, *asked, before)
     seconds, in_lanes, wrong = expected(plan)
     each, lanes = seconds[plan.motion, plan.column], in_lanes[plan.motion, plan.column]
-    inputs.raise_faults([f"column {column_names[i]!r}: {text}" for i, text in wrong])
+    _arguments.raise_faults([f"column {column_names[i]!r}: {text}" for i, text in wrong])
     kept = None
     if store is not None:
         own_names = column_names, [item.name for item in motion_items]
@@ -450,7 +450,7 @@ def _plain(value: Any) -> Any:
 
 def _checked_part(shard: Any, store: Any, faults: list[str]) -> tuple[int, int]:
     """Return which part of how many this process does; without parts the first of one."""
-    with inputs.collected(faults):
+    with _arguments.collected(faults):
         if store is not None:
             _arguments.path(store, "store")
     if shard is None:

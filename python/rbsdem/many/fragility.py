@@ -57,8 +57,7 @@ class Hazard:
             faults.append("hazard: intensities must be above 0 and ascend strictly")
         if not (rate > 0).all() or not (np.diff(rate) < 0).all():
             faults.append("hazard: frequencies must be above 0 and descend strictly")
-        if faults:
-            raise InputError("\n".join(faults))
+        _arguments.raise_faults(faults)
         for name, values in (("intensities", im), ("frequencies", rate)):
             values.flags.writeable = False
             object.__setattr__(self, name, values)

@@ -86,8 +86,7 @@ class Hunt:
             faults.append(f"hunt: points = {self.points} must be from 1 to 1000")
         if not faults and self.first > self.highest:
             faults.append(f"hunt: first = {self.first:g} is above highest = {self.highest:g}")
-        if faults:
-            raise InputError("\n".join(faults))
+        _arguments.raise_faults(faults)
 
 
 def hunt_and_fill(work: Collector, hunt: Hunt, refine: Sequence[str]) -> tuple[Array, Array]:

@@ -88,12 +88,12 @@ def motions_by_name(motions: Any) -> dict[str, GroundMotion]:
     names, items = inputs.named(given, "motions", "GroundMotion", faults)
     found: dict[str, GroundMotion] = {}
     for name, item in zip(names, items, strict=True):
-        with inputs.collected(faults):
+        with _arguments.collected(faults):
             motion = found[str(name)] = checked_motion(item, f"motion {name}: ")
             if motion.pga == 0:
                 raise InputError(f"motion {name}: has no acceleration")
     inputs.check_names(names, "motions", "motion", faults)
-    inputs.raise_faults(faults)
+    _arguments.raise_faults(faults)
     return found
 
 
@@ -407,7 +407,7 @@ def columns_by_name(columns: Any) -> dict[str | int, Structure]:
         return {"column": columns}
     faults: list[str] = []
     names, items = inputs.named_columns(columns, faults)
-    inputs.raise_faults(faults)
+    _arguments.raise_faults(faults)
     return dict(zip(names, items, strict=True))
 
 

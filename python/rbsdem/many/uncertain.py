@@ -11,7 +11,6 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
-from rbsdem.many.inputs import raise_faults
 from rbsdem.model.column import Column, without_notes
 
 _MOST = 1_000_000
@@ -97,7 +96,7 @@ class Uncertain:
                     f"uncertain: {name} = {distribution!r} is not a distribution; give one of "
                     "scipy.stats, or lognormal(median, beta)"
                 )
-        raise_faults(faults)
+        _arguments.raise_faults(faults)
         self._factor()
 
     def _factor(self) -> Array:
@@ -181,7 +180,7 @@ class Uncertain:
             except (InputError, ValueError, TypeError) as error:
                 text = ", ".join(f"{name} = {value:g}" for name, value in given.items())
                 faults.append(f"sample {number} ({text}): {error}")
-        raise_faults(faults)
+        _arguments.raise_faults(faults)
         return Sample(names, values, columns)
 
 

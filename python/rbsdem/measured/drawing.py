@@ -242,8 +242,7 @@ def _check(specimen: Specimen) -> None:
                 f"{specimen.name}: {name} = {value:g} {unit} must be between {low:g} and {high:g}; "
                 f"{remedy}"
             )
-    if faults:
-        raise InputError("\n".join(faults))
+    _arguments.raise_faults(faults)
 
 
 def _steel(yield_stress: float, ultimate_stress: float) -> Steel:

@@ -21,8 +21,6 @@ from rbsdem.motions.motion import GroundMotion, acting
 from rbsdem.results.accuracy import Errors, errors_of
 from rbsdem.solve.solver import IMPLICIT, Solver
 
-__all__ = ["Choice", "MethodStudy", "Row", "compare_methods", "seconds_text"]
-
 #: Shares of the budget at which the settings, and then the reference, have to be done.
 SETTINGS_SHARE, REFERENCE_SHARE = 0.4, 0.75
 

@@ -453,12 +453,11 @@ def read_motions(
         raise InputError(
             f"{place}: no file {pattern!r} with the ending {', '.join(ENDINGS)} is there"
         )
-    motions, faults = [], []
+    motions: list[GroundMotion] = []
+    faults: list[str] = []
     for path in paths:
-        try:
+        with _arguments.collected(faults):
             motions.append(read_motion(path, units))
-        except InputError as error:
-            faults.append(str(error))
     if faults:
         raise InputError("\n".join(faults))
     return tuple(motions)
