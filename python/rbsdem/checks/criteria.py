@@ -78,9 +78,8 @@ class Criterion:
     rotation: float = 0.0
     opening: float = 0.0
 
-    def values(self, result: Response) -> Array:
-        """Return what is compared with the threshold, shape (rows,)."""
-        at = result.column.joint_numbers.index(self.joint)
+    def values(self, result: Response, at: int) -> Array:
+        """Return what is compared with the threshold, shape (rows,); `at` is the joint's place."""
         if self.slip:
             return np.asarray(self.slip * result.slip[:, at])
         turned = result.rotation[:, at]

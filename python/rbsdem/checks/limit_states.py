@@ -114,14 +114,14 @@ _LOSS = 0.2
 
 def limit_states(result: Response) -> LimitStates:
     """Return the limit states that a result reaches; see `Result.limit_states`."""
-    watched = criteria(result.column)
+    watched, joints = criteria(result.column), result.column.joint_numbers
     path = result.path
     if any(criterion.opening for criterion in watched):
         path._check_openings()
     first: dict[str, LimitState] = {}
     for place, criterion in enumerate(watched):
         if result.reached is None:
-            found = _in_rows(result, path, criterion)
+            found = _in_rows(result, path, criterion, joints.index(criterion.joint))
         else:
             found = _in_time(result, criterion, *result.reached[place])
         if found is not None and (found.name not in first or found.time < first[found.name].time):
@@ -149,8 +149,8 @@ def _in_time(
     return replace(state, time=float(time), displacement=at, drift=at / result.column.height)
 
 
-def _in_rows(result: Response, path: Response, criterion: Criterion) -> LimitState | None:
-    values, threshold = criterion.values(path), criterion.threshold
+def _in_rows(result: Response, path: Response, criterion: Criterion, at: int) -> LimitState | None:
+    values, threshold = criterion.values(path, at), criterion.threshold
     rows = np.flatnonzero(values >= threshold)
     if rows.size == 0:
         return None
@@ -290,15 +290,13 @@ def hinge(result: Response, joint: int, length: float | None) -> Hinge:
     yields = [each for each in criteria(result.column, ["first_yield"]) if each.joint == joint]
     path = result.path
     turned = path.rotation[:, at]
-    limits = _yield_rotation(path, turned, yields)
+    limits = _yield_rotation(path, at, yields)
     ductility = float((np.abs(turned) / np.where(turned >= 0, *limits)).max(initial=0.0))
     rows = result.time, result.rotation[:, at], result.moment[:, at]
     return Hinge(joint, *rows, limits, length, ductility)
 
 
-def _yield_rotation(
-    result: Response, rotation: Array, yields: list[Criterion]
-) -> tuple[float, float]:
+def _yield_rotation(result: Response, at: int, yields: list[Criterion]) -> tuple[float, float]:
     """Return the rotations at yield to both sides."""
     if not any(criterion.opening for criterion in yields):
         positive, negative = (
@@ -308,8 +306,7 @@ def _yield_rotation(
         return positive, negative
     result._check_openings()
     positive, negative = (
-        _first(side * rotation, [c for c in yields if side * c.rotation >= 0], result)
-        for side in (1, -1)
+        _first(side, [c for c in yields if side * c.rotation >= 0], result, at) for side in (1, -1)
     )
     # A side that was never pushed to yield is taken to be like the other.
     return (
@@ -318,12 +315,13 @@ def _yield_rotation(
     )
 
 
-def _first(turned: Array, yields: list[Criterion], result: Response) -> float:
+def _first(side: int, yields: list[Criterion], result: Response, at: int) -> float:
     """Return the rotation at which one of the bars of a side yields first."""
     if not yields:
         return math.inf
     # How far each row is on the way to yield.
-    reached = np.max([c.values(result) / c.threshold for c in yields], axis=0)
+    turned = side * result.rotation[:, at]
+    reached = np.max([c.values(result, at) / c.threshold for c in yields], axis=0)
     rows = np.flatnonzero((reached >= 1.0) & (turned > 0.0))
     if rows.size == 0:
         return math.inf
