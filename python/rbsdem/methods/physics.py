@@ -280,8 +280,10 @@ def _compare(name: str, run: Run, base: Run, tolerance: float) -> Effect:
 
     effect = Effect(
         name,
-        *(change("peak", old.peak), change("residual", old.peak)),
-        *(change("peak_moment", old.peak_moment), change("energy", old.largest_energy)),
+        peak=change("peak", old.peak),
+        residual=change("residual", old.peak),
+        moment=change("peak_moment", old.peak_moment),
+        energy=change("energy", old.largest_energy),
         history=errors_of(new, old).response_rms,
         time_ratio=run.seconds / base.seconds,
         status=run.status,

@@ -528,7 +528,10 @@ def shear_spring(
     spring = unchecked(
         Pinching,
         **lines,
-        **{"lambda_s": lambda_s, "lambda_h": lambda_h, "s_min": s_min, "fade": 2.0},
+        lambda_s=lambda_s,
+        lambda_h=lambda_h,
+        s_min=s_min,
+        fade=2.0,
         b0=given.shear_b0,
         kappa_f=min(given.shear_pinch_force, 1.0),
         kappa_d=given.shear_pinch_slip,

@@ -14,7 +14,6 @@ import traceback
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
-from functools import partial
 from pathlib import Path
 from typing import Any, cast
 
@@ -224,8 +223,7 @@ class Answers:
                 column = found.drawn.column
                 answer["section"] = _tried(_interaction, found.drawn.section, None)
                 if isinstance(column, LayeredColumn):
-                    joint = partial(column.interaction, points=_POINTS)
-                    answer["joint"] = _tried(lambda of: _curve(of()), joint)
+                    answer["joint"] = _tried(_joint, column)
             columns.append(answer)
         return {"columns": columns}
 
@@ -474,6 +472,10 @@ def _interaction(section: Section, code: str | None) -> dict[str, Any]:
         found["design_axial_load"] = numbers(diagram.design_axial_load)
         found["design_moment"] = numbers(diagram.design_moment)
     return found
+
+
+def _joint(column: LayeredColumn) -> dict[str, Any]:
+    return _curve(column.interaction(points=_POINTS))
 
 
 def _curve(diagram: InteractionDiagram) -> dict[str, Any]:
