@@ -28,8 +28,9 @@ from scipy.optimize import least_squares
 
 import rbsdem
 from rbsdem import peer
-from rbsdem.calibration.misfit import Target, forces
+from rbsdem.calibration.misfit import Target
 from rbsdem.errors import RbsdemError
+from rbsdem.solve.analysis import reached_force
 
 # Bounds as factors of the value, or as values where it may be zero.
 FACTORS = {
@@ -82,7 +83,7 @@ def fit(task: tuple[int, dict[str, float], tuple[str, ...], int]) -> tuple[float
     def error(places: np.ndarray) -> np.ndarray:
         factors = dict(zip(names, np.exp(low + places * (high - low)).tolist(), strict=True))
         try:
-            whole = target.error(forces(made(column, factors), target.displacement)[0])
+            whole = target.error(reached_force(made(column, factors), target.displacement)[0])
         except RbsdemError:
             whole = np.full(2000, 1.0)
         nrmse = float(np.sqrt(np.mean(whole**2)))

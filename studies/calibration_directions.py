@@ -30,9 +30,9 @@ import calibration_choice as choice
 import numpy as np
 from calibration_choice import TOGETHER
 
-from rbsdem.calibration.misfit import forces
 from rbsdem.errors import RbsdemError
 from rbsdem.section.parameters import table
+from rbsdem.solve.analysis import reached_force
 
 ROOT = Path(__file__).resolve().parents[1]
 ROWS = {name: row for name, row in table().items() if row.low == row.low}
@@ -57,7 +57,7 @@ def error(number: int, places: np.ndarray) -> np.ndarray:
     factors = np.exp(np.clip(places * UNIT, LOW, HIGH)).tolist()
     try:
         moved = choice.made(column, dict(zip(NAMES, factors, strict=True)))
-        whole = target.error(forces(moved, target.displacement)[0])
+        whole = target.error(reached_force(moved, target.displacement)[0])
     except RbsdemError:
         whole = np.full(2000, 1.0)
     return whole[::EVERY] / math.sqrt(len(whole[::EVERY]))

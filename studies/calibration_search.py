@@ -19,10 +19,11 @@ from scipy.optimize import differential_evolution, dual_annealing, minimize
 
 import rbsdem
 from rbsdem.calibration import search
-from rbsdem.calibration.misfit import Misfit, Target, forces, rms
-from rbsdem.calibration.names import Parameters, free_parameters
+from rbsdem.calibration.misfit import Misfit, Target, rms
+from rbsdem.calibration.paths import Parameters, free_parameters
 from rbsdem.calibration.search import Ended, Search
 from rbsdem.peer import find_history, read_peer
+from rbsdem.solve.analysis import reached_force
 
 FREE = [f"flexure.{name}" for name in ("k_c", "k_y", "d_y", "k_u", "b0", "b1")]
 MOST, SEEDS, DRAWN = 800, 3, 2
@@ -109,7 +110,7 @@ def _drawn(column: rbsdem.Column, d: np.ndarray, random: np.random.Generator) ->
         places = random.uniform(0.25, 0.75, len(FREE))
         values = {n: p.at(at) for (n, p), at in zip(free.items(), places, strict=True)}
         if parameters.accepts(values):
-            return forces(parameters.build(values), d)[0]
+            return reached_force(parameters.build(values), d)[0]
 
 
 def _table(title: str, tests: dict[str, tuple[rbsdem.Column, object]]) -> None:

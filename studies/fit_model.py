@@ -37,9 +37,10 @@ from pathlib import Path
 import numpy as np
 
 from rbsdem import peer
-from rbsdem.calibration.misfit import Target, forces
+from rbsdem.calibration.misfit import Target
 from rbsdem.errors import AccuracyWarning, RbsdemError
 from rbsdem.section.parameters import ModelParameters, parameters, table
+from rbsdem.solve.analysis import reached_force
 
 ROOT = Path(__file__).resolve().parents[1]
 #: nrmse of a test that counts half.
@@ -97,7 +98,7 @@ class Case:
             # The section is drawn once; the parameters change nothing in it.
             recipe = replace(self.column.recipe, parameters=given)
             column = replace(self.column, recipe=recipe, **recipe.made)
-            force, _ = forces(column, self.target.displacement)
+            force, _ = reached_force(column, self.target.displacement)
         except RbsdemError:
             force = np.empty(0)
         whole = self.target.error(force)

@@ -40,6 +40,7 @@ import rbsdem
 from rbsdem import curves as comparison
 from rbsdem import plot
 from rbsdem.peer import FOLDER_VARIABLE, find_history, measured_loops, shipped_reversals
+from rbsdem.section.paper import PaperSection
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -161,7 +162,7 @@ def by_displacement(drive: Drive, column: rbsdem.Column) -> tuple[Run, float]:
     return Run(drive, test, loop, nrmse, (drive.displacement, static.force)), seconds
 
 
-def from_drawing(drive: Drive, section: rbsdem.PaperSection) -> tuple[Run, float]:
+def from_drawing(drive: Drive, section: PaperSection) -> tuple[Run, float]:
     """Make the layered column of table 2 and drive it by the measured displacement.
 
     Returns the run and the seconds that the model and the analysis took.

@@ -11,15 +11,11 @@ from importlib import import_module
 from importlib.resources import files
 
 #: Commands that are run by Python, and their modules.
-COMMANDS = {
-    "trade": "rbsdem.cli.columns",
+_OF_COLUMNS = ("trade", "ensemble", "ida", "explore", "report")
+COMMANDS = dict.fromkeys(_OF_COLUMNS, "rbsdem.cli.columns") | {
     "peer": "rbsdem.cli.measured",
     "predict": "rbsdem.cli.measured",
-    "ensemble": "rbsdem.cli.columns",
-    "ida": "rbsdem.cli.columns",
     "completion": "rbsdem.cli",
-    "explore": "rbsdem.cli.columns",
-    "report": "rbsdem.cli.columns",
 }
 
 

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import fields
 from functools import cache, partial
 from pathlib import Path
@@ -16,11 +17,11 @@ from types import NoneType
 from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
+from rbsdem._types import Array as Array  # noqa: PLC0414
+from rbsdem._types import ArrayLike
 from rbsdem.errors import InputError
 
-Array = NDArray[np.float64]
 T = TypeVar("T")
 Number = TypeVar("Number", int, float)
 
@@ -287,3 +288,25 @@ def several(values: Any, name: str, of: str = "whole numbers") -> list[Any]:
         except Exception:  # Of any class of the caller.
             pass
     raise InputError(f"{name} = {shown(values)} must be a sequence of {of}")
+
+
+#: More faults than this are only counted.
+MOST_FAULTS = 25
+
+
+@contextmanager
+def collected(faults: list[str], who: str = "") -> Iterator[None]:
+    """Add what is wrong with an input to the faults, to tell all of them at once."""
+    try:
+        yield
+    except InputError as error:
+        faults.append(f"{who}{error}")
+
+
+def raise_faults(faults: list[str]) -> None:
+    """Raise `InputError` with a line for each fault, if there is any."""
+    if not faults:
+        return
+    more = len(faults) - MOST_FAULTS
+    text = "\n".join(faults[:MOST_FAULTS])
+    raise InputError(text + (f"\nand {more} more" if more > 0 else ""))

@@ -14,10 +14,10 @@ from itertools import islice
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rbsdem import _arguments, _rbsdem
-from rbsdem._arguments import Array, boolean, number, vector
+from rbsdem._arguments import boolean, number, vector
+from rbsdem._types import Array, NDArray
 from rbsdem.errors import InputError, SolveError
 
 #: A number that was not given.
@@ -270,15 +270,8 @@ def cyclic(
     `before` the column is virgin. With `corners` there are rows between the targets too, where a
     spring leaves its line.
     """
-    answer = _ask(
-        "cyclic",
-        column,
-        by_force=by_force,
-        target=target,
-        axial_load=axial_load,
-        before=before,
-        corners=corners,
-    )
+    given: dict[str, Any] = {"by_force": by_force, "target": target, "axial_load": axial_load}
+    answer = _ask("cyclic", column, before=before, corners=corners, **given)
     return _finish(answer, answer.values)
 
 
@@ -298,20 +291,11 @@ def time_history(
     `run_ensemble`; of each the time [s] and the displacement of the top [m] are returned, NaN where
     it is not reached.
     """
-    acting: dict[str, Any] = dict(loads)
+    given: dict[str, Any] = {"time": time, "watches": watches, "initial": initial}
+    given |= {"opening_given": opening_given, "before": before, **loads}
     told = False
     while True:
-        answer = _ask(
-            "time_history",
-            column,
-            time=time,
-            watches=watches,
-            initial=initial,
-            opening_given=opening_given,
-            before=before,
-            told=told,
-            **acting,
-        )
+        answer = _ask("time_history", column, told=told, **given)
         if answer.status != _LONG_RUN:
             break
         tell(answer.text)
@@ -345,86 +329,62 @@ Motions = Sequence[tuple[Array, Array]]
 _AFTER, _AFTER_NUMBER = "\x1e", "\x1f"
 
 
-def plan_ensemble(
-    columns: Sequence[Statement],
-    settings: Statement,
-    watches: Sequence[Array],
-    before: Sequence[Array],
-    motions: Motions,
-) -> tuple[Array, NDArray[np.int32], list[tuple[int, str]]]:
-    """Return the seconds that a run is expected to take, whether lanes take it, and faults.
-
-    The first two have shape (motions, columns). A fault is the number of a column, from 0, and a
-    message; `watches` are those of each column, of shape (watches, 6): number of the limit state,
-    joint, factors of slip, rotation and opening, threshold; at least one. `before` are the states
-    that the runs of each column begin in; an empty one is at rest.
-    """
-    given = _columns_and_motions(columns, settings, watches, before, motions)
-    answer = _ask("plan_ensemble", **given)
-    seconds, in_lanes = np.split(answer.rows.T, 2)
-    return seconds, in_lanes.astype(np.int32), list(_numbered(answer.text))
-
-
-def run_ensemble(
-    columns: Sequence[Statement],
-    settings: Statement,
-    watches: Sequence[Array],
-    before: Sequence[Array],
-    motions: Motions,
-    runs: tuple[NDArray[np.int32], NDArray[np.int32], Array],
-    control: NDArray[np.int32],
-    measures: int,
-    storeys: int = 0,
-    kernel: int = 0,
-) -> tuple[NDArray[np.int32], Array, dict[int, str]]:
-    """Run columns under motions; return fates, measures (measures, runs) and errors by run.
-
-    After the measures come the largest drifts of so many storeys, and those at the end.
-
-    `runs` are the places of columns and motions, from 0, and the scales. `control` is shared: set
-    its first number to stop, read in its second how many runs are done. `kernel` is 0 for the
-    fastest lanes that the processor has, 1 to 3 for those of no higher level, -1 for none.
-    """
-    column, motion, scale = runs
-    answer = _ask(
-        "run_ensemble",
-        control=control,
-        columns=column + 1,
-        motions=motion + 1,
-        scales=scale,
-        level=kernel,
-        measures=measures,
-        storeys=storeys,
-        **_columns_and_motions(columns, settings, watches, before, motions),
-    )
-    values = answer.rows.T
-    return values[0].astype(np.int32), values[1:], dict(_numbered(answer.text))
-
-
-def _columns_and_motions(
+def batch(
     columns: Sequence[Statement],
     settings: Statement,
     watches: Sequence[Array],
     before: Sequence[Array],
     motions: Motions,
 ) -> dict[str, Any]:
-    """Return what `_ask` takes: all statements in one, and how many of everything each has."""
+    """Return columns and motions in one: all statements, and how many of everything each has.
+
+    `watches` are those of each column, of shape (watches, 6): number of the limit state, joint,
+    factors of slip, rotation and opening, threshold; at least one. `before` are the states that the
+    runs of each column begin in; an empty one is at rest.
+    """
     statements = [column + settings for column in columns]
+    sizes = zip(statements, watches, before, strict=True)
     return {
         "statement": Statement(
             "".join(statement.text + _AFTER for statement in statements),
             [number for statement in statements for number in statement.numbers],
         ),
-        "counts": [
-            (len(statement.numbers), len(watch), len(state))
-            for statement, watch, state in zip(statements, watches, before, strict=True)
-        ],
+        "counts": [(len(own.numbers), len(watch), len(state)) for own, watch, state in sizes],
         "watches": np.concatenate(watches),
         "before": np.concatenate(before),
         "time": np.concatenate([time for time, _ in motions]),
         "acceleration": np.concatenate([acceleration for _, acceleration in motions]),
         "points": [time.size for time, _ in motions],
     }
+
+
+def plan_ensemble(
+    batch: Mapping[str, Any],
+) -> tuple[Array, NDArray[np.int32], list[tuple[int, str]]]:
+    """Return the seconds that a run is expected to take, whether lanes take it, and faults.
+
+    The first two have shape (motions, columns). A fault is the number of a column, from 0, and a
+    message.
+    """
+    answer = _ask("plan_ensemble", **batch)
+    seconds, in_lanes = np.split(answer.rows.T, 2)
+    return seconds, in_lanes.astype(np.int32), list(_numbered(answer.text))
+
+
+def run_ensemble(
+    batch: Mapping[str, Any], control: NDArray[np.int32], **runs: Any
+) -> tuple[NDArray[np.int32], Array, dict[int, str]]:
+    """Run columns under motions; return fates, measures (measures, runs) and errors by run.
+
+    Of each run `columns` and `motions` are the places, from 1, and `scales` the scale; `measures`
+    and `storeys` say how much is measured: after the measures come the largest drifts of so many
+    storeys, and those at the end. `control` is shared: set its first number to stop, read in its
+    second how many runs are done. `level` is 0 for the fastest lanes that the processor has, 1 to 3
+    for those of no higher level, -1 for none.
+    """
+    answer = _ask("run_ensemble", control=control, **runs, **batch)
+    values = answer.rows.T
+    return values[0].astype(np.int32), values[1:], dict(_numbered(answer.text))
 
 
 def _numbered(text: str) -> Iterator[tuple[int, str]]:

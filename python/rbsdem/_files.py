@@ -13,15 +13,13 @@ from contextlib import contextmanager, suppress
 from importlib import import_module
 from itertools import count
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any, ClassVar
+from typing import IO, Any, ClassVar
 
 import numpy as np
 
 from rbsdem import _arguments
+from rbsdem._types import DataFrame
 from rbsdem.errors import InputError
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 #: Bytes of a name that go into the temporary name, so that this does not become too long.
 _LONGEST = 180
@@ -145,7 +143,7 @@ class Tabular:
     #: The attributes with their units, as "force N", of a table that is no more than those.
     _columns: ClassVar[tuple[str, ...]] = ()
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return the table as a DataFrame in SI, with units in the names of its columns."""
         return data_frame(
             {name.replace(" ", "_"): getattr(self, name.split()[0]) for name in self._columns}
@@ -177,14 +175,14 @@ def _part(name: str, value: Any, unit: str) -> str:
     return f"{name} {value}" if isinstance(value, (str, int)) else ""
 
 
-def data_frame(data: Any, columns: Sequence[str] | None = None) -> pd.DataFrame:
+def data_frame(data: Any, columns: Sequence[str] | None = None) -> DataFrame:
     """Return a DataFrame of columns by their names, or of rows."""
     import pandas  # noqa: PLC0415
 
     return pandas.DataFrame(data, columns=columns)
 
 
-def save_frame(frame: pd.DataFrame, path: str | os.PathLike[str]) -> None:
+def save_frame(frame: DataFrame, path: str | os.PathLike[str]) -> None:
     """Write a DataFrame as csv with six digits, whole or not at all.
 
     Parameters

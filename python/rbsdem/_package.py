@@ -5,12 +5,15 @@ from __future__ import annotations
 import csv
 import hashlib
 import importlib.util
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from importlib import import_module, resources
 from pathlib import Path
 from typing import Any
 
-from rbsdem.errors import InputError
+from rbsdem.errors import AccuracyWarning, InputError
 
 
 def text(name: str) -> str:
@@ -72,3 +75,20 @@ def extra(module: str) -> Any:
         raise ImportError(
             f'{package} is not installed: pip install "rbsdem[{_EXTRAS[package]}]"'
         ) from error
+
+
+@contextmanager
+def unwarned(*kinds: type[Warning]) -> Iterator[None]:
+    """Ignore warnings of some kinds; without any named, those of accuracy."""
+    with warnings.catch_warnings():
+        for kind in kinds or (AccuracyWarning,):
+            warnings.simplefilter("ignore", kind)
+        yield
+
+
+@contextmanager
+def recorded(kind: type[Warning] = Warning) -> Iterator[list[warnings.WarningMessage]]:
+    """Put warnings of a kind into a list instead of telling them."""
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", kind)
+        yield told

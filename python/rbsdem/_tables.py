@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._types import Array
 from rbsdem.errors import InputError
 
 #: Standard acceleration of gravity [m/s2].

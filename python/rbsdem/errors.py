@@ -5,16 +5,6 @@ from __future__ import annotations
 import re
 from typing import Any
 
-__all__ = [
-    "AccuracyWarning",
-    "InputError",
-    "Interrupted",
-    "LongRunWarning",
-    "RbsdemError",
-    "RepairWarning",
-    "SolveError",
-]
-
 #: How a message begins that tells of a value: "cover = ...", "layout: number = ...", after the
 #: place of the value in a file, if it came from one.
 _FIELD = re.compile(

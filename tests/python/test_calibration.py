@@ -12,13 +12,14 @@ import pytest
 
 import rbsdem
 from rbsdem import Column, InputError, SolveError
-from rbsdem.calibration import Parameter, free_names, misfit, paths, undetermined
+from rbsdem.calibration import Parameter, free_names, paths, undetermined
 from rbsdem.calibration.determined import determine
 from rbsdem.calibration.misfit import POINTS, Misfit, Target
 from rbsdem.calibration.search import COARSE, Search
 from rbsdem.curves.cycles import half_cycle_numbers
 from rbsdem.errors import AccuracyWarning
 from rbsdem.peer import find_history, read_peer
+from rbsdem.solve import analysis
 from rbsdem.springs import Bilinear, ConcreteSpring, Elastic, Layered, Pinching, SteelSpring, Takeda
 
 PEER = os.environ.get("RBSDEM_PEER_DIR") or Path(__file__).resolve().parents[3] / "shared" / "peer"
@@ -352,7 +353,7 @@ def test_interrupt_keeps_the_best(monkeypatch):
     start = COLUMNS["zahn_7"]
     flexure = replace(start.flexure, k_y=4e7, d_y=4e-3)
     test = response(replace(start, flexure=flexure), path(start))
-    calls, whole = [], misfit.cyclic
+    calls, whole = [], analysis.cyclic
 
     def interrupted(column, displacement):
         calls.append(column)
@@ -360,14 +361,14 @@ def test_interrupt_keeps_the_best(monkeypatch):
             raise KeyboardInterrupt
         return whole(column, displacement=displacement)
 
-    monkeypatch.setattr(misfit, "cyclic", interrupted)
+    monkeypatch.setattr(analysis, "cyclic", interrupted)
     fit = quiet(start, test, ["flexure.k_y", "flexure.d_y"])
     assert fit.status == "interrupted"
     assert fit.nrmse < fit.before.nrmse
 
 
 def test_paths_that_break_off_count_as_errors_of_the_peak(monkeypatch):
-    whole = misfit.cyclic
+    whole = analysis.cyclic
 
     def broken(column, displacement):
         result = whole(column, displacement=displacement)
@@ -379,11 +380,11 @@ def test_paths_that_break_off_count_as_errors_of_the_peak(monkeypatch):
         return result
 
     test = response(replace(ELASTIC, shear=Elastic(k=5e7)), path(ELASTIC))
-    monkeypatch.setattr(misfit, "cyclic", broken)
+    monkeypatch.setattr(analysis, "cyclic", broken)
     fit = quiet(ELASTIC, test, ["shear.k"])
     assert fit.failed > 0
     assert 3.9e7 < fit.values["shear.k"] < 4e7
-    force, error = misfit.forces(replace(ELASTIC, shear=Elastic(k=5e7)), test[0])
+    force, error = analysis.reached_force(replace(ELASTIC, shear=Elastic(k=5e7)), test[0])
     assert (force.size, str(error)) == (test[0].size // 2, "broken off")
     assert force == pytest.approx(test[1][: force.size])
 

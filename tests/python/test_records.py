@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import rbsdem
+from rbsdem.results.case import Case
 from rbsdem.springs import (
     Bilinear,
     Compression,
@@ -42,7 +43,7 @@ BIG = rbsdem.Column(1e2, 1e6, Elastic(1e9), Elastic(1e9), n=10_000)
 PATH = 3.0 * rbsdem.protocol([0.005, 0.01], points=3)
 TIME = np.linspace(0.0, 0.05, 11)
 MOTION = np.sin(200 * TIME)
-CASE = rbsdem.results.case.Case(
+CASE = Case(
     "pushed", COLUMN, "static", np.arange(float(PATH.size)), PATH, None, None, None, None,
     {"every": 2},
 )  # fmt: skip

@@ -41,7 +41,7 @@ def section(specimen: peer.Specimen) -> Section:
 def spring(specimen: peer.Specimen, **numbers: float) -> rbsdem.springs.Pinching:
     given = parameters().with_values(**{f"shear_{name}": v for name, v in numbers.items()})
     s = specimen
-    return shear_spring(section(s), s.length, s.axial_load, STIFFNESS, given)
+    return shear_spring(section(s), s.length, s.axial_load, STIFFNESS, given)[0]
 
 
 def cycles(specimen: peer.Specimen, *drifts: float) -> np.ndarray:

@@ -318,15 +318,10 @@ def progress_bar(
         return
     from rich import progress  # noqa: PLC0415
 
-    bar = progress.Progress(
-        progress.BarColumn(bar_width=24),
-        progress.MofNCompleteColumn(),
-        progress.TextColumn("{task.description}", markup=False),
-        progress.TimeRemainingColumn(),
-        console=console,
-        auto_refresh=not between,
-        transient=True,
-    )
+    text = progress.TextColumn("{task.description}", markup=False)
+    columns = progress.BarColumn(bar_width=24), progress.MofNCompleteColumn(), text
+    how: Any = {"console": console, "auto_refresh": not between, "transient": True}
+    bar = progress.Progress(*columns, progress.TimeRemainingColumn(), **how)
     with bar:
         task = bar.add_task("", total=total)
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rbsdem._arguments import Array
+from rbsdem._types import Array
 from rbsdem.calibration.misfit import Misfit, rms
 from rbsdem.calibration.search import AT_BOUND, refused
 from rbsdem.errors import InputError

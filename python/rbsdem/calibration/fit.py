@@ -9,25 +9,21 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._package import unwarned
+from rbsdem._types import Array, ArrayLike
 from rbsdem.batch.work import progress_bar
-from rbsdem.calibration.determined import (
-    Determined,
-    determine,
-    refuse,
-    warnings_of,
-    without_effect,
-)
-from rbsdem.calibration.misfit import LOSSES, Misfit, Target, forces
-from rbsdem.calibration.names import Parameters, free_parameters
+from rbsdem.calibration import determined
+from rbsdem.calibration.determined import Determined, without_effect
+from rbsdem.calibration.misfit import LOSSES, Misfit, Target
 from rbsdem.calibration.outcome import Calibration, Fitted
+from rbsdem.calibration.paths import Parameters, free_parameters
 from rbsdem.calibration.search import Search
 from rbsdem.curves.scores import Comparison, compare
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import Column, Parameter
+from rbsdem.solve.analysis import reached_force
 
 #: Number of random points, besides the start, at which the effect of a parameter is tried.
 _LOOKS = 3
@@ -80,12 +76,11 @@ def undetermined(
     """
     target, parameters = Target(test), Parameters(column)
     chosen = free_parameters(parameters, free, bounds)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AccuracyWarning)
-        with Misfit(
-            parameters.build, chosen, target, "nrmse", 1, lambda done, best: None
-        ) as misfit:
-            return without_effect(misfit, _looks(misfit.start_places(), 0))
+    with (
+        unwarned(),
+        Misfit(parameters.build, chosen, target, "nrmse", 1, lambda done, best: None) as misfit,
+    ):
+        return without_effect(misfit, _looks(misfit.start_places(), 0))
 
 
 def calibrate(
@@ -160,18 +155,17 @@ def calibrate(
     wanted = _arguments.boolean(progress, "calibrate: progress")
     showing = progress_bar(wanted, evaluations, "analyses")
     # Warnings about the many columns of the search do not help the user.
-    with warnings.catch_warnings(), showing as show:
-        warnings.simplefilter("ignore", AccuracyWarning)
+    with unwarned(), showing as show:
         with Misfit(parameters.build, chosen, target, loss, jobs, show) as misfit:
             start = misfit.start_places()
             misfit.column(start)
-            refuse(misfit, without_effect(misfit, _looks(start, seed)))
+            determined.refuse(misfit, without_effect(misfit, _looks(start, seed)))
             status = Search(misfit, seed, evaluations, seconds).run()
             places = misfit.best_places.copy()
-            found = determine(misfit, places)
+            found = determined.determine(misfit, places)
         fitted = misfit.column(places)
         before, after = (_compared(tried, target, column) for tried in (column, fitted))
-    lines = tuple(warnings_of(list(chosen), found))
+    lines = tuple(determined.warnings_of(list(chosen), found))
     for line in lines:
         warnings.warn(f"calibrate: {line}", AccuracyWarning, stacklevel=2)
     return Calibration(
@@ -185,9 +179,7 @@ def calibrate(
         warnings=lines,
         loss=loss,
         seed=seed,
-        evaluations=misfit.evaluations,
-        failed=misfit.failed,
-        refused=misfit.refused,
+        **{name: getattr(misfit, name) for name in ("evaluations", "failed", "refused")},
         seconds=time.perf_counter() - started,
     )
 
@@ -208,27 +200,21 @@ def _looks(start: Array, seed: int) -> list[Array]:
 
 def _fitted(misfit: Misfit, places: ArrayLike, found: Determined) -> tuple[Fitted, ...]:
     values = misfit.values(np.asarray(places))
+
+    def figures(i: int) -> dict[str, Any]:
+        names = ("standard_error", "effect", "rise")
+        numbers = {name: float(getattr(found, name)[i]) for name in names}
+        return numbers | {"at_bound": found.at_bound[i]}
+
     return tuple(
-        Fitted(
-            name,
-            one.unit,
-            one.what,
-            one.value,
-            one.low,
-            one.high,
-            values[name],
-            float(found.standard_error[i]),
-            float(found.effect[i]),
-            float(found.rise[i]),
-            found.at_bound[i],
-        )
+        Fitted(name, one.unit, one.what, one.value, one.low, one.high, values[name], **figures(i))
         for i, (name, one) in enumerate(misfit.free.items())
     )
 
 
 def _compared(column: Column, target: Target, start: Column) -> Comparison:
     """Return the scores of a column; the force is NaN after the end of a failed analysis."""
-    reached, _ = forces(column, target.displacement)
+    reached, _ = reached_force(column, target.displacement)
     force = np.full(target.force.size, np.nan)
     force[: reached.size] = reached
     loop = target.displacement, force

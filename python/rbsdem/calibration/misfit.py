@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._types import Array
 from rbsdem.curves.cycles import half_cycle_numbers
 from rbsdem.curves.metrics import N_POINTS, PathPoints, work
-from rbsdem.errors import InputError, SolveError
+from rbsdem.errors import InputError
 from rbsdem.model.column import Column, Parameter
-from rbsdem.solve.analysis import cyclic
+from rbsdem.solve.analysis import reached_force
 
 #: Points along the path of displacement at which the error is taken, as in a comparison.
 POINTS = N_POINTS
@@ -181,7 +181,7 @@ class Misfit:
 
     def _one(self, places: Array) -> tuple[Array, str]:
         try:
-            force, failed = forces(self.column(places), self.target.displacement)
+            force, failed = reached_force(self.column(places), self.target.displacement)
         except InputError:
             return np.full(self.size, REFUSED), "refused"
         return self._vector(force), "failed" if failed else "completed"
@@ -193,23 +193,6 @@ class Misfit:
         ratios = np.array(self.target.ratios(force))
         # Scaled so that each ratio has its share in the mean square over the points.
         return np.concatenate((error, RATIO_WEIGHT * np.sqrt(POINTS) * (ratios - 1.0)))
-
-
-def forces(column: Column, displacement: Array) -> tuple[Array, SolveError | None]:
-    """Return the lateral force at the rows that were reached [N], and the error that ended it."""
-    try:
-        result, error = cyclic(column, displacement=displacement), None
-    except SolveError as stopped:
-        if stopped.result is None:
-            return np.empty(0), stopped
-        result, error = stopped.result, stopped
-    force = result.force
-    if error is not None:
-        # The last row of a failed path is the last good state, between two rows of the test.
-        force = force[:-1] if force.size else force
-    force = force[: displacement.size]
-    bad = np.flatnonzero(~np.isfinite(force))
-    return (force[: bad[0]] if bad.size else force), error
 
 
 def rms(vector: Array) -> float:

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import Array, DataFrame
 from rbsdem.curves.scores import Comparison
 from rbsdem.model.column import Column
 
-if TYPE_CHECKING:
-    import pandas as pd
-
-
 _HEAD = ("", "Unit", "Start", "Low", "High", "Fitted", "Std. error", "Effect", "Rise", "At")
+
+
+_LEGEND = (
+    "Effect: rms change of the force over the peak, if the parameter changes by 10 % (of",
+    "the distance between its bounds, if it may be 0). Rise: growth of the loss by that.",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,20 +128,14 @@ class Calibration(Tabular):
             first = row[0].ljust(widths[0]) + "  " + row[1].ljust(widths[1])
             rest = (cell.rjust(width) for cell, width in zip(row[2:], widths[2:], strict=True))
             lines.append(f"{first}  {'  '.join(rest)}".rstrip())
-        lines += [
-            "",
-            "Effect: rms change of the force over the peak, if the parameter changes by 10 % (of",
-        ]
-        lines += [
-            "the distance between its bounds, if it may be 0). Rise: growth of the loss by that."
-        ]
+        lines += ["", *_LEGEND]
         if len(self.parameters) > 1:
             lines += ["", "Correlation", *self._correlations()]
         if self.warnings:
             lines += ["", *(f"Warning: {line}" for line in self.warnings)]
         return "\n".join(lines)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame with a row for each parameter: the attributes of `Fitted`."""
         frame = data_frame([asdict(fitted) for fitted in self.parameters])
         return frame.rename(columns={"unit": "unit_of_values"})

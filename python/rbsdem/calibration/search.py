@@ -14,7 +14,7 @@ import time
 
 import numpy as np
 
-from rbsdem._arguments import Array
+from rbsdem._types import Array
 from rbsdem.calibration.misfit import REFUSED, Misfit, rms
 
 #: Points of the hypercube for each free parameter, and the least number of points.

@@ -6,13 +6,13 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
 from rbsdem import _arguments, _package
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import Array, DataFrame
 from rbsdem.checks import formulas
 from rbsdem.checks.formulas import Quantities, quantities
 from rbsdem.checks.limit_states import limit_states
@@ -24,14 +24,7 @@ from rbsdem.model.response import Response
 from rbsdem.model.shape import Section
 from rbsdem.section.axial_moment import nominal_moment
 from rbsdem.section.layered import LayeredColumn
-from rbsdem.section.strength import (
-    axial_failure_drift,
-    shear_failure_drift,
-    shear_strength_sezen,
-)
-
-if TYPE_CHECKING:
-    import pandas as pd
+from rbsdem.section.strength import axial_failure_drift, shear_failure_drift, shear_strength_sezen
 
 
 @dataclass(frozen=True)
@@ -95,7 +88,7 @@ class CodeValues(Tabular):
         """Return the names."""
         return list(self._values)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each value with its unit, meaning and source."""
         return data_frame([asdict(value) for value in self])
 
@@ -138,9 +131,8 @@ def code_values(section: Section, height: float, axial_load: float) -> CodeValue
         value = _FORMULAS[row["name"]](c)
         if math.isfinite(value):
             source = (c.q.round and row["source_of_circles"]) or row["source"]
-            names = row["name"], row["meaning"]
-            confirmed = row["confirmed"] == "1"
-            found.append(CodeValue(*names, value, row["unit"], source, confirmed))
+            known = row["unit"], source, row["confirmed"] == "1"
+            found.append(CodeValue(row["name"], row["meaning"], value, *known))
     return CodeValues(found, c.q)
 
 
@@ -252,6 +244,10 @@ def yield_drift(values: CodeValues, stiffness: str) -> float:
     return values["yield.moment"] * 1e3 * q.span / (3.0 * values[stiffness] * modulus * inertia)
 
 
+def _yield_and(values: CodeValues, stiffness: str, rotation: str) -> float:
+    return yield_drift(values, stiffness) + values[rotation]
+
+
 def _haselton(values: CodeValues, cap: float, post_cap: float) -> float:
     """Return the drift at which a fifth of the strength is lost behind the cap."""
     turned = cap * values["haselton.cap"] + 0.2 * post_cap * values["haselton.post_cap"]
@@ -260,9 +256,7 @@ def _haselton(values: CodeValues, cap: float, post_cap: float) -> float:
 
 #: Drift at a loss of 20 % of the strength by each source.
 DRIFTS_AT_LOSS: dict[str, Callable[[CodeValues], float]] = {
-    "ASCE 41-17, yield + a": lambda values: (
-        yield_drift(values, "asce_41.stiffness") + values["asce_41.a"]
-    ),
+    "ASCE 41-17, yield + a": lambda values: _yield_and(values, "asce_41.stiffness", "asce_41.a"),
     "EN 1998-3, theta_um (A.1)": lambda values: values["ec_8.ultimate"],
     "EN 1998-3, theta_y + theta_um,pl (A.3)": lambda values: (
         values["ec_8.yield"] + values["ec_8.plastic"]
@@ -272,8 +266,8 @@ DRIFTS_AT_LOSS: dict[str, Callable[[CodeValues], float]] = {
     "Haselton, cyclic envelope": lambda values: _haselton(values, 0.7, 0.5),
     "Elwood, Moehle 2005, shear": lambda values: values["elwood.shear_drift"],
     # Drifts at bar buckling, which come later.
-    "Berry, Eberhard 2005, yield + buckling": lambda values: (
-        yield_drift(values, "elwood.stiffness") + values["berry.rotation"]
+    "Berry, Eberhard 2005, yield + buckling": lambda values: _yield_and(
+        values, "elwood.stiffness", "berry.rotation"
     ),
     "Berry, Eberhard 2003, buckling": lambda values: values["berry.buckling"],
 }
@@ -425,7 +419,7 @@ class CodeComparison(Tabular):
     def __iter__(self) -> Iterator[Quantity]:
         return iter(self._rows.values())
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame in SI: a row a quantity, a column a source that says anything."""
         rows = [{"quantity": row.name, "unit": row.unit} | row.values for row in self]
         sources = [source for source in SOURCES if any(source in row.values for row in self)]

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rbsdem._arguments import Array
+from rbsdem._types import Array
 from rbsdem.checks.formulas import goodnight_buckling_strain, quantities
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
@@ -45,7 +45,11 @@ WATCHED: dict[str, str] = {
 _TURNS = {"cracking": "cracking", "yield": "first_yield", "cap": "cap"}
 _SLIPS = {"cracking": "shear_cracking", "yield": "shear_yield", "cap": "shear_failure"}
 
-_OF_BARS = ("first_yield", "bar_buckling", "bar_fracture")
+_OF_BARS = {
+    "first_yield": "f_y/E_s of a bar in tension",
+    "bar_fracture": "eps_u of a bar in tension",
+    "bar_buckling": "tensile strain before bars buckle on reversal (Goodnight, Kowalsky, Nau 2016)",
+}
 
 
 @dataclass(frozen=True)
@@ -74,9 +78,8 @@ class Criterion:
     rotation: float = 0.0
     opening: float = 0.0
 
-    def values(self, result: Response) -> Array:
-        """Return what is compared with the threshold, shape (rows,)."""
-        at = result.column.place_of(self.joint)
+    def values(self, result: Response, at: int) -> Array:
+        """Return what is compared with the threshold, shape (rows,); `at` is the joint's place."""
         if self.slip:
             return np.asarray(self.slip * result.slip[:, at])
         turned = result.rotation[:, at]
@@ -265,30 +268,18 @@ def _of_bars(
     spring, gauge = layers
     buckles = buckling_strain(section, column) if buckling else math.inf
     outer: dict[tuple[float, float, float], list[float]] = {}
-    layers_of_bars = [
-        (y, over)
-        for (y, _), part, over in zip(spring.layers, gauge.part, gauge.length, strict=True)
-        if part == "bar"
-    ]
+    rows = zip(spring.layers, gauge.part, gauge.length, strict=True)
+    layers_of_bars = [(y, over) for (y, _), part, over in rows if part == "bar"]
     # They are in the order of the bars: at one place there may be bars of several steels.
     for (y, over), (_, _, steel) in zip(layers_of_bars, section.bars, strict=True):
         outer.setdefault((steel.fy / steel.es, steel.eps_u, over), []).append(y)
     for (yields, breaks, over), places in outer.items():
         # Plane sections: of equal bars the outermost ones are stretched most.
         for y in dict.fromkeys((max(places), min(places))):
-            for name, at, source in (
-                ("first_yield", yields, "f_y/E_s of a bar in tension"),
-                ("bar_fracture", breaks, "eps_u of a bar in tension"),
-                (
-                    "bar_buckling",
-                    buckles,
-                    "tensile strain before bars buckle on reversal (Goodnight, Kowalsky, Nau 2016)",
-                ),
-            ):
+            lever = {"rotation": y / over, "opening": 1.0 / over}
+            for name, at in zip(_OF_BARS, (yields, breaks, buckles), strict=True):
                 if math.isfinite(at):
-                    yield Criterion(
-                        name, joint, float(at), source, rotation=y / over, opening=1.0 / over
-                    )
+                    yield Criterion(name, joint, float(at), _OF_BARS[name], **lever)
 
 
 def buckling_strain(section: Section, column: Column) -> float:

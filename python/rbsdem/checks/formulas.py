@@ -342,26 +342,14 @@ def ec_8_confinement(q: Quantities) -> float:
 
 def ec_8_ultimate_rotation(q: Quantities) -> float:
     """Return theta_um of (A.1), the whole chord rotation [rad]."""
-    ratio = _steel(q)
-    return float(
-        0.016
-        * 0.3 ** _nu(q)
-        * (ratio * q.fc) ** 0.225
-        * min(9.0, q.slenderness) ** 0.35
-        * 25.0 ** _confined(q)
-    )
+    steel, slender = (_steel(q) * q.fc) ** 0.225, min(9.0, q.slenderness) ** 0.35
+    return float(0.016 * 0.3 ** _nu(q) * steel * slender * 25.0 ** _confined(q))
 
 
 def ec_8_plastic_rotation(q: Quantities) -> float:
     """Return theta_um,pl of (A.3), its plastic part [rad]."""
-    return float(
-        0.0145
-        * 0.25 ** _nu(q)
-        * _steel(q) ** 0.3
-        * q.fc**0.2
-        * min(9.0, q.slenderness) ** 0.35
-        * 25.0 ** _confined(q)
-    )
+    steel, slender = _steel(q) ** 0.3, min(9.0, q.slenderness) ** 0.35
+    return float(0.0145 * 0.25 ** _nu(q) * steel * q.fc**0.2 * slender * 25.0 ** _confined(q))
 
 
 def ec_8_yield_rotation(q: Quantities, *, cracked: bool) -> float:
@@ -375,12 +363,9 @@ def ec_8_yield_rotation(q: Quantities, *, cracked: bool) -> float:
         Whether diagonal cracks come before yield, which shifts the tension (a_V = 1).
     """
     curvature = yield_point(q)[0]
-    shift = q.d - q.d2 if cracked else 0.0
-    return (
-        curvature * (q.span + shift) / 3.0
-        + 0.0014 * (1.0 + 1.5 * q.depth / q.span)
-        + curvature * q.bar * q.fy / (8.0 * math.sqrt(q.fc))
-    )
+    bent = curvature * (q.span + (q.d - q.d2 if cracked else 0.0)) / 3.0
+    sheared = 0.0014 * (1.0 + 1.5 * q.depth / q.span)
+    return bent + sheared + curvature * q.bar * q.fy / (8.0 * math.sqrt(q.fc))
 
 
 def ec_8_cracks_in_shear(q: Quantities) -> bool:
@@ -524,16 +509,11 @@ class Haselton:
             for force in (q.compression * q.fy_compression, q.tension * q.fy)
         )
         slender = q.spacing / q.bar * math.sqrt(q.fy / 100.0) if q.tie_area > 0 else 20.0
-        return float(
-            0.12
-            * (1.0 + 0.55 * self._slip)
-            * 0.16**self._nu
-            * self._ties**0.43
-            * 0.54 ** (0.01 * q.fc)
-            * 0.66 ** (0.1 * slender)
-            * 2.27 ** (10.0 * q.steel_ratio)
-            * (pressed / pulled) ** 0.225
-        )
+        turned = 0.12 * (1.0 + 0.55 * self._slip) * 0.16**self._nu * self._ties**0.43
+        turned *= 0.54 ** (0.01 * q.fc)
+        turned *= 0.66 ** (0.1 * slender)
+        turned *= 2.27 ** (10.0 * q.steel_ratio)
+        return float(turned * (pressed / pulled) ** 0.225)
 
     @property
     def post_capping_rotation(self) -> float:

@@ -8,22 +8,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import Array, DataFrame
 from rbsdem.checks.criteria import Criterion, criteria
 from rbsdem.curves.envelope import strength_loss_point
 from rbsdem.errors import InputError
 from rbsdem.model.response import Response
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.strength import axial_failure_drift
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -101,7 +97,7 @@ class LimitStates(Tabular):
         """Return the drift, in size, at which a state is reached; NaN if it is not."""
         return abs(self[name].drift) if name in self else float("nan")
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each state: the attributes of `LimitState`."""
         names = list(LimitState.__dataclass_fields__)
         frame = data_frame([asdict(state) for state in self], columns=names)
@@ -118,14 +114,14 @@ _LOSS = 0.2
 
 def limit_states(result: Response) -> LimitStates:
     """Return the limit states that a result reaches; see `Result.limit_states`."""
-    watched = criteria(result.column)
+    watched, joints = criteria(result.column), result.column.joint_numbers
     path = result.path
     if any(criterion.opening for criterion in watched):
         path._check_openings()
     first: dict[str, LimitState] = {}
     for place, criterion in enumerate(watched):
         if result.reached is None:
-            found = _in_rows(result, criterion)
+            found = _in_rows(result, path, criterion, joints.index(criterion.joint))
         else:
             found = _in_time(result, criterion, *result.reached[place])
         if found is not None and (found.name not in first or found.time < first[found.name].time):
@@ -153,8 +149,8 @@ def _in_time(
     return replace(state, time=float(time), displacement=at, drift=at / result.column.height)
 
 
-def _in_rows(result: Response, criterion: Criterion) -> LimitState | None:
-    values, threshold = criterion.values(result.path), criterion.threshold
+def _in_rows(result: Response, path: Response, criterion: Criterion, at: int) -> LimitState | None:
+    values, threshold = criterion.values(path, at), criterion.threshold
     rows = np.flatnonzero(values >= threshold)
     if rows.size == 0:
         return None
@@ -207,16 +203,8 @@ def _state(result: Response, name: str, place: float, threshold: float, source: 
     )
     # Round-off of a time that is one of the rows does not take the next one.
     row = np.searchsorted(result.time, time - 1e-12 * abs(time))
-    return LimitState(
-        name,
-        min(int(row), result.time.size - 1),
-        time,
-        displacement,
-        displacement / result.column.height,
-        force,
-        threshold,
-        source,
-    )
+    at, drift = min(int(row), result.time.size - 1), displacement / result.column.height
+    return LimitState(name, at, time, displacement, drift, force, threshold, source)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -302,21 +290,13 @@ def hinge(result: Response, joint: int, length: float | None) -> Hinge:
     yields = [each for each in criteria(result.column, ["first_yield"]) if each.joint == joint]
     path = result.path
     turned = path.rotation[:, at]
-    limits = _yield_rotation(path, turned, yields)
-    return Hinge(
-        joint,
-        result.time,
-        result.rotation[:, at],
-        result.moment[:, at],
-        limits,
-        length,
-        float((np.abs(turned) / np.where(turned >= 0, *limits)).max(initial=0.0)),
-    )
+    limits = _yield_rotation(path, at, yields)
+    ductility = float((np.abs(turned) / np.where(turned >= 0, *limits)).max(initial=0.0))
+    rows = result.time, result.rotation[:, at], result.moment[:, at]
+    return Hinge(joint, *rows, limits, length, ductility)
 
 
-def _yield_rotation(
-    result: Response, rotation: Array, yields: list[Criterion]
-) -> tuple[float, float]:
+def _yield_rotation(result: Response, at: int, yields: list[Criterion]) -> tuple[float, float]:
     """Return the rotations at yield to both sides."""
     if not any(criterion.opening for criterion in yields):
         positive, negative = (
@@ -326,8 +306,7 @@ def _yield_rotation(
         return positive, negative
     result._check_openings()
     positive, negative = (
-        _first(side * rotation, [c for c in yields if side * c.rotation >= 0], result)
-        for side in (1, -1)
+        _first(side, [c for c in yields if side * c.rotation >= 0], result, at) for side in (1, -1)
     )
     # A side that was never pushed to yield is taken to be like the other.
     return (
@@ -336,12 +315,13 @@ def _yield_rotation(
     )
 
 
-def _first(turned: Array, yields: list[Criterion], result: Response) -> float:
+def _first(side: int, yields: list[Criterion], result: Response, at: int) -> float:
     """Return the rotation at which one of the bars of a side yields first."""
     if not yields:
         return math.inf
     # How far each row is on the way to yield.
-    reached = np.max([c.values(result) / c.threshold for c in yields], axis=0)
+    turned = side * result.rotation[:, at]
+    reached = np.max([c.values(result, at) / c.threshold for c in yields], axis=0)
     rows = np.flatnonzero((reached >= 1.0) & (turned > 0.0))
     if rows.size == 0:
         return math.inf

@@ -18,8 +18,6 @@ from click.shell_completion import CompletionItem, get_completion_class
 from rbsdem import _core
 from rbsdem.errors import InputError, RbsdemError
 
-__all__ = ["CASE", "FILE", "FOLDER", "INTERRUPTED", "Command", "Values", "app", "main", "quiet"]
-
 #: Variable of the environment by which a shell asks for completions.
 COMPLETE = "_RBSDEM_COMPLETE"
 #: Exit code after a keyboard interrupt.
@@ -188,21 +186,13 @@ def _named_keys(ctx: click.Context, param: click.Parameter, word: str) -> list[C
 # The commands of the Fortran executable, for completion only.
 _case = click.Argument(["case"], type=FILE)
 _hush = click.Option(["-q", "--quiet"], is_flag=True)
+_output = click.Option(["-o", "--output"], type=FILE)
+_of_modes = [_case, click.Option(["--count"]), click.Option(["--matrices"], is_flag=True)]
+_key = click.Argument(["name"], shell_complete=_named_keys)
 for _name, _help, _params in (
-    ("run", "Solve a case.", [_case, _hush, click.Option(["-o", "--output"], type=FILE)]),
+    ("run", "Solve a case.", [_case, _hush, _output]),
     ("check", "Find all errors of a case.", [_case, _hush]),
-    (
-        "modes",
-        "Natural frequencies, stable step.",
-        [_case, click.Option(["--count"]), click.Option(["--matrices"], is_flag=True)],
-    ),
-    (
-        "keys",
-        "Keys of a group or rule, or all.",
-        [
-            click.Argument(["name"], shell_complete=_named_keys),
-            click.Option(["--json"], is_flag=True),
-        ],
-    ),
+    ("modes", "Natural frequencies, stable step.", _of_modes),
+    ("keys", "Keys of a group or rule, or all.", [_key, click.Option(["--json"], is_flag=True)]),
 ):
     app.add_command(click.Command(_name, params=_params, help=_help))

@@ -5,18 +5,19 @@ from __future__ import annotations
 import math
 import sys
 import threading
-import warnings
 import webbrowser
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import click
 import numpy as np
 
-from rbsdem._files import save_frame, write_figure
-from rbsdem._package import extra
+from rbsdem import _arguments
+from rbsdem._files import data_frame, save_frame, write_figure
+from rbsdem._package import extra, recorded
 from rbsdem._tables import read_table
+from rbsdem._types import DataFrame
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
 from rbsdem.errors import InputError, RepairWarning
@@ -43,10 +44,6 @@ from rbsdem.web.report import report as report_record
 from rbsdem.web.report import write_report
 from rbsdem.web.server import ExploreServer
 from rbsdem.web.state import DEFAULT
-
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 _units = click.option("--units", help="unit of records that name none: g, m/s2, cm/s2")
 _jobs = click.option("--jobs", type=int, metavar="N", help="threads; default one per processor")
@@ -121,14 +118,11 @@ def _tell_files(paths: Sequence[Path]) -> None:
 def _records(words: Sequence[str], units: str | None) -> list[GroundMotion]:
     """Return the records of folders and files, or synthetic ones; report all that is wrong."""
     records: list[GroundMotion] = []
-    faults = []
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", RepairWarning)
+    faults: list[str] = []
+    with recorded(RepairWarning) as caught:
         for word in words:
-            try:
+            with _arguments.collected(faults):
                 records += _records_of(word, units)
-            except InputError as error:
-                faults.append(str(error))
     for warning in caught:
         tell(str(warning.message))
     if faults:
@@ -412,21 +406,14 @@ def _curves(
 
 def _fragilities(
     curves: Mapping[str, Fragility], hazard: Hazard | None
-) -> tuple[pd.DataFrame, list[str]]:
+) -> tuple[DataFrame, list[str]]:
     """Return the curves as a frame, and why some have no band."""
-    import pandas as pd  # noqa: PLC0415
-
     rows, notes = [], []
     for name, curve in curves.items():
         errors = np.sqrt(curve.covariance.diagonal())
-        row = {
-            "limit_state": name,
-            "theta_m/s2": curve.theta,
-            "beta": curve.beta,
-            "se_theta_m/s2": errors[0],
-            "se_beta": math.nan if curve.stated else errors[1],
-            "records": curve.data.size,
-        }
+        row = {"limit_state": name, "theta_m/s2": curve.theta, "beta": curve.beta}
+        row |= {"se_theta_m/s2": errors[0], "se_beta": math.nan if curve.stated else errors[1]}
+        row["records"] = curve.data.size
         try:
             low, high = curve.band([curve.theta])
             row |= {"band_low": float(low[0]), "band_high": float(high[0])}
@@ -435,33 +422,24 @@ def _fragilities(
         if hazard is not None:
             row["per_year"] = curve.mean_annual_frequency(hazard)
         rows.append(row)
-    return pd.DataFrame(rows), notes
+    return data_frame(rows), notes
 
 
 def _write(
-    analysis: IDA,
-    curves: Mapping[str, Fragility],
-    frame: pd.DataFrame,
-    folder: Path,
-    parquet: bool,
+    analysis: IDA, curves: Mapping[str, Fragility], frame: DataFrame, folder: Path, parquet: bool
 ) -> list[Path]:
-    import pandas as pd  # noqa: PLC0415
-
     written = [folder / "ida.csv", folder / "fractiles.csv", folder / "fragility.csv"]
     analysis.runs.to_csv(written[0])
     level, fractiles = analysis.fractiles()
     names = [f"peak_drift_{share}" for share in (16, 50, 84)]
     values = {"intensity_m/s2": level, **dict(zip(names, fractiles, strict=True))}
-    save_frame(pd.DataFrame(values), written[1])
+    save_frame(data_frame(values), written[1])
     save_frame(frame, written[2])
     if parquet:
         written.append(folder / "ida.parquet")
         tables.write_parquet(analysis.runs.to_pandas(), written[-1])
-    figures = {
-        "ida.png": ensemble_figures.ida(analysis),
-        "fragility.png": ensemble_figures.fragilities(dict(curves)),
-    }
-    for name, ax in figures.items():
+    figures = ensemble_figures.ida(analysis), ensemble_figures.fragilities(dict(curves))
+    for name, ax in zip(("ida.png", "fragility.png"), figures, strict=True):
         written.append(folder / name)
         write_figure(ax, written[-1], dpi=150)
     return written

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-import warnings
 from collections.abc import Sequence
 from fnmatch import fnmatch
 from pathlib import Path
@@ -12,10 +11,11 @@ from pathlib import Path
 import click
 import numpy as np
 
-from rbsdem._arguments import Array
 from rbsdem._files import save_frame, write_figure
+from rbsdem._package import unwarned
+from rbsdem._types import Array
 from rbsdem.cli import FILE, FOLDER, INTERRUPTED, Command, Values, quiet, tell
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.errors import InputError
 from rbsdem.measured.doubts import Checked
 from rbsdem.measured.doubts import check as check_tests
 from rbsdem.measured.predict import PredictionOptions
@@ -269,9 +269,8 @@ def predict(
     rows, errors = [], []
     for specimen in tests:
         try:
-            with warnings.catch_warnings():
+            with unwarned():
                 # The table says it.
-                warnings.simplefilter("ignore", AccuracyWarning)
                 row = run_predictions(
                     specimen,
                     bands=True,

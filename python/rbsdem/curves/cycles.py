@@ -13,16 +13,18 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular
+from rbsdem._types import Array, ArrayLike, NDArray
 from rbsdem.curves.metrics import columns, work
 from rbsdem.errors import InputError
 
 TURN = 0.02
 """Share of its largest absolute value by which a displacement turns back at a turning point."""
+
+
+_OF_A_CYCLE = ("displacement m", "force N", "peak_force N", "energy J", "stiffness N/m")
 
 
 @dataclass(frozen=True, repr=False, slots=True, eq=False)
@@ -50,15 +52,7 @@ class HalfCycles(Tabular):
         force and displacement of its tip; NaN as for the stiffness.
     """
 
-    _columns = (
-        "row",
-        "displacement m",
-        "force N",
-        "peak_force N",
-        "energy J",
-        "stiffness N/m",
-        "damping",
-    )
+    _columns = ("row", *_OF_A_CYCLE, "damping")
 
     row: np.ndarray
     displacement: Array
@@ -187,15 +181,9 @@ def half_cycles(
     carries = product > 0
     safe = np.where(carries, product, 1.0)
     energy = np.diff(zeros)
-    return HalfCycles(
-        row=rows,
-        displacement=d[rows],
-        force=f[rows],
-        peak_force=peaks,
-        energy=energy,
-        stiffness=np.where(carries, safe / np.where(carries, d[rows], 1.0) ** 2, np.nan),
-        damping=np.where(carries, energy / (np.pi * safe), np.nan),
-    )
+    stiffness = np.where(carries, safe / np.where(carries, d[rows], 1.0) ** 2, np.nan)
+    damping = np.where(carries, energy / (np.pi * safe), np.nan)
+    return HalfCycles(rows, d[rows], f[rows], peaks, energy, stiffness, damping)
 
 
 def tip_rows(d: Array, f: Array) -> np.ndarray:

@@ -8,11 +8,10 @@ from itertools import pairwise
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular
+from rbsdem._types import Array, ArrayLike
 from rbsdem.curves.cycles import turning_points
 from rbsdem.curves.metrics import Curve, columns, loop_pair
 from rbsdem.errors import InputError

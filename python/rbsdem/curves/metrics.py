@@ -11,10 +11,9 @@ from dataclasses import dataclass
 from typing import Any, Protocol, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
 
 
@@ -222,14 +221,9 @@ def loop_of(d: Array, f: Array) -> Loop:
     """Do the same as `summarise` for arrays that are known to be sound."""
     if not d.size:
         return Loop(math.nan, math.nan, math.nan, math.nan, math.nan)
-    at = int(np.argmax(np.abs(f)))
-    return Loop(
-        peak_force=float(abs(f[at])),
-        displacement_at_peak=float(d[at]),
-        peak_displacement=float(np.max(np.abs(d))),
-        energy=float(work(d, f)[-1]),
-        stiffness=_secant(d, f, STIFFNESS_LEVEL),
-    )
+    at, furthest = int(np.argmax(np.abs(f))), float(np.max(np.abs(d)))
+    done, stiffness = float(work(d, f)[-1]), _secant(d, f, STIFFNESS_LEVEL)
+    return Loop(float(abs(f[at])), float(d[at]), furthest, done, stiffness)
 
 
 def energy(displacement: ArrayLike, force: ArrayLike) -> float:

@@ -5,33 +5,20 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import Array, ArrayLike, DataFrame
 from rbsdem.curves.cycles import HalfCycles, half_cycles, tip_rows
 from rbsdem.curves.envelope import strength_loss
 from rbsdem.curves.metrics import Curve, Loop, PathPoints, columns, loop_of, pair, ratio, rms
 from rbsdem.errors import InputError
 
-if TYPE_CHECKING:
-    import pandas as pd
-
-
-SCORES = (
-    "nrmse",
-    "peak_ratio",
-    "energy_ratio",
-    "stiffness_ratio",
-    "end_ratio",
-    "rms_best",
-    "path_fraction",
-    "nrmse_reached",
-)
+_RATIOS = ("peak_ratio", "energy_ratio", "stiffness_ratio", "end_ratio")
+SCORES = ("nrmse", *_RATIOS, "rms_best", "path_fraction", "nrmse_reached")
 """Names of the scores, in the order of tables."""
 
 #: What a half-cycle has in the table of a comparison, with the unit in the name.
@@ -174,7 +161,7 @@ class Comparison(_Ratios, Tabular):
     def _tips(self) -> np.ndarray:
         return tip_rows(self.displacement, self.test_force)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame with a row for each half-cycle, test and model side by side.
 
         What the model did not reach is NaN.
@@ -269,21 +256,10 @@ def compare(result: Curve, test: Curve, *, height: float | None = None) -> Compa
     if reached.all():
         last = points.path >= 0.75 * points.path[-1]
         end = ratio(rms(m[last]), rms(t[last]))
-    return Comparison(
-        name=str(getattr(test, "name", "test")),
-        displacement=d,
-        test_force=f,
-        model_force=force,
-        height=_height(height, test, result),
-        rows=rows,
-        test=loop_of(d[:rows], f[:rows]),
-        model=loop_of(d[:rows], force[:rows]),
-        nrmse=rms(error),
-        path_fraction=float(np.mean(reached)),
-        nrmse_reached=nrmse_reached,
-        end_ratio=end,
-        rms_best=best,
-    )
+    loops = loop_of(d[:rows], f[:rows]), loop_of(d[:rows], force[:rows])
+    scores = rms(error), float(np.mean(reached)), nrmse_reached, end, best
+    name, height = str(getattr(test, "name", "test")), _height(height, test, result)
+    return Comparison(name, d, f, force, height, rows, *loops, *scores)
 
 
 def displacement_metrics(
@@ -317,10 +293,7 @@ def displacement_metrics(
     points = PathPoints(f, name="force")
     error = rms(points(model - test))
     return DisplacementMetrics(
-        test=loop_of(test, f),
-        model=loop_of(model, f),
-        nrmse=error / largest,
-        rms_error=error,
+        test=loop_of(test, f), model=loop_of(model, f), nrmse=error / largest, rms_error=error
     )
 
 

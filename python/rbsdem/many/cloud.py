@@ -5,22 +5,17 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike, NDArray, Unpack
 from rbsdem.errors import InputError
-from rbsdem.many.fragility import Fragile, Fragility, Hazard, checked_probability
+from rbsdem.many.fragility import MAKER, Fragile, Fragility, Hazard, checked_probability
 from rbsdem.many.inputs import is_switch
 from rbsdem.many.runs import RunOptions, Runs, make_collector, motions_by_name
 from rbsdem.model.frame import Structure
 from rbsdem.motions.motion import GroundMotion
-
-if TYPE_CHECKING:
-    from typing_extensions import Unpack
 
 _MOST_STEPS = 100
 _CLOSE = 1e-10
@@ -131,10 +126,9 @@ class CloudData:
     def parts(self) -> tuple[PowerLaw | None, Logistic | None]:
         """Return the line through the runs without collapse, and the curve of the collapses."""
         stands = ~self.collapsed
-        line = None
+        line, logistic = None, None
         if np.isfinite(self.log_limit):
             line = fit_line(self.log_intensity[stands], self.log_response[stands])
-        logistic = None
         if self.collapsed.any():
             logistic = fit_logistic(self.log_intensity, self.collapsed)
         return line, logistic
@@ -144,9 +138,8 @@ class CloudData:
         from scipy import special  # noqa: PLC0415
 
         line, logistic = parts
-        lost = np.zeros_like(log_intensity)
-        if logistic is not None:
-            lost = logistic.probability(log_intensity)
+        none = np.zeros_like(log_intensity)
+        lost = none if logistic is None else logistic.probability(log_intensity)
         if line is None:
             return lost
         mean = line.a + line.b * log_intensity
@@ -208,10 +201,7 @@ class CloudFragility(Fragility):
         From the first point of the hazard on: below it the logistic curve of the collapses has a
         tail that no run supports.
         """
-        if not isinstance(hazard, Hazard):
-            raise InputError(
-                f"hazard = {hazard!r} must be a Hazard; Hazard(intensities, frequencies) makes one"
-            )
+        _arguments.instance(hazard, "hazard", Hazard, MAKER)
         first = float(np.log(hazard.intensities[0]))
         u = np.linspace(first, max(first, float(np.log(self.theta))) + _REACH, 4 * _GRID)
         rate = hazard.exceeded(np.exp(u))
@@ -226,11 +216,8 @@ class CloudFragility(Fragility):
         found = []
         for _ in range(number):
             draw = random.integers(0, self.data.size, self.data.size)
-            data = replace(
-                self.data,
-                log_intensity=self.data.log_intensity[draw],
-                log_response=self.data.log_response[draw],
-            )
+            drawn = self.data.log_intensity[draw], self.data.log_response[draw]
+            data = CloudData(*drawn, self.data.log_limit)
             stands = np.unique(data.log_intensity[~data.collapsed])
             if stands.size >= _FEWEST or not np.isfinite(data.log_limit):
                 found.append(data)

@@ -10,48 +10,20 @@ from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, data_frame
-from rbsdem.batch.work import (
-    Cluster,
-    EndRequest,
-    available_processors,
-    check_client,
-    check_jobs,
-    progress_bar,
-    work_through,
-)
+from rbsdem._types import Array, ArrayLike, DataFrame, NDArray, Unpack
+from rbsdem.batch import work
 from rbsdem.errors import InputError, Interrupted
-from rbsdem.many.inputs import (
-    AT_REST,
-    COUNTS,
-    STATUSES,
-    Measure,
-    Motion,
-    checked_measures,
-    collected,
-    limit_states_among,
-    named_columns,
-    named_motions,
-    raise_faults,
-    scale_array,
-    states_of_columns,
-    storeys_among,
-)
+from rbsdem.many import inputs
 from rbsdem.many.plan import Outcome, Piece, Plan, RunStore, compute, cut, expected, one_run
 from rbsdem.model.frame import Structure
 from rbsdem.results.result import Result
 from rbsdem.solve.solver import Solver, checked_solver
-
-if TYPE_CHECKING:
-    import pandas as pd
-    from typing_extensions import Unpack
 
 #: Seconds of a task at the most, as far as that is known: what a kill may cost.
 _LONGEST = 2.0
@@ -94,7 +66,7 @@ class Ensemble(Tabular):
     """
 
     columns: Mapping[str | int, Structure]
-    motions: Mapping[str | int, Motion]
+    motions: Mapping[str | int, inputs.Motion]
     settings: dict[str, Any]
     initial: dict[str | int, Array]
     column: NDArray[np.int32]
@@ -121,10 +93,10 @@ class Ensemble(Tabular):
     @property
     def counts(self) -> dict[str, int]:
         """Number of runs of each status that occurs."""
-        found = {status: int((self.status == status).sum()) for status in STATUSES}
+        found = {status: int((self.status == status).sum()) for status in inputs.STATUSES}
         return {status or "not started": number for status, number in found.items() if number}
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each run: what it is, its measures, its error."""
         import pandas  # noqa: PLC0415
 
@@ -132,10 +104,10 @@ class Ensemble(Tabular):
             "column": pandas.Categorical.from_codes(self.column, list(self.columns)),
             "motion": pandas.Categorical.from_codes(self.motion, list(self.motions)),
             "scale": self.scale,
-            "status": pandas.Categorical(self.status, STATUSES),
+            "status": pandas.Categorical(self.status, inputs.STATUSES),
         }
         for name, numbers in self.measures.items():
-            whole = name in COUNTS and not self.errors and (self.status != "").all()
+            whole = name in inputs.COUNTS and not self.errors and (self.status != "").all()
             values[name] = numbers.astype(int) if whole else numbers
         errors = pandas.Series("", index=range(len(self)), dtype=object)
         for run, text in self.errors.items():
@@ -165,7 +137,7 @@ class Ensemble(Tabular):
         _arguments.integer(run, "run", least=0, most=len(self) - 1)
         name, column = list(self.columns.items())[self.column[run]]
         motion = list(self.motions.values())[self.motion[run]]
-        state = self.initial.get(name, AT_REST)
+        state = self.initial.get(name, inputs.AT_REST)
         result: Result = one_run(column, motion, float(self.scale[run]), self.settings, state)
         return result
 
@@ -175,7 +147,7 @@ def ensemble(
     motions: Any,
     *,
     scales: ArrayLike = 1.0,
-    measures: Sequence[str | Measure] | None = None,
+    measures: Sequence[str | inputs.Measure] | None = None,
     collapse_drift: float | None = None,
     initial: Any = None,
     jobs: int | None = None,
@@ -258,59 +230,49 @@ def ensemble(
         settings["collapse_drift"] = collapse_drift
     settings = {name: _plain(value) for name, value in settings.items()}
     faults: list[str] = []
-    column_names, column_items = named_columns(columns, faults)
-    given, motion_items = named_motions(motions, faults)
-    before = states_of_columns(initial, column_names, faults)
-    full = scale_array(scales, len(column_names), given, faults)
+    column_names, column_items = inputs.named_columns(columns, faults)
+    given, motion_items = inputs.named_motions(motions, faults)
+    before = inputs.states_of_columns(initial, column_names, faults)
+    full = inputs.scale_array(scales, len(column_names), given, faults)
     names: tuple[str, ...] = ()
-    functions: dict[str, Measure] = {}
-    with collected(faults):
-        names, functions = checked_measures(measures, column_items)
+    functions: dict[str, inputs.Measure] = {}
+    with _arguments.collected(faults):
+        names, functions = inputs.checked_measures(measures, column_items)
     part = _checked_part(shard, store, faults)
-    with collected(faults):
+    with _arguments.collected(faults):
         if jobs is not None:
-            check_jobs(jobs)
-    with collected(faults):
+            work.check_jobs(jobs)
+    with _arguments.collected(faults):
         if client is not None:
-            check_client(client)
+            work.check_client(client)
     for name, value in (("progress", progress), ("allow_partial", allow_partial)):
-        with collected(faults):
+        with _arguments.collected(faults):
             _arguments.boolean(value, name)
-    raise_faults(faults)
+    _arguments.raise_faults(faults)
     wanted = np.flatnonzero(~np.isnan(full).ravel())
     column, motion, _ = np.unravel_index(wanted, full.shape)
-    plan = Plan(
-        column_items,
-        motion_items,
-        settings,
-        column.astype(np.int32),
-        motion.astype(np.int32),
-        full.ravel()[wanted],
-        functions,
-        limit_states_among(names),
-        storeys_among(names),
-        before,
-    )
+    runs = column.astype(np.int32), motion.astype(np.int32), full.ravel()[wanted]
+    asked = functions, inputs.limit_states_among(names), inputs.storeys_among(names)
+    plan = Plan(column_items, motion_items, settings, *runs, *asked, before)
     seconds, in_lanes, wrong = expected(plan)
     each, lanes = seconds[plan.motion, plan.column], in_lanes[plan.motion, plan.column]
-    raise_faults([f"column {column_names[i]!r}: {text}" for i, text in wrong])
+    _arguments.raise_faults([f"column {column_names[i]!r}: {text}" for i, text in wrong])
     kept = None
     if store is not None:
         own_names = column_names, [item.name for item in motion_items]
         kept = RunStore(_arguments.path(store), plan, own_names, part, seeds)
     own = _of_part(each, lanes, part)
     outcome, resumed, end = _carried_out(plan, own, (each, lanes), kept, client, jobs, progress)
+    states = zip(column_names, before, strict=True)
     whole = Ensemble(
-        columns=dict(zip(column_names, column_items, strict=True)),
-        motions={item.name: item for item in motion_items},
-        settings=settings,
-        initial={
-            name: state for name, state in zip(column_names, before, strict=True) if state.size
-        },
-        column=plan.column,
-        motion=plan.motion,
-        scale=plan.scale,
-        status=np.array(STATUSES)[outcome.fates],
+        dict(zip(column_names, column_items, strict=True)),
+        {item.name: item for item in motion_items},
+        settings,
+        {name: state for name, state in states if state.size},
+        plan.column,
+        plan.motion,
+        plan.scale,
+        status=np.array(inputs.STATUSES)[outcome.fates],
         measures=_named(names, outcome, plan) | outcome.extra,
         errors=dict(sorted(outcome.errors.items())),
         seconds=time.perf_counter() - begin,
@@ -330,13 +292,13 @@ def _carried_out(
     client: Any,
     jobs: int | None,
     progress: bool,
-) -> tuple[Outcome, int, EndRequest]:
+) -> tuple[Outcome, int, work.EndRequest]:
     """Do the runs of this process that no store has.
 
     Return the outcome, how many runs a store had, and whether the work was asked to end.
     """
-    outcome, resumed, end = Outcome.none(plan), 0, EndRequest()
-    threads = jobs or available_processors()
+    outcome, resumed, end = Outcome.none(plan), 0, work.EndRequest()
+    threads = jobs or work.available_processors()
     with ExitStack() as stack:
         stack.enter_context(end.listening(also_terminated=kept is not None))
         if kept is not None:
@@ -345,7 +307,7 @@ def _carried_out(
         missing = own[outcome.fates[own] == 0]
         each, lanes = (values[missing] for values in cost)
         pace = _Pace(each, lanes, threads)
-        show = stack.enter_context(progress_bar(progress, missing.size))
+        show = stack.enter_context(work.progress_bar(progress, missing.size))
         workers = _Workers(plan.only(missing), client, threads)
         stack.enter_context(workers.executor)
 
@@ -362,15 +324,8 @@ def _carried_out(
             if kept is not None:
                 kept.write_if_due()
 
-        work_through(
-            workers.submit,
-            cut(each, pace.longest),
-            take,
-            ahead=workers.ahead,
-            end=end,
-            beat=beat,
-            stop=workers.stop,
-        )
+        pieces, how = cut(each, pace.longest), {"beat": beat, "stop": workers.stop}
+        work.work_through(workers.submit, pieces, take, ahead=workers.ahead, end=end, **how)
     return outcome, resumed, end
 
 
@@ -384,7 +339,7 @@ class _Workers:
         self._done = 0
         # Shared with the threads: the first number ends a task, the second counts its runs.
         self._controls: list[NDArray[np.int32]] = []
-        self._cluster = None if client is None else Cluster(client)
+        self._cluster = None if client is None else work.Cluster(client)
         if self._cluster is None:
             self.executor = ThreadPoolExecutor(threads)
             #: Tasks under way or next in line, so that no thread waits for one.
@@ -497,7 +452,7 @@ def _plain(value: Any) -> Any:
 
 def _checked_part(shard: Any, store: Any, faults: list[str]) -> tuple[int, int]:
     """Return which part of how many this process does; without parts the first of one."""
-    with collected(faults):
+    with _arguments.collected(faults):
         if store is not None:
             _arguments.path(store, "store")
     if shard is None:

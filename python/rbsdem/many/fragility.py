@@ -8,22 +8,17 @@ import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular
+from rbsdem._types import Array, ArrayLike, DataFrame, NDArray
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.many.inputs import limit_states
 from rbsdem.many.lognormal import Bounds, bounds_of_counts, fit_bounds, fit_points
 from rbsdem.many.runs import Runs
-
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 #: A frequency of which more than this part comes from beyond the given points is warned of.
 _BEYOND = 0.1
@@ -62,8 +57,7 @@ class Hazard:
             faults.append("hazard: intensities must be above 0 and ascend strictly")
         if not (rate > 0).all() or not (np.diff(rate) < 0).all():
             faults.append("hazard: frequencies must be above 0 and descend strictly")
-        if faults:
-            raise InputError("\n".join(faults))
+        _arguments.raise_faults(faults)
         for name, values in (("intensities", im), ("frequencies", rate)):
             values.flags.writeable = False
             object.__setattr__(self, name, values)
@@ -322,16 +316,18 @@ class Capacities:
 
     def _bounds(self, draws: NDArray[np.int_]) -> Bounds:
         known = self.known
+        ends = (self.values, self.values) if known else (self.lower, self.upper)
         with np.errstate(divide="ignore"):
-            low, high = (
-                np.log((self.values if known else end)[draws]) for end in (self.lower, self.upper)
-            )
+            low, high = (np.log(end[draws]) for end in ends)
         return Bounds(low, high, np.ones(draws.shape))
 
     @property
     def size(self) -> int:
         """Number of records."""
         return self.lower.size
+
+
+MAKER = "Hazard(intensities, frequencies) makes one"
 
 
 def checked_probability(probability: ArrayLike) -> Array:
@@ -378,11 +374,8 @@ class Fragility:
         from scipy import special  # noqa: PLC0415
 
         with np.errstate(divide="ignore"):
-            z = (
-                np.log(_arguments.vector(intensity, "intensity", shape="any") / self.theta)
-                / self.beta
-            )
-        return np.asarray(special.ndtr(z))
+            u = np.log(_arguments.vector(intensity, "intensity", shape="any") / self.theta)
+        return np.asarray(special.ndtr(u / self.beta))
 
     def intensity(self, probability: ArrayLike) -> Array:
         """Return the intensities at which the limit state has given probabilities."""
@@ -463,10 +456,7 @@ class Fragility:
         AccuracyWarning
             If more than a tenth comes from intensities beyond the points of the hazard.
         """
-        if not isinstance(hazard, Hazard):
-            raise InputError(
-                f"hazard = {hazard!r} must be a Hazard; Hazard(intensities, frequencies) makes one"
-            )
+        _arguments.instance(hazard, "hazard", Hazard, MAKER)
         return hazard.frequency_of(float(np.log(self.theta)), self.beta)
 
     def __repr__(self) -> str:
@@ -478,10 +468,7 @@ class Fragility:
 
 
 def fit_fragility(
-    name: str,
-    data: Counts | Capacities,
-    intensity_name: str = "",
-    beta: float | None = None,
+    name: str, data: Counts | Capacities, intensity_name: str = "", beta: float | None = None
 ) -> Fragility:
     """Return the lognormal curve of largest likelihood.
 
@@ -528,16 +515,10 @@ def fit_fragility(
             )
         if np.isnan(mu):
             raise InputError(who + _undetermined(bounds))
-    to_theta = np.diag([np.exp(mu), 1.0])
-    return Fragility(
-        name,
-        float(np.exp(mu)),
-        spread,
-        np.asarray(to_theta @ covariance @ to_theta),
-        data,
-        intensity_name,
-        beta is not None,
-    )
+    to_theta, theta = np.diag([np.exp(mu), 1.0]), float(np.exp(mu))
+    covariance = np.asarray(to_theta @ covariance @ to_theta)
+    stated = beta is not None
+    return Fragility(name, theta, spread, covariance, data, intensity_name, stated)
 
 
 def _check(who: str, data: Counts | Capacities, beta: float | None) -> None:
@@ -623,6 +604,6 @@ class Fragile(Tabular, ABC, Generic[Curve]):
             )
         return {name: self._fit(name, *state, stated.get(name)) for name, state in states.items()}
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each run."""
         return self.runs.to_pandas()

@@ -11,14 +11,13 @@ from __future__ import annotations
 import time
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._files import Reported
+from rbsdem._types import Array, ArrayLike, NDArray, Unpack
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import InputError
 from rbsdem.many.fragility import Capacities, Counts, Fragile, Fragility, fit_fragility
@@ -34,10 +33,6 @@ from rbsdem.many.runs import (
 )
 from rbsdem.model.frame import Structure
 from rbsdem.motions.motion import GroundMotion
-
-if TYPE_CHECKING:
-    from typing_extensions import Unpack
-
 
 _SMALLEST = 1e-4
 _MOST_REPAIRS = 5
@@ -91,8 +86,7 @@ class Hunt:
             faults.append(f"hunt: points = {self.points} must be from 1 to 1000")
         if not faults and self.first > self.highest:
             faults.append(f"hunt: first = {self.first:g} is above highest = {self.highest:g}")
-        if faults:
-            raise InputError("\n".join(faults))
+        _arguments.raise_faults(faults)
 
 
 def hunt_and_fill(work: Collector, hunt: Hunt, refine: Sequence[str]) -> tuple[Array, Array]:
@@ -277,11 +271,8 @@ class IDA(Fragile[Fragility], Reported):
         tuple of ndarray
             The levels (k,), and the fractiles (3, k), infinite where that part has collapsed.
         """
-        at = (
-            np.linspace(0, self.runs.intensity.max(), 51)[1:]
-            if levels is None
-            else checked_levels(levels)
-        )
+        usual = np.linspace(0, self.runs.intensity.max(), 51)[1:]
+        at = usual if levels is None else checked_levels(levels)
         response = self.runs.response(edp)
         values = np.array([_at(at, *self._curve(c, m, response)) for c, m in self._pairs()])
         return at, np.percentile(values, FRACTILES, axis=0, method="inverted_cdf")
@@ -417,11 +408,8 @@ def ida(
         at = checked_levels(levels)
         collapsed = work.run(np.broadcast_to(at, (*work.shape, at.size)).copy())
         lower, upper = _first(at, collapsed)
-    about = {
-        n: v
-        for n, v in work.settings.items()
-        if v is not None and v is not False and n not in _OF_THE_RUN
-    }
+    own = {n: v for n, v in work.settings.items() if n not in _OF_THE_RUN}
+    about = {n: v for n, v in own.items() if v is not None and v is not False}
     about["levels"] = "hunt" if hunt is not None else "given"
     return IDA(work.finish(), lower, upper, about, time.perf_counter() - begin)
 

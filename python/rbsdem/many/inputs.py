@@ -5,27 +5,22 @@ from __future__ import annotations
 import os
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, TypeAlias
 from unicodedata import category
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
 from rbsdem.model.frame import Frame, Structure, checked_structure
 from rbsdem.model.response import Response, state_of
 from rbsdem.results.result import Result
-
-#: More faults than this are only counted.
-MOST_FAULTS = 25
 
 #: The state of a column at rest.
 AT_REST: Array = np.empty(0)
@@ -40,31 +35,13 @@ class Motion:
     acceleration: Array
 
 
-@contextmanager
-def collected(faults: list[str], who: str = "") -> Iterator[None]:
-    """Add what is wrong with an input to the faults, to tell all of them at once."""
-    try:
-        yield
-    except InputError as error:
-        faults.append(f"{who}{error}")
-
-
-def raise_faults(faults: list[str]) -> None:
-    """Raise `InputError` with a line for each fault, if there is any."""
-    if not faults:
-        return
-    more = len(faults) - MOST_FAULTS
-    text = "\n".join(faults[:MOST_FAULTS])
-    raise InputError(text + (f"\nand {more} more" if more > 0 else ""))
-
-
 def named_columns(columns: Any, faults: list[str]) -> tuple[list[str | int], list[Structure]]:
     """Return names and columns; without names they are numbered from 0."""
     if isinstance(columns, (Column, Frame)):
         columns = [columns]
     names, items = named(columns, "columns", "Column", faults)
     for name, item in zip(names, items, strict=True):
-        with collected(faults, f"column {name!r}: "):
+        with _arguments.collected(faults, f"column {name!r}: "):
             checked_structure(item)
     check_names(names, "columns", "Column", faults)
     return names, items
@@ -81,7 +58,7 @@ def named_motions(motions: Any, faults: list[str]) -> tuple[int, list[Motion]]:
     names, items = named(motions, "motions", "motion", faults)
     found = []
     for name, item in zip(names, items, strict=True):
-        with collected(faults, f"motion {name!r}: "):
+        with _arguments.collected(faults, f"motion {name!r}: "):
             found.append(_motion(name, item))
     check_names(names, "motions", "motion", faults)
     return len(names), found
@@ -189,7 +166,7 @@ def states_of_columns(initial: Any, names: list[str | int], faults: list[str]) -
 
 
 def _state(initial: Any, who: str, faults: list[str]) -> Array:
-    with collected(faults, who):
+    with _arguments.collected(faults, who):
         return state_of(initial, "ensemble")
     return AT_REST
 

@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rbsdem._arguments import Array
+from rbsdem._types import Array, NDArray
 
 _MOST_STEPS = 100
 #: Gain of the logarithm of the likelihood that a step still promises where the search ends.
@@ -214,9 +213,7 @@ class _Terms:
         """Return the logarithm of the likelihood, shape (...)."""
         z = a[..., None] + b[..., None] * self._point
         point = np.log(b)[..., None] - 0.5 * z**2
-        return np.asarray(
-            (self._weight * np.where(self._exact, point, self._mass(a, b)[0])).sum(-1)
-        )
+        return self._sums((point,), (self._mass(a, b)[0],))[0]
 
     def derivatives(self, a: Array, b: Array) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
         """Return the gradient (a, b), and the second derivatives with the other sign."""
@@ -239,14 +236,12 @@ class _Terms:
         per = 1.0 / b[..., None]
         g_point = -z, per - x * z
         second_point = one, x * one, x * x + per**2
-        gradient, hessian = (
-            tuple(
-                (self._weight * np.where(self._exact, at, between)).sum(-1)
-                for at, between in zip(known, bounded, strict=True)
-            )
-            for known, bounded in ((g_point, g), (second_point, second))
-        )
-        return gradient, hessian
+        return self._sums(g_point, g), self._sums(second_point, second)
+
+    def _sums(self, known: tuple[Array, ...], bounded: tuple[Array, ...]) -> tuple[Array, ...]:
+        pairs = zip(known, bounded, strict=True)
+        terms = (np.where(self._exact, at, between) for at, between in pairs)
+        return tuple((self._weight * term).sum(-1) for term in terms)
 
     def _mass(self, a: Array, b: Array) -> tuple[Array, Array, Array]:
         """Return ln(Phi(v) - Phi(u)) with v and u, the ends in z."""
@@ -263,8 +258,7 @@ class _Terms:
         with np.errstate(invalid="ignore", divide="ignore"):
             top, bottom = log_ndtr(second), log_ndtr(first)
             mass = top + np.log1p(-np.exp(np.minimum(bottom - top, 0.0)))
-        finite = (np.where(known, end, 0.0) for known, end in zip(self._open, ends, strict=True))
-        u, v = finite
+        u, v = (np.where(known, end, 0.0) for known, end in zip(self._open, ends, strict=True))
         return np.where(self._exact, 0.0, mass), u, v
 
 

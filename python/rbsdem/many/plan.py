@@ -16,27 +16,18 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rbsdem import _core
-from rbsdem._arguments import Array
 from rbsdem._package import code_digest, extra
+from rbsdem._types import Array, NDArray
 from rbsdem.batch.store import PARQUET, Store, digest
 from rbsdem.checks.criteria import criteria, watches
 from rbsdem.errors import InputError, RbsdemError
-from rbsdem.many.inputs import (
-    AT_REST,
-    STATUSES,
-    Measure,
-    Motion,
-    core_measures,
-    storey_measures,
-)
-from rbsdem.model.column import Column
+from rbsdem.many import inputs
+from rbsdem.model.column import Column, without_notes
 from rbsdem.model.frame import Structure
 from rbsdem.model.springs import Layered
 from rbsdem.results.result import time_history
-from rbsdem.solve.analysis import without_notes
 
 Integers = NDArray[np.int32]
 
@@ -44,14 +35,13 @@ Integers = NDArray[np.int32]
 Piece: TypeAlias = tuple[int, int]
 
 #: Watches for a rotation that no joint reaches.
-_NO_WATCH: Array = np.array(
-    [(1, 1, 0.0, side, 0.0, np.finfo(np.float64).max) for side in (1.0, -1.0)]
-)
+_NEVER = np.finfo(np.float64).max
+_NO_WATCH: Array = np.array([(1, 1, 0.0, side, 0.0, _NEVER) for side in (1.0, -1.0)])
 
 #: Runs of a task at the most: each takes about 1 kB while the task lasts.
 _MOST_RUNS = 16384
 
-_FAILED = STATUSES.index("failed")
+_FAILED = inputs.STATUSES.index("failed")
 
 #: How the error of a run begins whose measure raised one.
 FAULT_OF_MEASURE = "measure "
@@ -67,12 +57,12 @@ class Plan:
     """
 
     columns: list[Structure]
-    motions: list[Motion]
+    motions: list[inputs.Motion]
     settings: dict[str, Any]
     column: Integers
     motion: Integers
     scale: Array
-    functions: dict[str, Measure] = field(default_factory=dict)
+    functions: dict[str, inputs.Measure] = field(default_factory=dict)
     states: tuple[str, ...] = ()
     storeys: int = 0
     initial: list[Array] = field(default_factory=list)
@@ -80,7 +70,7 @@ class Plan:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the measures, those of functions left out."""
-        return core_measures() + self.states + storey_measures(self.storeys)
+        return inputs.core_measures() + self.states + inputs.storey_measures(self.storeys)
 
     def __len__(self) -> int:
         """Return the number of runs."""
@@ -89,7 +79,7 @@ class Plan:
     @property
     def before(self) -> list[Array]:
         """States that the runs of each column begin in."""
-        return self.initial or [AT_REST] * len(self.columns)
+        return self.initial or [inputs.AT_REST] * len(self.columns)
 
     def only(self, runs: NDArray[np.int_]) -> Plan:
         """Return the plan of some of the runs."""
@@ -130,7 +120,7 @@ class Outcome:
         """Return the outcome of runs of which nothing came back."""
         runs = len(plan)
         return cls(
-            np.full(runs, STATUSES.index(status), dtype=np.int8),
+            np.full(runs, inputs.STATUSES.index(status), dtype=np.int8),
             np.full((len(plan.names), runs), np.nan),
             {name: np.full(runs, np.nan) for name in plan.functions},
             dict.fromkeys(range(runs), error) if error else {},
@@ -166,13 +156,13 @@ def expected(plan: Plan) -> tuple[Array, Integers, list[tuple[int, str]]]:
 
     The first two have shape (motions, columns).
     """
-    return _core.plan_ensemble(
-        [column._statement for column in plan.columns],
-        _core.settings(plan.settings),
-        [_NO_WATCH] * len(plan.columns),
-        plan.before,
-        [(motion.time, motion.acceleration) for motion in plan.motions],
-    )
+    return _core.plan_ensemble(_batch(plan, [_NO_WATCH] * len(plan.columns)))
+
+
+def _batch(plan: Plan, watches: list[Array]) -> dict[str, Any]:
+    columns = [column._statement for column in plan.columns]
+    motions = [(motion.time, motion.acceleration) for motion in plan.motions]
+    return _core.batch(columns, _core.settings(plan.settings), watches, plan.before, motions)
 
 
 def compute(task: Plan, control: Integers | None = None, kernel: int = 0) -> Outcome:
@@ -183,18 +173,11 @@ def compute(task: Plan, control: Integers | None = None, kernel: int = 0) -> Out
     """
     begin = time.monotonic()
     control = np.zeros(2, dtype=np.int32) if control is None else control
-    fates, values, errors = _core.run_ensemble(
-        [column._statement for column in task.columns],
-        _core.settings(task.settings),
-        [watched(column, task.states) for column in task.columns],
-        task.before,
-        [(motion.time, motion.acceleration) for motion in task.motions],
-        (task.column, task.motion, task.scale),
-        control,
-        len(core_measures()) + len(task.states),
-        task.storeys,
-        kernel,
-    )
+    batch = _batch(task, [watched(column, task.states) for column in task.columns])
+    runs = {"columns": task.column + 1, "motions": task.motion + 1, "scales": task.scale}
+    number = len(inputs.core_measures()) + len(task.states)
+    asked = {"measures": number, "storeys": task.storeys, "level": kernel}
+    fates, values, errors = _core.run_ensemble(batch, control, **runs, **asked)
     _name_joints(task, values)
     extra = {name: np.full(len(task), np.nan) for name in task.functions}
     if extra:
@@ -208,18 +191,14 @@ def _name_joints(task: Plan, values: Array) -> None:
 
     The solver counts them from the ground, from 1, a footing's included.
     """
-    lost = values[core_measures().index("lost_joint")]
+    lost = values[inputs.core_measures().index("lost_joint")]
     lost[lost == 0] = np.nan
     for run in np.flatnonzero(lost > 0):
         lost[run] = task.columns[task.column[run]].joint_numbers[int(lost[run]) - 1]
 
 
 def _call_functions(
-    task: Plan,
-    control: Integers,
-    fates: Integers,
-    errors: dict[int, str],
-    extra: dict[str, Array],
+    task: Plan, control: Integers, fates: Integers, errors: dict[int, str], extra: dict[str, Array]
 ) -> None:
     """Fill the measures of functions, each run with its history, which is then dropped."""
     for run in np.flatnonzero(fates):
@@ -230,13 +209,9 @@ def _call_functions(
             continue
         try:
             with without_notes():
-                result = one_run(
-                    task.columns[task.column[run]],
-                    task.motions[task.motion[run]],
-                    float(task.scale[run]),
-                    task.settings,
-                    task.before[task.column[run]],
-                )
+                at, scale = task.column[run], float(task.scale[run])
+                run_of = task.columns[at], task.motions[task.motion[run]], scale
+                result = one_run(*run_of, task.settings, task.before[at])
         except RbsdemError as error:
             fates[run], errors[int(run)] = _FAILED, str(error)
             continue
@@ -255,24 +230,18 @@ def _number(value: Any) -> float:
 
 
 def one_run(
-    column: Any, motion: Motion, scale: float, settings: dict[str, Any], initial: Array
+    column: Any, motion: inputs.Motion, scale: float, settings: dict[str, Any], initial: Array
 ) -> Any:
     """Return the `Result` of one run, with its history; an empty state is at rest."""
-    layered = isinstance(column, Column) and any(
-        isinstance(spring, Layered) for spring in column.joints("flexure")
-    )
-    return time_history(
-        column,
-        motion.time,
-        ground_acceleration=scale * motion.acceleration,
-        initial=initial if initial.size else None,  # type: ignore[arg-type]
-        openings=layered,
-        **settings,
-    )
+    springs = column.joints("flexure") if isinstance(column, Column) else ()
+    settings = settings | {"openings": any(isinstance(each, Layered) for each in springs)}
+    settings["initial"] = initial if initial.size else None
+    ground = scale * motion.acceleration
+    return time_history(column, motion.time, ground_acceleration=ground, **settings)
 
 
 def watched(column: Structure, states: tuple[str, ...]) -> Array:
-    """Return what runs of a column are watched for, as `_core.run_ensemble` takes it."""
+    """Return what runs of a column are watched for, as `_core.batch` takes it."""
     numbers = {name: number for number, name in enumerate(("first_yield", *states), 1)}
     found = criteria(column, numbers)
     if not found:
@@ -331,7 +300,7 @@ class RunStore:
             "digests": {
                 "settings": digest(json.dumps(plan.settings, sort_keys=True).encode()),
                 "measures": digest(
-                    *(name.encode() for name in plan.names[len(core_measures()) :]),
+                    *(name.encode() for name in plan.names[len(inputs.core_measures()) :]),
                     *(f"{name}\0{_source(f)}".encode() for name, f in plan.functions.items()),
                 ),
             },
@@ -370,7 +339,7 @@ class RunStore:
         )
         runs = np.flatnonzero(rows >= 0)
         table = table.take(rows[runs])
-        codes = [STATUSES.index(word) for word in table["status"].to_pylist()]
+        codes = [inputs.STATUSES.index(word) for word in table["status"].to_pylist()]
         known = Outcome(
             np.array(codes, dtype=np.int8),
             np.array([table[name].to_numpy() for name in plan.names]),
@@ -397,7 +366,7 @@ class RunStore:
             "column": coded(plan.column[runs], columns),
             "motion": coded(plan.motion[runs], motions),
             "scale": pa.array(plan.scale[runs]),
-            "status": coded(result.fates[done], list(STATUSES)),
+            "status": coded(result.fates[done], list(inputs.STATUSES)),
             **{name: pa.array(values[done]) for name, values in measures.items()},
             "error": pa.array(errors[done]),
             "column_key": coded(plan.column[runs], self._columns),
@@ -416,7 +385,7 @@ def _column_key(plan: Plan, i: int) -> str:
     return digest(text, watches, plan.initial[i].tobytes())
 
 
-def _source(function: Measure) -> str:
+def _source(function: inputs.Measure) -> str:
     """Return the source of a measure, by which it is known again."""
     try:
         return inspect.getsource(function)

@@ -6,37 +6,23 @@ import os
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import Array, DataFrame, NDArray, Unpack
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.many import inputs
 from rbsdem.many.ensemble import ensemble
-from rbsdem.many.inputs import (
-    STOREY_MEASURES,
-    Measure,
-    check_names,
-    collected,
-    measures_in_a_list,
-    named,
-    named_columns,
-    raise_faults,
-)
 from rbsdem.many.plan import FAULT_OF_MEASURE
 from rbsdem.model.column import Column
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.motions.motion import GroundMotion, checked_motion
 from rbsdem.solve.analysis import modes
 from rbsdem.solve.solver import COLLAPSE_DRIFT, Solver, checked_solver
-
-if TYPE_CHECKING:
-    import pandas as pd
-    from typing_extensions import Unpack
 
 Name = Literal["sa_t1", "pga", "sa_avg"]
 NAMES: tuple[Name, ...] = ("sa_t1", "pga", "sa_avg")
@@ -99,15 +85,15 @@ def motions_by_name(motions: Any) -> dict[str, GroundMotion]:
     """Return motions under their names, or raise `InputError` with all that is wrong."""
     faults: list[str] = []
     given = [motions] if isinstance(motions, GroundMotion) else motions
-    names, items = named(given, "motions", "GroundMotion", faults)
+    names, items = inputs.named(given, "motions", "GroundMotion", faults)
     found: dict[str, GroundMotion] = {}
     for name, item in zip(names, items, strict=True):
-        with collected(faults):
+        with _arguments.collected(faults):
             motion = found[str(name)] = checked_motion(item, f"motion {name}: ")
             if motion.pga == 0:
                 raise InputError(f"motion {name}: has no acceleration")
-    check_names(names, "motions", "motion", faults)
-    raise_faults(faults)
+    inputs.check_names(names, "motions", "motion", faults)
+    _arguments.raise_faults(faults)
     return found
 
 
@@ -164,7 +150,7 @@ class RunOptions(Solver, total=False):
     period: float | None
     damping: float
     collapse_drift: float
-    measures: Sequence[str | Measure]
+    measures: Sequence[str | inputs.Measure]
     initial: Any
     jobs: int | None
     progress: bool
@@ -238,7 +224,7 @@ class Runs(Tabular):
             values = np.isfinite(values).astype(float)
         return np.where(self.collapsed, np.inf, np.abs(values))
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each run; the intensity in the unit of its measure."""
         return data_frame(
             {
@@ -350,13 +336,8 @@ class Collector:
             )
 
     def _ensemble(self, scales: Array, settings: dict[str, Any]) -> Any:
-        found = ensemble(
-            dict(self.columns),
-            dict(self.motions),
-            scales=scales,
-            measures=list(self.names),
-            **settings,
-        )
+        given = settings | {"scales": scales, "measures": list(self.names)}
+        found = ensemble(dict(self.columns), dict(self.motions), **given)
         for text in found.errors.values():
             # Else the runs would count as collapses.
             if text.startswith(FAULT_OF_MEASURE):
@@ -377,17 +358,10 @@ class Collector:
                 stacklevel=4,
             )
         start = len("measure ")
-        return Runs(
-            dict(self.columns),
-            dict(self.motions),
-            self.measure,
-            whole["column"].astype(int),
-            whole["motion"].astype(int),
-            whole["intensity"],
-            whole["scale"],
-            whole["status"],
-            {name[start:]: v for name, v in whole.items() if name.startswith("measure ")},
-        )
+        found = {name[start:]: v for name, v in whole.items() if name.startswith("measure ")}
+        column, motion = whole["column"].astype(int), whole["motion"].astype(int)
+        runs = column, motion, whole["intensity"], whole["scale"], whole["status"], found
+        return Runs(dict(self.columns), dict(self.motions), self.measure, *runs)
 
 
 #: Settings that a second attempt by another method keeps.
@@ -403,7 +377,7 @@ def make_collector(
     period: float | None = None,
     damping: float = 0.05,
     collapse_drift: float = COLLAPSE_DRIFT,
-    measures: Sequence[str | Measure] | None = None,
+    measures: Sequence[str | inputs.Measure] | None = None,
     initial: Any = None,
     jobs: int | None = None,
     progress: bool = False,
@@ -423,8 +397,8 @@ def make_collector(
     }
     if measures is None:
         frames = any(isinstance(structure, Frame) for structure in named.values())
-        measures = (*MEASURES, *(STOREY_MEASURES if frames else ()))
-    return Collector(named, motions, measure, measures_in_a_list(measures), settings)
+        measures = (*MEASURES, *(inputs.STOREY_MEASURES if frames else ()))
+    return Collector(named, motions, measure, inputs.measures_in_a_list(measures), settings)
 
 
 def columns_by_name(columns: Any) -> dict[str | int, Structure]:
@@ -432,8 +406,8 @@ def columns_by_name(columns: Any) -> dict[str | int, Structure]:
     if isinstance(columns, (Column, Frame)):
         return {"column": columns}
     faults: list[str] = []
-    names, items = named_columns(columns, faults)
-    raise_faults(faults)
+    names, items = inputs.named_columns(columns, faults)
+    _arguments.raise_faults(faults)
     return dict(zip(names, items, strict=True))
 
 

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
-from rbsdem.many.inputs import raise_faults
 from rbsdem.model.column import Column, without_notes
 
 _MOST = 1_000_000
@@ -98,7 +96,7 @@ class Uncertain:
                     f"uncertain: {name} = {distribution!r} is not a distribution; give one of "
                     "scipy.stats, or lognormal(median, beta)"
                 )
-        raise_faults(faults)
+        _arguments.raise_faults(faults)
         self._factor()
 
     def _factor(self) -> Array:
@@ -182,7 +180,7 @@ class Uncertain:
             except (InputError, ValueError, TypeError) as error:
                 text = ", ".join(f"{name} = {value:g}" for name, value in given.items())
                 faults.append(f"sample {number} ({text}): {error}")
-        raise_faults(faults)
+        _arguments.raise_faults(faults)
         return Sample(names, values, columns)
 
 
@@ -210,15 +208,14 @@ class VarianceSplit:
     @property
     def beta(self) -> dict[str, float]:
         """Standard deviations of the logarithm, by name, and "total"."""
-        parts = {"record": self.record, "model": self.model, "residual": self.residual}
-        parts["total"] = self.total
+        parts = asdict(self) | {"total": self.total}
         return {name: float(np.sqrt(value)) for name, value in parts.items()}
 
     @property
     def share(self) -> dict[str, float]:
         """Parts of the total variance, by name."""
-        parts = {"record": self.record, "model": self.model, "residual": self.residual}
-        return {name: value / self.total if self.total else 0.0 for name, value in parts.items()}
+        whole = self.total
+        return {name: value / whole if whole else 0.0 for name, value in asdict(self).items()}
 
 
 def variance_split(capacity: ArrayLike) -> VarianceSplit:

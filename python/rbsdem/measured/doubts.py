@@ -35,24 +35,20 @@ from __future__ import annotations
 
 import math
 import statistics
-import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, data_frame
-from rbsdem.errors import AccuracyWarning, RbsdemError
+from rbsdem._package import unwarned
+from rbsdem._types import Array, DataFrame
+from rbsdem.errors import RbsdemError
 from rbsdem.measured.drawing import checked_specimen, draw
 from rbsdem.measured.measured import MeasuredTest
 from rbsdem.measured.specimens import Specimen, Specimens
 from rbsdem.section.curvature import diagram
-
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 #: Share of the largest drift beyond which the growth of the base moment is taken.
 _OUTER = 0.4
@@ -119,9 +115,8 @@ def indicators(specimen: Specimen) -> Indicators:
     InputError
         If the test has no history, or its section is refused.
     """
-    with warnings.catch_warnings():
+    with unwarned():
         # What a drawing assumes is said where a column is made.
-        warnings.simplefilter("ignore", AccuracyWarning)
         return _indicators(specimen)
 
 
@@ -145,17 +140,9 @@ def _indicators(specimen: Specimen) -> Indicators:
             slopes.append(_slope_behind_peak(drift, force) * length / load)
         for name, moment in moments.items():
             growths[name].append(_growth(*_envelope(test.displacement, moment, side)))
-    return Indicators(
-        specimen=specimen,
-        second_order_share=_mean(shares),
-        slope=_mean(slopes),
-        growth_labelled=_mean(growths["labelled"]),
-        growth_net=_mean(growths["net"]),
-        growth_effective=_mean(growths["effective"]),
-        strength=_strength(specimen, test),
-        stiffness=_stiffness(specimen, test),
-        symmetry=_symmetry(test),
-    )
+    figures = [_mean(values) for values in (shares, slopes, *growths.values())]
+    figures += [_strength(specimen, test), _stiffness(specimen, test), _symmetry(test)]
+    return Indicators(specimen, *figures)
 
 
 def _envelope(displacement: Array, force: Array, side: int) -> tuple[Array, Array]:
@@ -233,16 +220,8 @@ def _symmetry(test: MeasuredTest) -> float:
 _WEIGHS, _HINTS = 0.3, 0.2
 #: Largest difference of twins, and of what makes them twins: sizes, axial load ratio.
 _TWINS, _ALIKE, _ALIKE_LOAD = 0.15, 0.02, 0.02
-_SAME = (
-    "length",
-    "width",
-    "depth",
-    "corner_diameter",
-    "intermediate_diameter",
-    "transverse_diameter",
-    "transverse_spacing",
-    "shear_legs",
-)
+_SAME = ("length", "width", "depth", "corner_diameter", "intermediate_diameter")
+_SAME_TIES = ("transverse_diameter", "transverse_spacing", "shear_legs")
 _STRENGTH = (0.75, 1.5)
 _STIFFNESS = (0.1, 1.3)
 _SYMMETRY = 1.25
@@ -309,7 +288,7 @@ class Checked(Tabular):
             kept.append(replace(one.specimen, pdelta_code=codes[0]) if codes else one.specimen)
         return Specimens(kept)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each doubt, the sure ones first."""
         rows = [
             {
@@ -321,10 +300,9 @@ class Checked(Tabular):
             }
             for doubt in sorted(self.doubts, key=lambda doubt: not doubt.sure)
         ]
-        columns = ["test", "about", "certainty", "why", "for_the_second_score"]
-        return data_frame(rows, columns=columns)
+        return data_frame(rows, ["test", "about", "certainty", "why", "for_the_second_score"])
 
-    def by_test(self) -> pd.DataFrame:
+    def by_test(self) -> DataFrame:
         """Return a DataFrame, a row for each test: its indicators and its doubts."""
         rows = []
         for one in self.indicators:
@@ -464,7 +442,7 @@ def _alike(one: Specimen, other: Specimen) -> bool:
         return False
     if abs(one.axial_load_ratio - other.axial_load_ratio) > _ALIKE_LOAD:
         return False
-    pairs = [(getattr(one, name), getattr(other, name)) for name in _SAME]
+    pairs = [(getattr(one, name), getattr(other, name)) for name in (*_SAME, *_SAME_TIES)]
     return all(a == b or (a and b and abs(a - b) <= _ALIKE * abs(a)) for a, b in pairs)
 
 

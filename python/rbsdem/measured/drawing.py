@@ -161,15 +161,11 @@ def draw(specimen: Specimen) -> DrawnSpecimen:
     }
     hoops: dict[str, Any] = {}
     if tie:
-        hoop_yield = sheet.guessed(
-            "transverse_yield_stress", corner[0], "that of longitudinal bars"
-        )
+        said = "that of longitudinal bars"
+        hoop_yield = sheet.guessed("transverse_yield_stress", corner[0], said)
         ultimate = specimen.transverse_ultimate_stress or ULTIMATE_OVER_YIELD * hoop_yield
-        hoops = {
-            "diameter": tie,
-            "spacing": specimen.transverse_spacing,
-            "steel": _steel(hoop_yield, ultimate),
-        }
+        hoops = {"diameter": tie, "spacing": specimen.transverse_spacing}
+        hoops["steel"] = _steel(hoop_yield, ultimate)
     section: Section
     if circular:
         spiral = Spiral(**hoops) if hoops else None
@@ -216,15 +212,14 @@ def _check_bars(specimen: Specimen) -> None:
 
 
 # Plausible ranges in SI units, with a hint for values in other units.
+_YIELDS = [f"{bar}_yield_stress" for bar in ("corner", "intermediate", "transverse")]
 _RANGES = {
     "length": (0.05, 100.0, "m", "1600 mm is 1.6"),
     "width": (0.02, 20.0, "m", "400 mm is 0.4"),
     "depth": (0.02, 20.0, "m", "400 mm is 0.4"),
     "concrete_strength": (2e6, 300e6, "Pa", "40 MPa is 40e6"),
     "axial_load": (-1e9, 1e9, "N", "700 kN is 700e3"),
-    "corner_yield_stress": (50e6, 3e9, "Pa", "450 MPa is 450e6"),
-    "intermediate_yield_stress": (50e6, 3e9, "Pa", "450 MPa is 450e6"),
-    "transverse_yield_stress": (50e6, 3e9, "Pa", "450 MPa is 450e6"),
+    **dict.fromkeys(_YIELDS, (50e6, 3e9, "Pa", "450 MPa is 450e6")),
     "longitudinal_ultimate_stress": (50e6, 4e9, "Pa", "600 MPa is 600e6"),
     "transverse_diameter": (1e-3, 0.1, "m", "10 mm is 0.010"),
     "transverse_spacing": (2e-3, 10.0, "m", "80 mm is 0.080"),
@@ -247,17 +242,13 @@ def _check(specimen: Specimen) -> None:
                 f"{specimen.name}: {name} = {value:g} {unit} must be between {low:g} and {high:g}; "
                 f"{remedy}"
             )
-    if faults:
-        raise InputError("\n".join(faults))
+    _arguments.raise_faults(faults)
 
 
 def _steel(yield_stress: float, ultimate_stress: float) -> Steel:
     """Return a steel; a very strong one has no plateau."""
-    return Steel(
-        yield_stress,
-        ultimate_stress,
-        eps_sh=max(Steel.eps_sh, 1.001 * yield_stress / Steel.es),
-    )
+    hardens = max(Steel.eps_sh, 1.001 * yield_stress / Steel.es)
+    return Steel(yield_stress, ultimate_stress, eps_sh=hardens)
 
 
 def _steels(sheet: _Sheet) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -298,11 +289,7 @@ def _rectangle(
     area = max(share, 0.0) * math.pi / 4 * inner**2
     edge = specimen.depth / 2 - to_bars
     y_corner, y_inner = edge - diameter / 2, edge - inner / 2
-    if min(y_corner, y_inner) <= 0:
-        raise InputError(
-            f"{specimen.name}: bars of {diameter * 1e3:g} mm behind a cover of "
-            f"{to_bars * 1e3:g} mm do not fit into a depth of {specimen.depth * 1e3:g} mm"
-        )
+    _check_room(min(y_corner, y_inner), specimen, to_bars, diameter)
     corner_area = math.pi / 4 * diameter**2
     bars = [(y, 2 * corner_area, corner) for y in (-y_corner, y_corner)]
     if across:
@@ -316,17 +303,21 @@ def _round(
     specimen: Specimen, to_bars: float, diameter: float, steel: tuple[float, float]
 ) -> list[_Bar]:
     radius = specimen.depth / 2 - to_bars - diameter / 2
-    if radius <= 0:
-        raise InputError(
-            f"{specimen.name}: bars of {diameter * 1e3:g} mm behind a cover of "
-            f"{to_bars * 1e3:g} mm do not fit into a depth of {specimen.depth * 1e3:g} mm"
-        )
+    _check_room(radius, specimen, to_bars, diameter)
     n = specimen.longitudinal_number
     area = math.pi / 4 * diameter**2
     ys = [radius * math.cos(2 * math.pi * i / n) for i in range(n)]
     if n % 2:
         ys, area = [*ys, *(-y for y in ys)], area / 2
     return sorted((y, area, steel) for y in ys)
+
+
+def _check_room(left: float, specimen: Specimen, to_bars: float, diameter: float) -> None:
+    if left <= 0:
+        raise InputError(
+            f"{specimen.name}: bars of {diameter * 1e3:g} mm behind a cover of "
+            f"{to_bars * 1e3:g} mm do not fit into a depth of {specimen.depth * 1e3:g} mm"
+        )
 
 
 def _restrained(specimen: Specimen) -> int:
@@ -385,22 +376,13 @@ def column(specimen: Specimen, model: Model = DEFAULT, **options: Any) -> Column
     tested = _tested(specimen, options.pop("ends", "equivalent"), options.get("footing"))
     drawn = draw(specimen)
     if model == "layered":
-        options = {
-            "restrained": drawn.restrained,
-            "round_core": drawn.round_core,
-            **options,
-        }
+        options = {"restrained": drawn.restrained, "round_core": drawn.round_core} | options
     halves = 2 if tested and specimen.config == "DC" else 1
-    return column_of(
-        drawn.section,
-        halves * specimen.length,
-        axial_load=specimen.axial_load,
-        mass=halves * specimen.mass,
-        model=model,
-        axial_height=None if halves == 2 else specimen.axial_height,
-        top="fixed" if halves == 2 else "free",
-        **options,
-    )
+    options |= {"model": model, "axial_load": specimen.axial_load, "mass": halves * specimen.mass}
+    options["axial_height"] = None if halves == 2 else specimen.axial_height
+    options["top"] = "fixed" if halves == 2 else "free"
+    made: Column = column_of(drawn.section, halves * specimen.length, **options)
+    return made
 
 
 def _tested(specimen: Specimen, ends: str, footing: object) -> bool:
@@ -426,9 +408,8 @@ def checked_specimen(specimen: object) -> Specimen:
     """Return a specimen, or raise `InputError` for anything else."""
     remedy = "rbsdem.peer.read_specimens reads them from a table"
     if isinstance(specimen, Section):
-        remedy = (
-            "of a section, rbsdem.section.column(section, height, axial_load=...) makes a column"
-        )
+        maker = "rbsdem.section.column(section, height, axial_load=...)"
+        remedy = f"of a section, {maker} makes a column"
     return _arguments.instance(specimen, "specimen", Specimen, remedy)
 
 
@@ -438,6 +419,5 @@ def check_options(options: Mapping[str, object]) -> None:
         if name not in _OPTIONS:
             near = get_close_matches(name, _OPTIONS, 1)
             hint = f"; did you mean {near[0]}?" if near else ""
-            raise InputError(
-                f"the option {name} is not known; there are {', '.join(_OPTIONS)}{hint}"
-            )
+            known = ", ".join(_OPTIONS)
+            raise InputError(f"the option {name} is not known; there are {known}{hint}")

@@ -6,15 +6,15 @@ import math
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._tables import FORCES, LENGTHS, NumberTable, bare, read_table, to_si
+from rbsdem._types import Array
 from rbsdem.errors import InputError
-from rbsdem.measured.measured import PDELTA_CODES, MeasuredTest, net_force, top_displacement
+from rbsdem.measured.measured import PDELTA_CODES, MeasuredTest, measured_test
 
 _UNITS = {"displacement": LENGTHS, "force": FORCES}
 _QUANTITIES = ("displacement", "force")
@@ -149,35 +149,11 @@ def read_test(
         _check_sizes(d, f, given, length, where)
         _check_offset(d, f, zero, where)
         _check_order(d, f, where)
-    span = math.nan if length is None else length
-    try:
-        load = math.nan if axial_load is None else _arguments.number(axial_load, "axial_load")
-        force = net_force(
-            d,
-            f,
-            code=code,
-            axial_load=load,
-            top_length=top_length,
-            bottom_length=bottom_length,
-            length=span,
-            measured_length=measured_length,
-        )
-    except InputError as error:
-        raise InputError(f"{where}: {error}") from error
-    top = 0.0 if code == 4 else top_length or 0.0
-    return MeasuredTest(
-        name=name or Path(where).stem,
-        displacement=d.copy()
-        if length is None
-        else top_displacement(d, length=length, measured_length=measured_length),
-        force=force,
-        measured_displacement=d,
-        measured_force=f,
-        length=span,
-        axial_load=load,
-        pdelta_code=code,
-        axial_height=span + top,
-    )
+    known = {"length": length, "axial_load": axial_load}
+    lengths: Any = {key: math.nan if value is None else value for key, value in known.items()}
+    lengths |= {"measured_length": measured_length, "top_length": top_length}
+    name = name or Path(where).stem
+    return measured_test(name, d, f, code, where, bottom_length=bottom_length, **lengths)
 
 
 def _code(code: int | None, length: float | None, axial_load: float | None) -> int:

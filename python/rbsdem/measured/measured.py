@@ -7,16 +7,17 @@ reversal points of `data/reversals_<key>.csv` are used.
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments, _core, _package
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular
+from rbsdem._types import Array, ArrayLike, NDArray
 from rbsdem.curves.metrics import Loop
 from rbsdem.errors import InputError
 
@@ -169,10 +170,8 @@ def net_force(
         raise InputError(f"displacement has {d.size} rows, force {f.size}; they must be equal")
     if code is not None:
         code = _arguments.integer(code, "code")
-    axial_load, length = (
-        _arguments.number(axial_load, "axial_load"),
-        _arguments.number(length, "length"),
-    )
+    axial_load = _arguments.number(axial_load, "axial_load")
+    length = _arguments.number(length, "length")
     measured, top, bottom = (
         default if value is None else _arguments.number(value, name)
         for name, value, default in (
@@ -198,6 +197,35 @@ def net_force(
         return f + axial_load * d / top
     known = ", ".join(f"{key} ({text})" for key, text in PDELTA_CODES.items())
     raise InputError(f"P-Delta code {code!r} is not known; there are {known}, and None")
+
+
+def measured_test(
+    name: str,
+    displacement: Array,
+    force: Array,
+    code: int | None,
+    who: str,
+    *,
+    length: float,
+    axial_load: float,
+    measured_length: float | None,
+    top_length: float | None,
+    bottom_length: float | None,
+) -> MeasuredTest:
+    """Return the test of two columns of a file; `who` stands in front of messages."""
+    levers: dict[str, Any] = {"length": length, "measured_length": measured_length}
+    ends: dict[str, Any] = {"top_length": top_length, "bottom_length": bottom_length}
+    try:
+        axial_load = _arguments.number(axial_load, "axial_load")
+        net = net_force(displacement, force, code=code, axial_load=axial_load, **levers, **ends)
+    except InputError as error:
+        raise InputError(f"{who}: {error}") from error
+    top = displacement.copy()
+    if not math.isnan(length):
+        top = top_displacement(displacement, **levers)
+    above = 0.0 if code == 4 else top_length or 0.0
+    columns = top, net, displacement, force
+    return MeasuredTest(name, *columns, length, axial_load, code, length + above)
 
 
 @dataclass(frozen=True, repr=False)

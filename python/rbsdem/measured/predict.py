@@ -15,10 +15,10 @@ from functools import lru_cache, partial
 from typing import Any, TypeAlias, overload
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._package import recorded, unwarned
+from rbsdem._types import Array, ArrayLike
 from rbsdem.batch.work import (
     EndRequest,
     Processes,
@@ -71,9 +71,7 @@ class PredictionOptions:
 
     def given(self, options: dict[str, Any]) -> dict[str, Any]:
         """Return the options of a store: those of the model, and what differs from the usual."""
-        own = {
-            name: value for name, value in vars(self).items() if value != getattr(type(self), name)
-        }
+        own = {name: v for name, v in vars(self).items() if v != getattr(type(self), name)}
         return options | ({"how": own} if own else {})
 
 
@@ -247,15 +245,8 @@ def _carried_out(
 
         def run(numbers: list[int], jobs: int, ahead: int, take: Callable[..., None]) -> None:
             with Processes(jobs, __name__) if jobs else Serial() as executor:
-                work_through(
-                    lambda number: executor.submit(work, tests[number]),
-                    numbers,
-                    take,
-                    ahead=ahead,
-                    end=end,
-                    beat=beat,
-                    stop=lambda: None,
-                )
+                how: Any = {"ahead": ahead, "end": end, "beat": beat, "stop": lambda: None}
+                work_through(lambda i: executor.submit(work, tests[i]), numbers, take, **how)
 
         try:
             if jobs == 1 or len(left) <= 1:
@@ -294,9 +285,7 @@ def _alone(
     return row
 
 
-def _tests(
-    specimens: Specimen | Iterable[Specimen] | str | os.PathLike[str],
-) -> Sequence[Specimen]:
+def _tests(specimens: Specimen | Iterable[Specimen] | str | os.PathLike[str]) -> Sequence[Specimen]:
     """Return the tests that are asked for."""
     if isinstance(specimens, Specimen):
         return [specimens]
@@ -353,8 +342,7 @@ def _with_nearest(
             continue
         near: list[Neighbour] = []
         s = row.specimen
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", AccuracyWarning)
+        with unwarned():
             section = draw(s).section
         number = max(len(tests), 1)
         for one in nearest(section, s.length, s.axial_load, tests, number, but=s):
@@ -409,8 +397,7 @@ def predict_one(
     except RbsdemError as error:
         return Prediction(specimen, name, "no history", error=str(error))
     path = np.array(how.displacement) if test is None else test.displacement
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
+    with recorded() as caught:
         row, result = _analyse(Prediction(specimen, name, "completed"), path, model, how, options)
     if test is not None:
         comparison = compare(result, test)
@@ -452,17 +439,9 @@ def _analyse(
     band = None
     if how.bands and status != "failed":
         band = spread(column, path, samples=how.samples)
-    row = replace(
-        row,
-        status=status,
-        error=error,
-        seconds_model=built - begin,
-        seconds_analysis=end - built,
-        band=band,
-        remarks=getattr(column, "outside", ()),
-        limit_states=states,
-    )
-    return row, result
+    found: Any = {"status": status, "error": error, "band": band, "limit_states": states}
+    times: Any = {"seconds_model": built - begin, "seconds_analysis": end - built}
+    return replace(row, remarks=getattr(column, "outside", ()), **found, **times), result
 
 
 def name_of(model: Model, options: dict[str, Any]) -> str:
@@ -551,7 +530,6 @@ def _is_round(specimen: Specimen) -> bool:
 
 @lru_cache(maxsize=4096)
 def _place(specimen: Specimen) -> tuple[float, ...]:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AccuracyWarning)
+    with unwarned():
         section = draw(specimen).section
     return place_of(section, specimen.length, specimen.axial_load)

@@ -14,25 +14,19 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING, Any, overload
+from typing import Any
 
 import numpy as np
 
-from rbsdem._arguments import Array
-from rbsdem._files import Tabular, atomic_write, data_frame
+from rbsdem._files import atomic_write, data_frame
 from rbsdem._package import code_digest
+from rbsdem._types import Array, DataFrame
 from rbsdem.batch.store import JSON_LINES, Store, digest
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.curves.scores import SCORES, Comparison, compare
 from rbsdem.errors import InputError, RbsdemError
-from rbsdem.measured.specimens import Specimen
+from rbsdem.measured.specimens import Rows, Specimen
 from rbsdem.section.spread import Interval, Spread, numbers
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from rbsdem.curves.scores import Comparison
-
 
 #: How far a model is drawn beyond its test: of the largest force that is in the box.
 _BEYOND = 1.08
@@ -229,7 +223,7 @@ class Prediction:
         return self.band.holds(self.comparison.test_force)
 
 
-class Predictions(Tabular, Sequence[Prediction]):
+class Predictions(Rows[Prediction]):
     """Predictions in the order of the tests.
 
     A sequence of `Prediction`: ``predictions[0]``, ``for row in predictions``; a text finds one as
@@ -258,31 +252,17 @@ class Predictions(Tabular, Sequence[Prediction]):
         interrupted: bool = False,
         resumed: int = 0,
     ) -> None:
-        self._rows = tuple(rows)
+        super().__init__(rows)
         self.model = model
         self.seconds = seconds
         self.interrupted = interrupted
         self.resumed = resumed
 
-    def __len__(self) -> int:
-        return len(self._rows)
-
-    def __iter__(self) -> Iterator[Prediction]:
-        return iter(self._rows)
-
-    @overload
-    def __getitem__(self, key: int | str) -> Prediction: ...
-    @overload
-    def __getitem__(self, key: slice) -> Predictions: ...
-    def __getitem__(self, key: int | str | slice) -> Prediction | Predictions:
-        if isinstance(key, slice):
-            return self._some(self._rows[key])
-        if isinstance(key, str):
-            for row in self._rows:
-                if row.specimen.is_called(key):
-                    return row
-            raise InputError(f"no prediction of {key!r}; it was not among the tests")
-        return self._rows[key]
+    def _named(self, key: str) -> Prediction:
+        for row in self._rows:
+            if row.specimen.is_called(key):
+                return row
+        raise InputError(f"no prediction of {key!r}; it was not among the tests")
 
     def __repr__(self) -> str:
         return f"<Predictions: {len(self)} tests by the model {self.model!r}>"
@@ -310,7 +290,7 @@ class Predictions(Tabular, Sequence[Prediction]):
         counted = [row for row in self._rows if row.status != "no history"]
         return self._some(sorted(counted, key=lambda row: -row.nrmse)[:n])
 
-    def summary(self, by: str = "failure_mode") -> pd.DataFrame:
+    def summary(self, by: str = "failure_mode") -> DataFrame:
         """Return medians and quartiles of groups, a row for each, the last one that of all tests.
 
         Parameters
@@ -343,7 +323,7 @@ class Predictions(Tabular, Sequence[Prediction]):
         groups.sort(key=lambda group: -group["tests"])
         return data_frame([*groups, {by: "all"} | _statistics(self._rows)]).set_index(by)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a row for each test: properties that group tests, scores, times.
 
         If limit states were asked for, "drift_first_yield", "drift_spalling", ... are the drifts at
@@ -352,7 +332,7 @@ class Predictions(Tabular, Sequence[Prediction]):
         states = any(row.limit_states is not None for row in self._rows)
         return data_frame([_scores(row, states) for row in self._rows])
 
-    def bands(self) -> pd.DataFrame:
+    def bands(self) -> DataFrame:
         """Return a row for each test that has a band: intervals, and what its test was."""
         return data_frame([band_record(row) for row in self._rows if row.band is not None])
 
@@ -418,6 +398,10 @@ def _statistics(rows: Iterable[Prediction]) -> dict[str, Any]:
     return found
 
 
+_RATIOS = ("axial_load_ratio", "span_depth_ratio")
+_OF_SPECIMEN = ("peer_id", "series", "section", "failure_mode", *_RATIOS)
+
+
 def _scores(row: Prediction, limit_states: bool) -> dict[str, Any]:
     """Return properties that group tests, scores and times by the names of the columns."""
     s = row.specimen
@@ -426,17 +410,11 @@ def _scores(row: Prediction, limit_states: bool) -> dict[str, Any]:
     return {
         "name": s.name,
         "file": s.file or "",
-        "peer_id": s.peer_id,
-        "series": s.series,
-        "section": s.section,
-        "failure_mode": s.failure_mode,
-        "axial_load_ratio": s.axial_load_ratio,
-        "span_depth_ratio": s.span_depth_ratio,
+        **{name: getattr(s, name) for name in _OF_SPECIMEN},
         "model": row.model,
         "status": row.status,
         **{name: row.score(name) for name in SCORES},
-        "test_drift_at_loss": row.score("test_drift_at_loss"),
-        "model_drift_at_loss": row.score("model_drift_at_loss"),
+        **{name: row.score(name) for name in ("test_drift_at_loss", "model_drift_at_loss")},
         **(reached if limit_states else {}),
         "seconds_model": row.seconds_model,
         "seconds_analysis": row.seconds_analysis,
@@ -590,15 +568,8 @@ class PredictionStore:
                 states = {str(name): float(drift) for name, drift in states.items()}
         except (ValueError, TypeError, KeyError, AttributeError, RbsdemError):
             return None
-        return Prediction(
-            specimen,
-            self._model,
-            comparison=comparison,
-            band=band,
-            remarks=remarks,
-            limit_states=states,
-            **values,
-        )
+        values |= {"comparison": comparison, "band": band}
+        return Prediction(specimen, self._model, remarks=remarks, limit_states=states, **values)
 
 
 def _packed(values: Array) -> str:

@@ -6,22 +6,20 @@ import csv
 import math
 import os
 import re
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from difflib import get_close_matches
 from functools import cache, partial
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING, Any, overload
+from typing import Any, Generic, TypeVar, overload
 
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import DataFrame, Self
 from rbsdem.errors import InputError
-from rbsdem.measured.measured import MeasuredTest, PeerTest, net_force, read_peer, top_displacement
+from rbsdem.measured.measured import MeasuredTest, PeerTest, measured_test, read_peer
 from rbsdem.section.columns import CONCRETE_DENSITY
-
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 # Spellings of one author.
 _AUTHORS = {"Petrovsky": "Petrovski"}
@@ -360,33 +358,10 @@ class Specimen:
             If there is no file, if it cannot be read, or if a length that its P-Delta code needs is
             not known.
         """
-        history = self.history()
-        try:
-            force = net_force(
-                history.displacement,
-                history.force,
-                code=self.pdelta_code,
-                axial_load=self.axial_load,
-                length=self.length,
-                measured_length=self.measured_length,
-                top_length=self.top_length,
-                bottom_length=self.bottom_length,
-            )
-        except InputError as error:
-            raise InputError(f"{self.name}: {error}") from error
-        return MeasuredTest(
-            name=self.name,
-            displacement=top_displacement(
-                history.displacement, length=self.length, measured_length=self.measured_length
-            ),
-            force=force,
-            measured_displacement=history.displacement,
-            measured_force=history.force,
-            length=self.length,
-            axial_load=self.axial_load,
-            pdelta_code=self.pdelta_code,
-            axial_height=self.axial_height,
-        )
+        read, levers = self.history(), ("measured_length", "top_length", "bottom_length")
+        given = {name: getattr(self, name) for name in ("length", "axial_load", *levers)}
+        columns = read.displacement, read.force
+        return measured_test(self.name, *columns, self.pdelta_code, self.name, **given)
 
 
 def _stays_below(file: str) -> bool:
@@ -399,7 +374,43 @@ TABLE = "specimens.csv"
 """Name of the table in its folder."""
 
 
-class Specimens(Tabular, Sequence[Specimen]):
+Row = TypeVar("Row")
+
+
+class Rows(Tabular, Sequence[Row], ABC, Generic[Row]):
+    """Rows of tests by number, by slice, or by a text that a test is called."""
+
+    __slots__ = ("_rows",)
+
+    def __init__(self, rows: Iterable[Row]) -> None:
+        self._rows = tuple(rows)
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def __iter__(self) -> Iterator[Row]:
+        return iter(self._rows)
+
+    @overload
+    def __getitem__(self, key: int | str) -> Row: ...
+    @overload
+    def __getitem__(self, key: slice) -> Self: ...
+    def __getitem__(self, key: int | str | slice) -> Row | Self:
+        if isinstance(key, slice):
+            return self._some(self._rows[key])
+        if isinstance(key, (str, os.PathLike)):
+            return self._named(os.fspath(key))
+        return self._rows[key]
+
+    def _some(self, rows: Iterable[Row]) -> Self:
+        return type(self)(rows)
+
+    @abstractmethod
+    def _named(self, key: str) -> Row:
+        """Return the row of a test that is called so."""
+
+
+class Specimens(Rows[Specimen]):
     """Tested columns in the order of their table.
 
     A sequence of `Specimen`: ``table[0]``, ``for specimen in table``, ``table[:5]``. A text finds
@@ -412,27 +423,7 @@ class Specimens(Tabular, Sequence[Specimen]):
         The tests.
     """
 
-    __slots__ = ("_rows",)
-
-    def __init__(self, rows: Iterable[Specimen]) -> None:
-        self._rows = tuple(rows)
-
-    def __len__(self) -> int:
-        return len(self._rows)
-
-    def __iter__(self) -> Iterator[Specimen]:
-        return iter(self._rows)
-
-    @overload
-    def __getitem__(self, key: int | str) -> Specimen: ...
-    @overload
-    def __getitem__(self, key: slice) -> Specimens: ...
-    def __getitem__(self, key: int | str | slice) -> Specimen | Specimens:
-        if isinstance(key, slice):
-            return Specimens(self._rows[key])
-        if isinstance(key, (str, os.PathLike)):
-            return self._named(os.fspath(key))
-        return self._rows[key]
+    __slots__ = ()
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Specimens) and self._rows == other._rows
@@ -487,7 +478,7 @@ class Specimens(Tabular, Sequence[Specimen]):
             parts.setdefault(row.series, []).append(row)
         return {key: Specimens(rows) for key, rows in parts.items()}
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a row for each test."""
         rows = [asdict(row) for row in self._rows]
         return data_frame([{**row, **row.pop("observed")} for row in rows])

@@ -6,11 +6,12 @@ import dataclasses
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import DataFrame
 from rbsdem.errors import InputError
 from rbsdem.methods.ladder import LEVELS, Trials, too_expensive
 from rbsdem.methods.reference import Reference
@@ -18,11 +19,8 @@ from rbsdem.methods.scene import VERTICAL, Run, Scene, Setting
 from rbsdem.model.column import PLACES, Column, bodies, without_notes
 from rbsdem.model.damping import Damping
 from rbsdem.model.springs import Spring
-from rbsdem.results.accuracy import Answer, errors_of
+from rbsdem.results.accuracy import errors_of
 from rbsdem.solve.solver import IMPLICIT
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 #: Share of the rotary inertia that stays when it is taken off: a body without any has no equation
 #: of motion.
@@ -32,15 +30,9 @@ LITTLE_INERTIA = 0.01
 USUAL_TOLERANCE = 0.01
 
 #: Columns of the table, and the attributes of `Effect` that they hold.
-_COLUMNS = {
-    "part": "part",
-    "peak": "peak",
-    "residual": "residual",
-    "peak_base_moment": "moment",
-    "energy": "energy",
-    "response_rms": "history",
-    "wall_time_ratio": "time_ratio",
-}
+_TITLES = {"moment": "peak_base_moment", "history": "response_rms", "time_ratio": "wall_time_ratio"}
+_NAMES = ("part", "peak", "residual", "moment", "energy", "history", "time_ratio")
+_COLUMNS = {_TITLES.get(name, name): name for name in (*_NAMES, "matters", "status", "reason")}
 
 #: Cost of twice the bodies: twice the work of a step, and a stable step of less than half.
 TWICE_THE_BODIES = 6
@@ -114,18 +106,15 @@ class Physics(Tabular):
     resolution: float
     tolerance: float
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame with a row for each part of the model."""
+        words = {True: "yes", False: "no", None: ""}
         rows = [
-            [
-                *(getattr(effect, name) for name in _COLUMNS.values()),
-                {True: "yes", False: "no", None: ""}[effect.matters],
-                effect.status,
-                effect.reason,
-            ]
+            {title: getattr(effect, name) for title, name in _COLUMNS.items()}
+            | {"matters": words[effect.matters]}
             for effect in self.effects
         ]
-        return data_frame(rows, columns=[*_COLUMNS, "matters", "status", "reason"])
+        return data_frame(rows, list(_COLUMNS))
 
 
 class Variant(NamedTuple):
@@ -286,15 +275,15 @@ def _effect(trials: Trials, variant: Variant, base: Run, tolerance: float) -> Ef
 def _compare(name: str, run: Run, base: Run, tolerance: float) -> Effect:
     old, new = base.answer, run.answer
 
-    def change(quantity: Callable[[Answer], float], scale: float) -> float:
-        return (quantity(new) - quantity(old)) / scale if scale > 0 else 0.0
+    def change(quantity: str, scale: float) -> float:
+        return (getattr(new, quantity) - getattr(old, quantity)) / scale if scale > 0 else 0.0
 
     effect = Effect(
         name,
-        peak=change(lambda a: a.peak, old.peak),
-        residual=change(lambda a: a.residual, old.peak),
-        moment=change(lambda a: a.peak_moment, old.peak_moment),
-        energy=change(lambda a: a.energy, old.largest_energy),
+        peak=change("peak", old.peak),
+        residual=change("residual", old.peak),
+        moment=change("peak_moment", old.peak_moment),
+        energy=change("energy", old.largest_energy),
         history=errors_of(new, old).response_rms,
         time_ratio=run.seconds / base.seconds,
         status=run.status,

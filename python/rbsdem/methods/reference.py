@@ -195,19 +195,10 @@ def compare(first: Run, second: Run, wanted: float, note: str) -> Reference:
         parts.append("both methods are implicit and share the solver of the equations")
     if first.answer.response.size != second.answer.response.size:
         parts.append("the two do not end at the same time; the rows of both are compared")
-    return Reference(
-        str(first.setting),
-        str(second.setting),
-        digits(apart.response_max),
-        digits(apart.moment),
-        digits(apart.energy),
-        digits(apart.peak),
-        wanted,
-        first.seconds,
-        "; ".join(parts),
-        kind,
-        first.answer,
-    )
+    agreed = map(digits, (apart.response_max, apart.moment, apart.energy, apart.peak))
+    response, moment, energy, peak = agreed
+    found = response, moment, energy, peak, wanted, first.seconds, "; ".join(parts)
+    return Reference(str(first.setting), str(second.setting), *found, kind, first.answer)
 
 
 def _static_reference(trials: Trials, wanted: float) -> Reference | str:

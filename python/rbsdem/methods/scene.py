@@ -5,17 +5,16 @@ from __future__ import annotations
 import dataclasses
 import math
 import time as clock
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._package import unwarned
+from rbsdem._types import Array, ArrayLike, NDArray
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError
 from rbsdem.model.column import Column, Kinematics, checked_column, without_notes
 from rbsdem.results.accuracy import Answer, answer_of
@@ -172,9 +171,7 @@ class Scene:
         if column.kinematics != setting.kinematics:
             with without_notes():
                 column = dataclasses.replace(column, kinematics=setting.kinematics)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", AccuracyWarning)
-            warnings.simplefilter("ignore", LongRunWarning)
+        with unwarned(AccuracyWarning, LongRunWarning):
             if self.static:
                 return self._solve_static(setting, column)
             result: Any = time_history(
@@ -188,12 +185,8 @@ class Scene:
         if column.kinematics == "small" and column.axial_spring is None:
             # These loads would have nothing to act on and would be refused.
             loads = {name: load for name, load in loads.items() if name not in VERTICAL}
-        return {
-            **loads,
-            **setting.solver,
-            "initial": self._initial(column.n),
-            "collapse_drift": self.collapse_drift,
-        }
+        how = {"initial": self._initial(column.n), "collapse_drift": self.collapse_drift}
+        return {**loads, **setting.solver, **how}
 
     def _initial(self, n: int) -> Mapping[str, ArrayLike] | None:
         """Return the state at the start; where bodies are cut in two, the halves share it."""
@@ -299,9 +292,10 @@ def make_scene(
             raise InputError(
                 "compare_methods: initial has no meaning for a static path; give time as well"
             )
-        if next(iter(given.values())).size < 2:
+        (path,) = given.values()
+        if path.size < 2:
             raise InputError("compare_methods: the path has fewer than 2 points")
-        points = np.arange(next(iter(given.values())).size, dtype=np.float64)
+        points = np.arange(float(path.size))
         return Scene(column, points, given, None, collapse_drift, static=True)
     if "displacement" in given:
         raise InputError(

@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING
-
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import ArrayLike, DataFrame
 from rbsdem.batch.work import progress_bar
 from rbsdem.errors import InputError, SolveError
 from rbsdem.methods.ladder import Budget, Trials, checked_methods, ladders, own_setting, probe
@@ -22,11 +20,6 @@ from rbsdem.model.springs import Spring
 from rbsdem.motions.motion import GroundMotion, acting
 from rbsdem.results.accuracy import Errors, errors_of
 from rbsdem.solve.solver import IMPLICIT, Solver
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-__all__ = ["Choice", "MethodStudy", "Row", "compare_methods", "seconds_text"]
 
 #: Shares of the budget at which the settings, and then the reference, have to be done.
 SETTINGS_SHARE, REFERENCE_SHARE = 0.4, 0.75
@@ -109,10 +102,8 @@ def seconds_text(seconds: float) -> str:
     """Return a time with its unit, two digits."""
     if not math.isfinite(seconds):
         return "-"
-    scale, unit = next(
-        ((scale, unit) for scale, unit in ((1.0, "s"), (1e-3, "ms")) if seconds >= scale),
-        (1e-6, "us"),
-    )
+    scales = ((1.0, "s"), (1e-3, "ms"), (1e-6, "us"))
+    scale, unit = next((pair for pair in scales if seconds >= pair[0]), scales[-1])
     value = seconds / scale
     return f"{value:.0f} {unit}" if value >= 10 else f"{value:.1f} {unit}"
 
@@ -177,6 +168,13 @@ def choose(rows: Sequence[Row], runs: Sequence[Attempt], tolerance: float) -> Ch
     return Choice(tolerance, row, rows[runs.index(finer)], errors_of(run.answer, finer.answer))
 
 
+_OF_SETTING = ("method", "events", "kinematics", "dt", "tolerance", "parts")
+_OF_RUN = ("seconds", "repeats", "response_rms", "response_max", "moment", "energy", "peak")
+_OF_ROW = (*_OF_RUN, "error", "move", "pareto", "status", "reason")
+_TITLES = {"dt": "dt_s", "seconds": "wall_time_s", "moment": "base_moment_rms"}
+_TITLES["move"] = "move_to_finer"
+
+
 @dataclass(frozen=True, repr=False)
 class MethodStudy(Tabular):
     """Wall time against accuracy in one case.
@@ -216,32 +214,15 @@ class MethodStudy(Tabular):
         """
         return cheapest(self.rows, tolerance)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame with a row for each setting: its cost, its errors, the front."""
         rows = [
-            {
-                "method": row.setting.method,
-                "events": row.setting.events or "",
-                "kinematics": row.setting.kinematics,
-                "dt_s": row.setting.dt,
-                "tolerance": row.setting.tolerance,
-                "parts": row.setting.parts,
-                "wall_time_s": row.seconds,
-                "repeats": row.repeats,
-                "response_rms": row.response_rms,
-                "response_max": row.response_max,
-                "base_moment_rms": row.moment,
-                "energy": row.energy,
-                "peak": row.peak,
-                "error": row.error,
-                "move_to_finer": row.move,
-                "pareto": int(row.pareto),
-                "status": row.status,
-                "reason": row.reason,
-            }
+            {name: getattr(row.setting, name) for name in _OF_SETTING}
+            | {name: getattr(row, name) for name in _OF_ROW}
             for row in self.rows
         ]
-        return data_frame(rows).astype({"parts": "Int64"})
+        frame = data_frame(rows).fillna({"events": ""}).astype({"parts": "Int64", "pareto": int})
+        return frame.rename(columns=_TITLES)
 
 
 def compare_methods(
@@ -358,16 +339,11 @@ def compare_methods(
     if isinstance(physics, str):
         notes.append(f"physics: {physics}")
     rows = make_rows(trials.runs, known)
-    return MethodStudy(
-        rows,
-        known,
-        None if tolerance is None else choose(rows, trials.runs, tolerance),
-        physics if isinstance(physics, Physics) else None,
-        scene.response_name,
-        clock.used(),
-        budget,
-        tuple(notes + _notes(scene, rows, known)),
-    )
+    choice = None if tolerance is None else choose(rows, trials.runs, tolerance)
+    found = physics if isinstance(physics, Physics) else None
+    notes += _notes(scene, rows, known)
+    spent = clock.used(), budget
+    return MethodStudy(rows, known, choice, found, scene.response_name, *spent, tuple(notes))
 
 
 def _check(tolerance: float | None, budget: float, digits: float, repeats: int) -> None:
@@ -395,18 +371,13 @@ def _need_one(runs: Sequence[Attempt]) -> None:
 def _notes(scene: Scene, rows: Sequence[Row], reference: Reference | None) -> list[str]:
     """Return remarks that the table does not show."""
     notes = []
+    third = None
     if reference is not None and reference.explicit is not None:
         # The most accurate implicit setting if the reference is explicit, and vice versa.
-        others = [
-            row
-            for row in rows
-            if (row.setting.method in IMPLICIT) == reference.explicit
-            and row.setting.method != "auto"
-            and math.isfinite(row.error)
-        ]
+        known = [row for row in rows if row.setting.method != "auto" and math.isfinite(row.error)]
+        kind = reference.explicit
+        others = [row for row in known if (row.setting.method in IMPLICIT) == kind]
         third = min(others, key=lambda row: row.error, default=None)
-    else:
-        third = None
     if third is not None:
         notes.append(
             f"a method of another kind, {third.setting}, comes to within {third.error:.1e} of the "

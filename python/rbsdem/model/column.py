@@ -10,17 +10,13 @@ from contextvars import ContextVar
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, cast, runtime_checkable
 
-from numpy.typing import ArrayLike
-
 from rbsdem import _arguments, _core
 from rbsdem._tables import STANDARD_GRAVITY
+from rbsdem._types import ArrayLike, Self
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.damping import Damping
 from rbsdem.model.shape import Section
 from rbsdem.model.springs import Gauge, Layered, Spring, checked_spring, layer_springs, whole_column
-
-if TYPE_CHECKING:
-    from typing_extensions import Self
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,13 +168,12 @@ Kinematics = Literal["small", "pdelta", "finite"]
 #: What the top of a column can do.
 Top = Literal["free", "fixed"]
 
-#: Whether notes on new columns are told. A context variable, as columns are made in threads too.
+#: Whether notes on new columns and on runs are told. A context variable: threads make them too.
 TELLING: ContextVar[bool] = ContextVar("TELLING", default=True)
 
+_KEYS = {key["name"]: key for key in _core.keys()["groups"]["column"]}
 #: Bodies of a column at the most.
-MOST_BODIES: int = next(
-    key["most"] for key in _core.keys()["groups"]["column"] if key["name"] == "n"
-)
+MOST_BODIES: int = _KEYS["n"]["most"]
 Place = Literal["shear", "flexure", "axial_spring"]
 PLACES: tuple[Place, ...] = ("shear", "flexure", "axial_spring")
 _LISTS = ("lengths", "masses", "rotary_inertia")
@@ -186,7 +181,7 @@ _LISTS = ("lengths", "masses", "rotary_inertia")
 
 @contextmanager
 def without_notes() -> Iterator[None]:
-    """Make columns without a word on what does nothing in them, where that is known and meant."""
+    """Make and run columns without a word on them, where it is known or they are some of many."""
     token = TELLING.set(False)
     try:
         yield
@@ -452,13 +447,9 @@ class Column:
                 )
         n = 2 * self.n - 1
         lengths, masses, inertias = bodies(self)
-        changes: dict[str, Any] = {
-            "height": 2 * self.height,
-            "n": n,
-            "lengths": _doubled(lengths),
-            "top": "fixed",
-            "top_mass": _arguments.number(top_mass, "double_curvature: top_mass"),
-        }
+        changes: dict[str, Any] = {"height": 2 * self.height, "n": n, "top": "fixed"}
+        changes["lengths"] = _doubled(lengths)
+        changes["top_mass"] = _arguments.number(top_mass, "double_curvature: top_mass")
         if self.mass is not None:
             changes["mass"] = 2 * self.mass
         if self.masses is not None:
@@ -600,10 +591,8 @@ def _springs(springs: Any, name: str, n: int) -> Spring | tuple[Spring, ...]:
             f"column: {name} has {len(several)} springs for n = {n} joints; "
             "give one, or one for each joint"
         )
-    if all(spring == several[0] for spring in several[1:]):
-        first: Spring = several[0]
-        return first
-    return several
+    same = all(spring == several[0] for spring in several[1:])
+    return cast(Spring, several[0]) if same else several
 
 
 def checked_column(column: object, who: str = "") -> Column:

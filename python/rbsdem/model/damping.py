@@ -76,9 +76,8 @@ class Damping:
         InputError
             If a frequency is not positive, or both are the same.
         """
-        ratio = _arguments.number(
-            ratio, "damping: ratio", least=0, below=1, why=" (critical damping)"
-        )
+        why = " (critical damping)"
+        ratio = _arguments.number(ratio, "damping: ratio", least=0, below=1, why=why)
         omega = []
         for name, value in (("frequency_1", frequency_1), ("frequency_2", frequency_2)):
             frequency = _arguments.number(value, f"damping: {name}", above=0, unit="Hz")
@@ -95,12 +94,5 @@ class Damping:
     def statement(self) -> _core.Statement:
         """Return the keys of the damping, as a group of a case file."""
         modal = self.modal if self.modal is None or isinstance(self.modal, tuple) else (self.modal,)
-        return _core.group(
-            "damping",
-            {
-                "mass": self.mass,
-                "stiffness": self.stiffness,
-                "tangent": self.tangent or None,
-                "modal": modal,
-            },
-        )
+        values = {"mass": self.mass, "stiffness": self.stiffness, "tangent": self.tangent or None}
+        return _core.group("damping", values | {"modal": modal})

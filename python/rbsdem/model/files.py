@@ -6,19 +6,16 @@ import json
 import os
 from collections.abc import Mapping
 from dataclasses import fields
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
 from rbsdem._files import atomic_write
 from rbsdem._package import extra
+from rbsdem._types import Array, DataFrame
 from rbsdem.errors import InputError
 from rbsdem.model.response import STATE_HEAD, Ended, Response, last_state
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 FORMAT = "rbsdem result"
 FORMAT_VERSION = 1
@@ -47,7 +44,7 @@ def columns(result: Response) -> dict[str, Array]:
     return found
 
 
-def to_pandas(result: Response) -> pd.DataFrame:
+def to_pandas(result: Response) -> DataFrame:
     """Return a DataFrame with the columns of the csv."""
     import pandas  # noqa: PLC0415
 
@@ -62,16 +59,11 @@ def to_xarray(result: Response) -> Any:
     arrays = quantities(result)
     along = result.channels[0]
     time = arrays.pop(along)
-    variables = {
-        name: ((along, "joint")[: values.ndim], values, units[name])
-        for name, values in arrays.items()
-    }
+    axes = along, "joint"
+    variables = {name: (axes[: v.ndim], v, units[name]) for name, v in arrays.items()}
     return extra("xarray").Dataset(
         variables,
-        {
-            along: (along, time, units[along]),
-            "joint": np.array(result.column.joint_numbers),
-        },
+        {along: (along, time, units[along]), "joint": np.array(result.column.joint_numbers)},
         {"program": "rbsdem", "version": _core.version(), "column": result.column.to_namelist()}
         | {name: value for name, value in result.summary.items() if not isinstance(value, dict)},
     )
@@ -122,10 +114,8 @@ def save(result: Any, path: str | os.PathLike[str]) -> None:
         name.replace("/", ":"): ([f"{name}_{axis}" for axis in range(values.ndim)], values)
         for name, values in arrays.items()
     }
-    dataset = xarray.Dataset(
-        {name.replace("/", ":"): value for name, value in variables.items()},
-        attrs={"about": json.dumps(about), "units": json.dumps(_core.units())},
-    )
+    texts = {"about": json.dumps(about), "units": json.dumps(_core.units())}
+    dataset = xarray.Dataset(variables, attrs=texts)
     for name, variable in dataset.variables.items():
         if name in _core.units():
             variable.attrs["units"] = _core.units()[name]
@@ -146,11 +136,9 @@ def ending_of(path: str | os.PathLike[str]) -> str:
 def _parts(result: Any) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return what is written as text, and the arrays by name."""
     arrays: dict[str, Any] = {}
-    about: dict[str, Any] = {
-        "format": FORMAT,
-        "format_version": FORMAT_VERSION,
-        "version": _core.version(),
-        "units": _core.units(),
+    about: dict[str, Any] = {"format": FORMAT, "format_version": FORMAT_VERSION}
+    about |= {"version": _core.version(), "units": _core.units()}
+    about |= {
         "column": result.column.to_namelist(),
         "summary": result.summary,
         "arrays": {},

@@ -8,10 +8,10 @@ from dataclasses import dataclass, fields
 from typing import ClassVar, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array, Derived, given
+from rbsdem._arguments import Derived, given
+from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
 
 Tension = Literal["ts", "bare", "zero"]
@@ -124,7 +124,7 @@ class Steel:
 
     def statement(self, number: int | None = None) -> _core.Statement:
         """Return the keys of the steel with their values; `number` is what bars refer to."""
-        values = {f.name: given(getattr(self, f.name)) for f in fields(self)}
+        values = {f.name: getattr(self, f.name) for f in fields(self)} | {"fu": given(self.fu)}
         return _core.group("steel", {"id": number} | values)
 
     def stress(self, strain: ArrayLike) -> Array:
@@ -150,25 +150,13 @@ class Steel:
         return stress.reshape(strains.shape)[()]
 
 
-#: Bars at mid-depth count half in tension; the others whole from this share of the depth on.
-_MIDDLE = 0.05
-
-#: Bars of a layout; more are a mistake, and fill the memory.
 #: Diameter of the thickest bar [m], as in the Fortran part.
 THICKEST = 0.075
+#: Bars of a layout; more are a mistake, and fill the memory.
 _MOST_BARS = 1000
 
 Bar = tuple[float, float, Steel]
 """One bar: distance from mid-depth [m], positive to the tension face; area [m2]; steel."""
-
-
-def share_in_tension(y: float, depth: float) -> float:
-    """Return the share of a bar that counts in the half in tension, y > 0.
-
-    From 0 to 1 in a straight line over a tenth of the depth around mid-depth, so that no strength
-    jumps when a bar is moved.
-    """
-    return min(max(0.5 + 0.5 * y / (_MIDDLE * depth), 0.0), 1.0)
 
 
 @dataclass(frozen=True)
@@ -266,16 +254,14 @@ class Layout:
             )
         edge = self._edge(depth, inset)
         corner = (_area(self.diameter), self.steel)
-        between = (
-            _area(self.between_diameter or self.diameter),
-            self.between_steel or self.steel,
-        )
+        inner = self.between_diameter or self.diameter
+        between = (_area(inner), self.between_steel or self.steel)
         rows = np.linspace(edge, -edge, side // 2 + 2).tolist()
         bars: list[Bar] = []
         for place, y in enumerate(rows):
             if place in (0, len(rows) - 1):
                 # Thinner bars between the corners touch the tie as well.
-                shift = 0.5 * (self.diameter - (self.between_diameter or self.diameter))
+                shift = 0.5 * (self.diameter - inner)
                 bars += [(y, *corner)] * 2
                 bars += [(y + math.copysign(shift, y), *between)] * (face - 2)
             else:

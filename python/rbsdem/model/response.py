@@ -11,8 +11,8 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 import numpy as np
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
 from rbsdem._files import Reported
+from rbsdem._types import Array
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
 from rbsdem.model.springs import Gauge, Layered, Strains, strains_of
@@ -22,6 +22,8 @@ ENERGIES = ("input", "kinetic", "spring", "damping", "axial", "residual")
 
 #: First line of a file with a state.
 STATE_HEAD = "# rbsdem state"
+_NO_ROWS = ("state", "reached")
+_CHANNELS = ("displacement", "force", "slip", "rotation", "shear", "moment")
 
 R = TypeVar("R", bound="Response")
 
@@ -331,12 +333,9 @@ class Response(Reported):
         """
         if not self.displacement.size:
             return math.nan
-        left = (
-            float(self.displacement[-1])
-            if self.dynamic
-            else _last_zero(self.path.displacement, self.path.force)
-        )
-        return left / self.column.height
+        if self.dynamic:
+            return float(self.displacement[-1]) / self.column.height
+        return _last_zero(self.path.displacement, self.path.force) / self.column.height
 
     def at(self, time: float) -> dict[str, Any]:
         """Return the state at a time, or at a point of a static path, linear between rows.
@@ -376,24 +375,18 @@ class Response(Reported):
             mixed = values[row] if share == 0 else (1 - share) * values[row] + share * values[after]
             return float(mixed) if np.ndim(mixed) == 0 else np.array(mixed)
 
-        arrays = {
-            name: value
-            for name, value in vars(path).items()
-            if isinstance(value, np.ndarray) and name not in ("state", "reached")
+        arrays = {name: value for name, value in vars(path).items() if name not in _NO_ROWS}
+        state: dict[str, Any] = {
+            name: between(value) for name, value in arrays.items() if isinstance(value, np.ndarray)
         }
-        state: dict[str, Any] = {name: between(values) for name, values in arrays.items()}
         return state | {"energy": between(path.energy), "time": at}
 
     def __repr__(self) -> str:
-        about = self.summary
+        about, key = self.summary, "peak_base_shear" if self.dynamic else "peak_force"
         return (
             f"{type(self).__name__}({about['method']}, {self.time.size} rows, {about['status']}, "
             f"peak displacement {about['peak_displacement']:.4g} m, "
-            + (
-                f"peak base shear {about['peak_base_shear']:.4g} N)"
-                if self.dynamic
-                else f"peak force {about['peak_force']:.4g} N)"
-            )
+            f"{key.replace('_', ' ')} {about[key]:.4g} N)"
         )
 
     def __eq__(self, other: object) -> bool:
@@ -442,18 +435,14 @@ def response_of(
     reached: Array | None = None,
 ) -> R:
     """Return the response of the arrays of a run."""
+    channels: Any = {name: arrays[name] for name in _CHANNELS}
     motion = None
     if "velocity" in arrays:
         names = ("velocity", "acceleration", "ground_acceleration")
         motion = np.column_stack([arrays[name] for name in names])
     return kind(
         time=arrays["time" if "time" in arrays else "step"],
-        displacement=arrays["displacement"],
-        force=arrays["force"],
-        slip=arrays["slip"],
-        rotation=arrays["rotation"],
-        shear=arrays["shear"],
-        moment=arrays["moment"],
+        **channels,
         base_shear=arrays.get("base_shear", arrays["shear"][:, 0]),
         base_moment=arrays.get("base_moment", arrays["moment"][:, 0]),
         energy={name: arrays[name] for name in ENERGIES},

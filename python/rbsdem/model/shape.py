@@ -8,20 +8,19 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, fields, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array, Derived, given
+from rbsdem._arguments import Derived, given
 from rbsdem._files import Reported
+from rbsdem._types import Array, Self
 from rbsdem.errors import InputError
-from rbsdem.model.materials import Bar, Concrete, Layout, Spiral, Steel, Ties, share_in_tension
-
-if TYPE_CHECKING:
-    from typing_extensions import Self
+from rbsdem.model.materials import Bar, Concrete, Layout, Spiral, Steel, Ties
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,25 +70,17 @@ class _Parts:
     if TYPE_CHECKING:
         _statement: ClassVar[_core.Statement]
         _figures: ClassVar[dict[str, float]]
+        concrete: Concrete
+        bars: Sequence[Bar]
+        layout: Layout | None
+        inner_layout: Layout | None
+        cover: float
+        bar_diameter: float | None
+        strips: int
+        wall: float | None
 
         @property
-        def concrete(self) -> Concrete: ...
-        @property
-        def bars(self) -> Sequence[Bar]: ...
-        @property
-        def layout(self) -> Layout | None: ...
-        @property
-        def inner_layout(self) -> Layout | None: ...
-        @property
-        def cover(self) -> float: ...
-        @property
         def side_cover(self) -> float | None: ...
-        @property
-        def bar_diameter(self) -> float | None: ...
-        @property
-        def strips(self) -> int: ...
-        @property
-        def wall(self) -> float | None: ...
         @property
         def ties(self) -> Ties | Spiral | None: ...
         @property
@@ -220,33 +211,15 @@ class Section(_Parts, Reported, ABC):
 
     def _finish(self) -> None:
         """Set bars and bar diameter; state the section to the Fortran part, which checks it."""
-        ties = self.ties
         if self.inner_layout is not None and self.layout is None:
             raise InputError("section: inner_layout goes with layout; give the bars outside, too")
         if self.inner_layout is not None and self.wall is None:
             raise InputError("section: inner_layout is around a void; give wall, or remove it")
-        self._take_bars(self.cover, ties)
-        numbers = {
-            steel: i for i, steel in enumerate(dict.fromkeys(bar[2] for bar in self.bars), 1)
-        }
-        if ties is not None:
-            numbers.setdefault(ties.steel, len(numbers) + 1)
+        self._take_bars(self.cover, self.ties)
         given = {"cover": self.cover, "side_cover": self.side_cover, "strips": self.strips}
-        diameter = self.bar_diameter if self.bars else None
-        statement = _core.group(
-            "section", {"shape": self.shape} | self._sizes() | given | {"bar_diameter": diameter}
-        )
-        statement += self.concrete.statement()
-        for steel, number in numbers.items():
-            statement += steel.statement(number)
-        if self.bars:
-            y, area, steels = zip(*self.bars, strict=True)
-            bars = {"y": y, "area": area, "steel": [numbers[steel] for steel in steels]}
-            statement += _core.group("bars", bars)
-        if ties is not None:
-            statement += ties.statement(numbers[ties.steel])
-        self._put("_statement", statement)
-        answer = _core.evaluate("check_section", statement)
+        given["bar_diameter"] = self.bar_diameter if self.bars else None
+        self._put("_statement", self._stated(self._sizes() | given, self.bars, {}))
+        answer = _core.evaluate("check_section", self._statement)
         self._put("_figures", _core.named("section", answer.values))
 
     def _take_bars(self, cover: float, transverse: Ties | Spiral | None) -> None:
@@ -270,16 +243,20 @@ class Section(_Parts, Reported, ABC):
     def drawing(self) -> _core.Statement:
         """Return the keys of the section as it was given, as groups of a case file."""
         layouts = {"layout": self.layout, "inner_layout": self.inner_layout}
-        laid_out = [layout for layout in layouts.values() if layout is not None]
-        steels = [steel for layout in laid_out for steel in layout.steels]
-        bars = self.bars if self.layout is None else ()
-        steels += [steel for _, _, steel in bars]
-        if self.ties is not None:
-            steels.append(self.ties.steel)
-        numbers = {steel: i for i, steel in enumerate(dict.fromkeys(steels), 1)}
+        laid_out = {name: layout for name, layout in layouts.items() if layout is not None}
         values = ((field.name, getattr(self, field.name)) for field in fields(self))
         sizes = {name: given(value) for name, value in values if isinstance(value, int | float)}
-        statement = _core.group("section", {"shape": self.shape} | sizes | self._sizes())
+        return self._stated(sizes | self._sizes(), () if laid_out else self.bars, laid_out)
+
+    def _stated(
+        self, sizes: Mapping[str, Any], bars: Sequence[Bar], layouts: Mapping[str, Layout]
+    ) -> _core.Statement:
+        """Return the groups of sizes, concrete, steels, bars or layouts, and transverse bars."""
+        steels = [steel for layout in layouts.values() for steel in layout.steels]
+        steels += [steel for _, _, steel in bars]
+        steels += [] if self.ties is None else [self.ties.steel]
+        numbers = {steel: i for i, steel in enumerate(dict.fromkeys(steels), 1)}
+        statement = _core.group("section", {"shape": self.shape, **sizes})
         statement += self.concrete.statement()
         for steel, number in numbers.items():
             statement += steel.statement(number)
@@ -288,8 +265,7 @@ class Section(_Parts, Reported, ABC):
             rows = {"y": y, "area": area, "steel": [numbers[steel] for steel in each]}
             statement += _core.group("bars", rows)
         for name, layout in layouts.items():
-            if layout is not None:
-                statement += layout.statement(name, numbers)
+            statement += layout.statement(name, numbers)
         if self.ties is not None:
             statement += self.ties.statement(numbers[self.ties.steel])
         return statement
@@ -303,7 +279,7 @@ class Section(_Parts, Reported, ABC):
     def _wall(self) -> float:
         return float(self.wall or 0.0)
 
-    @property
+    @cached_property
     def mirrored(self) -> Self:
         """The section upside down: y > 0 is what was y < 0. Itself where that is the same."""
         mirrored = sorted(((-y, area, steel) for y, area, steel in self.bars), key=_place)
@@ -339,6 +315,14 @@ class Section(_Parts, Reported, ABC):
     def shear_area(self) -> float:
         """Area that carries elastic shear [m2]."""
         return self._figures["shear_area"]
+
+    @cached_property
+    def tension_steel(self) -> float:
+        """Bars in the half in tension, those at mid-depth with half of their area [m2].
+
+        Bars within a twentieth of the depth from there count in proportion.
+        """
+        return sum(area * _share_in_tension(y, self.depth) for y, area, _ in self.bars)
 
     @property
     def steel_area(self) -> float:
@@ -475,7 +459,7 @@ class RectangularSection(Section):
         """Width that carries shear: of a hollow section that of both webs [m]."""
         return 2.0 * self._web if self.hollow else self.width
 
-    @property
+    @cached_property
     def effective_depth(self) -> float:
         """From the compression face to the centre of the bars in the half in tension [m].
 
@@ -485,7 +469,7 @@ class RectangularSection(Section):
         parts = [
             (y, area, share)
             for y, area, _ in self.bars
-            if (share := 2.0 * share_in_tension(y, self.depth) - 1.0) > 0.0
+            if (share := 2.0 * _share_in_tension(y, self.depth) - 1.0) > 0.0
         ]
         if not parts:
             return 0.8 * self.depth
@@ -855,6 +839,19 @@ def _bar(bar: Any, number: int) -> Bar:
         _arguments.number(area, f"section: area of bar {number}"),
         _arguments.instance(steel, f"section: steel of bar {number}", Steel),
     )
+
+
+#: Bars at mid-depth count half in tension; the others whole from this share of the depth on.
+_MIDDLE = 0.05
+
+
+def _share_in_tension(y: float, depth: float) -> float:
+    """Return the share of a bar that counts in the half in tension, y > 0.
+
+    From 0 to 1 in a straight line over a tenth of the depth around mid-depth, so that no strength
+    jumps when a bar is moved.
+    """
+    return min(max(0.5 + 0.5 * y / (_MIDDLE * depth), 0.0), 1.0)
 
 
 def _box(half_width: float, half_depth: float) -> Array:

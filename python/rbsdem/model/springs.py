@@ -12,19 +12,14 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields, replace
 from functools import cache
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, TypeVar, get_args
+from typing import Any, ClassVar, Literal, NamedTuple, TypeVar, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
 from rbsdem._files import atomic_write
+from rbsdem._types import Array, ArrayLike, Self
 from rbsdem.errors import InputError
-
-if TYPE_CHECKING:
-    from typing_extensions import Self
-
 
 AnySpring = TypeVar("AnySpring", bound="Spring")
 
@@ -650,14 +645,12 @@ class Layered(Spring):
             raise InputError(
                 "layered spring: layers must be a sequence of pairs of a distance [m] and a spring"
             ) from None
-        layers = tuple(
-            (
-                _arguments.number(y, f"layered spring: y of layer {number}"),
-                checked_spring(spring, f"layered spring: layer {number}", "layer"),
-            )
-            for number, (y, spring) in enumerate(pairs, 1)
-        )
-        object.__setattr__(self, "layers", layers)
+        layers = []
+        for number, (y, spring) in enumerate(pairs, 1):
+            place = _arguments.number(y, f"layered spring: y of layer {number}")
+            layer = checked_spring(spring, f"layered spring: layer {number}", "layer")
+            layers.append((place, layer))
+        object.__setattr__(self, "layers", tuple(layers))
         super().__post_init__()
 
     def __repr__(self) -> str:
@@ -775,7 +768,7 @@ class Gauge:
                 "for each layer"
             )
         for number, (part, length) in enumerate(zip(self.part, self.length, strict=True), 1):
-            if not _arguments.is_one_of(part, _PARTS):
+            if not (isinstance(part, str) and part in _PARTS):
                 raise InputError(
                     f"gauge: part of layer {number} is {part!r}; it is one of {', '.join(_PARTS)}"
                 )
@@ -903,12 +896,5 @@ def strains_of(
             f"gauge: {len(gauge.length)} lengths for the {deformation.shape[1]} layers of joint "
             f"{joint}; give one for each"
         )
-    length = np.array(gauge.length)
-    return Strains(
-        joint,
-        time,
-        np.array(position, dtype=float),
-        np.array(gauge.part),
-        length,
-        np.asarray(deformation / length),
-    )
+    places, part, length = np.array(position, float), np.array(gauge.part), np.array(gauge.length)
+    return Strains(joint, time, places, part, length, np.asarray(deformation / length))

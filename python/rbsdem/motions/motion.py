@@ -7,12 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, atomic_write
 from rbsdem._tables import STANDARD_GRAVITY
+from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
 
 _MOST_DAMPING = 10.0
@@ -126,21 +125,17 @@ class GroundMotion:
     ) -> None:
         _arguments.text(description, "motion: description")
         who = f"motion {name}" if _arguments.text(name, "motion: name") else "motion"
-        faults, values, step = [], np.empty(0), 0.0
-        try:
+        faults: list[str] = []
+        values, step = np.empty(0), 0.0
+        with _arguments.collected(faults):
             values = np.array(_arguments.finite_vector(acceleration, f"{who}: acceleration"))
             if values.size < 2:
                 faults.append(f"{who}: acceleration has {values.size} values; give two or more")
-        except InputError as error:
-            faults.append(str(error))
-        try:
+        with _arguments.collected(faults):
             step = _arguments.number(dt, f"{who}: dt")
             if not 0 < step <= _LONGEST_STEP:
                 faults.append(f"{who}: dt = {step:g} s must be above 0 and at most 10 s")
-        except InputError as error:
-            faults.append(str(error))
-        if faults:
-            raise InputError("\n".join(faults))
+        _arguments.raise_faults(faults)
         values.flags.writeable = False
         given = {"acceleration": values, "dt": step, "name": name, "description": description}
         for key, value in given.items():

@@ -17,8 +17,8 @@ from pathlib import Path
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._tables import STANDARD_GRAVITY, NumberTable, read_lines, read_table
+from rbsdem._types import Array
 from rbsdem.errors import InputError, RepairWarning
 from rbsdem.motions.motion import GroundMotion
 
@@ -453,12 +453,11 @@ def read_motions(
         raise InputError(
             f"{place}: no file {pattern!r} with the ending {', '.join(ENDINGS)} is there"
         )
-    motions, faults = [], []
+    motions: list[GroundMotion] = []
+    faults: list[str] = []
     for path in paths:
-        try:
+        with _arguments.collected(faults):
             motions.append(read_motion(path, units))
-        except InputError as error:
-            faults.append(str(error))
     if faults:
         raise InputError("\n".join(faults))
     return tuple(motions)

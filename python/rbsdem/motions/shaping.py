@@ -14,8 +14,8 @@ from dataclasses import replace
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._tables import STANDARD_GRAVITY
+from rbsdem._types import Array
 from rbsdem.errors import InputError
 from rbsdem.motions.motion import GroundMotion, checked_motion
 

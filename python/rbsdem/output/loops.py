@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike, Axes, NDArray
 from rbsdem.calibration.outcome import Calibration
 from rbsdem.checks.code_values import CodeComparison
 from rbsdem.checks.limit_states import LimitStates
@@ -25,6 +24,7 @@ from rbsdem.output.style import (
     TEST_POINTS,
     ZERO_LINE,
     AxesArray,
+    Line,
     axes_or_new,
     drift_axis,
     keep_letters,
@@ -34,29 +34,20 @@ from rbsdem.output.style import (
 )
 from rbsdem.results.lumped import LumpedHinge, Material
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-
 FIGURE_SIZE = (6.9, 6.0)
 
 _MARKERS = "os^Dv<>phX*P8"
-_STATE: dict[str, Any] = {
-    "linestyle": "none",
-    "markersize": 5.0,
-    "markerfacecolor": "white",
-    "markeredgecolor": "black",
-    "markeredgewidth": 0.9,
-    "zorder": 5,
-}
+_STATE: Line = {"ls": "none", "ms": 5.0, "mfc": "white", "mec": "black", "mew": 0.9, "zorder": 5}
 
 #: Lines of the backbones, told apart in print without colour.
-_BACKBONES: dict[str, dict[str, Any]] = {
-    "ASCE 41": {"linestyle": "-", "marker": "s"},
-    "EC 8-3": {"linestyle": (0, (5, 1.5)), "marker": "o"},
-    "Elwood": {"linestyle": (0, (1.2, 1.2)), "marker": "^"},
-    "Haselton": {"linestyle": (0, (5, 1.2, 1, 1.2)), "marker": "D"},
+_BACKBONES: dict[str, Line] = {
+    "ASCE 41": {"ls": "-", "marker": "s"},
+    "EC 8-3": {"ls": (0, (5, 1.5)), "marker": "o"},
+    "Elwood": {"ls": (0, (1.2, 1.2)), "marker": "^"},
+    "Haselton": {"ls": (0, (5, 1.2, 1, 1.2)), "marker": "D"},
 }
+_BACKBONE: Line = {"color": "black", "lw": 1.0, "ms": 3.2, "mfc": "white", "zorder": 4}
+_AT_ZERO: Line = {"ls": "none", "ms": 6.0, "mec": "black", "mew": 0.8, "zorder": 5}
 #: Drifts of damage: row of the table, column of the table, label, fill.
 _DAMAGE = (
     ("spalling", "model", "spalling, model", "white"),
@@ -184,7 +175,7 @@ def loops_over_test(
     computed = _curve(model, "the model")
     with axes_or_new(ax) as drawn:
         drawn.plot(*measured, label="Test", **(TEST_POINTS if test_points else TEST_LINE))
-        drawn.plot(*computed, **line_of({**MODEL_LINE, "label": "Model"}, line))
+        drawn.plot(*computed, **line_of(MODEL_LINE | {"label": "Model"}, line))
         _dress(drawn, height)
         if title:
             at = drawn.transAxes
@@ -233,24 +224,12 @@ def four_panels(
         for ax in grid[len(panels) :]:
             ax.remove()
         for letter, ax, panel in zip("abcd", grid, panels, strict=False):
-            loops_over_test(
-                panel.model,
-                panel.test,
-                title=f"({letter}) {panel.title}",
-                height=panel.height,
-                test_points=panel.test_points,
-                legend=False,
-                ax=ax,
-            )
+            look: Any = {"height": panel.height, "test_points": panel.test_points, "legend": False}
+            title = f"({letter}) {panel.title}"
+            loops_over_test(panel.model, panel.test, title=title, ax=ax, **look)
+        look = {"loc": "outside lower center", "ncols": 2, "handlelength": 3.2}
         handles = grid[0].get_lines()[:2]
-        figure.legend(
-            handles,
-            [test_label, model_label],
-            loc="outside lower center",
-            ncols=2,
-            handlelength=3.2,
-            columnspacing=3.0,
-        )
+        figure.legend(handles, [test_label, model_label], columnspacing=3.0, **look)
         # Ticks and layout take their style when they are first drawn.
         figure.draw_without_rendering()
     return grid[: len(panels)]
@@ -280,11 +259,8 @@ def envelope(envelope: Envelope, *, method: Method | None = None, ax: Axes | Non
             lines = envelope.idealise(method)
             corners = np.array([0.0, lines.yield_displacement, lines.end_displacement])
             drawn.plot(corners * 1e3, lines.force(corners) * 1e-3, **TEST_LINE, label=lines.source)
-            drawn.plot(
-                lines.yield_displacement * 1e3,
-                lines.yield_force * 1e-3,
-                **{**TEST_POINTS, "color": "black"},
-            )
+            at = lines.yield_displacement * 1e3, lines.yield_force * 1e-3
+            drawn.plot(*at, **TEST_POINTS | {"color": "black"})
             drawn.legend(loc="lower right")
         drawn.set_xlim(left=0.0, auto=True)
         drawn.set_ylim(bottom=0.0, auto=True)
@@ -371,7 +347,7 @@ def comparison(comparison: Comparison, *, ax: Axes | None = None, **line: Any) -
     return _over_test(comparison, title, ax, line)
 
 
-def _over_test(scores: Comparison, title: str, ax: Axes | None, line: dict[str, Any]) -> Axes:
+def _over_test(scores: Comparison, title: str, ax: Axes | None, line: Line) -> Axes:
     test = scores.displacement, scores.test_force
     height = scores.height if scores.height > 0 else None
     return loops_over_test(scores.model_curve, test, title=title, height=height, ax=ax, **line)
@@ -429,41 +405,21 @@ def code_comparison(found: CodeComparison, *, ax: Axes | None = None) -> Axes:
     with axes_or_new(ax, (6.2, 3.4)) as drawn:
         if found.test is not None:
             d, f = found.test
-            drawn.plot(100 * d / height, 1e-3 * f, **{**TEST_LINE, "label": "test"})
+            drawn.plot(100 * d / height, 1e-3 * f, **TEST_LINE, label="test")
         drift, force = 100 * result.drift, 1e-3 * result.loop_force
         drawn.plot(drift, force, color="0.6", linewidth=0.6, zorder=2.5, label="model")
         for line in found.backbones:
-            drawn.plot(
-                *_above_zero(100 * line.drift, 1e-3 * line.force(found.span, found.leaning)),
-                color="black",
-                linewidth=1.0,
-                markersize=3.2,
-                markerfacecolor="white",
-                zorder=4,
-                label=line.name,
-                **_BACKBONES[line.name],
-            )
+            way = _above_zero(100 * line.drift, 1e-3 * line.force(found.span, found.leaning))
+            drawn.plot(*way, label=line.name, **_BACKBONE, **_BACKBONES[line.name])
         for row, source, label, fill in _DAMAGE:
             if source in found[row]:
-                drawn.plot(
-                    100 * found[row][source],
-                    0.0,
-                    linestyle="none",
-                    marker="v" if row == "spalling" else "P",
-                    markersize=6.0,
-                    markeredgecolor="black",
-                    markerfacecolor=fill,
-                    markeredgewidth=0.8,
-                    zorder=5,
-                    label=label,
-                )
+                look: Line = {"marker": "v" if row == "spalling" else "P", "mfc": fill}
+                drawn.plot(100 * found[row][source], 0.0, label=label, **_AT_ZERO, **look)
         drawn.axhline(0.0, **ZERO_LINE)
         drawn.axvline(0.0, **ZERO_LINE)
         drawn.margins(x=0.03, y=0.06)
-        drawn.set(
-            xlabel="Drift ratio (%)",
-            ylabel="Base shear (kN)" if result.dynamic else "Lateral force (kN)",
-        )
+        force_name = "Base shear (kN)" if result.dynamic else "Lateral force (kN)"
+        drawn.set(xlabel="Drift ratio (%)", ylabel=force_name)
         drawn.tick_params(right=True, top=True)
         drawn.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=7.5, handlelength=3.0)
     return drawn

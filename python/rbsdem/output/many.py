@@ -4,25 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from rbsdem._types import Axes
 from rbsdem.errors import InputError
 from rbsdem.many.cloud import Cloud
 from rbsdem.many.fragility import Capacities, Counts, Fragility
 from rbsdem.many.ida import IDA, Stripes
 from rbsdem.many.runs import Runs
 from rbsdem.motions.motion import GroundMotion, Spectrum
-from rbsdem.output.style import MODEL_LINE, axes_or_new, line_of
+from rbsdem.output.style import MODEL_LINE, Line, axes_or_new, line_of
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-
-_RECORD: dict[str, Any] = {"color": "0.72", "linewidth": 0.5}
-_POINT: dict[str, Any] = {"color": "0.35", "marker": ".", "linestyle": "none", "markersize": 4}
-_COLLAPSE: dict[str, Any] = {"color": "#c0392b", "marker": "x", "linestyle": "none"}
+_RECORD: Line = {"color": "0.72", "linewidth": 0.5}
+_POINT: Line = {"color": "0.35", "marker": ".", "linestyle": "none", "markersize": 4}
+_COLLAPSE: Line = {"color": "#c0392b", "marker": "x", "linestyle": "none"}
 _STYLES = ("--", "-", "--")
 #: Colours of several curves in one figure.
 _COLOURS = ("#1f77b4", "#2ca02c", "#e67e22", "#c0392b", "#6c3483", "#000000")
@@ -54,12 +51,9 @@ def ida(found: IDA, *, edp: str = "peak_drift", ax: Axes | None = None, **line: 
         level, fractiles = found.fractiles(edp=edp)
         for values, style, name in zip(fractiles, _STYLES, ("16 %", "50 %", "84 %"), strict=True):
             stands = np.isfinite(values)
-            given = line_of({**MODEL_LINE, "linestyle": style, "label": name}, line)
-            drawn.plot(
-                np.concatenate([[0.0], percent * values[stands]]),
-                np.concatenate([[0.0], level[stands]]),
-                **given,
-            )
+            given = line_of(MODEL_LINE | {"linestyle": style, "label": name}, line)
+            x, y = percent * values[stands], level[stands]
+            drawn.plot(np.append(0.0, x), np.append(0.0, y), **given)
         if ax is None:
             _label_response(drawn, edp, found.runs)
             drawn.set_ylim(bottom=0)
@@ -112,7 +106,7 @@ def cloud(found: Cloud, *, edp: str = "peak_drift", ax: Axes | None = None, **li
         x = np.geomspace(found.runs.intensity.min(), found.runs.intensity.max(), 50)
         middle = fit.a + fit.b * np.log(x)
         for shift, style in zip((-1, 0, 1), _STYLES, strict=True):
-            given = line_of({**MODEL_LINE, "linestyle": style}, line)
+            given = line_of(MODEL_LINE | {"linestyle": style}, line)
             drawn.plot(percent * np.exp(middle + shift * fit.sigma), x, **given)
         if ax is None:
             _label_response(drawn, edp, found.runs)
@@ -137,9 +131,8 @@ def fragility(found: Fragility, *, level: float = 0.9, ax: Axes | None = None, *
     width = max(found.beta, 0.05)
     x = found.theta * np.exp(np.linspace(-2.8 * width, 2.8 * width, 200))
     with axes_or_new(ax, (4.2, 3.2)) as drawn:
-        curve = drawn.plot(
-            x, found.probability(x), **line_of({**MODEL_LINE, "label": found.name}, line)
-        )[0]
+        look = line_of(MODEL_LINE | {"label": found.name}, line)
+        curve = drawn.plot(x, found.probability(x), **look)[0]
         if level:
             # Where the bootstrap determines no band none is drawn.
             with suppress(InputError):
@@ -191,7 +184,7 @@ def _shares(found: Fragility) -> tuple[Any, Any]:
     return np.empty(0), np.empty(0)
 
 
-def _points(ax: Axes, runs: Runs, edp: str, line: dict[str, Any]) -> None:
+def _points(ax: Axes, runs: Runs, edp: str, line: Line) -> None:
     percent = 100.0 if edp.endswith("drift") else 1.0
     response = percent * runs.response(edp)
     stands = np.isfinite(response)
@@ -220,7 +213,7 @@ def motion(motion: GroundMotion, *, ax: Axes | None = None, **line: Any) -> Axes
         Keywords of the line.
     """
     with axes_or_new(ax, (6.0, 2.2)) as drawn:
-        default = {**MODEL_LINE, "linewidth": 0.7, "label": motion.name}
+        default = MODEL_LINE | {"linewidth": 0.7, "label": motion.name}
         drawn.plot(motion.time, motion.acceleration, **line_of(default, line))
         if ax is None:
             drawn.set(xlabel="Time (s)", ylabel="Acceleration (m/s²)", title=motion.name)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rbsdem._files import write_figure
+from rbsdem._types import Axes
 from rbsdem.measured.predictions import Prediction, Predictions, band_record
 from rbsdem.measured.specimens import Specimen
 from rbsdem.output.style import (
@@ -19,6 +20,7 @@ from rbsdem.output.style import (
     TEST_LINE,
     ZERO_LINE,
     AxesArray,
+    Line,
     axes_or_new,
     line_of,
     new_axes,
@@ -28,11 +30,11 @@ from rbsdem.output.tables import table
 from rbsdem.section.spread import Spread
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from rich.table import Table
 
 
-_MEDIAN_LINE: dict[str, Any] = {"color": "0.45", "linestyle": ":", "linewidth": 0.8, "zorder": 2}
+Record = dict[str, Any]
+_MEDIAN_LINE: Line = {"color": "0.45", "linestyle": ":", "linewidth": 0.8, "zorder": 2}
 
 #: Sheets of bands: most cells beside each other, and their size [inches].
 _BAND_COLUMNS = 8
@@ -66,14 +68,13 @@ def spread(found: Spread, *, test: Any = None, ax: Axes | None = None, **line: A
     path = 1e3 * np.concatenate(([0.0], np.cumsum(np.abs(np.diff(found.displacement)))))
     measured = None if test is None else found.rows_of(test)
     with axes_or_new(ax, (6.0, 2.8)) as drawn:
-        drawn.fill_between(
-            path, found.lower / 1e3, found.upper / 1e3, color="0.86", lw=0, label="80 % band"
-        )
-        model = line_of({**MODEL_LINE, "label": "Prediction"}, line)
+        low, high = found.lower / 1e3, found.upper / 1e3
+        drawn.fill_between(path, low, high, color="0.86", lw=0, label="80 % band")
+        model = line_of(MODEL_LINE | {"label": "Prediction"}, line)
         drawn.plot(path, found.force / 1e3, **model)
         drawn.plot(path, found.median / 1e3, **_MEDIAN_LINE, label="Median of the samples")
         if measured is not None:
-            drawn.plot(path, measured / 1e3, **{**TEST_LINE, "label": "Test"})
+            drawn.plot(path, measured / 1e3, **TEST_LINE, label="Test")
         drawn.set(xlabel="Path of displacement (mm)", ylabel="Force (kN)")
         drawn.margins(x=0.01)
         # Above the axes: the band fills them.
@@ -265,18 +266,11 @@ def tests_table(predictions: Predictions) -> Table:
         remark = f"outside the tests: {'; '.join(row.remarks)}" if row.remarks else ""
         if row.status != "completed":
             remark = f"{row.status}: {row.error}"
-        rows.append(
-            {
-                "Test": row.specimen.name,
-                "Failure": row.specimen.failure_mode or "",
-                "NRMSE": row.nrmse,
-                **{title: row.score(name) for title, name in _RATIOS.items()},
-                "test_drift_at_loss": row.score("test_drift_at_loss"),
-                "model_drift_at_loss": row.score("model_drift_at_loss"),
-                "Time, ms": 1e3 * row.seconds,
-                "": remark,
-            }
-        )
+        ratios = {title: row.score(name) for title, name in _RATIOS.items()}
+        lost = {name: row.score(name) for name in ("test_drift_at_loss", "model_drift_at_loss")}
+        shown: Record = {"Test": row.specimen.name, "Failure": row.specimen.failure_mode or ""}
+        shown |= {"NRMSE": row.nrmse, **ratios, **lost, "Time, ms": 1e3 * row.seconds, "": remark}
+        rows.append(shown)
     return _table(rows, styles=[_STYLES.get(row.status) for row in predictions])
 
 
@@ -305,11 +299,8 @@ def bands_table(predictions: Predictions) -> Table:
         if row.band is None:
             continue
         record = band_record(row)
-        shown: dict[str, Any] = {
-            "Test": row.specimen.name,
-            "Within": row.points_within,
-            "Width": row.band.width,
-        }
+        shown: Record = {"Test": row.specimen.name, "Within": row.points_within}
+        shown["Width"] = row.band.width
         for name, title, factor in _NUMBERS:
             low, high, test = (factor * record[f"{name}_{end}"] for end in _ENDS)
             # What a test did not come to is not marked.
@@ -326,7 +317,7 @@ def bands_table(predictions: Predictions) -> Table:
 def numbers_table(row: Prediction) -> Table:
     """Return the numbers of a prediction with their intervals, then the nearest tests."""
     name = row.specimen.name
-    rows: list[dict[str, Any]] = []
+    rows: list[Record] = []
     if row.band is not None:
         record = band_record(row)
         for number, title, factor in _NUMBERS:
@@ -355,7 +346,7 @@ def numbers_table(row: Prediction) -> Table:
 _ENDS = ("lower", "upper", "test")
 
 
-def _table(rows: list[dict[str, Any]], **options: Any) -> Table:
+def _table(rows: list[Record], **options: Any) -> Table:
     import pandas  # noqa: PLC0415
 
     return table(pandas.DataFrame(rows), **options)

@@ -8,20 +8,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rbsdem._files import write_figure
+from rbsdem._types import Axes, DataFrame
 from rbsdem.errors import InputError
 from rbsdem.methods.ladder import LEVELS
 from rbsdem.methods.study import MethodStudy
-from rbsdem.output.style import axes_or_new, line_of, style
+from rbsdem.output.style import Line, axes_or_new, line_of, style
 from rbsdem.output.tables import console, plain, table
 
 if TYPE_CHECKING:
-    import pandas as pd
-    from matplotlib.axes import Axes
-
     from rbsdem.methods.study import Row
 
 #: Marker, filling and gray of each method; located events are filled.
-MARKS: dict[tuple[str, str | None], dict[str, Any]] = {
+MARKS: dict[tuple[str, str | None], Line] = {
     ("rk4", "step"): {"marker": "o", "color": "black", "markerfacecolor": "white"},
     ("rk4", "located"): {"marker": "o", "color": "black"},
     ("rk45", None): {"marker": "D", "color": "0.25"},
@@ -31,6 +29,8 @@ MARKS: dict[tuple[str, str | None], dict[str, Any]] = {
     ("auto", None): {"marker": "*", "color": "black"},
     ("static", None): {"marker": "o", "color": "black"},
 }
+_FRONT: Line = {"drawstyle": "steps-post", "color": "0.8", "lw": 5, "solid_capstyle": "butt"}
+_CHOSEN: Line = {"marker": "o", "ms": 10, "mfc": "none", "color": "black", "ls": "none"}
 
 OWN = {"marker": "x", "color": "black"}
 
@@ -71,15 +71,7 @@ def methods(study: MethodStudy, *, ax: Axes | None = None, **line: Any) -> Axes:
     floor = max(study.reference.resolution, 1e-16)
     with axes_or_new(ax, (5.2, 3.6)) as drawn:
         front = sorted((row for row in done if row.pareto), key=lambda row: row.seconds)
-        drawn.plot(
-            *_points(front, floor),
-            drawstyle="steps-post",
-            color="0.8",
-            linewidth=5,
-            solid_capstyle="butt",
-            zorder=1,
-            label="Pareto front",
-        )
+        drawn.plot(*_points(front, floor), **_FRONT, zorder=1, label="Pareto front")
         families = dict.fromkeys(row.setting.family for row in done)
         # The column's own is the highest.
         levels = [level for level in reversed(LEVELS) if any(f[2] == level for f in families)]
@@ -94,15 +86,9 @@ def methods(study: MethodStudy, *, ax: Axes | None = None, **line: Any) -> Axes:
             mark = MARKS[method, events]
             if own:
                 label, mark = "as given", OWN
-            default = {
-                "label": label,
-                "linewidth": 0.6,
-                "linestyle": DASHES[levels.index(level)],
-                "markersize": 4,
-                "markeredgewidth": 0.7,
-                "zorder": 3,
-            }
-            drawn.plot(*_points(rows, floor), **line_of({**default, **mark}, line))
+            default: Line = {"linewidth": 0.6, "markersize": 4, "markeredgewidth": 0.7, "zorder": 3}
+            default |= {"label": label, "linestyle": DASHES[levels.index(level)]}
+            drawn.plot(*_points(rows, floor), **line_of(default | mark, line))
         _dress(drawn, study, floor)
     return drawn
 
@@ -117,32 +103,14 @@ def _dress(ax: Axes, study: MethodStudy, floor: float) -> None:
     low, high = min(low, floor / 3), min(high, TOP)
     # Down to the axis, also where panels share it.
     ax.axhspan(1e-300, floor, color="0.94", linewidth=0, zorder=0)
-    ax.text(
-        0.985,
-        floor,
-        "agreement of the reference",
-        transform=ax.get_yaxis_transform(),
-        fontsize="small",
-        color="0.4",
-        ha="right",
-        va="top",
-    )
+    text: Any = {"fontsize": "small", "color": "0.4", "ha": "right", "va": "top"}
+    across = ax.get_yaxis_transform()
+    ax.text(0.985, floor, "agreement of the reference", transform=across, **text)
     ax.set_ylim(low, high)
     if study.choice is not None:
         ax.axhline(study.choice.tolerance, color="0.6", linewidth=0.6, linestyle=(0, (4, 3)))
         if study.choice.row is not None:
-            row = study.choice.row
-            ax.plot(
-                [row.seconds],
-                [max(row.error, floor)],
-                marker="o",
-                markersize=10,
-                markerfacecolor="none",
-                color="black",
-                linestyle="none",
-                label="chosen",
-                zorder=4,
-            )
+            ax.plot(*_points([study.choice.row], floor), **_CHOSEN, label="chosen", zorder=4)
     ax.tick_params(which="both", top=True, right=True)
     ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small", handlelength=2.2)
 
@@ -213,11 +181,11 @@ def report(study: MethodStudy, title: str) -> None:
     say(f"\nDone in {study.seconds:.1f} s of {study.budget:g} s.")
 
 
-def _settings(study: MethodStudy) -> pd.DataFrame:
+def _settings(study: MethodStudy) -> DataFrame:
     """Return the settings as they are printed."""
     import pandas  # noqa: PLC0415
 
-    rows = []
+    rows, errors = [], ("moment", "energy", "peak", "error")
     for row in study.rows:
         value = row.setting.value
         if row.setting.method == "auto" and row.reason:
@@ -232,10 +200,7 @@ def _settings(study: MethodStudy) -> pd.DataFrame:
                 "Setting": value,
                 "Time, s": row.seconds,
                 study.response.capitalize(): row.response_rms,
-                "Moment": row.moment,
-                "Energy": row.energy,
-                "Peak": row.peak,
-                "Error": row.error,
+                **{name.capitalize(): getattr(row, name) for name in errors},
                 "To finer": row.move,
             }
         )

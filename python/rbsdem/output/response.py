@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike, Axes
 from rbsdem.errors import InputError
 from rbsdem.model.column import bodies
 from rbsdem.model.response import ENERGIES, Response
@@ -17,15 +16,12 @@ from rbsdem.output.style import (
     MODEL_LINE,
     ZERO_LINE,
     AxesArray,
+    Line,
     axes_or_new,
     line_of,
     new_axes,
     style_of,
 )
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 Over = Literal["displacement", "drift", "force", "base_shear", "base_moment"]
 
@@ -39,7 +35,7 @@ _OVER: dict[str, tuple[float, str]] = {
 }
 
 #: Grays and dashes for several lines on one pair of axes, legible in print.
-_LINES: tuple[dict[str, Any], ...] = (
+_LINES: tuple[Line, ...] = (
     {"color": "black", "linestyle": "-"},
     {"color": "black", "linestyle": "--"},
     {"color": "0.5", "linestyle": "-"},
@@ -90,10 +86,15 @@ def history(
         drawn.plot(result.time, factor * getattr(result, over), **line_of(MODEL_LINE, line))
         if not any(each.get_gid() == "zero" for each in drawn.get_lines()):
             drawn.axhline(0.0, gid="zero", **ZERO_LINE)
-        drawn.set_xlim(result.time[0], max(result.time[-1], result.time[0] + 1e-9))
-        drawn.set(xlabel="Time (s)" if result.dynamic else "Point of the path", ylabel=label)
-        drawn.tick_params(right=True, top=True)
+        _along(result, drawn, label)
     return drawn
+
+
+def _along(result: Response, ax: Axes, label: str) -> None:
+    """Dress axes whose x is the time, or the points of a path."""
+    ax.set_xlim(result.time[0], max(result.time[-1], result.time[0] + 1e-9))
+    ax.set(xlabel="Time (s)" if result.dynamic else "Point of the path", ylabel=label)
+    ax.tick_params(right=True, top=True)
 
 
 def energy(result: Response, *, ax: Axes | None = None) -> Axes:
@@ -114,14 +115,9 @@ def energy(result: Response, *, ax: Axes | None = None) -> Axes:
     with axes_or_new(ax, (5.2, 2.8)) as drawn:
         names = [name for name in ENERGIES if name != "residual" and np.any(result.energy[name])]
         for name, line in zip(names, _LINES, strict=False):
-            drawn.plot(
-                result.time, result.energy[name] * 1e-3, **line, lw=0.8, label=_ENERGY_LABELS[name]
-            )
-        drawn.set_xlim(result.time[0], max(result.time[-1], result.time[0] + 1e-9))
-        drawn.set(
-            xlabel="Time (s)" if result.dynamic else "Point of the path", ylabel="Energy (kJ)"
-        )
-        drawn.tick_params(right=True, top=True)
+            values = result.energy[name] * 1e-3
+            drawn.plot(result.time, values, **line, lw=0.8, label=_ENERGY_LABELS[name])
+        _along(result, drawn, "Energy (kJ)")
         if names:
             drawn.legend(loc="best", handlelength=2.4)
     return drawn
@@ -177,9 +173,8 @@ def profile(
             name = f"{moment:g} s" if result.dynamic else f"point {moment:g}"
             places, moved = _displacements(state, joints)
             axes[0].plot(100 * moved / height, places, **line, lw=0.9, label=name)
-            axes[1].step(
-                np.append(state["shear"], state["shear"][-1]) * 1e-3, joints, **line, lw=0.9
-            )
+            shear = np.append(state["shear"], state["shear"][-1]) * 1e-3
+            axes[1].step(shear, joints, **line, lw=0.9)
             axes[2].plot(np.append(state["moment"], 0.0) * 1e-3, joints, **line, lw=0.9)
         for ax, label in zip(axes, ("Drift (%)", "Shear (kN)", "Moment (kN m)"), strict=True):
             ax.axvline(0.0, **ZERO_LINE)
@@ -199,7 +194,7 @@ def _lengths(result: Response) -> Array:
     return np.array([*beneath, *lengths, *above], dtype=np.float64)
 
 
-def _displacements(state: dict[str, Any], joints: Array) -> tuple[Array, Array]:
+def _displacements(state: Line, joints: Array) -> tuple[Array, Array]:
     """Return heights and displacements of the lower and upper end of each body [m].
 
     To first order in the rotations, and scaled so that the top has its displacement.

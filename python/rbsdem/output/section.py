@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike, Axes
 from rbsdem.checks.criteria import buckling_strain
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Tension
@@ -20,6 +19,7 @@ from rbsdem.output.style import (
     TEST_POINTS,
     ZERO_LINE,
     AxesArray,
+    Line,
     axes_or_new,
     line_of,
     new_axes,
@@ -33,11 +33,7 @@ from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.paper_springs import SectionSprings
 from rbsdem.section.shear import ShearDiagram, ShearSpring
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-
-EVENT_MARKS: dict[str, dict[str, Any]] = {
+EVENT_MARKS: dict[str, Line] = {
     "cracking": {"marker": "o", "markerfacecolor": "white"},
     "yielding": {"marker": "s", "markerfacecolor": "white"},
     "peak": {"marker": "^", "markerfacecolor": "black"},
@@ -46,18 +42,12 @@ EVENT_MARKS: dict[str, dict[str, Any]] = {
 """Markers of the events."""
 
 #: What all of them have.
-_MARK: dict[str, Any] = {
-    "linestyle": "none",
-    "color": "black",
-    "markersize": 4.5,
-    "markeredgewidth": 0.8,
-    "zorder": 5,
-}
+_MARK: Line = {"ls": "none", "color": "black", "ms": 4.5, "mew": 0.8, "zorder": 5}
 
-_OUTLINE: dict[str, Any] = {"facecolor": "0.93", "edgecolor": "black", "linewidth": 0.8}
-_TIE: dict[str, Any] = {"facecolor": "0.35", "linewidth": 0.0}
-_INSIDE: dict[str, Any] = {"facecolor": "0.93", "linewidth": 0.0}
-_BAR: dict[str, Any] = {"facecolor": "black", "edgecolor": "black", "linewidth": 0.0}
+_OUTLINE: Line = {"facecolor": "0.93", "edgecolor": "black", "linewidth": 0.8}
+_TIE: Line = {"facecolor": "0.35", "linewidth": 0.0}
+_INSIDE: Line = {"facecolor": "0.93", "linewidth": 0.0}
+_BAR: Line = {"facecolor": "black", "edgecolor": "black", "linewidth": 0.0}
 
 _NAMES = {
     "aci318": "ACI 318-19, nominal",
@@ -67,13 +57,13 @@ _NAMES = {
 }
 
 #: States of concrete from the largest elongation to the largest compression, and their fills.
-_FIBRES: dict[str, dict[str, Any]] = {
+_FIBRES: dict[str, Line] = {
     "open": {"facecolor": "white"},
     "compressed": {"facecolor": "0.85"},
     "past its peak": {"facecolor": "0.62"},
     "spalled, crushed": {"facecolor": "0.35"},
 }
-_BARS: dict[str, dict[str, Any]] = {
+_BARS: dict[str, Line] = {
     "elastic": {"facecolor": "white"},
     "yields": {"facecolor": "0.55"},
     "beyond buckling strain": {"facecolor": "black"},
@@ -156,31 +146,22 @@ def section_springs(springs: SectionSprings) -> Axes | AxesArray:
         axes = new_axes(1, panels, (3.5 * panels, 2.9))
         assert events.ultimate is not None
         if springs.shear_fit is not None:
-            found = shear.shear_diagram(
-                drawing,
-                springs.length,
-                springs.axial_load,
-                furthest=events.ultimate.curvature,
-                confined=springs.confined,
-            )
+            given: Any = {"furthest": events.ultimate.curvature, "confined": springs.confined}
+            found = shear.shear_diagram(drawing, springs.length, springs.axial_load, **given)
             shear_diagram(found, spring=springs.shear_fit, ax=axes[0])
         ax = axes[-1]
         load, last = springs.axial_load, 1.1 * events.ultimate.curvature
         points = [p for p in (events.cracking, events.yielding, events.ultimate) if p]
-        ax.plot(
-            [0.0, *(1e3 * p.curvature for p in points)],
-            [0.0, *(p.moment / 1e3 for p in points)],
-            **TEST_LINE,
-            label="Spring",
-        )
+        x, y = zip((0.0, 0.0), *((1e3 * p.curvature, p.moment / 1e3) for p in points), strict=True)
+        ax.plot(x, y, **TEST_LINE, label="Spring")
         curvature = last * np.linspace(0.0, 1.0, 150) ** 2
-        laws: tuple[tuple[Tension, dict[str, Any], str], ...] = (
-            ("ts", {**MODEL_LINE, "color": "0.6"}, "Tension stiffening"),
-            ("bare", MODEL_LINE, "No stiffening"),
-        )
-        for tension, look, label in laws:
+        laws: dict[Tension, Line] = {
+            "ts": {"color": "0.6", "label": "Tension stiffening"},
+            "bare": {"label": "No stiffening"},
+        }
+        for tension, look in laws.items():
             moments, _ = strains(drawing, load, curvature, tension, springs.confined)
-            ax.plot(1e3 * curvature, moments / 1e3, **look, label=label)
+            ax.plot(1e3 * curvature, moments / 1e3, **MODEL_LINE | look)
         _draw_events(events, last, ax, ("cracking", "yielding", "ultimate"))
         _dress(ax)
     return axes if panels > 1 else ax
@@ -221,9 +202,8 @@ def section(section: Section, *, ax: Axes | None = None) -> Axes:
         drawn.set(xlim=(-reach_x, reach_x), ylim=(-reach_y, reach_y))
         drawn.set_aspect("equal")
         drawn.set_xticks([-0.5 * w, 0.0, 0.5 * w])
-        drawn.set_yticks(
-            [-0.5 * h, 0.0, 0.5 * h], [f"{0.5 * h:g}", "0", f"\N{MINUS SIGN}{0.5 * h:g}"]
-        )
+        half = f"{0.5 * h:g}"
+        drawn.set_yticks([-0.5 * h, 0.0, 0.5 * h], [half, "0", f"\N{MINUS SIGN}{half}"])
         drawn.set(xlabel="Width (mm)", ylabel="$y$ (mm), tension below")
         for spine in drawn.spines.values():
             spine.set_visible(False)
@@ -242,11 +222,7 @@ def hoop_lines(section: Section) -> list[Array]:
 
 
 def shear_diagram(
-    diagram: ShearDiagram,
-    *,
-    spring: ShearSpring | None = None,
-    ax: Axes | None = None,
-    **line: Any,
+    diagram: ShearDiagram, *, spring: ShearSpring | None = None, ax: Axes | None = None, **line: Any
 ) -> Axes:
     """Draw shear force against shear strain with its knee, in kN and mm/m.
 
@@ -269,7 +245,7 @@ def shear_diagram(
     with axes_or_new(ax, (3.5, 2.8)) as drawn:
         strain = 1e3 * np.concatenate([[0.0], diagram.strain])
         force = np.concatenate([[0.0], diagram.force]) / 1e3
-        drawn.plot(strain, force, **line_of({**MODEL_LINE, "label": "Section"}, line))
+        drawn.plot(strain, force, **line_of(MODEL_LINE | {"label": "Section"}, line))
         marks = {"yielding": diagram.knee, "ultimate": diagram.end}
         if spring is not None:
             marks = {"yielding": spring.knee, "ultimate": spring.end}
@@ -327,12 +303,8 @@ def interaction(
         name = _NAMES[diagram.code]
         drawn.plot(diagram.moment / 1e3, diagram.axial_load / 1e3, **MODEL_LINE, label=name)
         if design and diagram.code in get_args(Code):
-            drawn.plot(
-                diagram.design_moment / 1e3,
-                diagram.design_axial_load / 1e3,
-                **{**TEST_LINE, "color": "black"},
-                label=name.replace("nominal", "design"),
-            )
+            look = TEST_LINE | {"color": "black", "label": name.replace("nominal", "design")}
+            drawn.plot(diagram.design_moment / 1e3, diagram.design_axial_load / 1e3, **look)
         if marks is not None:
             drawn.plot(np.abs(marks[:, 1]) / 1e3, marks[:, 0] / 1e3, **TEST_POINTS, label="demand")
         drawn.axhline(0.0, **ZERO_LINE)
@@ -391,15 +363,8 @@ def section_state(
         buckles = buckling_strain(section, column)
         _draw_layers(section, (strains.position, strains.part, value), buckles, axes[0])
         axes[1].plot(100 * value[concrete], 1e3 * strains.position[concrete], **MODEL_LINE)
-        axes[1].plot(
-            100 * value[~concrete],
-            1e3 * strains.position[~concrete],
-            linestyle="none",
-            marker="o",
-            markersize=3.5,
-            markerfacecolor="white",
-            markeredgecolor="black",
-        )
+        mark: Line = {"ls": "none", "marker": "o", "ms": 3.5, "mfc": "white", "mec": "black"}
+        axes[1].plot(100 * value[~concrete], 1e3 * strains.position[~concrete], **mark)
         axes[1].axvline(0.0, **ZERO_LINE)
         axes[1].set_ylim(axes[0].get_ylim())
         axes[1].set(xlabel="Strain (%), elongation positive", ylabel="$y$ (mm)")
@@ -456,18 +421,13 @@ def _draw_layers(
     ax.set(xlim=(-0.54 * wide, 0.54 * wide), ylim=(-1.08 * half, 1.08 * half))
     ax.set_aspect("equal")
     ax.set(xlabel="Width (mm)", ylabel="$y$ (mm)")
-    ax.legend(
-        handles=[Patch(ec="black", lw=0.5, label=name, **fill) for name, fill in _FIBRES.items()]
-        + [
-            Line2D([], [], marker="o", ls="", mec="black", mfc=fill["facecolor"], label=name)
-            for name, fill in _BARS.items()
-        ],
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.22),
-        ncols=2,
-        fontsize=6.5,
-        handlelength=1.0,
-    )
+    fibres = [Patch(ec="black", lw=0.5, label=name, **fill) for name, fill in _FIBRES.items()]
+    circles = [
+        Line2D([], [], marker="o", ls="", mec="black", mfc=fill["facecolor"], label=name)
+        for name, fill in _BARS.items()
+    ]
+    place: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.22), "ncols": 2}
+    ax.legend(handles=[*fibres, *circles], fontsize=6.5, handlelength=1.0, **place)
 
 
 def _of_concrete(compression: float, peak: float, spall: float) -> str:

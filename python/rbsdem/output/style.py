@@ -10,57 +10,42 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from weakref import WeakSet
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rbsdem import _arguments
 from rbsdem._files import write_figure
+from rbsdem._types import Axes, NDArray
 from rbsdem.errors import InputError
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 #: What functions with several axes return: an array of them, as ``pyplot.subplots`` does.
 AxesArray = NDArray[np.object_]
+Line = dict[str, Any]
 
+_TICKS = {"labelsize": 8.0, "direction": "in", "major.width": 0.6, "major.size": 3.0}
+_LETTERS = ("font.size", "axes.labelsize", "axes.titlesize", "legend.fontsize")
 RC: dict[Any, Any] = {
+    **dict.fromkeys(_LETTERS, 9.0),
+    **{f"{axis}tick.{name}": value for axis in "xy" for name, value in _TICKS.items()},
     "font.family": "STIXGeneral",
-    "font.size": 9.0,
     "mathtext.fontset": "stix",
-    "axes.labelsize": 9.0,
-    "axes.titlesize": 9.0,
     "axes.linewidth": 0.6,
     "axes.unicode_minus": True,
     "axes.grid": False,
-    "xtick.labelsize": 8.0,
-    "ytick.labelsize": 8.0,
-    "xtick.direction": "in",
-    "ytick.direction": "in",
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
-    "xtick.major.size": 3.0,
-    "ytick.major.size": 3.0,
     "lines.linewidth": 0.8,
     "lines.solid_joinstyle": "round",
     "legend.frameon": False,
-    "legend.fontsize": 9.0,
     "figure.facecolor": "white",
     "savefig.facecolor": "white",
     "pdf.fonttype": 42,
 }
 """The style of every figure, as matplotlib parameters."""
 
-MODEL_LINE: dict[str, Any] = {"color": "black", "linestyle": "-", "linewidth": 0.75, "zorder": 3}
-TEST_LINE: dict[str, Any] = {
-    "color": "0.55",
-    "linestyle": (0, (3.2, 1.4)),
-    "linewidth": 0.85,
-    "zorder": 2,
-}
-TEST_POINTS: dict[str, Any] = {
+MODEL_LINE: Line = {"color": "black", "linestyle": "-", "linewidth": 0.75, "zorder": 3}
+TEST_LINE: Line = {"color": "0.55", "linestyle": (0, (3.2, 1.4)), "linewidth": 0.85, "zorder": 2}
+TEST_POINTS: Line = {
     "color": "0.45",
     "linestyle": "none",
     "marker": "o",
@@ -69,7 +54,7 @@ TEST_POINTS: dict[str, Any] = {
     "markeredgewidth": 0.8,
     "zorder": 4,
 }
-ZERO_LINE: dict[str, Any] = {"color": "0.75", "linewidth": 0.4, "zorder": 1}
+ZERO_LINE: Line = {"color": "0.75", "linewidth": 0.4, "zorder": 1}
 
 # Figures that were made in the house style.
 _HOUSE: WeakSet[Any] = WeakSet()
@@ -179,7 +164,7 @@ def save(figure: Any, path: str | os.PathLike[str], *, pdf: bool = False) -> lis
     return files
 
 
-def line_of(default: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
+def line_of(default: Line, given: Line) -> Line:
     """Return the properties of a line, those given in place of the defaults, aliases included."""
     from matplotlib.cbook import normalize_kwargs  # noqa: PLC0415
     from matplotlib.lines import Line2D  # noqa: PLC0415
@@ -190,8 +175,7 @@ def line_of(default: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
 def keep_letters(axis: Any, model: Any) -> None:
     """Give all ticks of an axis, those to come as well, the letters that one of another has."""
     label = model.get_major_ticks()[0].label1
-    options = {"labelsize": label.get_fontsize(), "labelcolor": label.get_color()}
-    axis.set_tick_params(**options)
+    axis.set_tick_params(labelsize=label.get_fontsize(), labelcolor=label.get_color())
     with suppress(ValueError):  # matplotlib 3.7 does not know it
         axis.set_tick_params(labelfontfamily=label.get_fontfamily())
 
@@ -204,13 +188,8 @@ def drift_axis(ax: Axes, height: float) -> None:
         return
     share = 0.1 / height  # per cent of a height in m, of a displacement in mm
 
-    def drift_of(displacement: Any) -> Any:
-        return displacement * share
-
-    def displacement_of(drift: Any) -> Any:
-        return drift / share
-
-    top = ax.secondary_xaxis("top", functions=(drift_of, displacement_of), gid="drift")
+    both = (lambda displacement: displacement * share), (lambda drift: drift / share)
+    top = ax.secondary_xaxis("top", functions=both, gid="drift")
     top.xaxis.set_major_locator(MaxNLocator(nbins=9, symmetric=True, steps=[1, 2, 5, 10]))
     # In the letters of the axes below, wherever those come from.
     top.set_xlabel("Drift ratio (%)", fontproperties=ax.xaxis.label.get_fontproperties())

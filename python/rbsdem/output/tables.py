@@ -12,28 +12,19 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from rbsdem._files import Tabular, atomic_write
+from rbsdem._types import DataFrame
 
 if TYPE_CHECKING:
-    import pandas as pd
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
 
 #: Units of SI: factor to the unit on paper, and that unit.
-PAPER = {
-    "N": (1e-3, "kN"),
-    "J": (1e-3, "kJ"),
-    "m": (1e3, "mm"),
-    "N m": (1e-3, "kN m"),
-    "Nm": (1e-3, "kN m"),
-    "N/m": (1e-6, "kN/mm"),
-    "Pa": (1e-6, "MPa"),
-    "rad": (1e2, "%"),
-    "1/m": (1e3, "mrad/m"),
-    "Nm2": (1e-6, "MN m2"),
-    "drift": (1e2, "%"),
-}
+_THOUSANDS = {"N": "kN", "J": "kJ", "N m": "kN m", "Nm": "kN m"}
+PAPER = {unit: (1e-3, on_paper) for unit, on_paper in _THOUSANDS.items()}
+PAPER |= {"m": (1e3, "mm"), "1/m": (1e3, "mrad/m"), "rad": (1e2, "%"), "drift": (1e2, "%")}
+PAPER |= {"N/m": (1e-6, "kN/mm"), "Pa": (1e-6, "MPa"), "Nm2": (1e-6, "MN m2")}
 
 #: Letters of a line where standard output is no terminal.
 _WIDE = 200
@@ -41,7 +32,7 @@ _WIDE = 200
 _WIDEST = 60
 
 
-def write_parquet(frame: pd.DataFrame, path: str | os.PathLike[str]) -> None:
+def write_parquet(frame: DataFrame, path: str | os.PathLike[str]) -> None:
     """Write a frame as Parquet, whole or not at all; needs pyarrow.
 
     Parameters
@@ -56,7 +47,7 @@ def write_parquet(frame: pd.DataFrame, path: str | os.PathLike[str]) -> None:
 
 
 def table(
-    record: Tabular | pd.DataFrame,
+    record: Tabular | DataFrame,
     *,
     styles: Sequence[str | None] | None = None,
     caption: str | None = None,
@@ -97,19 +88,15 @@ def table(
     made = Printed(box=rich.box.SIMPLE_HEAD, padding=(0, 1), show_edge=False, caption=caption)
     columns = cells(record)
     for heading, numbers, _ in columns:
-        made.add_column(
-            heading,
-            justify="right" if numbers else "left",
-            no_wrap=True,
-            overflow="ellipsis",
-            max_width=None if numbers else _WIDEST,
-        )
+        width, side = (None, "right") if numbers else (_WIDEST, "left")
+        look: Any = {"justify": side, "no_wrap": True, "overflow": "ellipsis"}
+        made.add_column(heading, max_width=width, **look)
     for at, row in enumerate(zip(*(texts for _, _, texts in columns), strict=True)):
         made.add_row(*map(plain, row), style=styles[at] if styles else None)
     return made
 
 
-def cells(record: Tabular | pd.DataFrame) -> list[tuple[str, bool, list[str]]]:
+def cells(record: Tabular | DataFrame) -> list[tuple[str, bool, list[str]]]:
     """Return heading, whether they are numbers, and texts of each column of a table.
 
     Parameters

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 import sys
-import warnings
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
-from rbsdem._arguments import Array
-from rbsdem.errors import AccuracyWarning
+from rbsdem._package import unwarned
+from rbsdem._types import Array
 from rbsdem.model.response import Response
 from rbsdem.solve.analysis import cyclic, no_watch, time_history
 from rbsdem.solve.solver import METHODS
@@ -158,9 +157,8 @@ def at_times(wanted: Array, time: Array, values: Array) -> Array:
 
 def refined_error(result: Response) -> Errors:
     """Return the differences of a result from that of the next finer setting."""
-    with warnings.catch_warnings():
+    with unwarned():
         # They were told with the result itself.
-        warnings.simplefilter("ignore", AccuracyWarning)
         if result.dynamic:
             finer: Any = time_history(no_watch, result.column, **_finer(result))
         else:

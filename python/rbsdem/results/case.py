@@ -13,18 +13,16 @@ from typing import Any, cast
 import numpy as np
 
 from rbsdem import _core
-from rbsdem._arguments import Array
 from rbsdem._package import extra
+from rbsdem._types import Array
 from rbsdem.errors import InputError, SolveError
 from rbsdem.model.column import Column, Footing, without_notes
 from rbsdem.model.damping import Damping
 from rbsdem.model.files import FORMAT, FORMAT_VERSION, ending_of
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.model.frame_result import FrameResult
-from rbsdem.model.springs import SPRINGS, Spring
-from rbsdem.results.frame_case import frame_of
+from rbsdem.results.groups import ColumnSprings, frame_of, layered_column, recipe_of
 from rbsdem.results.result import Result, cyclic, time_history
-from rbsdem.section.drawing import Groups, layered_column, recipe_of
 from rbsdem.solve.solver import Solver
 
 #: What an analysis was given that no case file has.
@@ -181,7 +179,7 @@ def read_case(path: str | os.PathLike[str]) -> Case:
         groups.setdefault(name, []).append(given)
     # Of springs and of what a drawing has there are several.
     found = {name: given[-1] for name, given in groups.items()}
-    springs = _Springs(groups)
+    springs = ColumnSprings(groups)
     settings = _core.typed("analysis", found.get("analysis", {}))
     settings |= _core.typed("output", found.get("output", {}))
     # The histories already end at the duration; the csv file is for the executable only.
@@ -220,14 +218,8 @@ def _case_of(
         name: np.ascontiguousarray(values[:, i]) if acting[i] else None
         for i, name in enumerate(_DRIVES)
     }
-    return Case(
-        title=found.get("case", {}).get("title", ""),
-        column=structure,
-        method=settings.pop("method"),
-        time=time,
-        **loads,
-        settings=settings,
-    )
+    title, method = found.get("case", {}).get("title", ""), settings.pop("method")
+    return Case(title, structure, method, time, **loads, settings=settings)
 
 
 def case_of_text(text: str) -> Case:
@@ -258,57 +250,6 @@ def case_of(result: Result | FrameResult) -> Case:
     method = given.pop("method", "auto") if result.dynamic else "static"
     time = given.pop("time", np.arange(float(size)))
     return Case("", result.column, method, time, **loads, settings=given)
-
-
-class _Springs:
-    """The springs of a case, from its groups."""
-
-    def __init__(self, groups: Groups) -> None:
-        names = ("shear", "flexure", "axial_spring", "layer_spring", "layers")
-        self.stated = {name: groups.get(name, []) for name in names}
-
-    def of_joints(self, last: int) -> dict[str, Any]:
-        """Return the springs of a column, one for all joints or one for each from 1 to the last.
-
-        Those of joint 0, beneath a footing, have its number in their names.
-        """
-        springs = {int(given["id"]): _spring(given) for given in self.stated["layer_spring"]}
-        layers: dict[tuple[int, ...], list[tuple[float, Spring]]] = {
-            _joints(given): list(
-                zip(
-                    _core.several(given["y"]),
-                    (springs[int(number)] for number in _core.several(given["spring"])),
-                    strict=True,
-                )
-            )
-            for given in self.stated["layers"]
-        }
-        column: dict[str, Any] = {}
-        for name in ("shear", "flexure", "axial_spring"):
-            places: dict[int | None, Spring] = {}
-            for given in self.stated[name]:
-                joints = _joints(given)
-                spring = _spring(given, layers[joints] if given["rule"] == "layered" else None)
-                places |= dict.fromkeys(joints or (None,), spring)
-            if 0 in places:
-                column[f"{name}_0"] = places.pop(0)
-            if None in places:
-                column[name] = places[None]
-            elif places:
-                column[name] = [places[joint] for joint in range(1, last + 1)]
-        return column
-
-
-def _joints(given: dict[str, Any]) -> tuple[int, ...]:
-    """Return the joints that a group names; an empty tuple means all joints."""
-    return tuple(int(joint) for joint in _core.several(given.get("joint", [])))
-
-
-def _spring(given: dict[str, Any], layers: list[tuple[float, Spring]] | None = None) -> Spring:
-    """Return the spring that a group states."""
-    kind = SPRINGS[given["rule"]]
-    values = {name: value for name, value in given.items() if name not in ("rule", "joint", "id")}
-    return kind(**(values if layers is None else {"layers": layers}))
 
 
 # What makes a column's text a whole case.

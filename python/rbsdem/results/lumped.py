@@ -9,25 +9,22 @@ an unloading stiffness that falls with ductility; Pinching4 (Lowes, Mitra, Altoo
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, data_frame
+from rbsdem._package import unwarned
+from rbsdem._types import Array, DataFrame
 from rbsdem.curves.envelope import Envelope, envelope
-from rbsdem.errors import AccuracyWarning, InputError, SolveError
+from rbsdem.errors import InputError, SolveError
 from rbsdem.model.response import Response
 from rbsdem.model.springs import PeakOriented
 from rbsdem.solve.analysis import cyclic
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Material = Literal["Hysteretic", "IMKPeakOriented"]
 Language = Literal["tcl", "py"]
@@ -239,14 +236,9 @@ class LumpedHinge(Tabular):
             for i, ((m, t), sign) in enumerate(zip(self._points, sides, strict=True)):
                 name = f"{i % 3 + 1}{'p' if sign > 0 else 'n'}"
                 found += [(f"s{name}", sign * m, "N m"), (f"e{name}", sign * t, "rad")]
-            return [
-                *found,
-                ("pinchX", self.pinch_rotation, ""),
-                ("pinchY", self.pinch_moment, ""),
-                ("damage1", 0.0, ""),
-                ("damage2", self.damage, ""),
-                ("beta", self.unloading, ""),
-            ]
+            own = {"pinchX": self.pinch_rotation, "pinchY": self.pinch_moment, "damage1": 0.0}
+            own |= {"damage2": self.damage, "beta": self.unloading}
+            return [*found, *((name, value, "") for name, value in own.items())]
         plus, minus = self._of_peak_oriented
         found = [("Ke", 0.5 * (plus.stiffness + minus.stiffness), "N m/rad")]
         for name, each in (("pos", plus), ("neg", minus)):
@@ -262,24 +254,13 @@ class LumpedHinge(Tabular):
         found += [(f"c_{kind}", 1.0, "") for kind in "SCAK"]
         return [*found, ("D_pos", 1.0, ""), ("D_neg", 1.0, "")]
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each backbone."""
-        units = {
-            "stiffness": "K_e_N_m/rad",
-            "yield_moment": "M_y_N_m",
-            "hardening": "M_c/M_y",
-            "theta_y": "theta_y_rad",
-            "theta_p": "theta_p_rad",
-            "theta_pc": "theta_pc_rad",
-            "theta_u": "theta_u_rad",
-        }
-        return data_frame(
-            [
-                {"backbone": each.kind, "method": each.method, "side": each.side}
-                | {name: getattr(each, key) for key, name in units.items()}
-                for each in self.backbones
-            ]
-        )
+        names = {"backbone": "kind", "method": "method", "side": "side"}
+        names |= {"K_e_N_m/rad": "stiffness", "M_y_N_m": "yield_moment", "M_c/M_y": "hardening"}
+        names |= {f"{name}_rad": name for name in ("theta_y", "theta_p", "theta_pc", "theta_u")}
+        each = ({name: getattr(one, key) for name, key in names.items()} for one in self.backbones)
+        return data_frame(list(each))
 
     def __repr__(self) -> str:
         first = self.backbones[2]
@@ -311,7 +292,7 @@ def lumped_hinge(result: Response) -> LumpedHinge:
         path = run.displacement / column.height, run.base_moment
         backbones.append(_backbone("monotonic", envelope(path, side)))
     points = [point for each in backbones[:2] for point in _three_points(each)]
-    pinch_x, pinch_y, damage, beta = _fitted(
+    own = _fitted(
         partial(_hysteretic, points),
         ((0.8, 0.2, 0.0, 0.3), (0.5, 0.5, 0.05, 0.5), (0.9, 0.9, 0.02, 0.0)),
         ((0.01, 0.01, 0.0, 0.0), (1.0, 1.0, 1.0, 1.0)),
@@ -321,19 +302,8 @@ def lumped_hinge(result: Response) -> LumpedHinge:
     kinds = {"cyclic": backbones[:2], "monotonic": backbones[2:]}
     tried = {kind: _endurance(pair, rotation, moment) for kind, pair in kinds.items()}
     kind = min(tried, key=lambda name: tried[name][1])
-    return LumpedHinge(
-        rotation=rotation,
-        moment=moment,
-        height=column.height,
-        axial_load=column.axial_load,
-        backbones=tuple(backbones),
-        pinch_rotation=pinch_x,
-        pinch_moment=pinch_y,
-        damage=damage,
-        unloading=beta,
-        endurance=tried[kind][0],
-        peak_oriented_backbone=kind,
-    )
+    loop = rotation, moment, column.height, column.axial_load
+    return LumpedHinge(*loop, tuple(backbones), *own, tried[kind][0], kind)
 
 
 def _loop(result: Response) -> tuple[Array, Array]:
@@ -350,8 +320,7 @@ def _loop(result: Response) -> tuple[Array, Array]:
 
 def _push(column: Any, reach: float) -> Response:
     """Return the push to one side, up to where it can be followed."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AccuracyWarning)
+    with unwarned():
         try:
             run: Any = cyclic(column, displacement=np.linspace(0, reach, _PUSH_POINTS + 1)[1:])
             # With its corners.
@@ -380,17 +349,11 @@ def _backbone(kind: str, curve: Envelope) -> HingeBackbone:
     over, under = (float(np.sum(0.5 * (v[1:] + v[:-1]) * width)) for v in (x * y, x**2))
     slope = over / under if under > 0 else 0.0
     lost = slope * _FLAT * at > curve.peak_force
-    return HingeBackbone(
-        kind,
-        lines.method,
-        curve.side,
-        lines.yield_force / theta_y,
-        min(lines.yield_force, curve.peak_force),
-        curve.peak_force,
-        at - theta_y,
-        curve.peak_force / slope if lost else math.inf,
-        curve.largest_displacement,
-    )
+    moments = min(lines.yield_force, curve.peak_force), curve.peak_force
+    after = curve.peak_force / slope if lost else math.inf
+    turns = at - theta_y, after, curve.largest_displacement
+    stiffness = lines.yield_force / theta_y
+    return HingeBackbone(kind, lines.method, curve.side, stiffness, *moments, *turns)
 
 
 def _three_points(each: HingeBackbone) -> list[tuple[float, float]]:
@@ -414,24 +377,19 @@ def _fitted(
     bounds: tuple[Sequence[float], Sequence[float]],
     rotation: Array,
     moment: Array,
-) -> tuple[float, ...]:
+) -> tuple[float, float, float, float]:
     """Return the numbers of least squares, of the best of several starts."""
     from scipy import optimize  # noqa: PLC0415
 
     largest = np.abs(moment).max()
-    found = [
-        optimize.least_squares(
-            lambda x: (make(x, rotation) - moment) / largest,
-            start,
-            bounds=bounds,
-            diff_step=1e-3,
-            max_nfev=30,
-            ftol=1e-4,
-        )
-        for start in starts
-    ]
-    best = min(found, key=lambda each: float(each.cost))
-    return tuple(float(value) for value in best.x)
+    how: Any = {"bounds": bounds, "diff_step": 1e-3, "max_nfev": 30, "ftol": 1e-4}
+
+    def off(x: Sequence[float]) -> Array:
+        return np.asarray((make(x, rotation) - moment) / largest)
+
+    found = [optimize.least_squares(off, start, **how) for start in starts]
+    pinch_x, pinch_y, damage, beta = min(found, key=lambda each: float(each.cost)).x.tolist()
+    return pinch_x, pinch_y, damage, beta
 
 
 def _endurance(
@@ -463,47 +421,67 @@ def _peak_oriented(backbones: Sequence[HingeBackbone], endurance: float) -> Peak
     d_y, d_n = (each.yield_moment / stiffness for each in (plus, minus))
     ratio = endurance * (plus.yield_moment + minus.yield_moment)
     ratio /= plus.yield_moment * d_y + minus.yield_moment * d_n
-    return PeakOriented(
-        d_y=d_y,
-        f_y=plus.yield_moment,
-        d_cap=d_y + plus.theta_p,
-        f_cap=plus.cap_moment,
-        d_pc=plus.softening_length,
-        lambda_s=ratio,
-        lambda_c=ratio,
-        lambda_k=ratio,
-        lambda_a=ratio,
-        d_y_neg=d_n,
-        f_y_neg=minus.yield_moment,
-        d_cap_neg=d_n + minus.theta_p,
-        f_cap_neg=minus.cap_moment,
-        d_pc_neg=minus.softening_length,
-    )
+    given: dict[str, Any] = {f"lambda_{kind}": ratio for kind in "scka"}
+    for end, each, at in (("", plus, d_y), ("_neg", minus, d_n)):
+        given |= {f"d_y{end}": at, f"f_y{end}": each.yield_moment}
+        given |= {f"d_cap{end}": at + each.theta_p, f"f_cap{end}": each.cap_moment}
+        given[f"d_pc{end}"] = each.softening_length
+    return PeakOriented(**given)
 
 
 #: Yield, cap and a point of the softening line: (moment, rotation).
-_Side: TypeAlias = Sequence[tuple[float, float]]
-
-
 def _hysteretic(
     points: Sequence[tuple[float, float]], own: Sequence[float], rotation: Array
 ) -> Array:
-    """Return the moments of "Hysteretic" of OpenSees along a path, in steps of its size.
+    """Return the moments of "Hysteretic" of OpenSees along a path, in steps of its size."""
+    spring, largest = _Hysteretic(points, own), np.abs(rotation).max() / _STEPS
+    found = np.empty(rotation.size)
+    for i, target in enumerate(rotation.tolist()):
+        begin, count = spring.strain, max(1, math.ceil(abs(target - spring.strain) / largest))
+        for k in range(1, count + 1):
+            spring.step(begin + (target - begin) * k / count)
+        found[i] = spring.moment
+    return found
+
+
+class _Hysteretic:
+    """The material "Hysteretic" of OpenSees.
 
     After its source (HystereticMaterial.cpp, M. Scott and F. Filippou), `damage1` left out. The
     negative side is followed as the positive one of the mirrored material.
     """
-    pinch_x, pinch_y, damage, beta = (float(value) for value in own)
-    curves = [points[:3], points[3:]]
-    first = [side[0][0] / side[0][1] for side in curves]
-    energy_a = sum(
-        0.5 * (t1 - t0) * (m1 + m0)
-        for side in curves
-        for (m0, t0), (m1, t1) in zip(((0.0, 0.0), *side[:2]), side, strict=True)
-    )
 
-    def stress(side: int, strain: float) -> float:
-        (m1, t1), (m2, t2), (m3, t3) = curves[side]
+    def __init__(self, points: Sequence[tuple[float, float]], own: Sequence[float]) -> None:
+        self.pinch_x, self.pinch_y, self.damage, self.beta = map(float, own)
+        self.curves = points[:3], points[3:]
+        self.first = [side[0][0] / side[0][1] for side in self.curves]
+        self.energy_a = sum(
+            0.5 * (t1 - t0) * (m1 + m0)
+            for side in self.curves
+            for (m0, t0), (m1, t1) in zip(((0.0, 0.0), *side[:2]), side, strict=True)
+        )
+        # Largest rotation and where unloading ends, of either side and counted to it.
+        self.reached, self.zero = [0.0, 0.0], [0.0, 0.0]
+        self.strain = self.moment = self.energy = 0.0
+        self.heading = -1
+
+    def step(self, new: float) -> None:
+        """Go to a rotation."""
+        step = new - self.strain
+        if step == 0.0:
+            return
+        side, sign = (0, 1.0) if step > 0 else (1, -1.0)
+        at, force, go = sign * new, sign * self.moment, abs(step)
+        if at >= self.reached[side]:
+            self.reached[side], value = at, self._stress(side, at)
+        else:
+            value = self._inside(side, at, force, go)
+        self.heading = side
+        self.energy += 0.5 * (force + value) * go
+        self.strain, self.moment = new, sign * value
+
+    def _stress(self, side: int, strain: float) -> float:
+        (m1, t1), (m2, t2), (m3, t3) = self.curves[side]
         if strain <= 0.0:
             return 0.0
         if strain <= t1:
@@ -512,82 +490,40 @@ def _hysteretic(
             return m1 + (m2 - m1) / (t2 - t1) * (strain - t1)
         return m2 + (m3 - m2) / (t3 - t2) * (strain - t2) if strain <= t3 else m3
 
-    largest = np.abs(rotation).max() / _STEPS
-    # Largest rotation and where unloading ends, of either side and counted to it.
-    reached, zero = [0.0, 0.0], [0.0, 0.0]
-    strain = moment = energy = 0.0
-    heading = -1
-    found = np.empty(rotation.size)
-    for i, target in enumerate(rotation.tolist()):
-        begin, count = strain, max(1, math.ceil(abs(target - strain) / largest))
-        for k in range(1, count + 1):
-            new = begin + (target - begin) * k / count
-            step = new - strain
-            if step == 0.0:
-                continue
-            side = 0 if step > 0 else 1
-            sign = 1.0 if step > 0 else -1.0
-            at, force, go = sign * new, sign * moment, abs(step)
-            if at >= reached[side]:
-                reached[side], value = at, stress(side, at)
-            else:
-                value = _inside(
-                    curves, first, stress, reached, zero, side, heading == 1 - side,
-                    (at, force, go, energy), (pinch_x, pinch_y, damage, beta, energy_a),
-                )  # fmt: skip
-            heading = side
-            energy += 0.5 * (force + value) * go
-            strain, moment = new, sign * value
-        found[i] = moment
-    return found
+    def _inside(self, side: int, at: float, force: float, go: float) -> float:
+        """Return the moment of a step to a side inside of the envelopes, counted to that side."""
+        reached, zero, other, first = self.reached, self.zero, 1 - side, self.first
+        yields = [each[0][1] for each in self.curves]
+        soft = [max(1.0, math.pow(reached[each] / yields[each], self.beta)) for each in (0, 1)]
+        unload, load = first[other] / soft[other], first[side] / soft[side]
+        if self.heading == other and force <= 0.0:
+            zero[side] = at - go - force / unload
+            lost = 0.0
+            if reached[other] > yields[other]:
+                lost = self.damage * (self.energy - 0.5 * force / unload * force) / self.energy_a
+            reached[side] *= 1.0 + lost
+        reached[side] = max(reached[side], yields[side])
+        top, pinch_y = self._stress(side, reached[side]), self.pinch_y
+        start = max(zero[side], -self._limit(other))
+        corner = reached[side] - (1.0 - pinch_y) * top / load
+        corner = start + (corner - start) * self.pinch_x
+        if at < zero[side]:
+            return min(force + unload * go, 0.0)
+        if at < corner:
+            if at <= start:
+                return 0.0
+            return min(force + load * go, (at - start) * top * pinch_y / (corner - start))
+        slope = (1.0 - pinch_y) * top / (reached[side] - corner)
+        return min(force + load * go, pinch_y * top + (at - corner) * slope)
 
-
-def _inside(
-    curves: Sequence[_Side],
-    first: Sequence[float],
-    stress: Callable[[int, float], float],
-    reached: list[float],
-    zero: list[float],
-    side: int,
-    turned: bool,
-    state: tuple[float, float, float, float],
-    own: tuple[float, float, float, float, float],
-) -> float:
-    """Return the moment of a step to a side inside of the envelopes, counted to that side."""
-    at, force, go, energy = state
-    pinch_x, pinch_y, damage, beta, energy_a = own
-    other = 1 - side
-    soft = [max(1.0, math.pow(reached[each] / curves[each][0][1], beta)) for each in (0, 1)]
-    unload, load = first[other] / soft[other], first[side] / soft[side]
-    if turned and force <= 0.0:
-        zero[side] = at - go - force / unload
-        lost = 0.0
-        if reached[other] > curves[other][0][1]:
-            lost = damage * (energy - 0.5 * force / unload * force) / energy_a
-        reached[side] *= 1.0 + lost
-    reached[side] = max(reached[side], curves[side][0][1])
-    top = stress(side, reached[side])
-    start = max(zero[side], -_limit(curves[other], stress, other, reached[other]))
-    corner = reached[side] - (1.0 - pinch_y) * top / load
-    corner = start + (corner - start) * pinch_x
-    if at < zero[side]:
-        return min(force + unload * go, 0.0)
-    if at < corner:
-        if at <= start:
-            return 0.0
-        return min(force + load * go, (at - start) * top * pinch_y / (corner - start))
-    slope = (1.0 - pinch_y) * top / (reached[side] - corner)
-    return min(force + load * go, pinch_y * top + (at - corner) * slope)
-
-
-def _limit(side: _Side, stress: Callable[[int, float], float], number: int, strain: float) -> float:
-    """Return where the softening line of a side is at zero, infinity if it is not beyond it."""
-    (_, t1), (m2, t2), (m3, t3) = side
-    slope = (m3 - m2) / (t3 - t2)
-    if strain <= t1 or strain <= t2 or slope >= 0.0:
-        return math.inf
-    zero = t2 - m2 / slope
-    return math.inf if stress(number, zero) > 0.0 else zero
+    def _limit(self, side: int) -> float:
+        """Return where the softening line of a side is at zero, infinity if it is not beyond it."""
+        (_, t1), (m2, t2), (m3, t3) = self.curves[side]
+        slope, strain = (m3 - m2) / (t3 - t2), self.reached[side]
+        if strain <= t1 or strain <= t2 or slope >= 0.0:
+            return math.inf
+        zero = t2 - m2 / slope
+        return math.inf if self._stress(side, zero) > 0.0 else zero
 
 
 def _number(value: object) -> str:

@@ -9,11 +9,12 @@ import math
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Concatenate, Literal, ParamSpec, Protocol, cast, overload
+from typing import Any, Concatenate, Literal, ParamSpec, Protocol, cast, overload
 
 import numpy as np
 
 from rbsdem import _arguments
+from rbsdem._types import DataFrame
 from rbsdem.checks.criteria import all_watches
 from rbsdem.checks.limit_states import Hinge, LimitStates
 from rbsdem.checks.limit_states import hinge as hinge_of
@@ -32,9 +33,6 @@ from rbsdem.results.accuracy import Errors, refined_error
 from rbsdem.results.lumped import LumpedHinge, lumped_hinge
 from rbsdem.solve import analysis
 from rbsdem.solve.solver import METHODS
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 P = ParamSpec("P")
 
@@ -98,11 +96,7 @@ class Result(Response):
         return curve_envelope(self, side)
 
     def idealise(
-        self,
-        method: Method = "asce_41",
-        side: Literal[1, -1] = 1,
-        *,
-        end: float | None = None,
+        self, method: Method = "asce_41", side: Literal[1, -1] = 1, *, end: float | None = None
     ) -> Idealisation:
         """Replace the envelope of a side by two straight lines; see `Envelope.idealise`."""
         return self.envelope(side).idealise(method, end=end)
@@ -172,7 +166,7 @@ class Result(Response):
         """
         return lumped_hinge(self)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each of the result, with units in the names.
 
         The names are those of the columns of the executable's csv.
@@ -237,15 +231,10 @@ class Result(Response):
         if short and about["status"] == "completed":
             with contextlib.suppress(SolveError):
                 measured = self.refined_error().largest
-        return ErrorEstimate(
-            method.name,
-            measured,
-            method.usual_error,
-            method.largest_error,
-            method.responses,
-            not {"dt", "tolerance", "rho_infinity"} & set(self.call),
-            about["relative_energy_residual"],
-        )
+        usual = method.usual_error, method.largest_error, method.responses
+        own = not {"dt", "tolerance", "rho_infinity"} & set(self.call)
+        energy = about["relative_energy_residual"]
+        return ErrorEstimate(method.name, measured, *usual, own, energy)
 
     def refined_error(self) -> Errors:
         """Solve once more by the next finer setting and return the distance to it.

@@ -17,11 +17,10 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular
+from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Spiral, Steel
 from rbsdem.model.shape import Section, checked_section
@@ -336,13 +335,8 @@ def _aci_318(section: Section, count: int) -> InteractionDiagram:
     rows = [block.point(axis, _aci_strains(section, axis)) for axis in axes]
     pulled, pressed = block.ends(math.inf)
     load, moment = np.array([pulled, *rows, pressed]).T
-    tension = np.concatenate(
-        (
-            [math.inf],
-            [-_aci_strains(section, axis)(np.array([outermost]))[0] for axis in axes],
-            [-ultimate],
-        )
-    )
+    inner = [-_aci_strains(section, axis)(np.array([outermost]))[0] for axis in axes]
+    tension = np.array([math.inf, *inner, -ultimate])
     spiral = isinstance(section.ties, Spiral) and not section.ties.hoops
     pressed_factor, cap = (0.75, 0.85) if spiral else (0.65, 0.80)
     factor = pressed_factor + (0.9 - pressed_factor) * np.clip((tension - yields) / 0.003, 0.0, 1.0)
@@ -383,9 +377,8 @@ def _ec_2(section: Section, count: int) -> InteractionDiagram:
         block = _Block(section, concrete_factor * strength * fc, share, steel_factor)
         pulled, pressed = block.ends(plateau)
         curves.append(np.array([pulled, *(block.point(x, strains(x)) for x in axes), pressed]).T)
-    tension = np.concatenate(
-        ([math.inf], [-strains(x)(np.array([outermost]))[0] for x in axes], [-plateau])
-    )
+    inner = [-strains(x)(np.array([outermost]))[0] for x in axes]
+    tension = np.array([math.inf, *inner, -plateau])
     axis = np.concatenate(([0.0], axes, [math.inf]))
     (load, moment), (design_load, design_moment) = curves
     return InteractionDiagram("ec2", load, moment, design_load, design_moment, axis, tension)

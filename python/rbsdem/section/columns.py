@@ -205,12 +205,8 @@ def column(
     }
     made: Column
     if model == "paper":
-        given = {
-            "model_parameters": model_parameters,
-            "restrained": restrained,
-            "round_core": round_core or None,
-        }
-        for name, value in given.items():
+        given = {"model_parameters": model_parameters, "restrained": restrained}
+        for name, value in (given | {"round_core": round_core or None}).items():
             if value is not None:
                 raise InputError(f"{name} is for model = 'layered'; remove it")
         made = _paper(section, height, load, 1 if n is None else n, common)
@@ -319,15 +315,8 @@ def _layered(
 ) -> LayeredColumn:
     if n == 1:
         raise InputError("n = 1: the layered model needs a joint above the hinge; give 2 or more")
-    recipe = LayeredModel(
-        section=section,
-        height=height,
-        axial_load=axial_load,
-        n=n or 2,
-        parameters=_known(model_parameters),
-        restrained=restrained,
-        round_core=round_core,
-    )
+    place = section, height, axial_load, n or 2
+    recipe = LayeredModel(*place, _known(model_parameters), restrained, round_core)
     if model_parameters is not None and model_parameters.version == VERSION:
         # Those of another version are meant for all columns: what a column limits is limited.
         recipe.check(model_parameters.own)
@@ -358,6 +347,5 @@ def _paper(
         above = made.flexure.scaled(made.hinge_length / (part / lumping(n)))
         # A spring of its own for each joint, no longer that of a whole column.
         flexure += [above] * (n - 1)
-    return Column(
-        height, shear=shear, flexure=flexure, n=n, lengths=lengths, model="paper", **common
-    )
+    sizes: Any = {"n": n, "lengths": lengths, "model": "paper"}
+    return Column(height, shear=shear, flexure=flexure, **sizes, **common)

@@ -4,21 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular, data_frame
+from rbsdem._types import Array, ArrayLike, DataFrame
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Tension
 from rbsdem.model.shape import Section
 from rbsdem.section.ranges import checked_load, column_length, is_confined
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 #: Points of a diagram at the most.
 _MOST_POINTS = 100_000
@@ -91,6 +87,7 @@ class Diagram(Tabular):
         Whether the diagram ends because the axial load is no longer carried.
     """
 
+    _columns = ("curvature 1/m", "moment Nm", "strain")
     section: Section
     axial_load: float
     tension: Tension
@@ -102,11 +99,9 @@ class Diagram(Tabular):
     end: Point
     lost: bool
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each point; "event" names those that are events."""
-        frame = data_frame(
-            {"curvature_1/m": self.curvature, "moment_Nm": self.moment, "strain": self.strain}
-        )
+        frame = super().to_pandas()
         named = {point.curvature: name for name, point in _named(self.events).items()}
         frame["event"] = [named.get(value, "") for value in self.curvature.tolist()]
         return frame
@@ -141,15 +136,10 @@ class Diagram(Tabular):
             raise InputError(
                 f'idealise: method = {_arguments.shown(method)} must be "caltrans" or "priestley"'
             )
-        settings: dict[str, Any] = {
-            "axial_load": self.axial_load,
-            "tension": self.tension,
-            "confined": self.confined,
-            "yielding": "first" if method == "priestley" else "tension",
-            "eps_yield": 0.002,
-            "eps_cover": 0.004,
-        }
-        found = _find(self.section, settings)[0]
+        names = ("axial_load", "tension", "confined")
+        settings: dict[str, Any] = {name: getattr(self, name) for name in names}
+        settings["yielding"] = "first" if method == "priestley" else "tension"
+        found = _find(self.section, settings | {"eps_yield": 0.002, "eps_cover": 0.004})[0]
         first, last = found.yielding, self.events.ultimate
         if first is None or last is None or first.curvature >= last.curvature:
             raise InputError(
@@ -159,9 +149,8 @@ class Diagram(Tabular):
         stiffness = first.moment / first.curvature
         if method == "priestley":
             moment = self._nominal(found.ultimate or last, last)
-            return BilinearDiagram(
-                self, method, first, last, moment / stiffness, moment, last.moment
-            )
+            turn = moment / stiffness
+            return BilinearDiagram(self, method, first, last, turn, moment, last.moment)
         between = np.linspace(first.curvature, last.curvature, 1000)
         moments, _ = _moments(self.section, self.axial_load, between, self.tension, self.confined)
         area = float(np.sum(0.5 * (moments[1:] + moments[:-1]) * np.diff(between)))
@@ -177,9 +166,8 @@ class Diagram(Tabular):
         """Return the moment at 0.004 in the extreme fibre or 0.015 in a bar, which comes first."""
         end = min(crushed.curvature, last.curvature)
         curvature = np.linspace(0.0, end, 400)
-        moment, strain = _moments(
-            self.section, self.axial_load, curvature, self.tension, self.confined
-        )
+        how = self.tension, self.confined
+        moment, strain = _moments(self.section, self.axial_load, curvature, *how)
         stretched = curvature * max(y for y, _, _ in self.section.bars) - strain
         return float(np.interp(min(0.015, stretched[-1]), stretched, moment))
 
@@ -274,7 +262,7 @@ class BilinearDiagram(Tabular):
         most = elastic * lever**2 / 3.0 + turned * (lever - 0.5 * hinge)
         return DisplacementCapacity(self.method, span, hinge, at_yield, most, turned)
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a DataFrame with the three corners of the lines."""
         curvature = [0.0, self.yield_curvature, self.ultimate.curvature]
         moment = [0.0, self.yield_moment, self.ultimate_moment]
@@ -432,15 +420,14 @@ def _moments(
         )
     settings = {"axial_load": axial_load, "tension": tension, "confined": confined}
     asked = section._statement + _core.group("diagram", settings)
-    moment = np.empty_like(flat)
-    strain = np.empty_like(flat)
+    found = np.empty((2, flat.size))
     for side in (flat >= 0.0, flat < 0.0):
         places = np.flatnonzero(side)
         if places.size:
             places = places[np.argsort(np.abs(flat[places]), kind="stable")]
-            rows = _core.evaluate("moment_curvature", asked, curvature=flat[places]).rows
-            moment[places], strain[places] = rows
-    return moment.reshape(shape)[()], strain.reshape(shape)[()]
+            answer = _core.evaluate("moment_curvature", asked, curvature=flat[places])
+            found[:, places] = answer.rows
+    return found[0].reshape(shape)[()], found[1].reshape(shape)[()]
 
 
 def diagram(
@@ -515,15 +502,21 @@ def diagram(
         if events.ultimate:
             furthest = min(furthest, 1.15 * events.ultimate.curvature)
     else:
-        furthest = _arguments.number(furthest, "furthest")
-        if not 0.0 < furthest * section.depth <= 1.0:
-            raise InputError(f"furthest = {furthest} 1/m must be above zero and below 1/depth")
+        furthest = checked_furthest(furthest, section)
     points = _arguments.integer(points, "points", least=2, most=_MOST_POINTS)
     named = [p.curvature for p in (*_named(events).values(), end) if p.curvature <= furthest]
     # Closer together where the diagram turns, at small curvatures.
     curvature = np.unique(np.concatenate([furthest * np.linspace(0.0, 1.0, points) ** 2, named]))
     moment, strain = _moments(section, load, curvature, tension, confined)
     return Diagram(section, load, tension, confined, curvature, moment, strain, events, end, lost)
+
+
+def checked_furthest(furthest: float, section: Section) -> float:
+    """Return the curvature at which a diagram ends [1/m], or refuse it."""
+    furthest = _arguments.number(furthest, "furthest")
+    if not 0.0 < furthest * section.depth <= 1.0:
+        raise InputError(f"furthest = {furthest} 1/m must be above zero and below 1/depth")
+    return furthest
 
 
 def largest_moment(section: Section, axial_load: float, confined: bool) -> float:

@@ -269,7 +269,7 @@ def hinge_joint(
     """
     if not section.bars:
         raise InputError("the layered model needs a section with longitudinal bars; give bars")
-    depth, cylinder = section.depth, section.concrete.fc
+    depth, cylinder, longest = section.depth, section.concrete.fc, _LONGEST_STEEL * length
     strips = cut(section, _STRIPS, restrained=restrained, round_core=round_core)
     modulus = section.concrete_law["ec"]
     strength = given.concrete_strength * cylinder * (cylinder / 40e6) ** -given.concrete_size
@@ -294,9 +294,8 @@ def hinge_joint(
     bond = yield_stress / 1e6 * cast(float, section.bar_diameter)
     one_length = by_axial(1.0, given.hinge_axial) * (0.08 * length + 0.022 * bond)
     steel_length = by_axial(given.hinge_length, given.hinge_axial) * (0.08 * length + 0.022 * bond)
-    steel_length = min(steel_length + given.hinge_depth * depth, _LONGEST_STEEL * length)
+    steel_length = min(steel_length + given.hinge_depth * depth, longest)
     concrete_length = min(given.compression_length * steel_length, _LONGEST_CONCRETE * length)
-    contact = min(_LARGEST_CONTACT, given.contact)
 
     # Most strips are alike, and so are most bars: what is the same to 1e-6 mm2 is made once.
     @cache
@@ -308,19 +307,15 @@ def hinge_joint(
             f_peak=stress * area,
             d_peak=strain * concrete_length,
             k_soft=max(softening, _LEAST_SOFTENING) * area / concrete_length,
-            plastic=given.plastic,
-            contact=contact,
-            misfit=given.misfit,
-            wear=given.wear,
-            friction=given.friction,
+            contact=min(_LARGEST_CONTACT, given.contact),
+            **{name: getattr(given, name) for name in ("plastic", "misfit", "wear", "friction")},
         )
 
     layers: list[tuple[float, ConcreteSpring | SteelSpring]] = []
     core_slope = 0.2 * core / max(core_ultimate - core_peak, 0.002)
     softening = given.core_softening * core_slope
     for strip in strips.core:
-        spring = concrete(round(strip.area, 12), core, core_peak, softening)
-        layers.append((strip.y, spring))
+        layers.append((strip.y, concrete(round(strip.area, 12), core, core_peak, softening)))
     cover_slope = 0.8 * strength / 0.004
     softening = given.cover_softening * cover_slope
     for strip in strips.cover:
@@ -341,9 +336,7 @@ def hinge_joint(
             f_y=fy * area,
             k_post=stiffness * max(_LEAST_HARDENING, given.hardening * (fu - fy) / 0.08 / steel.es),
             r0=given.r0 * by_stress,
-            cr1=given.cr1,
-            cr2=given.cr2,
-            isotropic_hardening=given.isotropic_hardening,
+            **{name: getattr(given, name) for name in ("cr1", "cr2", "isotropic_hardening")},
             endurance=max(1 / given.fatigue, _LEAST_ENDURANCE) if given.fatigue > 0 else 0.0,
             d_buckle=bows if buckles else None,
             buckling=given.buckling if buckles else 0.0,
@@ -353,28 +346,20 @@ def hinge_joint(
     centre = section.centroid
     of_bars = sum(steel.es * (area * (y - centre) ** 2) for y, area, steel in section.bars)
     moment = _yield_moment(section, axial_load, ratio, yield_stress)
+    lengths = {"core": concrete_length, "cover": concrete_length, "bar": steel_length + slip}
+    parts = _parts(strips, len(section.bars))
+    stiffness = min(_STIFFEST, by_axial(given.stiffness, given.stiffness_axial))
     return HingeJoint(
         unchecked(Layered, layers=tuple(layers)),
         concrete_length,
-        min(_STIFFEST, by_axial(given.stiffness, given.stiffness_axial))
-        * (modulus * strips.inertia + of_bars),
+        stiffness * (modulus * strips.inertia + of_bars),
         given.shear_stiffness * modulus / 2.4 * strips.shear_area,
         moment,
         moment * _yield_curvature(section, yield_stress) * (steel_length + slip),
-        Gauge(
-            _parts(strips, len(section.bars)),
-            (concrete_length,) * (len(strips.core) + len(strips.cover))
-            + (steel_length + slip,) * len(section.bars),
-        ),
+        Gauge(parts, tuple(lengths[part] for part in parts)),
         {
-            "hinge_length": (
-                0.0,
-                (_LONGEST_STEEL * length - given.hinge_depth * depth) / one_length,
-            ),
-            "hinge_depth": (
-                -math.inf,
-                (_LONGEST_STEEL * length - given.hinge_length * one_length) / depth,
-            ),
+            "hinge_length": (0.0, (longest - given.hinge_depth * depth) / one_length),
+            "hinge_depth": (-math.inf, (longest - given.hinge_length * one_length) / depth),
             "compression_length": (0.0, _LONGEST_CONCRETE * length / steel_length),
             "stiffness": (0.0, _STIFFEST / by_axial(1.0, given.stiffness_axial)),
             "contact": (0.0, _LARGEST_CONTACT),
@@ -414,11 +399,9 @@ def _yield_curvature(section: Section, stress: float) -> float:
 
 def _least_hardening(section: Section, given: ModelParameters) -> float:
     """Return the factor below which no bar hardens less."""
-    rises = [
-        given.steel_strength * (cast(float, steel.fu) - steel.fy) / steel.es
-        for *_, steel in section.bars
-    ]
-    return _LEAST_HARDENING * 0.08 / max(rises) if max(rises) > 0 else math.inf
+    rise = max((cast(float, steel.fu) - steel.fy) / steel.es for *_, steel in section.bars)
+    rise *= given.steel_strength
+    return _LEAST_HARDENING * 0.08 / rise if rise > 0 else math.inf
 
 
 def _check(axial_load: float, bars: float, whole: float) -> None:

@@ -17,12 +17,21 @@ from rbsdem import _arguments, _core
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import Column, Parameter, without_notes
 from rbsdem.model.shape import Section
-from rbsdem.model.springs import Elastic, Gauge, Layered, Spring, Takeda, check_springs, unchecked
+from rbsdem.model.springs import (
+    Elastic,
+    Gauge,
+    Layered,
+    Pinching,
+    Spring,
+    Takeda,
+    check_springs,
+    unchecked,
+)
 from rbsdem.section.axial_moment import InteractionDiagram, joint_interaction
 from rbsdem.section.hinge import HingeJoint, hinge_joint
 from rbsdem.section.parameters import FACTORS, ModelParameters, directions, table
 from rbsdem.section.ranges import axial_load_note, outside
-from rbsdem.section.shear import shear_limits, shear_spring
+from rbsdem.section.shear import shear_spring
 
 #: Strain at which all concrete is crushed.
 _CRUSHED = 0.02
@@ -77,23 +86,20 @@ class LayeredModel:
     @cached_property
     def joint(self) -> HingeJoint:
         """The hinge at the foot."""
-        return hinge_joint(
-            self.section,
-            self.height,
-            self.axial_load,
-            self.parameters,
-            restrained=self.restrained,
-            round_core=self.round_core,
-        )
+        place = self.section, self.height, self.axial_load
+        hoops: Any = {"restrained": self.restrained, "round_core": self.round_core}
+        return hinge_joint(*place, self.parameters, **hoops)
+
+    @cached_property
+    def shear(self) -> tuple[Pinching, dict[str, tuple[float, float]]]:
+        """The shear spring of the foot, and the limits of the parameters that make it."""
+        place, joint = (self.section, self.height, self.axial_load), self.joint
+        return shear_spring(*place, joint.shear_stiffness, self.parameters, joint)
 
     @cached_property
     def limits(self) -> dict[str, tuple[float, float]]:
         """Least and largest values of parameters that would change nothing beyond them."""
-        joint = self.joint
-        of_shear = shear_limits(
-            self.section, self.height, self.axial_load, joint.shear_stiffness, self.parameters
-        )
-        return joint.limits | of_shear
+        return self.joint.limits | self.shear[1]
 
     def statement(self) -> _core.Statement:
         """Return the keys of the drawing, as groups of a case file."""
@@ -168,17 +174,9 @@ class LayeredModel:
         lengths, part = body_lengths(self.height, joint.length, n)
         # Flexible as the continuous column, whatever n is.
         stiffness = joint.flexural_stiffness / part * lumping(n)
-        foot = shear_spring(
-            self.section,
-            self.height,
-            self.axial_load,
-            joint.shear_stiffness,
-            self.parameters,
-            joint,
-        )
         rigid = unchecked(Elastic, k=1e3 * joint.shear_stiffness / self.height)
         return {
-            "shear": (foot, *[rigid] * (n - 1)),
+            "shear": (self.shear[0], *[rigid] * (n - 1)),
             "flexure": (joint.spring, *(self._above(stiffness, i) for i in range(n - 1))),
             "lengths": lengths,
             "model": f"layered {self.parameters.label}",
@@ -207,15 +205,8 @@ class LayeredModel:
         d_c, k_y = m_c / stiffness, cracked * stiffness
         # More than the hinge carries, so that the joint never yields.
         most = 2.0 * max(self.joint.yield_moment, m_c)
-        return unchecked(
-            Takeda,
-            k_c=stiffness,
-            d_c=d_c,
-            k_y=k_y,
-            d_y=d_c + (most - m_c) / k_y,
-            k_u=0.9 * k_y,
-            b0=0.0,
-        )
+        first: Any = {"k_c": stiffness, "d_c": d_c, "k_y": k_y, "d_y": d_c + (most - m_c) / k_y}
+        return unchecked(Takeda, **first, k_u=0.9 * k_y, b0=0.0)
 
 
 #: Bounds of a factor along a direction, and of those on several parameters.

@@ -111,22 +111,14 @@ class PaperSection:
     @property
     def section(self) -> RectangularSection:
         """The section with its bars along the ties, as many on every face."""
+        steel = Steel(self.longitudinal_yield_stress, self.longitudinal_ultimate_stress)
+        layout = Layout(self.longitudinal_number, self.longitudinal_diameter, steel)
+        steel = Steel(self.transverse_yield_stress, self.transverse_ultimate_stress)
+        sizes = self.transverse_diameter, self.transverse_spacing
+        ties, cover = Ties(*sizes, steel, legs=self.shear_legs), self.cover
+        concrete = Concrete(self.concrete_strength)
         return RectangularSection(
-            self.width,
-            self.depth,
-            Concrete(self.concrete_strength),
-            layout=Layout(
-                self.longitudinal_number,
-                self.longitudinal_diameter,
-                Steel(self.longitudinal_yield_stress, self.longitudinal_ultimate_stress),
-            ),
-            ties=Ties(
-                self.transverse_diameter,
-                self.transverse_spacing,
-                Steel(self.transverse_yield_stress, self.transverse_ultimate_stress),
-                legs=self.shear_legs,
-            ),
-            cover=self.cover,
+            self.width, self.depth, concrete, layout=layout, ties=ties, cover=cover
         )
 
 
@@ -202,20 +194,14 @@ def paper_columns(kinematics: Kinematics = "small", **changes: Any) -> dict[str,
 def _column(
     section: PaperSection, s: dict[tuple[str, str], float], kinematics: Kinematics
 ) -> Column:
+    names = ("K_c", "D_c", "K_y", "D_y", "K_u")
+    flexure: Any = {name.lower(): s["flexure", name] for name in names}
+    flexure |= {"b0": s["flexure", "B_0"], "b1": s["flexure", "B_1"], "inner": "kc"}
     return Column(
         height=section.length,
         mass=section.mass,
         shear=Bilinear(k=s["shear", "K_y"], d_y=s["shear", "D_y"], k_post=s["shear", "K_u"]),
-        flexure=Takeda(
-            k_c=s["flexure", "K_c"],
-            d_c=s["flexure", "D_c"],
-            k_y=s["flexure", "K_y"],
-            d_y=s["flexure", "D_y"],
-            k_u=s["flexure", "K_u"],
-            b0=s["flexure", "B_0"],
-            b1=s["flexure", "B_1"],
-            inner="kc",
-        ),
+        flexure=Takeda(**flexure),
         axial_load=section.axial_load,
         kinematics=kinematics,
     )

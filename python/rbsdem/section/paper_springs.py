@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass
+from typing import Any
 
 from rbsdem import _arguments, _core
 from rbsdem.errors import AccuracyWarning, InputError
@@ -150,16 +151,9 @@ def springs(
             f"springs: hinge_length = {hinge:g} m is longer than the column, length = {length:g} m"
         )
     length = column_length(length, "springs: length")
-    numbers = {
-        "length": length,
-        "axial_load": axial_load,
-        "hinge_length": hinge_length,
-        "moment_factor": moment_factor,
-        "b0": b0,
-        "d_m": d_m,
-        "eps_yield": eps_yield,
-        "eps_cover": eps_cover,
-    }
+    numbers = {"length": length, "axial_load": axial_load, "hinge_length": hinge_length}
+    numbers |= {"moment_factor": moment_factor, "b0": b0, "d_m": d_m}
+    numbers |= {"eps_yield": eps_yield, "eps_cover": eps_cover}
     settings = {
         name: None if value is None else _arguments.number(value, f"springs: {name}")
         for name, value in numbers.items()
@@ -182,22 +176,15 @@ def springs(
             f"K_u = {found['k_u_found']:.4g} N m/rad: the moment falls from yield to the ultimate "
             "point; the spring has K_u = 0"
         )
-    flexure = Takeda(
-        k_c=found["k_c"],
-        d_c=found["d_c"],
-        k_y=found["k_y"],
-        d_y=found["d_y"],
-        k_u=found["k_u"],
-        b0=found["b0"],
-        b1=found["b1"] if b1 is None else b1,
-    )
-    for_whole_column(flexure, "flexure")
+    values: Any = {name: found[name] for name in ("k_c", "d_c", "k_y", "d_y", "k_u", "b0")}
+    values["b1"] = found["b1"] if b1 is None else b1
+    flexure = for_whole_column(Takeda(**values), "flexure")
     events = Events(*map(make_point, answer.rows))
-    cracking, last = events.cracking, events.ultimate
+    cracking, end = events.cracking, events.ultimate
     spring, shear_fit = None, None
     if shear == "mcft":
-        assert last is not None
-        shear_fit = fit_shear_spring(section, length, axial_load, last.curvature, confined=confined)
+        assert end is not None
+        shear_fit = fit_shear_spring(section, length, axial_load, end.curvature, confined=confined)
         spring = shear_fit.spring
         notes += shear_fit.notes
     elif shear == "closed":
@@ -207,20 +194,9 @@ def springs(
         for_whole_column(spring, "shear")
     for note in notes:
         warnings.warn(note, AccuracyWarning, stacklevel=2)
-    made = SectionSprings(
-        section,
-        confined,
-        flexure,
-        spring,
-        shear_fit,
-        events,
-        found["hinge_length"],
-        length,
-        axial_load,
-        found["d_m"],
-        tuple(notes),
-        "",
-    )
+    parts = flexure, spring, shear_fit, events
+    sizes = found["hinge_length"], length, axial_load, found["d_m"]
+    made = SectionSprings(section, confined, *parts, *sizes, tuple(notes), "")
     object.__setattr__(made, "report", _report(section, made))
     return made
 

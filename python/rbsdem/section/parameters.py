@@ -70,18 +70,9 @@ def table() -> Mapping[str, Row]:
     """Return the parameters of the model by name, those of the hinge first."""
     rows = {}
     for row in _package.rows("layered_parameters.csv"):
-        rows[row["name"]] = Row(
-            name=row["name"],
-            value=float(row["value"]),
-            low=float(row["low"] or "nan"),
-            high=float(row["high"] or "nan"),
-            rank=int(row["rank"] or 0),
-            prior=float(row["prior"] or "nan"),
-            spread=float(row["spread"] or 0),
-            unit=row["unit"],
-            meaning=row["meaning"],
-            source=row["source"],
-        )
+        numbers = {name: float(row[name] or "nan") for name in ("value", "low", "high", "prior")}
+        numbers |= {"rank": int(row["rank"] or 0), "spread": float(row["spread"] or 0)}
+        rows[row["name"]] = Row(**row | numbers)  # type: ignore[arg-type]
     return MappingProxyType(rows)
 
 
@@ -120,15 +111,13 @@ class ModelParameters:
             if not math.isfinite(number):
                 raise InputError(f"parameters: {name} = {number} must be a finite number")
             values[name] = number
-        object.__setattr__(self, "values", values)
+        # Each value is an attribute too.
+        self.__dict__.update(values, values=values)
 
     def __hash__(self) -> int:
         return hash((self.version, tuple(self.values.values())))
 
     def __getattr__(self, name: str) -> float:
-        """Return a value by its name."""
-        if name != "values" and name in self.values:
-            return self.values[name]
         raise AttributeError(f"there is no parameter {name!r}")
 
     @property

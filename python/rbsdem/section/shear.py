@@ -16,20 +16,20 @@ shear: one that yields in flexure first never leaves the lines before yield.
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem._package import unwarned
+from rbsdem._types import Array, ArrayLike
+from rbsdem.errors import InputError
 from rbsdem.model.materials import Tension
 from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Bilinear, Pinching, unchecked
+from rbsdem.section.curvature import checked_furthest
 from rbsdem.section.hinge import HingeJoint
 from rbsdem.section.parameters import ModelParameters
 from rbsdem.section.ranges import checked_load, column_length, is_confined
@@ -206,9 +206,7 @@ def shear_diagram(
         points = _arguments.integer(points, "points", least=2, most=MOST_POINTS)
         last = _FURTHEST / section.depth
         if furthest is not None:
-            last = _arguments.number(furthest, "furthest")
-            if not 0.0 < last * section.depth <= 1.0:
-                raise InputError(f"furthest = {last} 1/m must be above zero and below 1/depth")
+            last = checked_furthest(furthest, section)
         path = last * np.linspace(0.0, 1.0, points + 1)[1:] ** 2
     else:
         path = _arguments.finite_vector(curvature, "curvature")
@@ -234,17 +232,10 @@ def shear_diagram(
     knee, sheared, lost = (bool(event) for event in answer.values[:3])
     names = _core.section_quantities()["profile"]
     profile = answer.values[3:].reshape(len(names), -1)
-    return ShearDiagram(
-        section=section,
-        length=span,
-        axial_load=load,
-        **{name: np.array([row[name] for row in rows]) for name in at_end},
-        knee=ShearPoint(**at_knee) if knee else None,
-        end=ShearPoint(**at_end),
-        sheared=sheared,
-        lost=lost,
-        layers=ShearLayers(**dict(zip(names, profile, strict=True))),
-    )
+    cut = ShearLayers(**dict(zip(names, profile, strict=True)))
+    curves: Any = {name: np.array([row[name] for row in rows]) for name in at_end}
+    curves |= {"knee": ShearPoint(**at_knee) if knee else None, "end": ShearPoint(**at_end)}
+    return ShearDiagram(section, span, load, **curves, sheared=sheared, lost=lost, layers=cut)
 
 
 # ---- the bilinear spring of the paper ----------------------------------------------------------
@@ -287,11 +278,7 @@ class ShearSpring:
 
 
 def fit_shear_spring(
-    section: Section,
-    length: float,
-    axial_load: float,
-    ultimate_curvature: float,
-    **options: Any,
+    section: Section, length: float, axial_load: float, ultimate_curvature: float, **options: Any
 ) -> ShearSpring:
     """Fit the bilinear shear spring of a column with V = M/length.
 
@@ -323,9 +310,8 @@ def fit_shear_spring(
     InputError
         If a value is refused, or the section carries no shear.
     """
-    with warnings.catch_warnings():
+    with unwarned():
         # Who asks for springs is told of an odd axial load once.
-        warnings.simplefilter("ignore", AccuracyWarning)
         diagram = shear_diagram(section, length, axial_load, furthest=ultimate_curvature, **options)
     strength = shear_strength_mcft(section, length, axial_load)
     notes = []
@@ -408,8 +394,11 @@ def _last_useful(diagram: ShearDiagram) -> ShearPoint:
     if not diagram.force.size or diagram.end.force >= _FALLEN * diagram.force.max():
         return diagram.end
     peak = int(np.argmax(diagram.force))
-    rows = (diagram.curvature, diagram.moment, diagram.force, diagram.strain)
-    return ShearPoint(*(float(row[peak]) for row in rows))
+    return ShearPoint(*_rows(diagram)[:, peak].tolist())
+
+
+def _rows(diagram: ShearDiagram) -> Array:
+    return np.vstack([getattr(diagram, name) for name in ShearPoint.__dataclass_fields__])
 
 
 def _at_force(diagram: ShearDiagram, force: float) -> ShearPoint | None:
@@ -418,7 +407,7 @@ def _at_force(diagram: ShearDiagram, force: float) -> ShearPoint | None:
     if not reached.size:
         return None
     i = int(reached[0])
-    rows = np.vstack([diagram.curvature, diagram.moment, diagram.force, diagram.strain])
+    rows = _rows(diagram)
     first = np.zeros(4) if i == 0 else rows[:, i - 1]
     share = (force - first[2]) / (rows[2, i] - first[2])
     return ShearPoint(*(first + share * (rows[:, i] - first)).tolist())
@@ -475,7 +464,7 @@ def shear_spring(
     stiffness: float,
     given: ModelParameters,
     joint: HingeJoint | None = None,
-) -> Pinching:
+) -> tuple[Pinching, dict[str, tuple[float, float]]]:
     """Make the shear spring of a column.
 
     Parameters
@@ -501,52 +490,19 @@ def shear_spring(
         near `rbsdem.section.strength.shear_strength_mcft` with its `arch_factor`; loses its force
         by the drift at axial failure of Elwood and Moehle (2005). A section that is not symmetric
         has a negative side of its own, that of the section upside down.
+    dict of str to (float, float)
+        Least and largest values of parameters, beyond which they would change nothing.
 
     Raises
     ------
     InputError
         If the length is not positive.
     """
-    return _shear(section, length, axial_load, stiffness, given, joint)[0]
-
-
-def shear_limits(
-    section: Section,
-    length: float,
-    axial_load: float,
-    stiffness: float,
-    given: ModelParameters,
-) -> dict[str, tuple[float, float]]:
-    """Return least and largest values of parameters, beyond which they would change nothing.
-
-    Parameters
-    ----------
-    section, length, axial_load, stiffness, given
-        As for `shear_spring`.
-
-    Returns
-    -------
-    dict of str to (float, float)
-        By the names of `ModelParameters.values`.
-    """
-    return _shear(section, length, axial_load, stiffness, given)[1]
-
-
-def _shear(
-    section: Section,
-    length: float,
-    axial_load: float,
-    stiffness: float,
-    given: ModelParameters,
-    joint: HingeJoint | None = None,
-) -> tuple[Pinching, dict[str, tuple[float, float]]]:
-    """Return the spring and the limits of its parameters."""
-    mirrored = section.mirrored
-    sides = [_side(section, length, axial_load, stiffness, given)]
-    lines = sides[0].line
-    if mirrored is not section:
-        sides.append(_side(mirrored, length, axial_load, stiffness, given))
-        lines = lines | {f"{name}_neg": value for name, value in sides[1].line.items()}
+    drawn = [section] if section.symmetric else [section, section.mirrored]
+    sides = [_side(each, length, axial_load, stiffness, given) for each in drawn]
+    lines = {**sides[0].line}
+    for side in sides[1:]:
+        lines |= {f"{name}_neg": value for name, value in side.line.items()}
     # What both sides share is that of their mean.
     unit = sum(side.line["f_y"] * side.line["d_y"] for side in sides) / len(sides)
     f_y = sum(side.line["f_y"] for side in sides) / len(sides)
@@ -566,21 +522,20 @@ def _shear(
         strut = given.shear_decay_strut * sizes.fc * sizes.width * sizes.d
         stays = given.shear_decay_ties * ties + axial_strut(section, length, axial_load)
         s_min = min(0.95, stays / f_y, strut / f_y)
-    names = sides[0].limits
     limits = {
         name: (min(s.limits[name][0] for s in sides), max(s.limits[name][1] for s in sides))
-        for name in names
+        for name in sides[0].limits
     }
     spring = unchecked(
         Pinching,
         **lines,
         lambda_s=lambda_s,
-        b0=given.shear_b0,
-        kappa_f=min(given.shear_pinch_force, 1.0),
-        kappa_d=given.shear_pinch_slip,
         lambda_h=lambda_h,
         s_min=s_min,
         fade=2.0,
+        b0=given.shear_b0,
+        kappa_f=min(given.shear_pinch_force, 1.0),
+        kappa_d=given.shear_pinch_slip,
     )
     return spring, limits
 

@@ -21,20 +21,20 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _package
-from rbsdem._arguments import Array
 from rbsdem._files import Tabular
+from rbsdem._package import unwarned
+from rbsdem._types import Array, ArrayLike
 from rbsdem.curves.envelope import strength_loss
 from rbsdem.curves.metrics import PathPoints, work
-from rbsdem.errors import AccuracyWarning, InputError, SolveError
+from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import Column
 from rbsdem.model.shape import Section
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.parameters import VERSION
 from rbsdem.section.strength import shear_sizes
-from rbsdem.solve.analysis import cyclic
+from rbsdem.solve.analysis import reached_force
 
 LEAST, MOST = 8, 4096
 """Fewest and most samples of a band."""
@@ -56,14 +56,8 @@ _LEAST_WORK = 0.15
 _NONE = 1e-3
 
 #: Parameters of degradation, and whether more of them is more of it.
-_DEGRADATION = {
-    "fatigue": 1,
-    "wear": 1,
-    "shear_decay": 1,
-    "shear_endurance": -1,
-    "core_softening": 1,
-    "cover_softening": 1,
-}
+_FASTER = ("fatigue", "wear", "shear_decay", "core_softening", "cover_softening")
+_DEGRADATION = dict.fromkeys(_FASTER, 1) | {"shear_endurance": -1}
 
 
 @dataclass(frozen=True, slots=True)
@@ -314,13 +308,7 @@ def place_of(section: Section, height: float, axial_load: float) -> tuple[float,
     The axial load ratio, and logarithms of the others: of the concrete strength over 30 MPa.
     """
     axial, span, strength, bars, ties = likeness(section, height, axial_load).values()
-    return (
-        axial,
-        math.log(span),
-        math.log(strength / 30e6),
-        math.log(max(bars, _NONE)),
-        math.log(max(ties, _NONE)),
-    )
+    return axial, *map(math.log, (span, strength / 30e6, max(bars, _NONE), max(ties, _NONE)))
 
 
 def has_bands(version: str) -> bool:
@@ -437,16 +425,14 @@ def sample(column: LayeredColumn, displacement: Array, scatter: Scatter, number:
                 f"spread: {name} of this column is not that of its model, whose scatter is known; "
                 "change parameters by with_parameters"
             )
-    size = {
-        name: math.hypot(*getattr(scatter, name))
-        for name in ("strength", "stiffness", "degradation")
-    }
+    sizes = [math.hypot(*two) for two in (scatter.strength, scatter.stiffness, scatter.degradation)]
     rows = np.empty((number, displacement.size))
-    for row, (strength, stiffness, degradation) in zip(rows, _normal_points(number), strict=True):
-        other = _degraded(column, math.exp(size["degradation"] * degradation))
+    for row, point in zip(rows, _normal_points(number).tolist(), strict=True):
+        factors = (math.exp(size * at) for size, at in zip(sizes, point, strict=True))
+        strength, stiffness, degradation = factors
+        other = _degraded(column, degradation)
         # A column that is softer by a factor is where the other is at a smaller displacement.
-        path = displacement * math.exp(size["stiffness"] * stiffness)
-        row[:] = math.exp(size["strength"] * strength) * path_force(other, path)
+        row[:] = strength * path_force(other, displacement * stiffness)
     return rows
 
 
@@ -577,13 +563,8 @@ def _degraded(column: LayeredColumn, factor: float) -> Column:
 
 def path_force(column: Column, displacement: Array) -> Array:
     """Return the lateral force along a path; zero behind the end of the analysis."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AccuracyWarning)
-        try:
-            found = cyclic(column, displacement=displacement).force
-        except SolveError as stopped:
-            found = np.empty(0) if stopped.result is None else stopped.result.force[:-1]
     force = np.zeros(displacement.size)
-    found = found[: displacement.size]
-    force[: found.size] = np.where(np.isfinite(found), found, 0.0)
+    with unwarned():
+        found, _ = reached_force(column, displacement)
+    force[: found.size] = found
     return force

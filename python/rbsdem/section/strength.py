@@ -12,7 +12,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from rbsdem.errors import InputError
-from rbsdem.model.materials import share_in_tension
 from rbsdem.model.shape import Section
 from rbsdem.section.ranges import carried_load, checked_load, column_length
 
@@ -79,29 +78,20 @@ def shear_sizes(section: Section) -> ShearSizes:
     ShearSizes
         Its sizes.
     """
-    steel = sum(area * share_in_tension(y, section.depth) for y, area, _ in section.bars)
-    ties = section.ties
-    area = spacing = tie_yield = 0.0
-    core = section.depth
-    if ties is not None:
-        area = ties.legs * 0.25 * math.pi * ties.diameter**2
-        tie_yield = ties.steel.fy
-        core = section.depth - 2.0 * section.cover - ties.diameter
-    spacing = ties.spacing if ties is not None else math.inf
-    # Wings of a flange carry no shear along the depth.
-    whole = section.width * section.depth if section.shape == "tee" else section.gross_area
-    return ShearSizes(
-        section.concrete_law["fc"],
-        section.web_width,
-        section.depth,
-        section.effective_depth,
-        whole,
-        steel,
-        area,
-        spacing,
-        tie_yield,
-        core,
-    )
+    known, ties = section.__dict__, section.ties
+    if "_shear_sizes" not in known:
+        fc, width, depth = section.concrete_law["fc"], section.web_width, section.depth
+        held = 0.0, math.inf, 0.0, depth
+        if ties is not None:
+            area = ties.legs * 0.25 * math.pi * ties.diameter**2
+            core = depth - 2.0 * section.cover - ties.diameter
+            held = area, ties.spacing, ties.steel.fy, core
+        # Wings of a flange carry no shear along the depth.
+        whole = width * depth if section.shape == "tee" else section.gross_area
+        steel = whole, section.tension_steel
+        known["_shear_sizes"] = ShearSizes(fc, width, depth, section.effective_depth, *steel, *held)
+    sizes: ShearSizes = known["_shear_sizes"]
+    return sizes
 
 
 def shear_strength(section: Section, length: float, axial_load: float) -> float:
@@ -126,11 +116,7 @@ def shear_strength(section: Section, length: float, axial_load: float) -> float:
 
 
 def shear_strength_mcft(
-    section: Section,
-    length: float,
-    axial_load: float,
-    aggregate: float = 0.019,
-    arch: float = 1.0,
+    section: Section, length: float, axial_load: float, aggregate: float = 0.019, arch: float = 1.0
 ) -> float:
     """Return the shear strength of the simplified modified compression field theory.
 

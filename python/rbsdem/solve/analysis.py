@@ -3,28 +3,23 @@
 from __future__ import annotations
 
 import os
-import threading
 import warnings
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, overload
+from functools import partial
+from typing import Any, Literal, overload
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
-from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning
-from rbsdem.model.column import Column
+from rbsdem._types import Array, ArrayLike, Unpack
+from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError
+from rbsdem.model.column import TELLING, Column
 from rbsdem.model.frame import Frame, Structure, checked_structure
 from rbsdem.model.frame_result import FrameResult, frame_result_of
 from rbsdem.model.response import Ended, Response, response_of, settings_of, state_of
 from rbsdem.motions.motion import GroundMotion, acting
 from rbsdem.solve.solver import Solver, checked_solver
-
-if TYPE_CHECKING:
-    from typing_extensions import Unpack
 
 #: What a run in time is watched for: limit states of the column as criteria in numbers, shape
 #: (criteria, 6), given whether openings are kept.
@@ -39,10 +34,6 @@ _NO_CRITERIA = np.empty((0, 6))
 def no_watch(column: Structure, openings: bool) -> Array:
     """Watch for nothing."""
     return _NO_CRITERIA
-
-
-#: Threads whose runs are told nothing about.
-_silent = threading.local()
 
 
 @dataclass(frozen=True)
@@ -262,22 +253,29 @@ def cyclic(
     load = None if axial_load is None else _arguments.vector(axial_load, "axial_load")
     kept = not checked_structure(column).opens and _arguments.boolean(openings, "openings")
     settings = settings_of(every, kept, collapse_drift=collapse_drift)
-    run = _core.cyclic(
-        column._statement + settings,
-        name == "force",
-        values,
-        load,
-        None if initial is None else state_of(initial, "cyclic"),
-        _arguments.boolean(corners, "corners"),
-    )
-    call = {
-        name: values,
-        "axial_load": load,
-        "initial": _recorded_state(initial),
-        "every": every,
-        "collapse_drift": collapse_drift,
-    }
+    state = None if initial is None else state_of(initial, "cyclic")
+    wanted = _arguments.boolean(corners, "corners")
+    run = _core.cyclic(column._statement + settings, name == "force", values, load, state, wanted)
+    call = {name: values, "axial_load": load, "initial": _recorded_state(initial)}
+    call |= {"every": every, "collapse_drift": collapse_drift}
     return _return(column, run, {"analysis": "static", "driven": name}, call)
+
+
+def reached_force(column: Column, displacement: ArrayLike) -> tuple[Array, SolveError | None]:
+    """Return the lateral forces along a path up to its end or the first that is not finite [N].
+
+    The last row of an analysis that stopped is where it failed, and left out; the error is returned
+    with the forces.
+    """
+    error = None
+    try:
+        force = cyclic(column, displacement=displacement).force
+    except SolveError as stopped:
+        error = stopped
+        force = np.empty(0) if stopped.result is None else stopped.result.force[:-1]
+    force = force[: np.size(displacement)]
+    bad = np.flatnonzero(~np.isfinite(force))
+    return (force[: bad[0]] if bad.size else force), error
 
 
 def time_history(
@@ -389,34 +387,15 @@ def time_history(
     else:
         begin, state = (_NONE, False), state_of(initial, "time_history")
         kept_initial = _recorded_state(initial)
-    run, reached = _core.time_history(
-        column._statement + settings,
-        times,
-        loads,
-        *begin,
-        state,
-        watch(column, kept),
-        lambda note: _tell(note, LongRunWarning, 6),
-    )
+    statement, watches = column._statement + settings, watch(column, kept)
+    tell = partial(_tell, kind=LongRunWarning, stacklevel=5)
+    run, reached = _core.time_history(statement, times, loads, *begin, state, watches, tell)
     call = {"time": times, **loads, "initial": kept_initial, **chosen, "every": every}
     return _return(column, run, {"analysis": "dynamic"}, call, reached)
 
 
-@contextmanager
-def without_notes() -> Iterator[None]:
-    """Issue no warnings about runs of this thread: they are some of many.
-
-    The filters of warnings are those of all threads and cannot say so.
-    """
-    _silent.now = True
-    try:
-        yield
-    finally:
-        _silent.now = False
-
-
 def _tell(note: str, kind: type[Warning], stacklevel: int) -> None:
-    if not getattr(_silent, "now", False):
+    if TELLING.get():
         warnings.warn(note, kind, stacklevel=stacklevel)
 
 

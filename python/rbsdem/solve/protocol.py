@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
+from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
 
 _NONE = np.empty(0)
@@ -102,15 +102,9 @@ def protocol(
     size = 4 * points * number * repeats + 1
     if size > np.iinfo(np.int32).max:
         raise InputError(f"protocol: {size} points are too many; reduce cycles, repeats or points")
-    loading = {
-        "drive": "force",
-        "source": "protocol",
-        "amplitudes": steps,
-        "negative_amplitudes": one_side,
-        "cycles": counts,
-        "repeats": repeats,
-        "points": points,
-    }
+    loading: dict[str, Any] = {"drive": "force", "source": "protocol", "amplitudes": steps}
+    loading |= {"negative_amplitudes": one_side, "cycles": counts}
+    loading |= {"repeats": repeats, "points": points}
     return _core.evaluate("protocol", _core.group("loading", loading)).values
 
 

@@ -116,6 +116,7 @@ class Method:
 _SETTINGS = ("dt", "events", "tolerance", "rho_infinity", "allow_unstable")
 
 #: All methods by name.
+_NUMBERS = ("limit_share", "period_share", "usual_error", "largest_error")
 METHODS = {
     row["method"]: Method(
         name=row["method"],
@@ -123,10 +124,7 @@ METHODS = {
         kind=row["kind"],
         adaptive=row["adaptive"] == "yes",
         settings=frozenset(name for name in _SETTINGS if row[name] == "yes"),
-        limit_share=float(row["limit_share"]),
-        period_share=float(row["period_share"]),
-        usual_error=float(row["usual_error"]),
-        largest_error=float(row["largest_error"]),
+        **{name: float(row[name]) for name in _NUMBERS},
         responses=int(row["responses"]),
     )
     for row in _core.methods()

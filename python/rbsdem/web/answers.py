@@ -11,18 +11,17 @@ import math
 import re
 import time
 import traceback
-import warnings
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._package import recorded, unwarned
+from rbsdem._types import Array, NDArray
 from rbsdem.checks.code_values import code_values
 from rbsdem.errors import InputError, RbsdemError, SolveError
 from rbsdem.measured.predict import nearest, predict_one
@@ -142,8 +141,7 @@ class Answers:
         faults, drawn, case = Faults(), None, None
         notes: list[str] = []
         if "case" in given:
-            with warnings.catch_warnings(record=True) as told:
-                warnings.simplefilter("always")
+            with recorded() as told:
                 try:
                     case = exports.own_case(given["case"])
                 except RbsdemError as error:
@@ -157,8 +155,7 @@ class Answers:
         if case is None:
             return Answered(faults=faults.listed, notes=notes)
         stopped = ""
-        with warnings.catch_warnings(record=True) as told:
-            warnings.simplefilter("always")
+        with recorded() as told:
             try:
                 # The strains of a layered hinge follow from its openings.
                 result = cast(Result, case.run(case.plain_column("the page"), openings=True))
@@ -226,9 +223,7 @@ class Answers:
                 column = found.drawn.column
                 answer["section"] = _tried(_interaction, found.drawn.section, None)
                 if isinstance(column, LayeredColumn):
-                    answer["joint"] = _tried(
-                        lambda of: _curve(of.interaction(points=_POINTS)), column
-                    )
+                    answer["joint"] = _tried(_joint, column)
             columns.append(answer)
         return {"columns": columns}
 
@@ -329,21 +324,8 @@ class Answers:
 
 
 #: What can be asked, by the last part of the path.
-LANES = (
-    "loops",
-    "sections",
-    "own",
-    "bands",
-    "scales",
-    "nearest",
-    "export",
-    "open",
-    "record",
-    "frame",
-)
-
-#: What is asked for once: a newer question takes nothing from it.
 ONCE = ("export", "open", "record")
+LANES = ("loops", "sections", "own", "bands", "scales", "nearest", "frame", *ONCE)
 
 
 # ---- a response as JSON -------------------------------------------------------------------------
@@ -361,9 +343,10 @@ def to_json(result: Result, factor: float = 1.0) -> dict[str, Any]:
     """
     force = result.base_shear if result.dynamic else result.force
     rows = shown_rows(result.displacement, force)
-    height = result.column.height
-    spring = result.energy["spring"]
-    footing = result.column.footing is not None
+    height, spring = result.column.height, result.energy["spring"]
+    footing, loss = result.column.footing is not None, None
+    if not result.dynamic:
+        loss = number(abs(result.strength_loss()) / height)
     answer: dict[str, Any] = {
         "displacement": numbers(factor * result.displacement[rows]),
         "force": numbers(force[rows]),
@@ -372,14 +355,9 @@ def to_json(result: Result, factor: float = 1.0) -> dict[str, Any]:
         "method": result.summary["method"],
         "dynamic": result.dynamic,
         "states": [
-            {
-                "name": state.name,
-                "displacement": number(factor * state.displacement),
-                "force": number(state.force),
-                "drift": number(state.drift),
-                "threshold": number(state.threshold),
-                "source": state.source,
-            }
+            {"name": state.name, "displacement": number(factor * state.displacement)}
+            | {name: number(getattr(state, name)) for name in ("force", "drift", "threshold")}
+            | {"source": state.source}
             for state in result.limit_states()
         ],
         "figures": {
@@ -387,9 +365,7 @@ def to_json(result: Result, factor: float = 1.0) -> dict[str, Any]:
             # That of the column, not of the ground beneath its footing.
             "peak_moment": _peak(result.moment[:, 1] if footing else result.base_moment),
             "peak_drift": _peak(result.drift),
-            "drift_at_loss": None
-            if result.dynamic
-            else number(abs(result.strength_loss()) / height),
+            "drift_at_loss": loss,
             "residual_drift": number(result.residual_drift),
             "energy": number(factor * float(spring[-1])) if spring.size else None,
         },
@@ -424,8 +400,7 @@ def _band(found: Answered) -> dict[str, Any]:
         return {"none": "a band is for the layered model"}
     if column.top == "fixed":
         return {"none": "no band: its scatter is that of columns with one hinge"}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    with unwarned(Warning):
         try:
             spread = spread_of(column, result.displacement)
         except InputError as error:
@@ -458,8 +433,7 @@ def defect(error: Exception) -> str:
 
 def _tried(make: Callable[..., Any], *given: Any) -> Any:
     """Return what a function makes, or the text of its error."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    with unwarned(Warning):
         try:
             return make(*given)
         except RbsdemError as error:
@@ -484,16 +458,10 @@ def _figure(section: Section) -> dict[str, Any]:
 def _curvature(section: Section, load: float, confined: bool) -> dict[str, Any]:
     options: dict[str, Any] = {"ultimate": "mander"} if confined else {}
     diagram = diagram_of(section, load, confined=confined, **options)
-    events = {
-        name: [number(point.curvature), number(point.moment)]
-        for name in ("cracking", "yielding", "peak", "ultimate")
-        if (point := getattr(diagram.events, name)) is not None
-    }
-    return {
-        "curvature": numbers(diagram.curvature),
-        "moment": numbers(diagram.moment),
-        "events": events,
-    }
+    found = asdict(diagram.events).items()
+    events = {name: [number(p["curvature"]), number(p["moment"])] for name, p in found if p}
+    points = {"curvature": numbers(diagram.curvature), "moment": numbers(diagram.moment)}
+    return points | {"events": events}
 
 
 def _interaction(section: Section, code: str | None) -> dict[str, Any]:
@@ -506,22 +474,16 @@ def _interaction(section: Section, code: str | None) -> dict[str, Any]:
     return found
 
 
+def _joint(column: LayeredColumn) -> dict[str, Any]:
+    return _curve(column.interaction(points=_POINTS))
+
+
 def _curve(diagram: InteractionDiagram) -> dict[str, Any]:
     return {"axial_load": numbers(diagram.axial_load), "moment": numbers(diagram.moment)}
 
 
 def _codes(section: Section, span: float, load: float) -> list[dict[str, Any]]:
-    return [
-        {
-            "name": value.name,
-            "meaning": value.meaning,
-            "value": number(value.value),
-            "unit": value.unit,
-            "source": value.source,
-            "confirmed": value.confirmed,
-        }
-        for value in code_values(section, span, load)
-    ]
+    return [asdict(one) | {"value": number(one.value)} for one in code_values(section, span, load)]
 
 
 def numbers(values: Array) -> list[float | None]:
@@ -574,9 +536,8 @@ class NearestTests:
                 continue
             try:
                 column = drawn.column
-                near = nearest(
-                    drawn.section, drawn.span, column.axial_load, self._tests, self._number
-                )
+                place = drawn.section, drawn.span, column.axial_load
+                near = nearest(*place, self._tests, self._number)
             except (RbsdemError, ValueError) as error:
                 columns.append({"none": str(error)})
                 continue
@@ -591,7 +552,6 @@ class NearestTests:
 
     def _predicted(self, test: Specimen) -> Prediction:
         if test.name not in self._found:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
+            with unwarned(Warning):
                 self._found[test.name] = predict_one(test)
         return self._found[test.name]

@@ -10,13 +10,13 @@ import dataclasses
 import json
 import re
 import tempfile
-import warnings
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from rbsdem._arguments import Derived
+from rbsdem._package import unwarned
 from rbsdem.errors import InputError
 from rbsdem.model.springs import Spring
 from rbsdem.results.case import Case, case_of_text
@@ -77,9 +77,8 @@ def own_case(text: object) -> Case:
 def opened(text: object) -> dict[str, Any]:
     """Return the state of the text of a case file, from its drawing or as the case that it is."""
     try:
-        with warnings.catch_warnings():
+        with unwarned(Warning):
             # What there is to say of it stands beside its loop.
-            warnings.simplefilter("ignore")
             case = own_case(text)
     except InputError as error:
         return {"faults": [{"field": "case", "text": str(error)}]}
@@ -121,11 +120,7 @@ def _refuse_files(text: str) -> None:
 
 
 def exported(
-    form: str,
-    case: Case,
-    drawn: Drawn | None,
-    given: Mapping[str, Any],
-    loading: Mapping[str, Any],
+    form: str, case: Case, drawn: Drawn | None, given: Mapping[str, Any], loading: Mapping[str, Any]
 ) -> str:
     """Return a column as a case file ("namelist") or as a program ("python").
 

@@ -7,16 +7,15 @@ beams; widths of the bays; and the loads. What is wrong goes beside its field, a
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._package import recorded
 from rbsdem._tables import STANDARD_GRAVITY
+from rbsdem._types import Array, NDArray
 from rbsdem.errors import InputError, RbsdemError, SolveError
 from rbsdem.model.frame import Frame, FrameMember
 from rbsdem.model.frame_result import FrameResult
@@ -53,12 +52,10 @@ _SHARES = np.linspace(0.0, 1.0, 7)
 _BOUNDS: dict[str, dict[str, Any]] = {
     "height": {"least": 1.0, "most": 20.0, "unit": "m"},
     "bay": {"least": 1.0, "most": 50.0, "unit": "m"},
-    "width": {"least": 0.05, "most": 5.0, "unit": "m"},
-    "depth": {"least": 0.05, "most": 5.0, "unit": "m"},
+    **{key: {"least": 0.05, "most": 5.0, "unit": "m"} for key in ("width", "depth")},
     "moment": {"above": 0.0, "unit": "N m"},
     "modulus": {"least": 1e9, "most": 1e12, "unit": "Pa"},
-    "column_share": {"above": 0.0, "most": 1.0},
-    "beam_share": {"above": 0.0, "most": 1.0},
+    **{key: {"above": 0.0, "most": 1.0} for key in ("column_share", "beam_share")},
     "hardening": {"least": 0.0, "most": 0.5},
     "beam_load": {"least": 0.0, "unit": "N/m"},
     "drift": {"least": 0.001, "most": 0.2},
@@ -129,8 +126,7 @@ def pushed(state: Mapping[str, Any]) -> dict[str, Any]:
     """Return the frame of a state, pushed to one side: curve, pictures on the way, hinges."""
     faults, stopped = Faults(), ""
     try:
-        with warnings.catch_warnings(record=True) as told:
-            warnings.simplefilter("always")
+        with recorded() as told:
             made = frame_of(state, faults)
             if made is None:
                 return {"faults": faults.listed}
@@ -138,13 +134,12 @@ def pushed(state: Mapping[str, Any]) -> dict[str, Any]:
     except RbsdemError as error:
         if not isinstance(error, SolveError) or error.result is None:
             member = re.search(r"of member ([\w-]+)", str(error))
-            text = (
-                f"the frame does not carry its dead load{f' ({member[1]})' if member else ''}: "
-                "give less load, or larger yield moments"
-            )
+            text = f"the frame does not carry its dead load{f' ({member[1]})' if member else ''}: "
+            text += "give less load, or larger yield moments"
             return {"faults": [{"field": "frame.beam_load", "text": text}]}
         result, stopped = error.result, str(error)
     frame, parts = result.frame, result.frame.parts
+    springs = parts.springs_of("flexure")
     rows = np.flatnonzero(result.time == np.rint(result.time))
     loading = f"&loading drive = 'displacement', values = {state['drift'] * frame.height:.10g} /\n"
     return {
@@ -161,19 +156,11 @@ def pushed(state: Mapping[str, Any]) -> dict[str, Any]:
         "still": _rounded(_still(frame)),
         "moved": _rounded(_moved(result, rows)),
         "ductility": _ductility(result, rows).tolist(),
-        "springs": [
-            [parts.members.index(spring.member), spring.place]
-            for spring in parts.springs_of("flexure")
-        ],
+        "springs": [[parts.members.index(one.member), one.place] for one in springs],
         "storey_drift": _rounded(np.asarray(result.storey_drift)[rows], 4),
         "events": [
-            {
-                "member": event.member,
-                "end": event.end,
-                "drift": event.drift,
-                "force": event.force,
-                "dead": bool(event.step <= result.time[0]),
-            }
+            {name: getattr(event, name) for name in ("member", "end", "drift", "force")}
+            | {"dead": bool(event.step <= result.time[0])}
             for event in result.events
         ],
         "case": frame.to_namelist() + loading,
@@ -219,12 +206,9 @@ def _moved(result: FrameResult, rows: NDArray[np.intp]) -> Array:
 def _ductility(result: FrameResult, rows: NDArray[np.intp]) -> Array:
     """Return the largest rotation of each section so far over that at yield, rounded down."""
     frame = result.frame
-    yields = np.array(
-        [
-            (frame.kind_of(spring.member).yield_moment or np.inf) / spring.stiffness
-            for spring in frame.parts.springs_of("flexure")
-        ]
-    )
+    springs = frame.parts.springs_of("flexure")
+    moments = [frame.kind_of(spring.member).yield_moment or np.inf for spring in springs]
+    yields = np.array(moments) / [spring.stiffness for spring in springs]
     reached = np.maximum.accumulate(np.abs(result.springs["rotation"]), axis=0)
     return np.asarray(np.floor(1e3 * reached[rows] / yields + 1e-6) / 1e3)
 

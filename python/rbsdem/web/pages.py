@@ -15,21 +15,13 @@ from typing import Any
 
 import numpy as np
 
-from rbsdem._arguments import Array
 from rbsdem._files import atomic_write
+from rbsdem._types import Array
 from rbsdem.measured.predictions import Picture, Prediction, Predictions
 
 #: Modules of the page, each after those that it imports.
-MODULES = (
-    "units.js",
-    "chart.js",
-    "fields.js",
-    "drawing.js",
-    "panels.js",
-    "history.js",
-    "answers.js",
-    "main.js",
-)
+_DRAWN = ("units.js", "chart.js", "fields.js", "drawing.js", "panels.js", "history.js")
+MODULES = (*_DRAWN, "answers.js", "main.js")
 
 #: Modules of the page of frames.
 FRAMES = ("units.js", "chart.js", "fields.js", "panels.js", "history.js", "answers.js", "frame.js")
@@ -37,11 +29,8 @@ FRAMES = ("units.js", "chart.js", "fields.js", "panels.js", "history.js", "answe
 #: Modules of the page of all tests.
 GALLERY = ("units.js", "chart.js", "fields.js", "panels.js", "gallery.js")
 
-TYPES = {
-    "html": "text/html; charset=utf-8",
-    "css": "text/css; charset=utf-8",
-    "js": "text/javascript; charset=utf-8",
-}
+_KINDS = {"html": "html", "css": "css", "js": "javascript"}
+TYPES = {ending: f"text/{kind}; charset=utf-8" for ending, kind in _KINDS.items()}
 
 _IMPORT = re.compile(r"^import \{[^}]*\} from \"\./[a-z]+\.js\";\n", re.MULTILINE)
 _EXPORT = re.compile(r"^export ", re.MULTILINE)
@@ -117,13 +106,10 @@ def plain(text: str) -> str:
 
 
 #: Scores of a card, with their digits.
-SCORES = {
-    "nrmse": 3,
-    "peak_ratio": 2,
-    "energy_ratio": 2,
-    "stiffness_ratio": 2,
-    "end_ratio": 2,
-}
+SCORES = {"nrmse": 3, "peak_ratio": 2, "energy_ratio": 2, "stiffness_ratio": 2, "end_ratio": 2}
+
+
+_ENDS = ("median", "lower", "upper")
 
 
 def card(row: Prediction, drawn: Picture | None) -> dict[str, Any]:
@@ -190,9 +176,7 @@ def gallery(predictions: Predictions, path: str | os.PathLike[str]) -> Path:
         "title": title,
         "digits": SCORES,
         "groups": _groups(predictions),
-        "tests": [
-            card(row, drawn) for row, drawn in zip(predictions, predictions.pictures, strict=True)
-        ],
+        "tests": list(map(card, predictions, predictions.pictures)),
     }
     page = one_file(title, data, GALLERY)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -208,10 +192,7 @@ def _groups(predictions: Predictions) -> list[dict[str, object]]:
             "name": name,
             **{count: int(row[count]) for count in ("tests", "stopped", "failed")},
             "scores": {
-                score: [
-                    finite(float(row[f"{score}_{end}"]), digits)
-                    for end in ("median", "lower", "upper")
-                ]
+                score: [finite(float(row[f"{score}_{end}"]), digits) for end in _ENDS]
                 for score, digits in SCORES.items()
             },
         }

@@ -10,17 +10,18 @@ import base64
 import datetime
 import os
 import platform
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial, singledispatch
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args
+from typing import Any, get_args
 
 import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem._files import atomic_write, data_frame, figure_bytes, save_frame
+from rbsdem._types import DataFrame
 from rbsdem.checks.code_values import code_values
 from rbsdem.errors import InputError
 from rbsdem.many.ida import IDA
@@ -39,9 +40,6 @@ from rbsdem.section.layered import LayeredColumn
 from rbsdem.web.answers import Answered, Answers, NearestTests
 from rbsdem.web.pages import MODULES, one_file, plain
 from rbsdem.web.state import Drawn
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 #: Keys that only number things, or say how finely the program divides.
 _NUMBERS = ("id", "steel", "strips", "spring", "joint")
@@ -73,7 +71,7 @@ class Sheet:
     heading: str
     text: str = ""
     figures: tuple[Callable[[], Any], ...] = ()
-    table: pd.DataFrame | None = None
+    table: DataFrame | None = None
     beside: bool = False
 
     @property
@@ -265,26 +263,24 @@ def _image(draw: Callable[[], Any]) -> str:
     return f'<img alt="" src="data:image/svg+xml;base64,{packed}">'
 
 
-def _table(frame: pd.DataFrame) -> str:
+def _table(frame: DataFrame) -> str:
     columns = cells(frame)
     kinds = ["" if numbers else ' class="text"' for _, numbers, _ in columns]
-    head = "".join(
-        f'<th scope="col"{kind}>{plain(heading)}</th>'
-        for kind, (heading, *_) in zip(kinds, columns, strict=True)
-    )
-    rows = "".join(
-        "<tr>"
-        + "".join(f"<td{kind}>{plain(text)}</td>" for kind, text in zip(kinds, row, strict=True))
-        + "</tr>"
-        for row in zip(*(texts for *_, texts in columns), strict=True)
-    )
-    return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+
+    def line(tag: str, texts: Iterable[str]) -> str:
+        cells = (f"{kind}>{plain(text)}</" for kind, text in zip(kinds, texts, strict=True))
+        return f"<tr>{''.join(f'<{tag}{cell}{tag[:2]}>' for cell in cells)}</tr>"
+
+    head = line('th scope="col"', (heading for heading, *_ in columns))
+    rows = zip(*(texts for *_, texts in columns), strict=True)
+    body = "".join(line("td", row) for row in rows)
+    return f"<table><thead>{head}</thead><tbody>{body}</tbody></table>"
 
 
 # ---- sheets --------------------------------------------------------------------------------------
 
 
-def inputs(statement: _core.Statement) -> pd.DataFrame:
+def inputs(statement: _core.Statement) -> DataFrame:
     """Return a row for each value of the groups of a case, with its unit and its meaning.
 
     Parameters
@@ -450,7 +446,7 @@ def _drawn(drawing: Section, values: _core.Statement) -> Sheet:
     return Sheet("Inputs", str(drawing), drawn, inputs(values + drawing.drawing()))
 
 
-def _summary(summary: Mapping[str, Any]) -> pd.DataFrame:
+def _summary(summary: Mapping[str, Any]) -> DataFrame:
     """Return the figures of an analysis, a row for each."""
     units = {
         "displacement": "m", "force": "N", "shear": "N", "energy": "J", "rotation": "rad",

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import warnings
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -17,16 +16,13 @@ from typing import Any
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._package import recorded
 from rbsdem._tables import STANDARD_GRAVITY
+from rbsdem._types import Array
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import Column, Footing
 from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
-from rbsdem.model.shape import (
-    CircularSection,
-    RectangularSection,
-    Section,
-)
+from rbsdem.model.shape import CircularSection, RectangularSection, Section
 from rbsdem.model.springs import Elastic
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.shaping import synthetic
@@ -195,9 +191,8 @@ def drawn_case(
     # Displacement, force, horizontal and vertical ground acceleration, axial load.
     if isinstance(load, GroundMotion):
         loads = (None, None, load.acceleration, None, None)
-        case = Case(
-            title, drawn.column, "auto", load.time, *loads, {"collapse_drift": COLLAPSE_DRIFT}
-        )
+        settings = {"collapse_drift": COLLAPSE_DRIFT}
+        case = Case(title, drawn.column, "auto", load.time, *loads, settings)
     else:
         path = drawn.column.height * load
         points = np.arange(float(path.size))
@@ -233,15 +228,9 @@ def column_of(
         if section is None or len(faults.listed) > before:
             return None, []
         part = 1.0 if whole or footing else ENDS[ends]
-        with warnings.catch_warnings(record=True) as told:
-            warnings.simplefilter("always")
-            column: Column = columns.column(
-                section,
-                height / part,
-                axial_load=load,
-                top="fixed" if part < ENDS[ends] else "free",
-                footing=footing,
-            )
+        with recorded() as told:
+            given_ends: Any = {"top": "fixed" if part < ENDS[ends] else "free", "footing": footing}
+            column = columns.column(section, height / part, axial_load=load, **given_ends)
         notes = [str(one.message) for one in told if issubclass(one.category, AccuracyWarning)]
         return Drawn(column, section, height / ENDS[ends], part), notes
     return None, []
@@ -256,20 +245,14 @@ def _footing_of(given: Mapping[str, Any], faults: Faults) -> Footing | None:
         faults.add("footing.kind", f"kind = {kind!r} is not known; there are {', '.join(_GROUND)}")
         return None
     with faults.of("footing", "rotation"):
-        values = {
-            name: _arguments.number(given[name], name, above=0.0)
-            for name in ("rotation", "sliding", "height")
-        }
+        names = ("rotation", "sliding", "height")
+        values = {name: _arguments.number(given[name], name, above=0.0) for name in names}
         mass = _arguments.number(given["mass"], "mass", above=0.0) if given["mass"] else 0.0
         # A block of concrete with a square plan.
         square = mass / (columns.CONCRETE_DENSITY * values["height"])
-        return Footing(
-            Elastic(values["sliding"]),
-            Elastic(values["rotation"]),
-            mass=mass,
-            inertia=mass * (square + values["height"] ** 2) / 12.0,
-            height=values["height"],
-        )
+        inertia = mass * (square + values["height"] ** 2) / 12.0
+        sliding, rotation = Elastic(values["sliding"]), Elastic(values["rotation"])
+        return Footing(sliding, rotation, None, mass, inertia, values["height"])
     return None
 
 
@@ -332,9 +315,8 @@ def _loading_of(
     with faults.of("loading", "kind"):
         if kind == "amplitudes":
             steps, cycles = given.get("amplitudes", ()), given.get("cycles")
-            many = _arguments.integer(cycles, "cycles") * len(
-                _arguments.vector(steps, "amplitudes")
-            )
+            number = _arguments.integer(cycles, "cycles")
+            many = number * len(_arguments.vector(steps, "amplitudes"))
             if many > _MOST_CYCLES:
                 raise InputError(
                     f"cycles = {cycles}: {many} cycles are too many here; at most {_MOST_CYCLES}"
@@ -342,9 +324,8 @@ def _loading_of(
             return protocol(steps, cycles)
         if kind == "named":
             name = _arguments.text(given.get("name"), "name")
-            return protocol(
-                name, reference=_drift(given, "reference"), largest=_drift(given, "largest")
-            )
+            reference, largest = (_drift(given, drift) for drift in ("reference", "largest"))
+            return protocol(name, reference=reference, largest=largest)
         if kind == "synthetic":
             seed = _arguments.integer(given.get("seed", 1), "seed")
             return synthetic(1, seed, dt=0.01)[0].scaled(_factor(given))

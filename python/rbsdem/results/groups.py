@@ -1,0 +1,286 @@
+"""What the groups of a case file make: a section and its model, springs of a column, a frame."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, replace
+from typing import Any
+
+from rbsdem import _core
+from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.model.column import Column
+from rbsdem.model.damping import Damping
+from rbsdem.model.frame import Frame, FrameMember, FrameNode, Member, with_panel
+from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
+from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
+from rbsdem.model.springs import SPRINGS, Layered, Spring
+from rbsdem.section.layered import LayeredColumn, LayeredModel
+from rbsdem.section.parameters import VERSION, ModelParameters, parameters
+
+Groups = Mapping[str, list[dict[str, Any]]]
+"""The groups of a case file with their values by name; those of one name in their order."""
+
+#: The classes of the shapes.
+SHAPES: dict[str, type[Section]] = {
+    "rectangle": RectangularSection,
+    "circle": CircularSection,
+    "hollow_rectangle": RectangularSection,
+    "hollow_circle": CircularSection,
+    "tee": TeeSection,
+}
+
+#: What groups with steels stand for.
+#: Keys of the place of a spring.
+_NO_KEYS = ("rule", "joint", "kind", "node", "panel", "place", "id")
+_PARTS: dict[str, type] = {"layout": Layout, "inner_layout": Layout, "ties": Ties, "spiral": Spiral}
+
+
+def layered_column(recipe: LayeredModel, given: Mapping[str, Any]) -> Column:
+    """Return the column of a case that has its drawing.
+
+    Parameters
+    ----------
+    recipe : LayeredModel
+        The drawing.
+    given : mapping
+        The arguments of `rbsdem.Column` that the case gives, with its springs.
+
+    Returns
+    -------
+    Column
+        A `LayeredColumn` with the springs of the case; a plain column where these were drawn for
+        another axial load than that of the case.
+
+    Warns
+    -----
+    AccuracyWarning
+        Where they are not those that the model draws.
+    """
+    column = LayeredColumn(**given, recipe=recipe)
+    if column.recipe != recipe:
+        warnings.warn(
+            f"the springs of the case were drawn for axial_load = {recipe.axial_load:g} N, and its "
+            f"column has {column.axial_load:g} N; it is solved with its own springs, and nothing "
+            "is known of bars and concrete. To draw it again, make the column of its section",
+            AccuracyWarning,
+            stacklevel=3,
+        )
+        return Column(**given)
+    other = column.replaced
+    if other:
+        warnings.warn(
+            f"the case has {' and '.join(other)} other than layered {recipe.parameters.label} "
+            "draws from its section; it is solved with its own springs, and what bars and concrete "
+            "undergo is known only for a hinge that is as drawn. To draw the springs anew, make "
+            "the column of case.column.recipe.section",
+            AccuracyWarning,
+            stacklevel=3,
+        )
+    return column
+
+
+def recipe_of(groups: Groups) -> LayeredModel:
+    """Return the drawing of a case.
+
+    Parameters
+    ----------
+    groups : mapping
+        The groups of the case, which are those of a drawing or others.
+
+    Raises
+    ------
+    InputError
+        If a value is refused, or the program does not know the version.
+    """
+    drawing = _one(groups, "drawing")
+    changes = {one["name"]: one["value"] for one in groups.get("parameter", [])}
+    made = _parameters(drawing.pop("version"), changes)
+    return LayeredModel(section=_section(groups), parameters=made, **drawing)
+
+
+def _parameters(version: str, changes: dict[str, float]) -> ModelParameters:
+    made = parameters().with_values(**changes)
+    if version != VERSION and set(made.values) - set(changes):
+        raise InputError(
+            f"drawing: version = {version!r} is not known; this program has {VERSION}, and takes "
+            "another one with all of its parameters"
+        )
+    return replace(made, version=version)
+
+
+def _section(groups: Groups) -> Section:
+    steels: dict[int | None, Steel] = {}
+    for one in groups.get("steel", []):
+        values = _core.typed("steel", one)
+        number = values.pop("id", None)
+        steels.setdefault(number, Steel(**values))
+    sizes = _one(groups, "section")
+    shape = sizes.pop("shape")
+    kind = SHAPES[shape]
+    parts: dict[str, Any] = {"concrete": Concrete(**_one(groups, "concrete"))}
+    if "bars" in groups:
+        bars = _one(groups, "bars")
+        rows = zip(bars["y"], bars["area"], bars["steel"], strict=True)
+        parts["bars"] = [(y, area, steels[int(number)]) for y, area, number in rows]
+    for name, part in _PARTS.items():
+        if name in groups:
+            values = _one(groups, name)
+            used = {key: steels[values[key]] for key in values if key.endswith("steel")}
+            parts[name] = part(**values | used)
+    known = {field.name for field in fields(kind)}
+    for name in (*sizes, *parts):
+        solid = not shape.startswith("hollow")
+        if name not in known or (solid and name in ("wall", "side_wall", "inner_layout")):
+            raise InputError(f"section: {name} is not for shape = {shape!r}; remove it")
+    return kind(**sizes, **parts)
+
+
+def _one(groups: Groups, name: str) -> dict[str, Any]:
+    """Return the values of a group that is there once."""
+    if name not in groups:
+        raise InputError(f"section: the group &{name} is missing; give it")
+    return _core.typed(name, groups[name][0])
+
+
+def _spring(given: Mapping[str, Any], layers: Sequence[tuple[float, Spring]] = ()) -> Spring:
+    """Return the spring that a group states."""
+    values = {name: value for name, value in given.items() if name not in _NO_KEYS}
+    return SPRINGS[given["rule"]](**({"layers": layers} if layers else values))
+
+
+def _layers(given: Mapping[str, Any], springs: Mapping[int, Spring]) -> list[tuple[float, Spring]]:
+    """Return the layers that a group states."""
+    numbers = (int(number) for number in _core.several(given["spring"]))
+    return list(zip(_core.several(given["y"]), (springs[i] for i in numbers), strict=True))
+
+
+class ColumnSprings:
+    """The springs of a case, from its groups."""
+
+    def __init__(self, groups: Groups) -> None:
+        names = ("shear", "flexure", "axial_spring", "layer_spring", "layers")
+        self.stated = {name: groups.get(name, []) for name in names}
+
+    def of_joints(self, last: int) -> dict[str, Any]:
+        """Return the springs of a column, one for all joints or one for each from 1 to the last.
+
+        Those of joint 0, beneath a footing, have its number in their names.
+        """
+        springs = {int(given["id"]): _spring(given) for given in self.stated["layer_spring"]}
+        layers = {_joints(given): _layers(given, springs) for given in self.stated["layers"]}
+        column: dict[str, Any] = {}
+        for name in ("shear", "flexure", "axial_spring"):
+            places: dict[int | None, Spring] = {}
+            for given in self.stated[name]:
+                joints = _joints(given)
+                spring = _spring(given, layers[joints] if given["rule"] == "layered" else ())
+                places |= dict.fromkeys(joints or (None,), spring)
+            if 0 in places:
+                column[f"{name}_0"] = places.pop(0)
+            if None in places:
+                column[name] = places[None]
+            elif places:
+                column[name] = [places[joint] for joint in range(1, last + 1)]
+        return column
+
+
+def _joints(given: dict[str, Any]) -> tuple[int, ...]:
+    """Return the joints that a group names; an empty tuple means all joints."""
+    return tuple(int(joint) for joint in _core.several(given.get("joint", [])))
+
+
+#: Groups by name, each as often as it was given.
+
+_SPRINGS = ("shear", "flexure", "axial_spring")
+
+
+def frame_of(groups: Groups) -> Frame:
+    """Return the frame of the groups of a case."""
+    kinds = {given["name"]: _kind(given, groups) for given in groups.get("member_kind", [])}
+    frame = _core.typed("frame", groups["frame"][-1])
+    storeys = max(len(frame.get("storeys", ())), 1)
+    damping = groups.get("damping")
+    panels = [own for own in groups.get("flexure", []) if "panel" in own]
+    return Frame(
+        **frame,
+        columns=_cells("column_of", "line", groups, kinds),
+        beams=_cells("beam_of", "bay", groups, kinds),
+        floor_mass=_by_floor("mass", storeys, groups),
+        beam_load=_by_floor("load", storeys, groups),
+        nodes=_nodes(groups, len(frame.get("bays", ())) + 1),
+        members=[_member(given, kinds[given["kind"]]) for given in groups.get("member", [])],
+        damping=Damping(**_core.typed("damping", damping[-1])) if damping else None,
+        panel=next((_spring(own) for own in panels if own["panel"] == "all"), None),
+        losses={own["member"]: own.get("time", 0.0) for own in groups.get("loss", [])} or None,
+    )
+
+
+def _member(given: Mapping[str, Any], kind: FrameMember) -> Member:
+    panel = given.get("panel_from", 0.0), given.get("panel_to", 0.0)
+    return Member(given["name"], given["from"], given["to"], kind, panel, given.get("load", 0.0))
+
+
+def _kind(given: dict[str, Any], groups: Groups) -> FrameMember:
+    """Return a kind of members with its springs."""
+    found: dict[str, Any] = {}
+    for group, usual in (("flexure", [0.0, 1.0]), ("shear", [0.5])):
+        for spring in groups.get(group, []):
+            if spring.get("kind") == given["name"]:
+                places = _core.several(spring.get("place", usual))
+                made = _layered(spring, groups) if spring["rule"] == "layered" else _spring(spring)
+                found.setdefault(group, {}).update(dict.fromkeys(places, made))
+    for spring in groups.get("axial_spring", []):
+        if spring.get("kind") == given["name"]:
+            found["axial_spring"] = _spring(spring)
+    own: dict[str, Any] = _core.typed("member_kind", given)
+    return FrameMember(**own, **found)
+
+
+def _layered(given: dict[str, Any], groups: Groups) -> Layered:
+    """Return a joint of layers, whose kind and places are those of its spring."""
+    springs = {int(one["id"]): _spring(one) for one in groups["layer_spring"]}
+
+    def where(group: dict[str, Any]) -> tuple[Any, ...]:
+        return group.get("kind"), *_core.several(group.get("place", []))
+
+    layers = next(one for one in groups["layers"] if where(one) == where(given))
+    return Layered(_layers(layers, springs))
+
+
+def _cells(
+    group: str, key: str, groups: Groups, kinds: Mapping[str, FrameMember]
+) -> dict[tuple[int, int], FrameMember | None] | None:
+    found: dict[tuple[int, int], FrameMember | None] = {}
+    for given in groups.get(group, []):
+        pair = (int(given.get(key, 0)), int(given.get("storey", 0)))
+        # The last that fits counts.
+        found.pop(pair, None)
+        none = given["kind"] == "none"
+        found[pair] = None if none else with_panel(kinds[given["kind"]], given.get("panel", 0.0))
+    return found or None
+
+
+def _by_floor(name: str, storeys: int, groups: Groups) -> list[float]:
+    values = [0.0] * storeys
+    for given in groups.get("floor", []):
+        for i in range(storeys):
+            if given.get("storey", 0) in (0, i + 1):
+                values[i] = given.get(name, 0.0)
+    return values[:1] if len(set(values)) == 1 else values
+
+
+def _nodes(groups: Groups, lines: int) -> list[FrameNode]:
+    """Return the nodes with the springs that hold them to the ground."""
+    nodes = {given["name"]: dict(given) for given in groups.get("node", [])}
+    for group in _SPRINGS:
+        for spring in groups.get(group, []):
+            name = spring.get("node", "")
+            base = [f"N-{line}-0" for line in range(1, lines + 1)]
+            for one in base if name == "base" else [name] if name else []:
+                nodes.setdefault(one, {"name": one})[group] = _spring(spring)
+    for spring in groups.get("flexure", []):
+        name = spring.get("panel", "all")
+        if name != "all":
+            nodes.setdefault(name, {"name": name})["panel"] = _spring(spring)
+    return [FrameNode(**node) for node in nodes.values()]
