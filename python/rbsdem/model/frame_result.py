@@ -88,7 +88,8 @@ class MemberHistory:
     deformation, force : ndarray, shape (rows, springs)
         Of the springs [rad, N m; m, N].
     ductility : ndarray, shape (springs,)
-        Largest deformation over that at yield, NaN for springs that do not yield.
+        Largest deformation over that at yield, NaN for springs that do not yield; of a member that
+        is lost, before that.
     """
 
     name: str
@@ -242,10 +243,11 @@ class FrameResult(Reported):
             springs.append(spring)
             deformation.append(values)
             force.append(forces)
+            kept = values[: self._lost_at().get(name)]
             points = [*landmarks_of(self.frame, spring)]
-            points += [point for point, _ in self._yields(spring, values)]
+            points += [point for point, _ in self._yields(spring, kept)]
             yields = [point.deformation for point in points if point.name == "yield"]
-            largest = float(np.abs(values).max(initial=0.0))
+            largest = float(np.abs(kept).max(initial=0.0))
             ductility.append(largest / min(yields) if yields else np.nan)
         start, end = parts.ends[at]
         length = float(np.hypot(parts.x[end] - parts.x[start], parts.y[end] - parts.y[start]))
