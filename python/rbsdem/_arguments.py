@@ -18,8 +18,7 @@ from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from rbsdem._types import Array as Array  # noqa: PLC0414
-from rbsdem._types import ArrayLike
+from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
 
 T = TypeVar("T")

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments, _core
-from rbsdem._arguments import Array
+from rbsdem._types import Array
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import TELLING, Column, checked_column
 from rbsdem.model.damping import Damping

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 
 from rbsdem import _core
-from rbsdem._arguments import Array
 from rbsdem._files import Reported
 from rbsdem._package import extra
+from rbsdem._types import Array
 from rbsdem.errors import InputError
 from rbsdem.model import files
 from rbsdem.model.frame import HONESTY, Frame, FrameSpring, place_of

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._arguments import Array
+from rbsdem._types import Array
 from rbsdem.errors import InputError
 from rbsdem.model.frame import Frame
 from rbsdem.model.frame_result import FrameResult, landmarks_of, rigid_lengths
