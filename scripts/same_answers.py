@@ -31,12 +31,13 @@ import strategies  # noqa: E402
 
 import rbsdem  # noqa: E402
 from rbsdem.__main__ import executable  # noqa: E402
+from rbsdem.results.case import Case  # noqa: E402
 
 #: Kinds of cases with their shares.
 KINDS = {"static": 0.35, "layered": 0.15, "varying": 0.15, "time": 0.35}
 
 
-def case(kind: str, seed: int) -> rbsdem.results.case.Case | None:
+def case(kind: str, seed: int) -> Case | None:
     """Return a case of a kind; None where the seed gives none."""
     rng = np.random.default_rng([sum(map(ord, kind)), seed])
     moves = kind == "time" or (kind == "layered" and seed % 3 == 0)
@@ -66,9 +67,7 @@ def case(kind: str, seed: int) -> rbsdem.results.case.Case | None:
             axial = column.axial_load or 1e5
             loads["axial_load"] = axial * (1 + 0.5 * strategies.waves(rng, len(time)))
     method = settings.pop("method", "static")
-    return rbsdem.results.case.Case(
-        title="", column=column, method=method, time=time, settings=settings, **loads
-    )
+    return Case(title="", column=column, method=method, time=time, settings=settings, **loads)
 
 
 def cases(count: int, folder: Path) -> Iterator[Path]:
