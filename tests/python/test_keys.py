@@ -20,7 +20,7 @@ import rbsdem
 from rbsdem import _core
 from rbsdem.model.damping import Damping
 from rbsdem.results.case import Case
-from rbsdem.section.drawing import SHAPES
+from rbsdem.results.groups import SHAPES
 from rbsdem.springs import SPRINGS, Elastic, Layered
 
 KEYS = _core.keys()
