@@ -422,10 +422,15 @@ contains
          end do
       end if
       if (.not. self%stiffness_damping > 0.0_wp) return
-      do i = 1, size(self%element)
+      do i = 1, self%members
          call damping_of(self, i, tangent, a)
          q = self%basic(i, v)
          call self%add_element(i, -(a(:3)*q(1) + a(4:6)*q(2) + a(7:)*q(3)), g)
+      end do
+      do i = self%members + 1, size(self%element)
+         call damping_of(self, i, tangent, a)
+         q = self%basic(i, v)
+         call self%add_element(i, -a(:3)*q(1), g)
       end do
    end subroutine damp
 
@@ -718,10 +723,10 @@ contains
       associate (x => d(self%inside + 1:))
          g = 0.0_wp
          energy = -sum(self%dead*x) - sum(self%dead_force*d(:self%inside))
-         do i = 1, size(self%element)
+         do i = 1, self%members
             gap = gap_of(self, i, self%basic(i, x), d, 1.0_wp)
             energy = energy + energy_of_rest(self%element(i), gap)
-            if (self%axially_loaded .and. i <= self%members) call add_second_order(self, i, x, g)
+            if (self%axially_loaded) call add_second_order(self, i, x, g)
          end do
          energy = energy - 0.5_wp*sum(g*x)
       end associate
@@ -855,7 +860,7 @@ contains
       integer :: i, j
 
       force = 0.0_wp
-      do i = 1, size(self%element)
+      do i = 1, self%members
          associate (e => self%element(i))
             if (all(self%number(1, e%node) > 0)) cycle
             call self%end_forces(i, self%basic(i, d(self%inside + 1:)), d, f, 1.0_wp, self%initial_tangent, &
