@@ -21,7 +21,7 @@ module rbs_bindings_evaluate
    use rbs_output_notes, only: structure_notes
    use rbs_output_channels, only: channel_units
    use rbs_section_flexural_spring, only: spring_figures
-   use rbs_section_section_figures, only: point_values, profile_values, section_figures, shear_values
+   use rbs_section_section_build, only: point_values, profile_values, section_figures, shear_values
    use rbs_solve_ensemble_run_result, only: measure_names
    use rbs_solve_end_state, only: end_state
    use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices

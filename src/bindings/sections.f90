@@ -12,8 +12,8 @@ module rbs_bindings_sections
    use rbs_section_events, only: check_rules, events_type, find_events, rule_type
    use rbs_section_flexural_spring, only: fit_flexural_spring, flexural_spring_type
    use rbs_section_resultants, only: laws_type, resultants_type, section_laws
-   use rbs_section_section_build, only: make_section, outline_core
-   use rbs_section_section_figures, only: figures_of_section, values_of_point, values_of_shear_point
+   use rbs_section_section_build, only: make_section, outline_core, figures_of_section, values_of_point, &
+                                        values_of_shear_point
    use rbs_section_shape, only: shape_type
    use rbs_section_shear_diagram, only: check_curvatures, follow_shear, shear_diagram_type
    use rbs_section_steel_law, only: steel_stress

@@ -141,7 +141,7 @@ contains
       type(frame_record), intent(inout) :: frame
       type(message_list), intent(inout) :: messages
       type(frame_spring), allocatable :: spring(:)
-      integer :: i, n, known
+      integer :: i, j, n, known
 
       call frame%open_group('')
       known = messages%count
@@ -164,24 +164,15 @@ contains
             spring(n)%spring = entry%spring
             if (allocated(entry%place)) spring(n)%place = entry%place
             if (entry%spring%rule /= 'layered' .or. messages%count > known) cycle
-            associate (j => layers_of(list, i))
-               if (j > 0) call set_layers(list, spring(n)%spring, list%entry(j), messages)
-            end associate
+            ! The layers of its kind of members and its places
+            do j = list%count, 1, -1
+               if (list%entry(j)%group == 'layers' .and. are_of(list%entry(j), entry)) exit
+            end do
+            if (j > 0) call set_layers(list, spring(n)%spring, list%entry(j), messages)
          end associate
       end do
       call move_alloc(spring, frame%spring)
    end subroutine give_springs
-
-   !> The layers of a joint in a frame: those of its kind of members and its places; 0: none.
-   pure integer function layers_of(list, joint)
-      type(entry_list), intent(in) :: list
-      integer, intent(in) :: joint
-
-      do layers_of = list%count, 1, -1
-         if (list%entry(layers_of)%group == 'layers' .and. &
-             are_of(list%entry(layers_of), list%entry(joint))) return
-      end do
-   end function layers_of
 
    !> Whether layers belong to a spring of a frame.
    pure logical function are_of(layers, spring)

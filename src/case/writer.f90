@@ -276,7 +276,16 @@ contains
          do j = 1, size(entry(i)%number)
             if (j > 1) call self%buffer%append(',')
             if (j > 1) head = ''
-            call piece(head//trim(value_text(entry(i)%kind, entry(i)%number(j))))
+            associate (x => entry(i)%number(j))
+               select case (entry(i)%kind)
+               case (integer_kind)
+                  call piece(head//to_text(nint(x)))
+               case (logical_kind)
+                  call piece(head//trim(merge('.true. ', '.false.', abs(x) > 0.0_wp)))
+               case default
+                  call piece(head//exact_text(x))
+               end select
+            end associate
          end do
       end do
       call self%buffer%append(' /'//new_line('a'))
@@ -309,20 +318,5 @@ contains
       end do
       quoted = quoted//''''
    end subroutine quote
-
-   pure function value_text(kind, x) result(text)
-      character(len=1), intent(in) :: kind
-      real(wp), intent(in) :: x
-      character(len=32) :: text
-
-      select case (kind)
-      case (integer_kind)
-         text = to_text(nint(x))
-      case (logical_kind)
-         text = merge('.true. ', '.false.', abs(x) > 0.0_wp)
-      case default
-         text = exact_text(x)
-      end select
-   end function value_text
 
 end module rbs_case_writer

@@ -34,7 +34,7 @@ contains
       integer, intent(in) :: direction
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
-      integer :: changes, count, fewest, left
+      integer :: changes, count, fewest, left, i
       logical :: found
 
       path%direction = 0
@@ -44,8 +44,13 @@ contains
       do changes = 1, 20 + min(10*path%moving, 1000 + path%moving)
          call path%solve_line(direction, found)
          if (.not. found) then
-            call let_unload(path, direction, found)
-            if (found) cycle
+            ! Some springs may unload, though there is no stiffness under the driven force: let them.
+            if (path%by_force .and. any(path%springs%unload_on_reversal(:path%moving) == -direction)) then
+               do i = 1, path%moving
+                  if (path%springs%unload_on_reversal(i) == -direction) call path%springs%leave(i, direction)
+               end do
+               cycle
+            end if
             call report_no_line(path, target, error)
             return
          end if
@@ -90,22 +95,6 @@ contains
          if (any(abs(before - [path%springs%k(i), path%springs%centre(i)]) > 0.0_wp)) count = count + 1
       end do
    end subroutine choose_planes
-
-   !> There is no stiffness under the driven force in this direction, but some springs would unload: let them.
-   subroutine let_unload(path, direction, some)
-      class(static_path), intent(inout) :: path
-      integer, intent(in) :: direction
-      logical, intent(out) :: some
-      integer :: i
-
-      some = .false.
-      if (.not. path%by_force) return
-      do i = 1, path%moving
-         if (path%springs%unload_on_reversal(i) /= -direction) cycle
-         some = .true.
-         call path%springs%leave(i, direction)
-      end do
-   end subroutine let_unload
 
    !> Number of springs that cannot go the way they should on their present lines.
    pure integer function without_room(path) result(count)

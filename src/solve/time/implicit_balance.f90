@@ -297,7 +297,8 @@ contains
 
       real(wp) :: relative, load(signals)
 
-      if (.not. is_stale(self, state, h)) return
+      if (state%springs%version == self%factor_version .and. abs(h - self%factor_step) <= 1.0e-14_wp*h .and. &
+          .not. (state%motion%second_order .and. state%motion%varies)) return
       call set_tangent()
       ! What lies between the unknowns is condensed by the new tangent.
       if (size(step%now%tangent) == 0) return
@@ -356,15 +357,5 @@ contains
       end subroutine hold_free
 
    end subroutine fit
-
-   pure logical function is_stale(self, state, h)
-      type(step_tangent), intent(in) :: self
-      type(state_type), intent(in) :: state
-      real(wp), intent(in) :: h
-
-      is_stale = state%springs%version /= self%factor_version .or. &
-                 abs(h - self%factor_step) > 1.0e-14_wp*h
-      if (state%motion%second_order) is_stale = is_stale .or. state%motion%varies
-   end function is_stale
 
 end module rbs_solve_time_implicit_balance

@@ -8,9 +8,8 @@ module rbs_solve_time_located
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: choose_lines, put_on_plane
-   use rbs_hysteresis_layer_events, only: turn_layer
    use rbs_solve_time_event, only: event_type, find_event, same_event, distance_to, standing_rotation, &
-                                   round_off_of, felt
+                                   round_off_of, felt, turn_layer
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type, stepper_type, in_bounds
