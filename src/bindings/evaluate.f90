@@ -43,6 +43,7 @@ contains
       integer(c_int), intent(inout), volatile :: control(2)
       type(answer_type), intent(inout) :: answer
       type(text_buffer) :: buffer
+      character(len=1), parameter :: line = new_line('a')
 
       select case (request%what)
       case ('version')
@@ -53,7 +54,11 @@ contains
          call keys_as_json(buffer)
          answer%text = buffer%text(:buffer%length)
       case ('quantities')
-         call name_quantities()
+         ! A line each: values of rows with their units, measures of a run of an ensemble; then what belongs
+         ! to a section.
+         answer%text = trim(channel_units())//line//trim(measure_names())//line//list_of(section_figures)// &
+                       line//list_of(spring_figures)//line//list_of(point_values)//line// &
+                       list_of(shear_values)//line//list_of(profile_values)
       case ('check_spring', 'spring_response')
          call evaluate_spring()
       case ('check_structure', 'frame_parts', 'modes', 'matrices')
@@ -82,16 +87,6 @@ contains
       end select
 
    contains
-
-      !> Names of the values that come back, a line each: values of rows with their units, measures of a
-      !> run of an ensemble; then what belongs to a section.
-      subroutine name_quantities()
-         character(len=1), parameter :: line = new_line('a')
-
-         answer%text = trim(channel_units())//line//trim(measure_names())//line//list_of(section_figures)// &
-                       line//list_of(spring_figures)//line//list_of(point_values)//line// &
-                       list_of(shear_values)//line//list_of(profile_values)
-      end subroutine name_quantities
 
       !> Whether the rule allows a spring, or the forces of a virgin one along a path of deformations.
       subroutine evaluate_spring()

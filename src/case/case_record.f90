@@ -192,7 +192,13 @@ contains
       end do
       call check_together()
       call self%analysis%validate(messages)
-      call check_static()
+      ! What a static path cannot take is refused before it starts, with the message of the solver.
+      if (self%column%kinematics == 'finite' .and. .not. self%analysis%dynamic() .and. &
+          (self%column%axial_follows .or. self%column%force_follows)) then
+         call messages%add('column: loads that follow the top (axial_follows, force_follows) have no '// &
+                           'potential, and a static path could miss the loss of stability; use a '// &
+                           'dynamic analysis')
+      end if
       call self%output%check('output', messages)
       if (self%output%motion .and. self%analysis%known() .and. .not. self%analysis%dynamic()) then
          call messages%add('output: motion = .true. has no meaning in a static path, where nothing '// &
@@ -216,16 +222,6 @@ contains
                               'dead load of floors, beams and nodes')
          end if
       end subroutine validate_frame
-
-      !> Refuse input that a static path cannot take before the path starts, with the message of the solver.
-      subroutine check_static()
-
-         if (self%analysis%dynamic() .or. self%column%kinematics /= 'finite') return
-         if (.not. (self%column%axial_follows .or. self%column%force_follows)) return
-         call messages%add('column: loads that follow the top (axial_follows, force_follows) have no '// &
-                           'potential, and a static path could miss the loss of stability; use a '// &
-                           'dynamic analysis')
-      end subroutine check_static
 
       !> Refuse loadings that cannot act together.
       subroutine check_together()

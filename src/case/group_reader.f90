@@ -295,9 +295,8 @@ contains
 
    !> The SI unit of a parameter of a spring, which depends on the kind of the spring; other units are
    !> returned unchanged.
-   elemental function unit_in_group(unit, group) result(si)
+   elemental character(len=16) function unit_in_group(unit, group) result(si)
       character(len=*), intent(in) :: unit, group
-      character(len=16) :: si
 
       si = unit
       select case (unit)

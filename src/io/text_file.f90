@@ -160,12 +160,11 @@ contains
 
    !> Read what is there, and wait if there is nothing yet: the number of bytes, 0 at the end, or
    !> `nobody_writes` or `cannot_read`.
-   function read_some(descriptor, text, at_start) result(count)
+   integer(c_size_t) function read_some(descriptor, text, at_start) result(count)
       integer(c_int), intent(in) :: descriptor
       character(len=*), intent(inout) :: text
       !> Whether nothing has been read before: a pipe may still be waiting for its writer
       logical, intent(in) :: at_start
-      integer(c_size_t) :: count
       type(poll_type) :: what
       integer(c_int) :: ready
       integer :: failures

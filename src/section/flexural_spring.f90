@@ -102,6 +102,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(laws_type) :: stiffened, bare
       type(events_type) :: with_stiffening, without
+      type(point_type) :: point
 
       stiffened = section_laws(section, tension_ts, hinge%confined)
       bare = section_laws(section, tension_bare, hinge%confined)
@@ -116,8 +117,12 @@ contains
       spring%peak = without%peak
       call check_points(hinge%axial_load)
       if (allocated(error)) return
-      if (hinge%yield_rule == 'B') call stiffen_yield(stiffened)
-      if (allocated(error)) return
+      if (hinge%yield_rule == 'B') then
+         ! The yield moment of the bare diagram on the one with tension stiffening
+         call reach_moment(section, stiffened, hinge%axial_load, spring%yield%moment, point, error)
+         if (allocated(error)) return
+         if (point%found) spring%yield = point
+      end if
       call draw_line()
 
    contains
@@ -151,16 +156,6 @@ contains
                              to_text(spring%cracking%curvature)//' 1/m; the trilinear line does not apply')
          end if
       end subroutine check_points
-
-      !> Yield rule B: the yield moment of the bare diagram on the one with tension stiffening.
-      subroutine stiffen_yield(laws)
-         type(laws_type), intent(in) :: laws
-         type(point_type) :: point
-
-         call reach_moment(section, laws, hinge%axial_load, spring%yield%moment, point, error)
-         if (allocated(error)) return
-         if (point%found) spring%yield = point
-      end subroutine stiffen_yield
 
       !> The line through the three points, in rotations.
       subroutine draw_line()

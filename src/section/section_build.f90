@@ -13,8 +13,8 @@ module rbs_section_section_build
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_section_concrete_law, only: confined_concrete, spalling_concrete
-   use rbs_section_cross_section, only: enclose_core, no_ties, section_type, slice, spiral, circular_hoops, &
-                                        hoop_area, steel_area
+   use rbs_section_cross_section, only: enclose_core, no_ties, section_type, cut_strips, spiral, circular_hoops, &
+                                        hoop_area
    use rbs_section_events, only: point_type
    use rbs_section_section_record, only: find_steel, section_record
    use rbs_section_shape, only: new_core, shape_type, thickest_bar
@@ -58,7 +58,14 @@ contains
       if (allocated(error)) return
       call take_data()
       call enclose_core(section)
-      call check_section()
+      if (section%transverse%kind /= no_ties) then
+         call check_core(section, messages)
+      else if (section%cover >= 0.5_wp*section%shape%depth .or. &
+               section%side_cover >= 0.5_wp*section%shape%width) then
+         call messages%add('section: cover = '//to_text(section%cover)//' m, side_cover = '// &
+                           to_text(section%side_cover)//' m leave nothing of the section; 20 mm is 0.02')
+      end if
+      if (size(section%bar_y) > 0) call check_bars()
       call messages%raise(error)
       if (.not. allocated(error)) call build_section(section, record%concrete%eps_spall, record%strips)
 
@@ -97,17 +104,6 @@ contains
          end associate
       end subroutine take_data
 
-      !> Add a message for every error of a section whose values are valid one by one.
-      subroutine check_section()
-
-         if (section%transverse%kind /= no_ties) then
-            call check_core(section, messages)
-         else
-            call check_cover()
-         end if
-         if (size(section%bar_y) > 0) call check_bars()
-      end subroutine check_section
-
       subroutine check_bars()
          real(wp) :: edge
          integer :: i
@@ -136,15 +132,6 @@ contains
          end if
       end subroutine check_bars
 
-      !> Without hoops the cover still leaves something inside.
-      subroutine check_cover()
-
-         if (section%cover < 0.5_wp*section%shape%depth .and. &
-             section%side_cover < 0.5_wp*section%shape%width) return
-         call messages%add('section: cover = '//to_text(section%cover)//' m, side_cover = '// &
-                           to_text(section%side_cover)//' m leave nothing of the section; 20 mm is 0.02')
-      end subroutine check_cover
-
    end subroutine make_section
 
    !> Complete a section whose shape, cover, hoops, bars and plain concrete are set and checked.
@@ -158,7 +145,7 @@ contains
       call enclose_core(section)
       section%bar_in_core = abs(section%bar_y) <= 0.5_wp*section%core_shape%depth
       call confine(section, eps_spall)
-      call slice(section, strips)
+      call cut_strips(section%shape, section%core_shape, strips, section%strips)
    end subroutine build_section
 
    subroutine check_core(section, messages)
@@ -294,7 +281,7 @@ contains
          k_e = part*max(0.0_wp, 1.0_wp - 0.5_wp*clear/b_c)
          k_e = k_e*max(0.0_wp, 1.0_wp - arches(section, b_c, d_c)/(6.0_wp*core))
       end select
-      k_e = min(1.0_wp, k_e/(1.0_wp - min(0.5_wp, steel_area(section)/core)))
+      k_e = min(1.0_wp, k_e/(1.0_wp - min(0.5_wp, sum(section%bar_area)/core)))
    end function effectiveness
 
    !> Sum of the squares of the clear distances, around the core, between the bars that legs hold [m2].

@@ -287,7 +287,7 @@ contains
          integer, intent(in) :: s
          !> Where the force is zero [m or rad]
          real(wp), intent(in) :: zero
-         real(wp) :: least
+         real(wp) :: least, k
 
          now%side = s
          now%begun = point(zero, 0.0_wp)
@@ -295,7 +295,9 @@ contains
          if (self%deterioration%acts() .or. self%hinge_work > 0.0_wp) call deteriorate(s)
          now%start_at = s*zero
          if (self%slips) then
-            least = least_start(s)
+            ! At a share of the permanent deformation, where unloading from the peak ends
+            k = virgin_unloading(s, now%peak(s))*stiffness_left(now%worn)
+            least = self%slip*max(now%peak(s) - now%backbone(s)%force(now%peak(s))/k, 0.0_wp)
             now%start_at = max(now%start_at, least)
             call find_turns(s, least)
          else
@@ -471,16 +473,6 @@ contains
             end if
          end associate
       end subroutine deteriorate
-
-      !> Where reloading of a part that slips starts at least: at a share of the permanent deformation, where
-      !> unloading from the peak ends.
-      real(wp) function least_start(s)
-         integer, intent(in) :: s
-         real(wp) :: k
-
-         k = virgin_unloading(s, now%peak(s))*stiffness_left(now%worn)
-         least_start = self%slip*max(now%peak(s) - now%backbone(s)%force(now%peak(s))/k, 0.0_wp)
-      end function least_start
 
       !> Put the open turns of a side on the lines as they are now.
       subroutine find_turns(s, least)

@@ -481,17 +481,15 @@ contains
    end function energies
 
    !> Where the path is, for a message.
-   pure function state_of(path) result(text)
+   pure character(len=80) function state_of(path) result(text)
       class(static_path), intent(in) :: path
-      character(len=80) :: text
 
       text = 'force '//to_text(path%force)//' N, displacement '//to_text(path%displacement)//' m'
    end function state_of
 
    !> The spring that has least of its initial stiffness left, for a message.
-   pure function weakest_spring(path) result(text)
+   pure character(len=80) function weakest_spring(path) result(text)
       class(static_path), intent(in) :: path
-      character(len=80) :: text
 
       associate (structure => path%structure, m => path%moving)
          text = spring_name(structure%place(minloc(path%springs%k(:m)/structure%initial_stiffness(:m), &

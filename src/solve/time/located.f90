@@ -51,7 +51,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(event_type) :: event
       real(wp) :: finish, left, part, corner, wrong, no_length, clock_digits
-      integer :: tries, idle
+      integer :: tries, idle, i
 
       if (allocated(error)) return
       if (.not. allocated(self%now%a)) then
@@ -95,7 +95,13 @@ contains
                part = max(part*max(0.2_wp, 0.9_wp*wrong**(-1.0_wp/self%scheme%order)), 0.5_wp*self%shortest)
                self%cut_steps = self%cut_steps + 1
             else
-               call report_no_step(self, state, part, error)
+               i = maxloc(abs(self%scheme%error_q)*sqrt(state%motion%structure%initial_stiffness), dim=1)
+               call fatal_error(error, analysis_failed, 'the step of '//to_text(part)//' s at time '// &
+                                to_text(state%begin + state%time)//' s does not reach the tolerance of '// &
+                                to_text(self%tolerance)//'; the largest error is in '// &
+                                trim(spring_name(state%motion%structure%place(i)))//'. Rows up to there '// &
+                                "are kept. Give a larger tolerance, or method = 'generalised_alpha' for "// &
+                                'a stiff column')
                return
             end if
          end do
@@ -382,21 +388,5 @@ contains
          end if
       end do
    end subroutine approach
-
-   !> Report that the tolerance is not reached, or that the motion has no bounds.
-   subroutine report_no_step(self, state, h, error)
-      type(located_stepper), intent(in) :: self
-      type(state_type), intent(in) :: state
-      real(wp), intent(in) :: h
-      type(error_type), allocatable, intent(inout) :: error
-      integer :: i
-
-      i = maxloc(abs(self%scheme%error_q)*sqrt(state%motion%structure%initial_stiffness), dim=1)
-      call fatal_error(error, analysis_failed, 'the step of '//to_text(h)//' s at time '// &
-                       to_text(state%begin + state%time)//' s does not reach the tolerance of '// &
-                       to_text(self%tolerance)//'; the largest error is in '// &
-                       trim(spring_name(state%motion%structure%place(i)))//'. Rows up to there are kept. '// &
-                       "Give a larger tolerance, or method = 'generalised_alpha' for a stiff column")
-   end subroutine report_no_step
 
 end module rbs_solve_time_located
