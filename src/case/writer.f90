@@ -283,7 +283,7 @@ contains
                case (logical_kind)
                   call piece(head//trim(merge('.true. ', '.false.', abs(x) > 0.0_wp)))
                case default
-                  call piece(head//exact_text(x))
+                  call piece(head//trim(exact_text(x)))
                end select
             end associate
          end do

@@ -13,8 +13,8 @@ module rbs_section_section_build
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_section_concrete_law, only: confined_concrete, spalling_concrete
-   use rbs_section_cross_section, only: enclose_core, no_ties, section_type, cut_strips, spiral, circular_hoops, &
-                                        hoop_area
+   use rbs_section_cross_section, only: enclose_core, no_ties, section_type, cut_strips, spiral, &
+                                        circular_hoops, hoop_area
    use rbs_section_events, only: point_type
    use rbs_section_section_record, only: find_steel, section_record
    use rbs_section_shape, only: new_core, shape_type, thickest_bar
