@@ -118,8 +118,7 @@ contains
       end subroutine fit_spring
 
       !> Points of a shear diagram; then its knee and its last point. Values: whether the knee is found, a
-      !> layer
-      !> sheared, and the axial load is lost, then the profile of the layers at the last point.
+      !> layer sheared, and the axial load is lost, then the profile of the layers at the last point.
       subroutine follow_shear_diagram(curvature)
          !> [1/m]
          real(c_double), intent(in) :: curvature(:)

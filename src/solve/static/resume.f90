@@ -50,9 +50,8 @@ contains
    contains
 
       !> Begin in the state that another analysis ended in. A static path of the same kind under the same
-      !> axial
-      !> load goes on as if it had not been cut. Otherwise the top is held where it is, velocities vanish, and
-      !> the joints come to equilibrium.
+      !> axial load goes on as if it had not been cut. Otherwise the top is held where it is, velocities
+      !> vanish, and the joints come to equilibrium.
       subroutine begin_from()
          type(standing_type) :: standing
          real(wp) :: press(size(path%structure%place)), missing
