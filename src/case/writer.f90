@@ -276,16 +276,14 @@ contains
          do j = 1, size(entry(i)%number)
             if (j > 1) call self%buffer%append(',')
             if (j > 1) head = ''
-            associate (x => entry(i)%number(j))
-               select case (entry(i)%kind)
-               case (integer_kind)
-                  call piece(head//to_text(nint(x)))
-               case (logical_kind)
-                  call piece(head//trim(merge('.true. ', '.false.', abs(x) > 0.0_wp)))
-               case default
-                  call piece(head//trim(exact_text(x)))
-               end select
-            end associate
+            select case (entry(i)%kind)
+            case (integer_kind)
+               call piece(head//to_text(nint(entry(i)%number(j))))
+            case (logical_kind)
+               call piece(head//trim(merge('.true. ', '.false.', abs(entry(i)%number(j)) > 0.0_wp)))
+            case default
+               call piece(head//trim(exact_text(entry(i)%number(j))))
+            end select
          end do
       end do
       call self%buffer%append(' /'//new_line('a'))

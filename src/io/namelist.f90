@@ -103,20 +103,18 @@ contains
          integer :: place, known
 
          known = messages%count
-         associate (entry => scanned%entry(i))
-            call reader%find(entry%name, scanned%location(entry%line), place, messages)
-            if (messages%count > known .or. place == ignored) return
-            call check_twice(group, i)
-            call read_values(entry, reader%keys(place), number, text)
-            if (messages%count > known) return
-            if (is_text(reader%keys(place))) then
-               call reader%put_text(place, text, messages)
-               return
-            end if
-            ! All subscripted values of a name are put together when the first of them is read.
-            if (entry%subscript > 0) call gather(group, i, reader%keys(place), number)
-            if (allocated(number)) call reader%put_numbers(place, number)
-         end associate
+         call reader%find(scanned%entry(i)%name, scanned%location(scanned%entry(i)%line), place, messages)
+         if (messages%count > known .or. place == ignored) return
+         call check_twice(group, i)
+         call read_values(scanned%entry(i), reader%keys(place), number, text)
+         if (messages%count > known) return
+         if (is_text(reader%keys(place))) then
+            call reader%put_text(place, text, messages)
+            return
+         end if
+         ! All subscripted values of a name are put together when the first of them is read.
+         if (scanned%entry(i)%subscript > 0) call gather(group, i, reader%keys(place), number)
+         if (allocated(number)) call reader%put_numbers(place, number)
       end subroutine put_entry
 
       !> A name (with its subscript) must not appear twice in a group.

@@ -217,12 +217,10 @@ contains
       type(message_list), intent(inout) :: notes
       real(wp) :: moment(2), stiffness, least
 
-      associate (hinge => spec%flexure(1))
-         ! What was drawn is judged where it is drawn; what never yields has no strength.
-         if (hinge%rule == 'layered' .or. hinge%rule == 'elastic') return
-         call follow_path(hinge, [0.05_wp, late_yield], moment)
-         stiffness = hinge%initial_stiffness()
-      end associate
+      ! What was drawn is judged where it is drawn; what never yields has no strength.
+      if (spec%flexure(1)%rule == 'layered' .or. spec%flexure(1)%rule == 'elastic') return
+      call follow_path(spec%flexure(1), [0.05_wp, late_yield], moment)
+      stiffness = spec%flexure(1)%initial_stiffness()
       if (spec%kinematics /= 'small' .and. spec%axial_load < 0.0_wp) then
          call notes%add('column: axial_load = '//to_text(spec%axial_load)//' N is tension; compression '// &
                         'is positive')

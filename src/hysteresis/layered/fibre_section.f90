@@ -223,11 +223,9 @@ contains
             call copy_memory(self%slot(i), self%kept_slot(i))
          end if
       end if
-      associate (branch => self%branch(i))
-         if (branch%unload_on_reversal > 0) branch%lo = self%deformation(i)
-         if (branch%unload_on_reversal < 0) branch%hi = self%deformation(i)
-         call self%rule(self%rule_of(i))%rule%next(self%slot(i)%memory, branch, way)
-      end associate
+      if (self%branch(i)%unload_on_reversal > 0) self%branch(i)%lo = self%deformation(i)
+      if (self%branch(i)%unload_on_reversal < 0) self%branch(i)%hi = self%deformation(i)
+      call self%rule(self%rule_of(i))%rule%next(self%slot(i)%memory, self%branch(i), way)
       call put_branch(self, i)
       if (i == self%on_end) self%on_end = 0
    end subroutine leave

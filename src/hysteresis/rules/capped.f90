@@ -131,15 +131,13 @@ contains
       type(segment), intent(out) :: branch
       integer :: s
 
-      associate (now => memory%now)
-         do s = -1, 1, 2
-            call now%backbone(s)%draw(self%given(s))
-            ! An untouched side reloads toward cracking or yield.
-            now%peak(s) = self%given(s)%d_c
-            if (.not. now%peak(s) > 0.0_wp) now%peak(s) = self%given(s)%d_y
-         end do
-         branch = virgin_branch(self, now, 1)
-      end associate
+      do s = -1, 1, 2
+         call memory%now%backbone(s)%draw(self%given(s))
+         ! An untouched side reloads toward cracking or yield.
+         memory%now%peak(s) = self%given(s)%d_c
+         if (.not. memory%now%peak(s) > 0.0_wp) memory%now%peak(s) = self%given(s)%d_y
+      end do
+      branch = virgin_branch(self, memory%now, 1)
    end subroutine start
 
    !> The elastic line of a side; of both if they have the same slope.
@@ -269,17 +267,15 @@ contains
       subroutine end_excursion(zero)
          real(wp), intent(in) :: zero
 
-         associate (s => now%side)
-            if (now%yielded) now%dissipated(s) = now%dissipated(s) + (now%work - now%work_at_zero)
-            now%work_at_zero = now%work
-            call turns_of(-s)%fade(now%turned%at%d)
-            ! A turn behind others that were closed takes their place.
-            now%turns = now%turns + 1_int64
-            now%turned%number = min(now%closed, now%turns)
-            call turns_of(s)%push(now%turned)
-            now%way_back = now%turned%at%d - now%entered
-            call enter(-s, zero)
-         end associate
+         if (now%yielded) now%dissipated(now%side) = now%dissipated(now%side) + (now%work - now%work_at_zero)
+         now%work_at_zero = now%work
+         call turns_of(-now%side)%fade(now%turned%at%d)
+         ! A turn behind others that were closed takes their place.
+         now%turns = now%turns + 1_int64
+         now%turned%number = min(now%closed, now%turns)
+         call turns_of(now%side)%push(now%turned)
+         now%way_back = now%turned%at%d - now%entered
+         call enter(-now%side, zero)
       end subroutine end_excursion
 
       !> Without force the motion goes toward side s, which deteriorates.

@@ -389,15 +389,13 @@ contains
 
          now%branch = reloading
          now%side = s
-         associate (target => now%aim%goal)
-            way = target%d - from%d
-            ! If round-off leaves no distance, the target is met at once.
-            k = self%k_c
-            if (s*way > 0.0_wp) k = (target%f - from%f)/way
-            now%aim%k = k
-            branch = segment(d0=target%d, f0=target%f, k=k)
-            branch = branch%outward(s, near=from%d, far=s*max(s*target%d, s*from%d))
-         end associate
+         way = now%aim%goal%d - from%d
+         ! If round-off leaves no distance, the target is met at once.
+         k = self%k_c
+         if (s*way > 0.0_wp) k = (now%aim%goal%f - from%f)/way
+         now%aim%k = k
+         branch = segment(d0=now%aim%goal%d, f0=now%aim%goal%f, k=k)
+         branch = branch%outward(s, near=from%d, far=s*max(s*now%aim%goal%d, s*from%d))
       end subroutine reload
    end subroutine find_branch
 

@@ -112,8 +112,8 @@ contains
    contains
 
       !> Modes of a structure from its matrices: what has no mass follows the rest, and with the flexibility
-      !> F = (K + K_G)^-1 between the masses M^(1/2) F M^(1/2) y = y/omega^2, by LAPACK. Shapes are those of the
-      !> unknowns, and the stable step of RK4 is that of none where unknowns have no mass.
+      !> F = (K + K_G)^-1 between the masses M^(1/2) F M^(1/2) y = y/omega^2, by LAPACK. Shapes are those of
+      !> the unknowns, and the stable step of RK4 is that of none where unknowns have no mass.
       subroutine find_assembled_modes()
          type(band_matrix) :: matrix
          real(wp), allocatable :: flexible(:, :), all_of(:, :), square(:), root(:)

@@ -129,20 +129,18 @@ contains
       real(wp) :: shear, moment, of_top
       integer :: i
 
-      associate (n => self%n, m => self%moving)
-         do i = 1, m
-            self%f(i) = springs%f0(i) + springs%k(i)*(springs%d(i) - springs%d0(i))
-         end do
-         call find_residual(self, springs%d(:m), self%f, force, self%residual)
-         shear = 0.0_wp
-         moment = 0.0_wp
-         ! The moment that holds the top acts on all rotations.
-         of_top = merge(self%residual(m), 0.0_wp, self%held)
-         do i = 1, n
-            shear = max(shear, abs(self%residual(i)))
-            moment = max(moment, abs(self%residual(n + i) - of_top))
-         end do
-      end associate
+      do i = 1, self%moving
+         self%f(i) = springs%f0(i) + springs%k(i)*(springs%d(i) - springs%d0(i))
+      end do
+      call find_residual(self, springs%d(:self%moving), self%f, force, self%residual)
+      shear = 0.0_wp
+      moment = 0.0_wp
+      ! The moment that holds the top acts on all rotations.
+      of_top = merge(self%residual(self%moving), 0.0_wp, self%held)
+      do i = 1, self%n
+         shear = max(shear, abs(self%residual(i)))
+         moment = max(moment, abs(self%residual(self%n + i) - of_top))
+      end do
       self%unbalance = max(shear, moment/self%height)
    end subroutine find_unbalance
 

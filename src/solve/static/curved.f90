@@ -217,11 +217,9 @@ contains
          turns = .false.
          self%there = self%here
          call find_event(self, limit)
-         associate (way => abs(self%there%t - self%here%t))
-            near = (self%spring > 0 .or. .not. abs(self%goal - limit) > 0.0_wp) .and. &
-                   way <= close_by*self%extent .and. &
-                   way*self%structure%largest_turn(self%here%rate) <= close_by
-         end associate
+         near = (self%spring > 0 .or. .not. abs(self%goal - limit) > 0.0_wp) .and. &
+                abs(self%there%t - self%here%t) <= close_by*self%extent .and. &
+                abs(self%there%t - self%here%t)*self%structure%largest_turn(self%here%rate) <= close_by
          done = near
          if (.not. near) call find_point(self, limit, .true., done)
          if (done) call self%curve%set(self%structure, self%here, self%there)

@@ -156,22 +156,20 @@ contains
       end if
       press = state%motion%structure%axial_rate(i, slope)
       force = state%motion%structure%axial_force(i, scheme%load)
-      associate (springs => state%springs)
-         call layer_motion(springs, i, event%layer, scheme%q(i), force, scheme%v(i), press, d, v)
-         if (event%turns) then
-            call layer_motion(springs, i, event%layer, scheme%q(i), force, now%a(i), 0.0_wp, unused, a)
-            call layer_motion(springs, i, event%layer, scheme%q(i), force, state%v(i), press, unused, &
-                              at_start)
-            wrong = event%way*v
-            small = 4.0_wp*epsilon(1.0_wp)*abs(at_start)
-            growth = event%way*a
-         else
-            call layer_end(springs, i, event%layer, event%way, finish, small)
-            wrong = event%way*(d - finish)
-            small = 0.25_wp*small
-            growth = event%way*v
-         end if
-      end associate
+      call layer_motion(state%springs, i, event%layer, scheme%q(i), force, scheme%v(i), press, d, v)
+      if (event%turns) then
+         call layer_motion(state%springs, i, event%layer, scheme%q(i), force, now%a(i), 0.0_wp, unused, a)
+         call layer_motion(state%springs, i, event%layer, scheme%q(i), force, state%v(i), press, unused, &
+                           at_start)
+         wrong = event%way*v
+         small = 4.0_wp*epsilon(1.0_wp)*abs(at_start)
+         growth = event%way*a
+      else
+         call layer_end(state%springs, i, event%layer, event%way, finish, small)
+         wrong = event%way*(d - finish)
+         small = 0.25_wp*small
+         growth = event%way*v
+      end if
    end subroutine distance_to
 
    !> The rate of rotation of a joint at which one of its layers stands still [rad/s]; where rotation does not

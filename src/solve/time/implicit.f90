@@ -212,23 +212,21 @@ contains
          share = 1.0_wp
          first = 0
          way = 0
-         associate (springs => state%springs)
-            do i = 1, springs%count
-               ! Most springs stay on their lines.
-               if (q(i) + dq(i) >= springs%first(i) .and. q(i) + dq(i) <= springs%last(i)) cycle
-               if (dq(i) > 0.0_wp) then
-                  ! The rear end of a one-way line is where the spring was put last.
-                  room = springs%end_toward(i, 1) - q(i)
-               else
-                  room = q(i) - springs%end_toward(i, -1)
-               end if
-               if (room >= share*abs(dq(i))) cycle
-               share = max(room, 0.0_wp)/abs(dq(i))
-               first = i
-               way = merge(1, -1, dq(i) > 0.0_wp)
-               if (.not. share > 0.0_wp) return
-            end do
-         end associate
+         do i = 1, state%springs%count
+            ! Most springs stay on their lines.
+            if (q(i) + dq(i) >= state%springs%first(i) .and. q(i) + dq(i) <= state%springs%last(i)) cycle
+            if (dq(i) > 0.0_wp) then
+               ! The rear end of a one-way line is where the spring was put last.
+               room = state%springs%end_toward(i, 1) - q(i)
+            else
+               room = q(i) - state%springs%end_toward(i, -1)
+            end if
+            if (room >= share*abs(dq(i))) cycle
+            share = max(room, 0.0_wp)/abs(dq(i))
+            first = i
+            way = merge(1, -1, dq(i) > 0.0_wp)
+            if (.not. share > 0.0_wp) return
+         end do
       end subroutine first_end
 
       !> The end of the step becomes the state. Works by the trapezoidal rule along the way, which balances
@@ -284,16 +282,14 @@ contains
 
       body%wanted = wanted
       if (abs(h - body%h) > 0.0_wp) then
-         associate (column => state%motion%one_body)
-            body%alpha_m = step%alpha_m
-            body%alpha_f = step%alpha_f
-            body%beta = step%beta
-            body%gamma = step%gamma
-            body%mass = column%inertias(:2)
-            body%lower = column%lower(1)
-            body%upper = column%upper(1)
-            body%softening = softening_of(column)
-         end associate
+         body%alpha_m = step%alpha_m
+         body%alpha_f = step%alpha_f
+         body%beta = step%beta
+         body%gamma = step%gamma
+         body%mass = state%motion%one_body%inertias(:2)
+         body%lower = state%motion%one_body%lower(1)
+         body%upper = state%motion%one_body%upper(1)
+         body%softening = softening_of(state%motion%one_body)
          call body%set_step(h)
       end if
       call body%fit_to(state%springs)

@@ -246,17 +246,15 @@ contains
       ! An unknown is coupled with the others of its part: |k_ij| is at most the root of k_ii k_jj.
       reach = 0.0_wp
       do j = 1, size(structure%group)
-         associate (group => structure%group(j))
-            way = 0.0_wp
-            do k = 0, group%count - 1
-               i = group%first + k*group%step
-               way = max(way, abs(self%moved(i)) + h*abs(self%v0(i)) + h**2*abs(self%a0(i)))
-            end do
-            do k = 0, group%count - 1
-               i = group%first + k*group%step
-               reach(structure%part(i)) = reach(structure%part(i)) + sqrt(max(stiffness(i), 0.0_wp))*way
-            end do
-         end associate
+         way = 0.0_wp
+         do k = 0, structure%group(j)%count - 1
+            i = structure%group(j)%first + k*structure%group(j)%step
+            way = max(way, abs(self%moved(i)) + h*abs(self%v0(i)) + h**2*abs(self%a0(i)))
+         end do
+         do k = 0, structure%group(j)%count - 1
+            i = structure%group(j)%first + k*structure%group(j)%step
+            reach(structure%part(i)) = reach(structure%part(i)) + sqrt(max(stiffness(i), 0.0_wp))*way
+         end do
       end do
       is_round_off = all(abs(self%r) <= round_off*sqrt(max(stiffness, 0.0_wp))*reach(structure%part))
    end function is_round_off

@@ -358,10 +358,8 @@ contains
       real(wp), intent(out) :: g(:, 0:)
 
       call find_damping(self, state)
-      associate (springs => state%springs)
-         self%f = springs%f0 + springs%k*(q - springs%d0) + self%viscous*v
-         self%k = springs%k + self%viscous*(self%by%gamma/(self%by%beta*h))
-      end associate
+      self%f = state%springs%f0 + state%springs%k*(q - state%springs%d0) + self%viscous*v
+      self%k = state%springs%k + self%viscous*(self%by%gamma/(self%by%beta*h))
       if (allocated(state%motion%modal)) self%f = self%f + matmul(state%motion%modal, v)
       call find_balance(self, load, g)
       if (self%column%mass_damping > 0.0_wp) then

@@ -29,10 +29,9 @@ module rbs_structure_column_sturm
       logical :: held = .false.
       !> Stiffness of the joints, translation and rotation; masses and rotary inertias of the bodies (2, n)
       real(wp), allocatable :: k(:, :), mass(:, :)
-      !> Distance of the centroid from the bottom and from the top of the body (n)
-      real(wp), allocatable :: lower(:), upper(:)
-      !> Axial force times length of each body, axial force across the slip of each joint (n)
-      real(wp), allocatable :: turning(:), sliding(:)
+      !> Distance of the centroid from the bottom and from the top of the body (n); axial force times length
+      !> of each body, axial force across the slip of each joint (n)
+      real(wp), allocatable :: lower(:), upper(:), turning(:), sliding(:)
       !> Pivots, T and C of the joints at the last shift (7, n)
       real(wp), allocatable, private :: joint(:, :)
    contains
