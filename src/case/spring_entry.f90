@@ -154,7 +154,17 @@ contains
                call messages%add_at(entry%where, '&'//trim(entry%group)//' has joint, but joints of a '// &
                                     'frame belong to its members; give kind and place')
             end if
-            if (entry%group == 'layers' .and. messages%count == known) call check_owner(list, i, messages)
+            if (entry%group == 'layers' .and. messages%count == known) then
+               do j = 1, list%count
+                  if (list%entry(j)%group == 'flexure' .and. list%entry(j)%spring%rule == 'layered' .and. &
+                      are_of(entry, list%entry(j))) exit
+               end do
+               if (j > list%count) then
+                  call messages%add_at(entry%where, '&layers belong to no &flexure with rule = '// &
+                                       "'layered' and the same kind and place; give it these, or remove "// &
+                                       'the layers')
+               end if
+            end if
             if (any(entry%group == spring_groups(4:))) cycle
             n = n + 1
             spring(n)%group = entry%group
@@ -184,31 +194,21 @@ contains
       if (are_of) are_of = .not. any(abs(layers%place - spring%place) > 0.0_wp)
    end function are_of
 
-   subroutine check_owner(list, layers, messages)
-      type(entry_list), intent(in) :: list
-      integer, intent(in) :: layers
-      type(message_list), intent(inout) :: messages
-      integer :: i
-
-      do i = 1, list%count
-         if (list%entry(i)%group == 'flexure' .and. list%entry(i)%spring%rule == 'layered' .and. &
-             are_of(list%entry(layers), list%entry(i))) return
-      end do
-      call messages%add_at(list%entry(layers)%where, '&layers belong to no &flexure with rule = '// &
-                           "'layered' and the same kind and place; give it these, or remove the layers")
-   end subroutine check_owner
-
    !> Give the springs to the joints of a column.
    subroutine place_springs(list, column, messages)
       type(entry_list), intent(in) :: list
       type(column_record), intent(inout) :: column
       type(message_list), intent(inout) :: messages
       !> Numbers of the lowest and the uppermost joint, and the same for messages
-      integer :: first, last, known
+      integer :: first, last, known, i
       character(len=40) :: range
       logical :: numbered
 
-      column%footing = any_beneath(list)
+      column%footing = .false.
+      do i = 1, list%count
+         if (.not. allocated(list%entry(i)%joint)) cycle
+         column%footing = column%footing .or. any(list%entry(i)%joint == 0)
+      end do
       first = merge(0, 1, column%footing)
       last = column%joint_number(column%joints())
       range = to_text(first)//' to '//trim(merge('n + 1', 'n    ', column%top == 'fixed'))//' = '// &
@@ -354,18 +354,6 @@ contains
       end subroutine twice
 
    end subroutine place_springs
-
-   !> Whether a spring is given for joint 0, beneath a footing.
-   pure logical function any_beneath(list)
-      type(entry_list), intent(in) :: list
-      integer :: i
-
-      any_beneath = .false.
-      do i = 1, list%count
-         if (.not. allocated(list%entry(i)%joint)) cycle
-         any_beneath = any_beneath .or. any(list%entry(i)%joint == 0)
-      end do
-   end function any_beneath
 
    !> Check the springs of layers: each number must belong to one spring, which must have a rule.
    subroutine check_ids(list, messages)
