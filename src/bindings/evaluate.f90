@@ -225,7 +225,7 @@ contains
       type(text_buffer) :: text
       real(c_double), allocatable :: place(:), stiffness(:)
       real(c_double) :: of_joint(2)
-      integer :: i
+      integer :: i, first, last
 
       do i = 1, frame%n
          call text%append(trim(frame%node_name(i))//tab)
@@ -242,7 +242,15 @@ contains
             if (i > frame%inside - count(frame%beam_rotation > 0)) group = 'panel'
             call add_spring(group, trim(frame%rules%name(frame%rules%of(i))), frame%initial_stiffness(i))
          else if (frame%heads(i)) then
-            call find_joint(frame, i, of_joint)
+            ! About the centre of stiffness of its layers [N m/rad], and axially [N/m]
+            associate (e => frame%element(frame%place(i)%member), joint => frame%place(i)%joint)
+               first = e%first(joint)
+               last = e%first(joint + 1) - 1
+               associate (k => frame%initial_stiffness(e%before + first:e%before + last), &
+                          y => e%y(first:last))
+                  of_joint = [sum(k*(y - sum(k*y)/sum(k))**2), sum(k)]
+               end associate
+            end associate
             call add_spring(kinds(flexure), 'layered', of_joint(1))
             call add_spring(kinds(axial), 'layered', of_joint(2))
          end if
@@ -264,21 +272,5 @@ contains
          stiffness = [stiffness, k]
       end subroutine add_spring
    end subroutine tell_parts
-
-   !> Initial stiffness of a joint of layers about its centre of stiffness [N m/rad], and axially [N/m].
-   subroutine find_joint(frame, head, stiffness)
-      type(frame_type), intent(in) :: frame
-      integer, intent(in) :: head
-      real(c_double), intent(out) :: stiffness(2)
-      integer :: first, last
-
-      associate (e => frame%element(frame%place(head)%member), joint => frame%place(head)%joint)
-         first = e%first(joint)
-         last = e%first(joint + 1) - 1
-         associate (k => frame%initial_stiffness(e%before + first:e%before + last), y => e%y(first:last))
-            stiffness = [sum(k*(y - sum(k*y)/sum(k))**2), sum(k)]
-         end associate
-      end associate
-   end subroutine find_joint
 
 end module rbs_bindings_evaluate

@@ -91,9 +91,10 @@ contains
                            answer%error)
             case default
                ! Cracking, yield, peak, ultimate and the end; whether the axial load is lost there.
-               call check_rule(given%confined, given%rule(), answer%error)
+               call check_rule(given%confined, given%rule(given%yielding), answer%error)
                if (allocated(answer%error)) return
-               call find_events(section, laws, given%axial_load, given%rule(), events, answer%error)
+               call find_events(section, laws, given%axial_load, given%rule(given%yielding), events, &
+                                answer%error)
                if (allocated(answer%error)) return
                answer%value = [merge(1.0_wp, 0.0_wp, events%lost)]
                answer%rows = reshape([values_of_point(events%cracking), values_of_point(events%yield), &
@@ -107,7 +108,8 @@ contains
       subroutine fit_spring()
          type(flexural_spring_type) :: spring
 
-         call check_rule(reader%springs%confined, reader%springs%rule(), answer%error)
+         call check_rule(reader%springs%confined, reader%springs%rule(reader%springs%yield_rule), &
+                         answer%error)
          if (.not. allocated(answer%error)) then
             call fit_flexural_spring(section, reader%springs, spring, answer%error)
          end if

@@ -60,8 +60,8 @@ contains
    subroutine create(self, column)
       class(chain_equilibrium), intent(out) :: self
       class(column_type), intent(in) :: column
-      real(wp) :: stiffness(most_unknowns, most_unknowns)
-      integer :: m
+      real(wp) :: stiffness(most_unknowns, most_unknowns), band(2*column%n)
+      integer :: m, i
 
       m = 2*column%n
       self%n = column%n
@@ -79,26 +79,17 @@ contains
          call geometric_stiffness(column, stiffness(:m, :m))
          call self%few%create(stiffness(:m, :m), self%arm)
       else
-         call create_band(self, column%length)
+         associate (n => self%n)
+            allocate (self%lever(m), self%found(m, 2), self%missing(m, 2), self%along(m, 2), self%more(m, 2))
+            do i = 1, n
+               self%lever(2*i - 1:2*i) = [1.0_wp, column%length(i)]
+               band(2*i - 1:2*i) = [self%initial(i), self%initial(n + i)]
+               if (i < n) band(2*i) = band(2*i) + self%initial(n + i + 1)
+            end do
+            call self%tangent%create(m, 2, band)
+         end associate
       end if
    end subroutine create
-
-   subroutine create_band(self, length)
-      type(chain_equilibrium), intent(inout) :: self
-      real(wp), intent(in) :: length(:)
-      real(wp) :: stiffness(2*self%n)
-      integer :: i
-
-      associate (n => self%n, m => self%moving)
-         allocate (self%lever(m), self%found(m, 2), self%missing(m, 2), self%along(m, 2), self%more(m, 2))
-         do i = 1, n
-            self%lever(2*i - 1:2*i) = [1.0_wp, length(i)]
-            stiffness(2*i - 1:2*i) = [self%initial(i), self%initial(n + i)]
-            if (i < n) stiffness(2*i) = stiffness(2*i) + self%initial(n + i + 1)
-         end do
-         call self%tangent%create(m, 2, stiffness)
-      end associate
-   end subroutine create_band
 
    !> Residual of the equilibrium: a F - f - K_G q.
    subroutine find_residual(self, q, f, force, r)
