@@ -256,23 +256,21 @@ contains
 
       call prepare(run, path, error)
       if (allocated(error)) return
-      associate (case => run%case)
-         if (case%analysis%dynamic()) then
-            call plan_dynamic(run%structure, case%analysis, run%history%time, run%history%loads, plan, error)
-            if (allocated(error)) return
-         end if
-         if (quiet) return
-         call say(path//': no errors', error)
-         if (plan%reason /= '') call say('method: '//method_text(plan%method, plan%reason), error)
-         call structure_notes(case, notes)
-         if (case%analysis%dynamic()) then
-            call long_run_note(run%structure, plan, text)
-            if (text /= '') call notes%add(text)
-         else if (all(case%loading(:case%loadings)%drive /= 'force') .and. &
-                  case%column%kinematics /= 'finite') then
-            call drift_note(maxval(abs(run%history%target)), case%height(), notes)
-         end if
-      end associate
+      if (run%case%analysis%dynamic()) then
+         call plan_dynamic(run%structure, run%case%analysis, run%history%time, run%history%loads, plan, error)
+         if (allocated(error)) return
+      end if
+      if (quiet) return
+      call say(path//': no errors', error)
+      if (plan%reason /= '') call say('method: '//method_text(plan%method, plan%reason), error)
+      call structure_notes(run%case, notes)
+      if (run%case%analysis%dynamic()) then
+         call long_run_note(run%structure, plan, text)
+         if (text /= '') call notes%add(text)
+      else if (all(run%case%loading(:run%case%loadings)%drive /= 'force') .and. &
+               run%case%column%kinematics /= 'finite') then
+         call drift_note(maxval(abs(run%history%target)), run%case%height(), notes)
+      end if
       call print_notes(notes, error)
    end subroutine check_case
 

@@ -215,9 +215,7 @@ contains
       character(len=*), intent(in) :: a, b
       integer :: row(0:len(b)), i, j, diagonal, above
 
-      do j = 0, len(b)
-         row(j) = j
-      end do
+      row = [(j, j=0, len(b))]
       do i = 1, len(a)
          diagonal = row(0)
          row(0) = i

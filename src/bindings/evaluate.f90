@@ -187,9 +187,8 @@ contains
                   answer%rows((j - 1)*structure%n + i, :) = modes%shapes(structure%number(j, i), :)
                end do
             end do
-            do i = 1, size(modes%omega)
-               answer%rows(3*structure%n + 1, i) = structure%work_of(horizontal, modes%shapes(:, i))**2
-            end do
+            answer%rows(3*structure%n + 1, :) = [(structure%work_of(horizontal, modes%shapes(:, i))**2, &
+                                                  i=1, size(modes%omega))]
          class default
             answer%rows = modes%shapes
          end select

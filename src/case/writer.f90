@@ -75,15 +75,13 @@ contains
             end do
          end do
          do i = 1, size(case%frame%spring)
-            associate (given => case%frame%spring(i))
-               entry = spring_entry(group=given%group, spring=given%spring)
-               entry%kind = given%kind
-               entry%node = given%node
-               entry%panel = given%panel
-               if (allocated(given%place)) entry%place = given%place
-               call write_spring(entry)
-               if (allocated(given%spring%y)) call write_layers(entry)
-            end associate
+            entry = spring_entry(group=case%frame%spring(i)%group, spring=case%frame%spring(i)%spring)
+            entry%kind = case%frame%spring(i)%kind
+            entry%node = case%frame%spring(i)%node
+            entry%panel = case%frame%spring(i)%panel
+            if (allocated(case%frame%spring(i)%place)) entry%place = case%frame%spring(i)%place
+            call write_spring(entry)
+            if (allocated(case%frame%spring(i)%spring%y)) call write_layers(entry)
          end do
       end subroutine write_frame
 

@@ -81,10 +81,7 @@ contains
          if (is_given(record%side_cover)) section%side_cover = record%side_cover
          if (is_given(record%bar_diameter)) section%bar_diameter = record%bar_diameter
          section%plain = record%concrete%law()
-         allocate (section%steels(size(record%steels)))
-         do i = 1, size(record%steels)
-            section%steels(i) = record%steels(i)%law()
-         end do
+         section%steels = [(record%steels(i)%law(), i=1, size(record%steels))]
          bars = 0
          if (allocated(record%bars%y)) bars = size(record%bars%y)
          allocate (section%bar_y(bars), section%bar_area(bars), section%bar_steel(bars))

@@ -432,11 +432,9 @@ contains
       class(steel_memory), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
 
-      associate (now => self%now)
-         call stream%item(now%s)
-         call stream%item(now%rate)
-         call stream%items(now%d, now%highest, now%lowest, now%worn, now%wear_rate)
-      end associate
+      call stream%item(self%now%s)
+      call stream%item(self%now%rate)
+      call stream%items(self%now%d, self%now%highest, self%now%lowest, self%now%worn, self%now%wear_rate)
    end subroutine serialize
 
 end module rbs_hysteresis_rules_steel

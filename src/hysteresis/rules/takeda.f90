@@ -415,17 +415,15 @@ contains
       type(stream_type), intent(inout) :: stream
       integer :: s
 
-      associate (now => self%now)
-         call stream%item(now%branch)
-         call stream%item(now%side)
-         call stream%item(now%cracked)
-         do s = -1, 1, 2
-            call now%peak(s)%serialize(stream)
-         end do
-         call stream%item(now%k_r)
-         call now%aim%serialize(stream)
-         call stream%item(now%peaks)
-      end associate
+      call stream%item(self%now%branch)
+      call stream%item(self%now%side)
+      call stream%item(self%now%cracked)
+      do s = -1, 1, 2
+         call self%now%peak(s)%serialize(stream)
+      end do
+      call stream%item(self%now%k_r)
+      call self%now%aim%serialize(stream)
+      call stream%item(self%now%peaks)
       call self%open%serialize(stream)
    end subroutine serialize
 

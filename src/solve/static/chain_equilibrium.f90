@@ -79,15 +79,13 @@ contains
          call geometric_stiffness(column, stiffness(:m, :m))
          call self%few%create(stiffness(:m, :m), self%arm)
       else
-         associate (n => self%n)
-            allocate (self%lever(m), self%found(m, 2), self%missing(m, 2), self%along(m, 2), self%more(m, 2))
-            do i = 1, n
-               self%lever(2*i - 1:2*i) = [1.0_wp, column%length(i)]
-               band(2*i - 1:2*i) = [self%initial(i), self%initial(n + i)]
-               if (i < n) band(2*i) = band(2*i) + self%initial(n + i + 1)
-            end do
-            call self%tangent%create(m, 2, band)
-         end associate
+         allocate (self%lever(m), self%found(m, 2), self%missing(m, 2), self%along(m, 2), self%more(m, 2))
+         do i = 1, self%n
+            self%lever(2*i - 1:2*i) = [1.0_wp, column%length(i)]
+            band(2*i - 1:2*i) = [self%initial(i), self%initial(self%n + i)]
+            if (i < self%n) band(2*i) = band(2*i) + self%initial(self%n + i + 1)
+         end do
+         call self%tangent%create(m, 2, band)
       end if
    end subroutine create
 
@@ -243,17 +241,15 @@ contains
       integer :: i, n
 
       n = self%n
-      associate (band => self%tangent%band)
-         band = 0.0_wp
-         do i = 1, n
-            band(1, 2*i - 1) = k(i)
-            band(1, 2*i) = k(n + i) - self%axial(i)
-            if (i == n) exit
-            band(1, 2*i) = band(1, 2*i) + k(n + i + 1)
-            band(2, 2*i) = -self%axial(n + i + 1)
-            band(3, 2*i) = -k(n + i + 1)
-         end do
-      end associate
+      self%tangent%band = 0.0_wp
+      do i = 1, n
+         self%tangent%band(1, 2*i - 1) = k(i)
+         self%tangent%band(1, 2*i) = k(n + i) - self%axial(i)
+         if (i == n) exit
+         self%tangent%band(1, 2*i) = self%tangent%band(1, 2*i) + k(n + i + 1)
+         self%tangent%band(2, 2*i) = -self%axial(n + i + 1)
+         self%tangent%band(3, 2*i) = -k(n + i + 1)
+      end do
       if (self%held) call self%tangent%hold(2*n, self%tangent%stiffness(2*n))
    end subroutine fill_tangent
 
