@@ -71,7 +71,7 @@ contains
       if (allocated(error)) return
       call solve()
       call remove_if_stopped('')
-      call run%recorder%close(.not. allocated(error), closing)
+      call run%recorder%file%close(.not. allocated(error), run%recorder%count > 0, closing)
       if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
       if (allocated(error)) then
          if (run%recorder%count > 0) then
@@ -94,8 +94,7 @@ contains
    contains
 
       !> The error of a run that ended at the user's criterion of collapse, or where a joint lost its axial
-      !> load;
-      !> the run itself has not failed.
+      !> load; the run itself has not failed.
       subroutine report_end()
          character(len=:), allocatable :: text
 
@@ -131,8 +130,7 @@ contains
 
          plan%method = 'static'
          associate (case => run%case, structure => run%structure, history => run%history, &
-                    recorder => run%recorder, &
-                    task => run%task)
+                    recorder => run%recorder, task => run%task)
             if (allocated(case%analysis%initial)) then
                task%before = end_state()
                call read_state(beside(run%path, case%analysis%initial), task%before%stream, error)
@@ -151,7 +149,7 @@ contains
             recorder%units = case%units%system()
             recorder%channels = new_channels(structure, case%analysis%dynamic(), case%output%openings, &
                                              case%output%motion)
-            call recorder%open(file, error)
+            call recorder%file%open(file, error)
             if (allocated(error)) return
             call remove_if_stopped(recorder%file%own)
             call recorder%write_head(header(case, plan%method), error)
@@ -258,23 +256,21 @@ contains
 
       call prepare(run, path, error)
       if (allocated(error)) return
-      associate (case => run%case)
-         if (case%analysis%dynamic()) then
-            call plan_dynamic(run%structure, case%analysis, run%history%time, run%history%loads, plan, error)
-            if (allocated(error)) return
-         end if
-         if (quiet) return
-         call say(path//': no errors', error)
-         if (plan%reason /= '') call say('method: '//method_text(plan%method, plan%reason), error)
-         call structure_notes(case, notes)
-         if (case%analysis%dynamic()) then
-            call long_run_note(run%structure, plan, text)
-            if (text /= '') call notes%add(text)
-         else if (all(case%loading(:case%loadings)%drive /= 'force') .and. &
-                  case%column%kinematics /= 'finite') then
-            call drift_note(maxval(abs(run%history%target)), case%height(), notes)
-         end if
-      end associate
+      if (run%case%analysis%dynamic()) then
+         call plan_dynamic(run%structure, run%case%analysis, run%history%time, run%history%loads, plan, error)
+         if (allocated(error)) return
+      end if
+      if (quiet) return
+      call say(path//': no errors', error)
+      if (plan%reason /= '') call say('method: '//method_text(plan%method, plan%reason), error)
+      call structure_notes(run%case, notes)
+      if (run%case%analysis%dynamic()) then
+         call long_run_note(run%structure, plan, text)
+         if (text /= '') call notes%add(text)
+      else if (all(run%case%loading(:run%case%loadings)%drive /= 'force') .and. &
+               run%case%column%kinematics /= 'finite') then
+         call drift_note(maxval(abs(run%history%target)), run%case%height(), notes)
+      end if
       call print_notes(notes, error)
    end subroutine check_case
 

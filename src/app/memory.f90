@@ -16,20 +16,18 @@ module rbs_app_memory
 
    interface
       !> In C: the malloc of the C library.
-      function real_malloc(size) bind(c, name='__real_malloc') result(place)
+      type(c_ptr) function real_malloc(size) bind(c, name='__real_malloc') result(place)
          import :: c_ptr, c_size_t
          implicit none
          integer(c_size_t), value :: size
-         type(c_ptr) :: place
       end function real_malloc
 
       !> In C: the realloc of the C library.
-      function real_realloc(old, size) bind(c, name='__real_realloc') result(place)
+      type(c_ptr) function real_realloc(old, size) bind(c, name='__real_realloc') result(place)
          import :: c_ptr, c_size_t
          implicit none
          type(c_ptr), value :: old
          integer(c_size_t), value :: size
-         type(c_ptr) :: place
       end function real_realloc
 
       !> In C: end the process at once.
@@ -42,18 +40,16 @@ module rbs_app_memory
 
 contains
 
-   function wrapped_malloc(size) bind(c, name='__wrap_malloc') result(place)
+   type(c_ptr) function wrapped_malloc(size) bind(c, name='__wrap_malloc') result(place)
       integer(c_size_t), value :: size
-      type(c_ptr) :: place
 
       place = real_malloc(size)
       if (size > 0_c_size_t .and. .not. c_associated(place)) call give_up()
    end function wrapped_malloc
 
-   function wrapped_realloc(old, size) bind(c, name='__wrap_realloc') result(place)
+   type(c_ptr) function wrapped_realloc(old, size) bind(c, name='__wrap_realloc') result(place)
       type(c_ptr), value :: old
       integer(c_size_t), value :: size
-      type(c_ptr) :: place
 
       place = real_realloc(old, size)
       if (size > 0_c_size_t .and. .not. c_associated(place)) call give_up()

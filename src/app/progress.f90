@@ -32,11 +32,10 @@ module rbs_app_progress
 
    interface
       !> In C: 1 if a file descriptor is a terminal.
-      function c_isatty(descriptor) bind(c, name='isatty') result(answer)
+      integer(c_int) function c_isatty(descriptor) bind(c, name='isatty') result(answer)
          import :: c_int
          implicit none
          integer(c_int), value :: descriptor
-         integer(c_int) :: answer
       end function c_isatty
    end interface
 

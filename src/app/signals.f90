@@ -23,20 +23,18 @@ module rbs_app_signals
 
    interface
       !> In C: set what is done on a signal; what was done before.
-      function c_signal(number, action) bind(c, name='signal') result(before)
+      type(c_funptr) function c_signal(number, action) bind(c, name='signal') result(before)
          import :: c_funptr, c_int
          implicit none
          integer(c_int), value :: number
          type(c_funptr), value :: action
-         type(c_funptr) :: before
       end function c_signal
 
       !> In C: send a signal to the process itself; 0 on success.
-      function c_raise(number) bind(c, name='raise') result(status)
+      integer(c_int) function c_raise(number) bind(c, name='raise') result(status)
          import :: c_int
          implicit none
          integer(c_int), value :: number
-         integer(c_int) :: status
       end function c_raise
    end interface
 
@@ -97,9 +95,8 @@ contains
       if (doomed(1) /= c_null_char) status = c_unlink(doomed)
    end subroutine remove_unfinished
 
-   function action(number) result(pointer)
+   type(c_funptr) function action(number) result(pointer)
       integer(c_intptr_t), intent(in) :: number
-      type(c_funptr) :: pointer
 
       pointer = transfer(number, c_null_funptr)
    end function action

@@ -371,7 +371,7 @@ contains
 
       regular = .true.
       if (.not. self%positive) then
-         call solve_with_pivots(self, m, b, regular)
+         call solve_with_pivots()
          return
       end if
       do j = 1, m
@@ -381,44 +381,42 @@ contains
             call solve_wide(self%size, self%width, self%triangle, b(:, j))
          end if
       end do
-   end subroutine solve_scaled
 
-   subroutine solve_with_pivots(self, m, b, regular)
-      type(band_matrix), intent(inout) :: self
-      integer, intent(in) :: m
-      real(wp), intent(inout) :: b(self%size, m)
-      logical, intent(out) :: regular
-      real(wp) :: right(self%size, m)
+   contains
 
-      right = b
-      call mirror(self, 0.0_wp)
-      call solve_general_band(self%general, self%width, self%width, b, regular, self%pivot)
-      if (regular) return
-      b = right
-      call mirror(self, round_off)
-      call solve_general_band(self%general, self%width, self%width, b, regular, self%pivot)
-   end subroutine solve_with_pivots
+      subroutine solve_with_pivots()
+         real(wp) :: right(self%size, m)
 
-   !> The band as elimination with pivots takes it, both triangles.
-   subroutine mirror(self, extra)
-      type(band_matrix), intent(inout) :: self
-      !> Added to the diagonal, where it is of the order of one
-      real(wp), intent(in) :: extra
-      integer :: i, j, main
+         right = b
+         call mirror(0.0_wp)
+         call solve_general_band(self%general, self%width, self%width, b, regular, self%pivot)
+         if (regular) return
+         b = right
+         call mirror(round_off)
+         call solve_general_band(self%general, self%width, self%width, b, regular, self%pivot)
+      end subroutine solve_with_pivots
 
-      main = 2*self%width + 1
-      if (.not. allocated(self%general)) then
-         allocate (self%general(main + self%width, self%size), self%pivot(self%size))
-      end if
-      self%general = 0.0_wp
-      do j = 1, self%size
-         self%general(main, j) = self%band(1, j) + extra
-         do i = j + 1, min(j + self%width, self%size)
-            self%general(main + i - j, j) = self%band(1 + i - j, j)
-            self%general(main + j - i, i) = self%band(1 + i - j, j)
+      !> The band as elimination with pivots takes it, both triangles.
+      subroutine mirror(extra)
+         !> Added to the diagonal, where it is of the order of one
+         real(wp), intent(in) :: extra
+         integer :: i, j, main
+
+         main = 2*self%width + 1
+         if (.not. allocated(self%general)) then
+            allocate (self%general(main + self%width, self%size), self%pivot(self%size))
+         end if
+         self%general = 0.0_wp
+         do j = 1, self%size
+            self%general(main, j) = self%band(1, j) + extra
+            do i = j + 1, min(j + self%width, self%size)
+               self%general(main + i - j, j) = self%band(1 + i - j, j)
+               self%general(main + j - i, i) = self%band(1 + i - j, j)
+            end do
          end do
-      end do
-   end subroutine mirror
+      end subroutine mirror
+
+   end subroutine solve_scaled
 
    !> The scaled matrix times a column.
    pure function times(self, x) result(product)

@@ -363,6 +363,8 @@ contains
       type(key_visitor), intent(inout) :: self
       type(key_type), intent(in) :: key
       character(len=:), allocatable, intent(inout) :: text
+      character(len=len(key%choices)) :: name(16)
+      integer :: i
 
       select case (self%mode)
       case (collecting)
@@ -370,7 +372,12 @@ contains
       case (putting)
          if (key%name == self%wanted) text = trim(self%text)
       case (checking)
-         if (key%kind == word_kind .and. text /= '') call check_word(self, key, text)
+         if (key%kind /= word_kind .or. text == '' .or. choice_place(key, text) > 0) return
+         self%sound = .false.
+         name = [(choice_name(key, i), i=1, size(name))]
+         call self%messages%add(self%group//': '//trim(key%name)//" = '"//text//"' is not known; it is "// &
+                                'one of '//trim(choice_list(key))// &
+                                suggestion(text, name(:count(name /= ''))))
       case (listing)
          if (.not. allocated(text)) return
          if (text == self%keys(find_key(self%keys(:self%count), key%name))%default_text) return
@@ -379,21 +386,6 @@ contains
       case default                                  ! no other mode
       end select
    end subroutine one_text
-
-   !> A word must be one of the choices.
-   subroutine check_word(self, key, word)
-      type(key_visitor), intent(inout) :: self
-      type(key_type), intent(in) :: key
-      character(len=*), intent(in) :: word
-      character(len=len(key%choices)) :: name(16)
-      integer :: i
-
-      if (choice_place(key, word) > 0) return
-      self%sound = .false.
-      name = [(choice_name(key, i), i=1, size(name))]
-      call self%messages%add(self%group//': '//trim(key%name)//" = '"//trim(word)//"' is not known; it "// &
-                             'is one of '//trim(choice_list(key))//suggestion(word, name(:count(name /= ''))))
-   end subroutine check_word
 
    pure logical function is_true(choice)
       logical, intent(in), optional :: choice

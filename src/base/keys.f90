@@ -99,8 +99,7 @@ contains
    contains
 
       !> A whole number without an exponent.
-      function value_text() result(text)
-         character(len=32) :: text
+      character(len=32) function value_text() result(text)
 
          if (key%kind == integer_kind .and. abs(x) < huge(1)) then
             text = to_text(nint(x))
@@ -110,17 +109,15 @@ contains
       end function value_text
 
       !> The unit in messages; empty for the dimensions of springs, which are not units.
-      pure function unit_for_message() result(unit)
-         character(len=16) :: unit
+      pure character(len=16) function unit_for_message() result(unit)
 
          unit = key%unit
          if (unit == force .or. unit == deformation .or. unit == stiffness) unit = ''
       end function unit_for_message
 
       !> Why a number outside its bounds is refused: 'must be above zero'.
-      function refusal(bound) result(text)
+      character(len=96) function refusal(bound) result(text)
          type(bound_type), intent(in) :: bound
-         character(len=96) :: text
          logical :: below
 
          below = x <= bound%least
@@ -156,9 +153,8 @@ contains
    end function is_within
 
    !> A range in the documentation: '> 0', '0 to < 1'; empty where every number is allowed.
-   pure function bound_text(bound) result(text)
+   pure character(len=48) function bound_text(bound) result(text)
       type(bound_type), intent(in) :: bound
-      character(len=48) :: text
 
       text = ''
       if (bound%most < huge(1.0_wp)) then
@@ -201,10 +197,9 @@ contains
    end function choice_place
 
    !> The choice at a place; blank beyond the last one.
-   pure function choice_name(key, place) result(name)
+   pure character(len=choice_length) function choice_name(key, place) result(name)
       type(key_type), intent(in) :: key
       integer, intent(in) :: place
-      character(len=choice_length) :: name
       integer :: i, first, last
 
       name = ''

@@ -49,10 +49,8 @@ contains
 
    !> Solve a symmetric positive definite tridiagonal system.
    subroutine solve_tridiagonal(diagonal, beside, b, positive)
-      !> Diagonal (n) and off-diagonal (n - 1), overwritten
-      real(wp), intent(inout), contiguous :: diagonal(:), beside(:)
-      !> Right-hand side (n), replaced by the solution
-      real(wp), intent(inout), contiguous :: b(:)
+      !> Diagonal (n) and off-diagonal (n - 1), overwritten; right-hand side (n), replaced by the solution
+      real(wp), intent(inout), contiguous :: diagonal(:), beside(:), b(:)
       !> Whether the matrix is positive definite
       logical, intent(out) :: positive
       integer :: info
@@ -81,10 +79,8 @@ contains
 
    !> Solve a general system by elimination with pivots.
    subroutine solve_dense(a, b, regular)
-      !> Matrix (n, n), overwritten
-      real(wp), intent(inout), contiguous :: a(:, :)
-      !> Right-hand side (n), replaced by the solution
-      real(wp), intent(inout), contiguous :: b(:)
+      !> Matrix (n, n), overwritten; right-hand side (n), replaced by the solution
+      real(wp), intent(inout), contiguous :: a(:, :), b(:)
       !> Whether the matrix has an inverse
       logical, intent(out) :: regular
       integer :: pivot(size(b)), info

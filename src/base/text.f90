@@ -99,10 +99,10 @@ contains
    end subroutine write_real
 
    !> A number with the fewest digits from which the same bits are read back.
-   pure function exact_text(x) result(text)
+   pure character(len=longest) function exact_text(x) result(text)
       !> Finite
       real(wp), intent(in) :: x
-      character(len=longest) :: text, buffer, digits
+      character(len=longest) :: buffer, digits
       real(wp) :: again
       integer :: count, mark, power, last
 
@@ -211,13 +211,11 @@ contains
    end function nearest_place
 
    !> Levenshtein distance: the least number of characters to insert, remove or change.
-   pure function edit_distance(a, b) result(distance)
+   pure integer function edit_distance(a, b) result(distance)
       character(len=*), intent(in) :: a, b
-      integer :: distance, row(0:len(b)), i, j, diagonal, above
+      integer :: row(0:len(b)), i, j, diagonal, above
 
-      do j = 0, len(b)
-         row(j) = j
-      end do
+      row = [(j, j=0, len(b))]
       do i = 1, len(a)
          diagonal = row(0)
          row(0) = i

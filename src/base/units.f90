@@ -152,10 +152,9 @@ contains
    end subroutine unit_of_letter
 
    !> The name of an SI unit in the units of the user: 'kN/mm' for 'N/m'.
-   pure function name_of(self, unit) result(name)
+   pure character(len=32) function name_of(self, unit) result(name)
       class(unit_system), intent(in) :: self
       character(len=*), intent(in) :: unit
-      character(len=32) :: name
       type(unit_type) :: one
       integer :: i
       logical :: found

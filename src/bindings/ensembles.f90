@@ -83,10 +83,8 @@ contains
       end do
       associate (columns => request%array('columns'), motions => request%array('motions'), &
                  scales => request%array('scales'))
-         allocate (run(size(scales)), outcome(size(scales)))
-         do i = 1, size(run)
-            run(i) = run_type(nint(columns(i)), nint(motions(i)), scales(i))
-         end do
+         run = [(run_type(nint(columns(i)), nint(motions(i)), scales(i)), i=1, size(scales))]
+         allocate (outcome(size(scales)))
       end associate
       call run_block(column, motion, run, request%whole('level'), outcome, control)
       allocate (answer%rows(measure_count + states + 2*storeys, size(run)), &

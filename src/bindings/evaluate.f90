@@ -21,7 +21,7 @@ module rbs_bindings_evaluate
    use rbs_output_notes, only: structure_notes
    use rbs_output_channels, only: channel_units
    use rbs_section_flexural_spring, only: spring_figures
-   use rbs_section_section_figures, only: point_values, profile_values, section_figures, shear_values
+   use rbs_section_section_build, only: point_values, profile_values, section_figures, shear_values
    use rbs_solve_ensemble_run_result, only: measure_names
    use rbs_solve_end_state, only: end_state
    use rbs_solve_modal_matrices, only: matrices_type, assemble_matrices
@@ -43,6 +43,7 @@ contains
       integer(c_int), intent(inout), volatile :: control(2)
       type(answer_type), intent(inout) :: answer
       type(text_buffer) :: buffer
+      character(len=1), parameter :: line = new_line('a')
 
       select case (request%what)
       case ('version')
@@ -53,7 +54,11 @@ contains
          call keys_as_json(buffer)
          answer%text = buffer%text(:buffer%length)
       case ('quantities')
-         call name_quantities()
+         ! A line each: values of rows with their units, measures of a run of an ensemble; then what belongs
+         ! to a section.
+         answer%text = trim(channel_units())//line//trim(measure_names())//line//list_of(section_figures)// &
+                       line//list_of(spring_figures)//line//list_of(point_values)//line// &
+                       list_of(shear_values)//line//list_of(profile_values)
       case ('check_spring', 'spring_response')
          call evaluate_spring()
       case ('check_structure', 'frame_parts', 'modes', 'matrices')
@@ -82,16 +87,6 @@ contains
       end select
 
    contains
-
-      !> Names of the values that come back, a line each: values of rows with their units, measures of a
-      !> run of an ensemble; then what belongs to a section.
-      subroutine name_quantities()
-         character(len=1), parameter :: line = new_line('a')
-
-         answer%text = trim(channel_units())//line//trim(measure_names())//line//list_of(section_figures)// &
-                       line//list_of(spring_figures)//line//list_of(point_values)//line// &
-                       list_of(shear_values)//line//list_of(profile_values)
-      end subroutine name_quantities
 
       !> Whether the rule allows a spring, or the forces of a virgin one along a path of deformations.
       subroutine evaluate_spring()
@@ -192,9 +187,8 @@ contains
                   answer%rows((j - 1)*structure%n + i, :) = modes%shapes(structure%number(j, i), :)
                end do
             end do
-            do i = 1, size(modes%omega)
-               answer%rows(3*structure%n + 1, i) = structure%work_of(horizontal, modes%shapes(:, i))**2
-            end do
+            answer%rows(3*structure%n + 1, :) = [(structure%work_of(horizontal, modes%shapes(:, i))**2, &
+                                                  i=1, size(modes%omega))]
          class default
             answer%rows = modes%shapes
          end select
@@ -230,7 +224,7 @@ contains
       type(text_buffer) :: text
       real(c_double), allocatable :: place(:), stiffness(:)
       real(c_double) :: of_joint(2)
-      integer :: i
+      integer :: i, first, last
 
       do i = 1, frame%n
          call text%append(trim(frame%node_name(i))//tab)
@@ -247,7 +241,15 @@ contains
             if (i > frame%inside - count(frame%beam_rotation > 0)) group = 'panel'
             call add_spring(group, trim(frame%rules%name(frame%rules%of(i))), frame%initial_stiffness(i))
          else if (frame%heads(i)) then
-            call find_joint(frame, i, of_joint)
+            ! About the centre of stiffness of its layers [N m/rad], and axially [N/m]
+            associate (e => frame%element(frame%place(i)%member), joint => frame%place(i)%joint)
+               first = e%first(joint)
+               last = e%first(joint + 1) - 1
+               associate (k => frame%initial_stiffness(e%before + first:e%before + last), &
+                          y => e%y(first:last))
+                  of_joint = [sum(k*(y - sum(k*y)/sum(k))**2), sum(k)]
+               end associate
+            end associate
             call add_spring(kinds(flexure), 'layered', of_joint(1))
             call add_spring(kinds(axial), 'layered', of_joint(2))
          end if
@@ -269,21 +271,5 @@ contains
          stiffness = [stiffness, k]
       end subroutine add_spring
    end subroutine tell_parts
-
-   !> Initial stiffness of a joint of layers about its centre of stiffness [N m/rad], and axially [N/m].
-   subroutine find_joint(frame, head, stiffness)
-      type(frame_type), intent(in) :: frame
-      integer, intent(in) :: head
-      real(c_double), intent(out) :: stiffness(2)
-      integer :: first, last
-
-      associate (e => frame%element(frame%place(head)%member), joint => frame%place(head)%joint)
-         first = e%first(joint)
-         last = e%first(joint + 1) - 1
-         associate (k => frame%initial_stiffness(e%before + first:e%before + last), y => e%y(first:last))
-            stiffness = [sum(k*(y - sum(k*y)/sum(k))**2), sum(k)]
-         end associate
-      end associate
-   end subroutine find_joint
 
 end module rbs_bindings_evaluate

@@ -40,21 +40,19 @@ contains
       if (allocated(answer%error)) return
       m = size(history%time)
       allocate (answer%rows(1 + m, 0:drives), source=0.0_c_double)
-      associate (rows => answer%rows)
-         rows(2:, 0) = history%time
-         if (case%loadings == 0) then
-            ! What will shake it is not known yet: the method is left to that.
-            if (.not. case%analysis%named) case%analysis%method = 'auto'
-         else if (case%analysis%dynamic()) then
-            do i = 1, signals
-               call sample(history%loads%signal(i), history%time, rows(:, 1 + i))
-            end do
-         else
-            place = merge(2, 1, any(case%loading(:case%loadings)%drive == 'force'))
-            rows(:, place) = [1.0_c_double, history%target]
-            if (size(history%axial_load) > 0) rows(:, 5) = [1.0_c_double, history%axial_load]
-         end if
-      end associate
+      answer%rows(2:, 0) = history%time
+      if (case%loadings == 0) then
+         ! What will shake it is not known yet: the method is left to that.
+         if (.not. case%analysis%named) case%analysis%method = 'auto'
+      else if (case%analysis%dynamic()) then
+         do i = 1, signals
+            call sample(history%loads%signal(i), history%time, answer%rows(:, 1 + i))
+         end do
+      else
+         place = merge(2, 1, any(case%loading(:case%loadings)%drive == 'force'))
+         answer%rows(:, place) = [1.0_c_double, history%target]
+         if (size(history%axial_load) > 0) answer%rows(:, 5) = [1.0_c_double, history%axial_load]
+      end if
       case%loadings = 0
       statements%is_statement = .true.
       call write_case(case, statements)

@@ -96,13 +96,11 @@ contains
       call move_alloc(run%recorder%rows, answer%rows)
       answer%kept = run%recorder%count
       call run%task%summary%get_figures(figure)
-      associate (sight => run%sight)
-         where (.not. sight%reached < huge(1.0_wp))
-            sight%reached = ieee_value(1.0_wp, ieee_quiet_nan)
-            sight%top = sight%reached
-         end where
-         answer%value = [sight%reached, sight%top, (figure(i)%value, i=1, size(figure))]
-      end associate
+      where (.not. run%sight%reached < huge(1.0_wp))
+         run%sight%reached = ieee_value(1.0_wp, ieee_quiet_nan)
+         run%sight%top = run%sight%reached
+      end where
+      answer%value = [run%sight%reached, run%sight%top, (figure(i)%value, i=1, size(figure))]
       if (run%task%after%is_given()) then
          answer%value = [answer%value, run%task%after%stream%value(:run%task%after%stream%count)]
       end if

@@ -12,8 +12,8 @@ module rbs_bindings_sections
    use rbs_section_events, only: check_rules, events_type, find_events, rule_type
    use rbs_section_flexural_spring, only: fit_flexural_spring, flexural_spring_type
    use rbs_section_resultants, only: laws_type, resultants_type, section_laws
-   use rbs_section_section_build, only: make_section, outline_core
-   use rbs_section_section_figures, only: figures_of_section, values_of_point, values_of_shear_point
+   use rbs_section_section_build, only: make_section, outline_core, figures_of_section, values_of_point, &
+                                        values_of_shear_point
    use rbs_section_shape, only: shape_type
    use rbs_section_shear_diagram, only: check_curvatures, follow_shear, shear_diagram_type
    use rbs_section_steel_law, only: steel_stress
@@ -91,9 +91,10 @@ contains
                            answer%error)
             case default
                ! Cracking, yield, peak, ultimate and the end; whether the axial load is lost there.
-               call check_rule(given%confined, given%rule(), answer%error)
+               call check_rule(given%confined, given%rule(given%yielding), answer%error)
                if (allocated(answer%error)) return
-               call find_events(section, laws, given%axial_load, given%rule(), events, answer%error)
+               call find_events(section, laws, given%axial_load, given%rule(given%yielding), events, &
+                                answer%error)
                if (allocated(answer%error)) return
                answer%value = [merge(1.0_wp, 0.0_wp, events%lost)]
                answer%rows = reshape([values_of_point(events%cracking), values_of_point(events%yield), &
@@ -107,7 +108,8 @@ contains
       subroutine fit_spring()
          type(flexural_spring_type) :: spring
 
-         call check_rule(reader%springs%confined, reader%springs%rule(), answer%error)
+         call check_rule(reader%springs%confined, reader%springs%rule(reader%springs%yield_rule), &
+                         answer%error)
          if (.not. allocated(answer%error)) then
             call fit_flexural_spring(section, reader%springs, spring, answer%error)
          end if
@@ -118,8 +120,7 @@ contains
       end subroutine fit_spring
 
       !> Points of a shear diagram; then its knee and its last point. Values: whether the knee is found, a
-      !> layer
-      !> sheared, and the axial load is lost, then the profile of the layers at the last point.
+      !> layer sheared, and the axial load is lost, then the profile of the layers at the last point.
       subroutine follow_shear_diagram(curvature)
          !> [1/m]
          real(c_double), intent(in) :: curvature(:)

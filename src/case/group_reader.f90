@@ -211,10 +211,19 @@ contains
       type(message_list), intent(inout) :: messages
       type(key_type) :: key
       character(len=:), allocatable :: text
+      integer :: i
 
       if (place == ignored) return
       key = self%keys(place)
-      call take_as_listed(key, given, text)
+      text = given
+      if (key%kind == word_kind) then
+         ! As the key lists it
+         i = 1
+         do while (choice_name(key, i) /= '')
+            if (lower(choice_name(key, i)) == lower(given)) text = trim(choice_name(key, i))
+            i = i + 1
+         end do
+      end if
       if (self%is_spring()) then
          if (key%name == 'rule') then
             text = lower(text)
@@ -251,22 +260,6 @@ contains
       end if
    end subroutine put_text
 
-   !> A word as the key lists it, whatever its case; another word or a text as it is.
-   pure subroutine take_as_listed(key, word, listed)
-      type(key_type), intent(in) :: key
-      character(len=*), intent(in) :: word
-      character(len=:), allocatable, intent(out) :: listed
-      integer :: i
-
-      listed = word
-      if (key%kind /= word_kind) return
-      i = 1
-      do while (choice_name(key, i) /= '')
-         if (lower(choice_name(key, i)) == lower(word)) listed = trim(choice_name(key, i))
-         i = i + 1
-      end do
-   end subroutine take_as_listed
-
    !> After all groups have been set: give the springs to the joints, or check what is asked of a section.
    subroutine finish(self, messages)
       class(group_reader), intent(inout) :: self
@@ -295,9 +288,8 @@ contains
 
    !> The SI unit of a parameter of a spring, which depends on the kind of the spring; other units are
    !> returned unchanged.
-   elemental function unit_in_group(unit, group) result(si)
+   elemental character(len=16) function unit_in_group(unit, group) result(si)
       character(len=*), intent(in) :: unit, group
-      character(len=16) :: si
 
       si = unit
       select case (unit)

@@ -127,9 +127,8 @@ contains
       call buffer%append(', "meaning": "'//trim(key%meaning)//'"}')
    end subroutine append_key
 
-   pure function kind_name(kind) result(name)
+   pure character(len=8) function kind_name(kind) result(name)
       character(len=1), intent(in) :: kind
-      character(len=8) :: name
 
       select case (kind)
       case (real_kind)
@@ -146,9 +145,8 @@ contains
    end function kind_name
 
    !> The default as text; blank if there is none.
-   pure function default_of(key) result(text)
+   pure character(len=32) function default_of(key) result(text)
       type(key_type), intent(in) :: key
-      character(len=32) :: text
 
       text = key%default_text
       if (text /= '' .or. .not. is_given(key%default)) return

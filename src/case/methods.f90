@@ -80,8 +80,7 @@ contains
    end function method_named
 
    !> The names of all methods, separated by blanks.
-   pure function method_choices() result(names)
-      character(len=112) :: names
+   pure character(len=112) function method_choices() result(names)
       integer :: i
 
       names = methods(1)%name

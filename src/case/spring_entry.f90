@@ -141,7 +141,7 @@ contains
       type(frame_record), intent(inout) :: frame
       type(message_list), intent(inout) :: messages
       type(frame_spring), allocatable :: spring(:)
-      integer :: i, n, known
+      integer :: i, j, n, known
 
       call frame%open_group('')
       known = messages%count
@@ -154,7 +154,17 @@ contains
                call messages%add_at(entry%where, '&'//trim(entry%group)//' has joint, but joints of a '// &
                                     'frame belong to its members; give kind and place')
             end if
-            if (entry%group == 'layers' .and. messages%count == known) call check_owner(list, i, messages)
+            if (entry%group == 'layers' .and. messages%count == known) then
+               do j = 1, list%count
+                  if (list%entry(j)%group == 'flexure' .and. list%entry(j)%spring%rule == 'layered' .and. &
+                      are_of(entry, list%entry(j))) exit
+               end do
+               if (j > list%count) then
+                  call messages%add_at(entry%where, '&layers belong to no &flexure with rule = '// &
+                                       "'layered' and the same kind and place; give it these, or remove "// &
+                                       'the layers')
+               end if
+            end if
             if (any(entry%group == spring_groups(4:))) cycle
             n = n + 1
             spring(n)%group = entry%group
@@ -164,24 +174,15 @@ contains
             spring(n)%spring = entry%spring
             if (allocated(entry%place)) spring(n)%place = entry%place
             if (entry%spring%rule /= 'layered' .or. messages%count > known) cycle
-            associate (j => layers_of(list, i))
-               if (j > 0) call set_layers(list, spring(n)%spring, list%entry(j), messages)
-            end associate
+            ! The layers of its kind of members and its places
+            do j = list%count, 1, -1
+               if (list%entry(j)%group == 'layers' .and. are_of(list%entry(j), entry)) exit
+            end do
+            if (j > 0) call set_layers(list, spring(n)%spring, list%entry(j), messages)
          end associate
       end do
       call move_alloc(spring, frame%spring)
    end subroutine give_springs
-
-   !> The layers of a joint in a frame: those of its kind of members and its places; 0: none.
-   pure integer function layers_of(list, joint)
-      type(entry_list), intent(in) :: list
-      integer, intent(in) :: joint
-
-      do layers_of = list%count, 1, -1
-         if (list%entry(layers_of)%group == 'layers' .and. &
-             are_of(list%entry(layers_of), list%entry(joint))) return
-      end do
-   end function layers_of
 
    !> Whether layers belong to a spring of a frame.
    pure logical function are_of(layers, spring)
@@ -193,31 +194,21 @@ contains
       if (are_of) are_of = .not. any(abs(layers%place - spring%place) > 0.0_wp)
    end function are_of
 
-   subroutine check_owner(list, layers, messages)
-      type(entry_list), intent(in) :: list
-      integer, intent(in) :: layers
-      type(message_list), intent(inout) :: messages
-      integer :: i
-
-      do i = 1, list%count
-         if (list%entry(i)%group == 'flexure' .and. list%entry(i)%spring%rule == 'layered' .and. &
-             are_of(list%entry(layers), list%entry(i))) return
-      end do
-      call messages%add_at(list%entry(layers)%where, '&layers belong to no &flexure with rule = '// &
-                           "'layered' and the same kind and place; give it these, or remove the layers")
-   end subroutine check_owner
-
    !> Give the springs to the joints of a column.
    subroutine place_springs(list, column, messages)
       type(entry_list), intent(in) :: list
       type(column_record), intent(inout) :: column
       type(message_list), intent(inout) :: messages
       !> Numbers of the lowest and the uppermost joint, and the same for messages
-      integer :: first, last, known
+      integer :: first, last, known, i
       character(len=40) :: range
       logical :: numbered
 
-      column%footing = any_beneath(list)
+      column%footing = .false.
+      do i = 1, list%count
+         if (.not. allocated(list%entry(i)%joint)) cycle
+         column%footing = column%footing .or. any(list%entry(i)%joint == 0)
+      end do
       first = merge(0, 1, column%footing)
       last = column%joint_number(column%joints())
       range = to_text(first)//' to '//trim(merge('n + 1', 'n    ', column%top == 'fixed'))//' = '// &
@@ -363,18 +354,6 @@ contains
       end subroutine twice
 
    end subroutine place_springs
-
-   !> Whether a spring is given for joint 0, beneath a footing.
-   pure logical function any_beneath(list)
-      type(entry_list), intent(in) :: list
-      integer :: i
-
-      any_beneath = .false.
-      do i = 1, list%count
-         if (.not. allocated(list%entry(i)%joint)) cycle
-         any_beneath = any_beneath .or. any(list%entry(i)%joint == 0)
-      end do
-   end function any_beneath
 
    !> Check the springs of layers: each number must belong to one spring, which must have a rule.
    subroutine check_ids(list, messages)

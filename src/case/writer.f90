@@ -75,15 +75,13 @@ contains
             end do
          end do
          do i = 1, size(case%frame%spring)
-            associate (given => case%frame%spring(i))
-               entry = spring_entry(group=given%group, spring=given%spring)
-               entry%kind = given%kind
-               entry%node = given%node
-               entry%panel = given%panel
-               if (allocated(given%place)) entry%place = given%place
-               call write_spring(entry)
-               if (allocated(given%spring%y)) call write_layers(entry)
-            end associate
+            entry = spring_entry(group=case%frame%spring(i)%group, spring=case%frame%spring(i)%spring)
+            entry%kind = case%frame%spring(i)%kind
+            entry%node = case%frame%spring(i)%node
+            entry%panel = case%frame%spring(i)%panel
+            if (allocated(case%frame%spring(i)%place)) entry%place = case%frame%spring(i)%place
+            call write_spring(entry)
+            if (allocated(case%frame%spring(i)%spring%y)) call write_layers(entry)
          end do
       end subroutine write_frame
 
@@ -276,7 +274,14 @@ contains
          do j = 1, size(entry(i)%number)
             if (j > 1) call self%buffer%append(',')
             if (j > 1) head = ''
-            call piece(head//trim(value_text(entry(i)%kind, entry(i)%number(j))))
+            select case (entry(i)%kind)
+            case (integer_kind)
+               call piece(head//to_text(nint(entry(i)%number(j))))
+            case (logical_kind)
+               call piece(head//trim(merge('.true. ', '.false.', abs(entry(i)%number(j)) > 0.0_wp)))
+            case default
+               call piece(head//trim(exact_text(entry(i)%number(j))))
+            end select
          end do
       end do
       call self%buffer%append(' /'//new_line('a'))
@@ -309,20 +314,5 @@ contains
       end do
       quoted = quoted//''''
    end subroutine quote
-
-   pure function value_text(kind, x) result(text)
-      character(len=1), intent(in) :: kind
-      real(wp), intent(in) :: x
-      character(len=32) :: text
-
-      select case (kind)
-      case (integer_kind)
-         text = to_text(nint(x))
-      case (logical_kind)
-         text = merge('.true. ', '.false.', abs(x) > 0.0_wp)
-      case default
-         text = exact_text(x)
-      end select
-   end function value_text
 
 end module rbs_case_writer

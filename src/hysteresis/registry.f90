@@ -84,9 +84,8 @@ contains
    end function suits
 
    !> The words of all places where springs of a rule may be used; blank if the rule is not known.
-   impure elemental function places_of(name) result(places)
+   impure elemental character(len=places_length) function places_of(name) result(places)
       character(len=*), intent(in) :: name
-      character(len=places_length) :: places
       class(rule_type), allocatable :: rule
 
       call new_rule(name, rule, places)

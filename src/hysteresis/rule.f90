@@ -103,13 +103,10 @@ contains
    !> Stiffness of each virgin spring (springs) [N/m or N m/rad].
    pure function stiffness_of_springs(self) result(k)
       class(spring_rules), intent(in) :: self
-      real(wp) :: k(size(self%of)), of_rule(size(self%list))
+      real(wp) :: k(size(self%of))
       integer :: i
 
-      do i = 1, size(of_rule)
-         of_rule(i) = self%list(i)%rule%initial_stiffness
-      end do
-      k = of_rule(self%of)
+      k = [(self%list(self%of(i))%rule%initial_stiffness, i=1, size(k))]
    end function stiffness_of_springs
 
    !> The branch that follows from the rule, see `rule_type`.

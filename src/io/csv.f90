@@ -22,24 +22,11 @@ module rbs_io_csv
       character(len=4), allocatable, private :: si(:)
       character(len=:), allocatable, private :: buffer
    contains
-      procedure :: open => open_csv
       procedure :: write_head
       procedure :: record
-      procedure :: close => close_csv
    end type csv_recorder
 
 contains
-
-   !> Start the file.
-   subroutine open_csv(self, path, error)
-      class(csv_recorder), intent(inout) :: self
-      !> Path of the whole file; `-` is standard output
-      character(len=*), intent(in) :: path
-      type(error_type), allocatable, intent(out) :: error
-
-      self%count = 0
-      call self%file%open(path, error)
-   end subroutine open_csv
 
    !> Write comment lines, then the names of the columns.
    subroutine write_head(self, comments, error)
@@ -96,16 +83,5 @@ contains
       call self%file%put(line, error)
       call self%file%put(new_line('a'), error)
    end subroutine put_line
-
-   !> Close the file. After a successful run it gets its final name. After a failed run it is kept under
-   !> another, `file%kept`, if it has rows.
-   subroutine close_csv(self, whole, error)
-      class(csv_recorder), intent(inout) :: self
-      !> Whether the run succeeded
-      logical, intent(in) :: whole
-      type(error_type), allocatable, intent(inout) :: error
-
-      call self%file%close(whole, self%count > 0, error)
-   end subroutine close_csv
 
 end module rbs_io_csv

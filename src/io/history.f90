@@ -150,7 +150,8 @@ contains
          logical :: found
 
          call file%next_line(first, last, found)
-         history%name = plain(file%text(first:last))
+         call trim_field(file%text, first, last)
+         history%name = file%text(first:last)
          call file%next_line(first, last, found)
          declared = -1
          if (found) declared = count_of(file%text(first:last))
@@ -179,6 +180,8 @@ contains
 
       !> Comments with #, perhaps a line of names, then numbers.
       subroutine read_csv()
+         !> Of columns, the first that the line has
+         character(len=*), parameter :: separators = ';,'//tab//' '
          type(field_list) :: fields
          character(len=1) :: separator
          integer :: begin(2)
@@ -197,7 +200,10 @@ contains
             call fatal_error(error, bad_input, path//': has no rows of numbers')
             return
          end if
-         separator = separator_of(file%text(first:last))
+         do i = 1, len(separators) - 1
+            if (index(trim(file%text(first:last)), separators(i:i)) > 0) exit
+         end do
+         separator = separators(i:i)
          call split(file%text(:last), first, separator, fields)
          named = .true.
          worded = .false.
@@ -211,7 +217,8 @@ contains
          history%labels = ''
          if (named) then
             do i = 1, fields%count
-               history%labels(i) = plain(file%text(fields%first(i):fields%last(i)))
+               call trim_field(file%text, fields%first(i), fields%last(i))
+               history%labels(i) = file%text(fields%first(i):fields%last(i))
             end do
          else
             call file%go_back(begin)
@@ -416,42 +423,23 @@ contains
    pure subroutine trim_field(line, first, last)
       character(len=*), intent(in) :: line
       integer, intent(inout) :: first, last
+      integer :: pass
 
-      call trim_blanks(line, first, last)
-      if (last <= first) return
-      if (line(first:first) /= '"' .or. line(last:last) /= '"') return
-      first = first + 1
-      last = last - 1
-      call trim_blanks(line, first, last)
-   end subroutine trim_field
-
-   pure subroutine trim_blanks(line, first, last)
-      character(len=*), intent(in) :: line
-      integer, intent(inout) :: first, last
-
-      do while (first <= last)
-         if (line(first:first) /= ' ' .and. line(first:first) /= tab) exit
+      do pass = 1, 2
+         do while (first <= last)
+            if (scan(line(first:first), ' '//tab) == 0) exit
+            first = first + 1
+         end do
+         do while (last >= first)
+            if (scan(line(last:last), ' '//tab) == 0) exit
+            last = last - 1
+         end do
+         if (pass == 2 .or. last <= first) return
+         if (line(first:first) /= '"' .or. line(last:last) /= '"') return
          first = first + 1
-      end do
-      do while (last >= first)
-         if (line(last:last) /= ' ' .and. line(last:last) /= tab) exit
          last = last - 1
       end do
-   end subroutine trim_blanks
-
-   !> The separator of a csv: semicolon, comma, tab or blanks.
-   character(len=1) function separator_of(line)
-      character(len=*), intent(in) :: line
-
-      separator_of = ' '
-      if (index(line, ';') > 0) then
-         separator_of = ';'
-      else if (index(line, ',') > 0) then
-         separator_of = ','
-      else if (index(trim(line), tab) > 0) then
-         separator_of = tab
-      end if
-   end function separator_of
+   end subroutine trim_field
 
    logical function is_blank(line)
       character(len=*), intent(in) :: line
@@ -461,28 +449,6 @@ contains
       is_blank = at == 0
       if (at > 0) is_blank = line(at:at) == '#'
    end function is_blank
-
-   !> A text without blanks, tabs and quotes around it.
-   pure function plain(text)
-      character(len=*), intent(in) :: text
-      character(len=plain_length(text)) :: plain
-      integer :: first, last
-
-      first = 1
-      last = len(text)
-      call trim_field(text, first, last)
-      plain = text(first:last)
-   end function plain
-
-   pure integer function plain_length(text)
-      character(len=*), intent(in) :: text
-      integer :: first, last
-
-      first = 1
-      last = len(text)
-      call trim_field(text, first, last)
-      plain_length = last - first + 1
-   end function plain_length
 
    !> A short piece of a text for a message, without control characters.
    function snippet(text)

@@ -160,7 +160,8 @@ contains
       integer :: i, found
 
       column = 0
-      call describe_columns(history, there)
+      there = 'columns: '//list_of(history%labels)
+      if (all(history%labels == '')) there = to_text(history%columns)//' columns without names'
       if (word == '') then
          wanted = drive
          if (drive == 'ground_acceleration') wanted = 'acceleration'
@@ -201,18 +202,6 @@ contains
                           there//')'//suggestion(word, history%labels))
       end if
    end subroutine find_column
-
-   !> The columns of the file, for a message.
-   subroutine describe_columns(history, text)
-      type(history_type), intent(in) :: history
-      character(len=:), allocatable, intent(out) :: text
-
-      if (all(history%labels == '')) then
-         text = to_text(history%columns)//' columns without names'
-      else
-         text = 'columns: '//list_of(history%labels)
-      end if
-   end subroutine describe_columns
 
    !> Convert values to SI from the unit that the user gives, else from the unit in the column's name, else
    !> from the units of PEER files; other values are in SI.

@@ -1,7 +1,7 @@
 !> Reads a case from a namelist file: the scanner cuts the text into groups and entries; each entry is
 !> checked against the key that it names and passed to the reader of groups.
 module rbs_io_namelist
-   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_negative_inf, ieee_positive_inf
+   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf
    use rbs_base_error, only: error_type, message_list
    use rbs_base_keys, only: key_type, real_kind, integer_kind, word_kind, text_kind
    use rbs_base_kinds, only: wp
@@ -103,20 +103,18 @@ contains
          integer :: place, known
 
          known = messages%count
-         associate (entry => scanned%entry(i))
-            call reader%find(entry%name, scanned%location(entry%line), place, messages)
-            if (messages%count > known .or. place == ignored) return
-            call check_twice(group, i)
-            call read_values(entry, reader%keys(place), number, text)
-            if (messages%count > known) return
-            if (is_text(reader%keys(place))) then
-               call reader%put_text(place, text, messages)
-               return
-            end if
-            ! All subscripted values of a name are put together when the first of them is read.
-            if (entry%subscript > 0) call gather(group, i, reader%keys(place), number)
-            if (allocated(number)) call reader%put_numbers(place, number)
-         end associate
+         call reader%find(scanned%entry(i)%name, scanned%location(scanned%entry(i)%line), place, messages)
+         if (messages%count > known .or. place == ignored) return
+         call check_twice(group, i)
+         call read_values(scanned%entry(i), reader%keys(place), number, text)
+         if (messages%count > known) return
+         if (is_text(reader%keys(place))) then
+            call reader%put_text(place, text, messages)
+            return
+         end if
+         ! All subscripted values of a name are put together when the first of them is read.
+         if (scanned%entry(i)%subscript > 0) call gather(group, i, reader%keys(place), number)
+         if (allocated(number)) call reader%put_numbers(place, number)
       end subroutine put_entry
 
       !> A name (with its subscript) must not appear twice in a group.
@@ -253,7 +251,10 @@ contains
          else if (status == number_not_finite .and. scan(word, digits) > 0) then
             what = 'is too large to be a finite number; check its exponent'
          else if (status == number_not_finite) then
-            value = not_finite(word)
+            ! The check of the values reports it.
+            value = ieee_value(value, ieee_positive_inf)
+            if (word(1:1) == '-') value = -value
+            if (scan(word, 'aA') > 0) value = ieee_value(value, ieee_quiet_nan)
          end if
       case (integer_kind)
          first = merge(2, 1, scan(word(1:1), '+-') == 1)
@@ -273,19 +274,6 @@ contains
          end select
       end select
    end subroutine read_value
-
-   !> NaN or infinity, which the check of the values then reports.
-   real(wp) function not_finite(word)
-      character(len=*), intent(in) :: word
-
-      if (scan(word, 'aA') > 0) then
-         not_finite = ieee_value(not_finite, ieee_quiet_nan)
-      else if (word(1:1) == '-') then
-         not_finite = ieee_value(not_finite, ieee_negative_inf)
-      else
-         not_finite = ieee_value(not_finite, ieee_positive_inf)
-      end if
-   end function not_finite
 
    !> A text without its quotes; doubled quotes within become single.
    subroutine unquote(quoted, text)

@@ -48,7 +48,6 @@ module rbs_io_output_file
       procedure :: close => close_file
       procedure, private :: flush => flush_buffer
       procedure, private :: open_own
-      procedure, private :: keep
    end type output_file
 
 contains
@@ -176,6 +175,8 @@ contains
       logical, intent(in) :: whole, worth
       type(error_type), allocatable, intent(inout) :: error
       integer(c_int) :: status
+      character(len=:), allocatable :: name
+      logical :: free
 
       if (self%descriptor < 0_c_int) return
       call self%flush(error)
@@ -205,23 +206,15 @@ contains
             status = c_unlink(self%path//partial//c_null_char)
          end if
       else
-         call self%keep()
+         ! As PATH.partial if this name is free or has been left by an earlier run
+         self%kept = self%own
+         name = self%path//partial
+         free = .not. is_taken(name)
+         if (.not. free) free = is_ours(name)
+         if (.not. free) return
+         if (c_rename(self%own//c_null_char, name//c_null_char) == 0_c_int) self%kept = name
       end if
    end subroutine close_file
-
-   !> Keep an unfinished file, as PATH.partial if this name is free or has been left by an earlier run.
-   subroutine keep(self)
-      class(output_file), intent(inout) :: self
-      character(len=:), allocatable :: name
-      logical :: free
-
-      self%kept = self%own
-      name = self%path//partial
-      free = .not. is_taken(name)
-      if (.not. free) free = is_ours(name)
-      if (.not. free) return
-      if (c_rename(self%own//c_null_char, name//c_null_char) == 0_c_int) self%kept = name
-   end subroutine keep
 
    !> Whether a path is an ordinary file that a run has left.
    logical function is_ours(path)

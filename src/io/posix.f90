@@ -31,158 +31,140 @@ module rbs_io_posix
 
    interface
       !> In C: open an existing file; -1 if that fails.
-      function c_open(path, flags) bind(c, name='open') result(descriptor)
+      integer(c_int) function c_open(path, flags) bind(c, name='open') result(descriptor)
          import :: c_char, c_int
          implicit none
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int), value :: flags
-         integer(c_int) :: descriptor
       end function c_open
 
       !> In C: a second descriptor of an open file; -1 if that fails.
-      function c_dup(descriptor) bind(c, name='dup') result(second)
+      integer(c_int) function c_dup(descriptor) bind(c, name='dup') result(second)
          import :: c_int
          implicit none
          integer(c_int), value :: descriptor
-         integer(c_int) :: second
       end function c_dup
 
       !> In C: close a descriptor; 0 on success.
-      function c_close(descriptor) bind(c, name='close') result(status)
+      integer(c_int) function c_close(descriptor) bind(c, name='close') result(status)
          import :: c_int
          implicit none
          integer(c_int), value :: descriptor
-         integer(c_int) :: status
       end function c_close
 
       !> In C: read at most `length` bytes: how many, 0 at the end, -1 if nothing can be read now.
-      function c_read(descriptor, text, length) bind(c, name='read') result(count)
+      integer(c_size_t) function c_read(descriptor, text, length) bind(c, name='read') result(count)
          import :: c_char, c_int, c_size_t
          implicit none
          integer(c_int), value :: descriptor
          character(kind=c_char), intent(out) :: text(*)
          integer(c_size_t), value :: length
-         integer(c_size_t) :: count
       end function c_read
 
       !> In C: write at most `length` bytes: how many, -1 if nothing can be written now.
-      function c_write(descriptor, text, length) bind(c, name='write') result(count)
+      integer(c_size_t) function c_write(descriptor, text, length) bind(c, name='write') result(count)
          import :: c_char, c_int, c_size_t
          implicit none
          integer(c_int), value :: descriptor
          character(kind=c_char), intent(in) :: text(*)
          integer(c_size_t), value :: length
-         integer(c_size_t) :: count
       end function c_write
 
       !> In C: wait until a descriptor is ready, for a time in ms or, with -1, for ever; 0 if it is not.
-      function c_poll(what, count, milliseconds) bind(c, name='poll') result(ready)
+      integer(c_int) function c_poll(what, count, milliseconds) bind(c, name='poll') result(ready)
          import :: c_int, c_size_t, poll_type
          implicit none
          type(poll_type), intent(inout) :: what
          integer(c_size_t), value :: count
          integer(c_int), value :: milliseconds
-         integer(c_int) :: ready
       end function c_poll
 
       !> In C: open a file as a stream; a null pointer if that fails. Mode `wx` makes a file that was not
       !> there and never follows a link.
-      function c_fopen(path, mode) bind(c, name='fopen') result(stream)
+      type(c_ptr) function c_fopen(path, mode) bind(c, name='fopen') result(stream)
          import :: c_char, c_ptr
          implicit none
          character(kind=c_char), intent(in) :: path(*), mode(*)
-         type(c_ptr) :: stream
       end function c_fopen
 
       !> In C: the descriptor of a stream.
-      function c_fileno(stream) bind(c, name='fileno') result(descriptor)
+      integer(c_int) function c_fileno(stream) bind(c, name='fileno') result(descriptor)
          import :: c_int, c_ptr
          implicit none
          type(c_ptr), value :: stream
-         integer(c_int) :: descriptor
       end function c_fileno
 
       !> In C: close a stream; 0 on success.
-      function c_fclose(stream) bind(c, name='fclose') result(status)
+      integer(c_int) function c_fclose(stream) bind(c, name='fclose') result(status)
          import :: c_int, c_ptr
          implicit none
          type(c_ptr), value :: stream
-         integer(c_int) :: status
       end function c_fclose
 
       !> In C: write a file through to its disk; not 0 on failure, or if the file is not on a disk.
-      function c_fsync(descriptor) bind(c, name='fsync') result(status)
+      integer(c_int) function c_fsync(descriptor) bind(c, name='fsync') result(status)
          import :: c_int
          implicit none
          integer(c_int), value :: descriptor
-         integer(c_int) :: status
       end function c_fsync
 
       !> In C: remove a file; 0 on success.
-      function c_unlink(path) bind(c, name='unlink') result(status)
+      integer(c_int) function c_unlink(path) bind(c, name='unlink') result(status)
          import :: c_char, c_int
          implicit none
          character(kind=c_char), intent(in) :: path(*)
-         integer(c_int) :: status
       end function c_unlink
 
       !> In C: rename a file and replace any file that has the new name; 0 on success.
-      function c_rename(from, to) bind(c, name='rename') result(status)
+      integer(c_int) function c_rename(from, to) bind(c, name='rename') result(status)
          import :: c_char, c_int
          implicit none
          character(kind=c_char), intent(in) :: from(*), to(*)
-         integer(c_int) :: status
       end function c_rename
 
       !> In C: number of the process.
-      function c_getpid() bind(c, name='getpid') result(number)
+      integer(c_int) function c_getpid() bind(c, name='getpid') result(number)
          import :: c_int
          implicit none
-         integer(c_int) :: number
       end function c_getpid
 
       !> In C: 0 if a path leads to something.
-      function c_access(path, mode) bind(c, name='access') result(status)
+      integer(c_int) function c_access(path, mode) bind(c, name='access') result(status)
          import :: c_char, c_int
          implicit none
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int), value :: mode
-         integer(c_int) :: status
       end function c_access
 
       !> In C: open a folder; a null pointer if the path is none.
-      function c_opendir(path) bind(c, name='opendir') result(folder)
+      type(c_ptr) function c_opendir(path) bind(c, name='opendir') result(folder)
          import :: c_char, c_ptr
          implicit none
          character(kind=c_char), intent(in) :: path(*)
-         type(c_ptr) :: folder
       end function c_opendir
 
       !> In C: close a folder; 0 on success.
-      function c_closedir(folder) bind(c, name='closedir') result(status)
+      integer(c_int) function c_closedir(folder) bind(c, name='closedir') result(status)
          import :: c_int, c_ptr
          implicit none
          type(c_ptr), value :: folder
-         integer(c_int) :: status
       end function c_closedir
 
       !> In C: what a symbolic link says; -1 if the path is no link.
-      function c_readlink(path, text, length) bind(c, name='readlink') result(count)
+      integer(c_size_t) function c_readlink(path, text, length) bind(c, name='readlink') result(count)
          import :: c_char, c_int, c_size_t
          implicit none
          character(kind=c_char), intent(in) :: path(*)
          character(kind=c_char), intent(out) :: text(*)
          integer(c_size_t), value :: length
-         integer(c_size_t) :: count
       end function c_readlink
 
       !> In C: the path of an existing file, without links and dots; a null pointer if there is no such file.
-      function c_realpath(path, real_path) bind(c, name='realpath') result(status)
+      type(c_ptr) function c_realpath(path, real_path) bind(c, name='realpath') result(status)
          import :: c_char, c_ptr
          implicit none
          character(kind=c_char), intent(in) :: path(*)
          character(kind=c_char), intent(out) :: real_path(*)
-         type(c_ptr) :: status
       end function c_realpath
    end interface
 

@@ -160,12 +160,11 @@ contains
 
    !> Read what is there, and wait if there is nothing yet: the number of bytes, 0 at the end, or
    !> `nobody_writes` or `cannot_read`.
-   function read_some(descriptor, text, at_start) result(count)
+   integer(c_size_t) function read_some(descriptor, text, at_start) result(count)
       integer(c_int), intent(in) :: descriptor
       character(len=*), intent(inout) :: text
       !> Whether nothing has been read before: a pipe may still be waiting for its writer
       logical, intent(in) :: at_start
-      integer(c_size_t) :: count
       type(poll_type) :: what
       integer(c_int) :: ready
       integer :: failures
@@ -248,8 +247,9 @@ contains
       !> `number_ok`, `number_wrong`, or `number_not_finite` for NaN, infinity and overflow
       integer, intent(out) :: status
       integer(int64) :: mantissa
-      integer :: i, digit, digits, power, exponent, sign_of_power, first
-      logical :: point, in_exponent, exact
+      integer :: i, digit, digits, power, exponent, sign_of_power, first, ios
+      logical :: point, in_exponent, exact, stops
+      character(len=12) :: form
 
       value = 0.0_wp
       status = number_wrong
@@ -303,32 +303,19 @@ contains
          if (power < 0) value = value/10.0_wp**(-power)
          if (word(1:1) == '-') value = -value
       else if (exponent < 2*most_digits) then
-         call read_by_library(word, value, status)
+         ! The nearest number. One that is too large must not end a program that stops on overflow.
+         call ieee_get_halting_mode(ieee_overflow, stops)
+         call ieee_set_halting_mode(ieee_overflow, .false.)
+         write (form, '(a, i0, a)') '(f', len(word), '.0)'
+         read (word, form, iostat=ios) value
+         call ieee_set_flag(ieee_overflow, .false.)
+         call ieee_set_halting_mode(ieee_overflow, stops)
+         status = number_not_finite
+         if (ios == 0) status = merge(number_ok, number_not_finite, ieee_is_finite(value))
       else if (sign_of_power > 0) then
          status = number_not_finite
       end if
    end subroutine read_real
-
-   !> The nearest number of a word that is a number.
-   subroutine read_by_library(word, value, status)
-      character(len=*), intent(in) :: word
-      real(wp), intent(out) :: value
-      integer, intent(out) :: status
-      character(len=12) :: form
-      logical :: stops
-      integer :: ios
-
-      ! A number that is too large must not end a program that stops on overflow.
-      call ieee_get_halting_mode(ieee_overflow, stops)
-      call ieee_set_halting_mode(ieee_overflow, .false.)
-      write (form, '(a, i0, a)') '(f', len(word), '.0)'
-      read (word, form, iostat=ios) value
-      call ieee_set_flag(ieee_overflow, .false.)
-      call ieee_set_halting_mode(ieee_overflow, stops)
-      status = number_not_finite
-      if (ios /= 0) return
-      if (ieee_is_finite(value)) status = number_ok
-   end subroutine read_by_library
 
    !> Whether a word is a whole number without sign that fits into an integer.
    pure logical function is_integer(word)

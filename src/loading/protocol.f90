@@ -31,7 +31,7 @@ contains
       real(wp), allocatable :: positive(:), negative(:)
       integer, allocatable :: cycles(:)
       real(wp) :: total, interval, wave
-      integer :: repeat, step, cycle, j, at, quarter
+      integer :: repeat, step, cycle, j, at, up, quarter
 
       if (spec%protocol /= '') then
          call named_protocol(spec%protocol, spec%reference, spec%largest, positive, cycles, error)
@@ -61,7 +61,9 @@ contains
          do step = 1, size(cycles)
             do cycle = 1, cycles(step)
                do j = 1, 4*quarter
-                  wave = triangle(j, quarter)
+                  ! The triangle wave of unit amplitude, exact at its peaks and zeros
+                  up = merge(2*quarter - j, j, j > quarter)
+                  wave = real(merge(j - 4*quarter, up, j > 3*quarter), wp)/quarter
                   ! Zero has no sign.
                   value(at + j) = merge(positive(step), negative(step), wave > 0.0_wp)*wave + 0.0_wp
                end do
@@ -86,16 +88,5 @@ contains
          si = to_si(si, unit_named(units_of(spec%drive), spec%unit))
       end if
    end function si_amplitude
-
-   !> The triangle wave of unit amplitude after j parts of a cycle; exact at its peaks and zeros.
-   pure real(wp) function triangle(j, quarter)
-      integer, intent(in) :: j, quarter
-      integer :: up
-
-      up = j
-      if (j > quarter) up = 2*quarter - j
-      if (j > 3*quarter) up = j - 4*quarter
-      triangle = real(up, wp)/quarter
-   end function triangle
 
 end module rbs_loading_protocol

@@ -38,12 +38,11 @@ module rbs_output_channels
 contains
 
    !> The channels of a run.
-   pure function new_channels(structure, in_time, with_openings, with_motion) result(list)
+   pure type(channel_list) function new_channels(structure, in_time, with_openings, with_motion) result(list)
       class(structure_type), intent(in) :: structure
       !> Whether the analysis is one in time; whether openings of layered joints, and how the top moves, are
       !> to be kept
       logical, intent(in) :: in_time, with_openings, with_motion
-      type(channel_list) :: list
       type(channel_type), allocatable :: channel(:)
 
       list%contents = row_contents(in_time, with_openings, in_time .and. with_motion)
@@ -96,9 +95,8 @@ contains
    end subroutine get_labels
 
    !> Names of the channels in their order, each with the number of its values, or 0 for one that has none.
-   pure function names(self) result(text)
+   pure character(len=512) function names(self) result(text)
       class(channel_list), intent(in) :: self
-      character(len=512) :: text
       integer :: i
 
       text = ''

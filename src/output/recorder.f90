@@ -82,33 +82,26 @@ contains
       class(array_recorder), intent(inout) :: self
       real(wp), intent(in) :: row(:)
       type(error_type), allocatable, intent(inout) :: error
-
-      if (allocated(error)) return
-      if (self%count == self%room) call make_room(self, size(row), error)
-      if (allocated(error)) return
-      self%count = self%count + 1
-      self%rows(:, self%count) = row
-   end subroutine record
-
-   !> Room for all rows that are expected, then for twice as many: how many corners a path has is not known
-   !> before.
-   subroutine make_room(self, width, error)
-      type(array_recorder), intent(inout) :: self
-      integer, intent(in) :: width
-      type(error_type), allocatable, intent(inout) :: error
       real(wp), allocatable :: larger(:, :)
       integer :: most, status
 
-      most = max(1, self%expected, 2*self%count)
-      allocate (larger(width, most), stat=status)
-      if (status /= 0) then
-         call fatal_error(error, analysis_failed, 'memory runs out: '//to_text(most)//' rows of '// &
-                          to_text(width)//' numbers; keep fewer of them with every')
-         return
+      if (allocated(error)) return
+      if (self%count == self%room) then
+         ! Room for all rows that are expected, then for twice as many: how many corners a path has is not
+         ! known before.
+         most = max(1, self%expected, 2*self%count)
+         allocate (larger(size(row), most), stat=status)
+         if (status /= 0) then
+            call fatal_error(error, analysis_failed, 'memory runs out: '//to_text(most)//' rows of '// &
+                             to_text(size(row))//' numbers; keep fewer of them with every')
+            return
+         end if
+         self%room = most
+         if (self%count > 0) larger(:, :self%count) = self%rows
+         call move_alloc(larger, self%rows)
       end if
-      self%room = most
-      if (self%count > 0) larger(:, :self%count) = self%rows
-      call move_alloc(larger, self%rows)
-   end subroutine make_room
+      self%count = self%count + 1
+      self%rows(:, self%count) = row
+   end subroutine record
 
 end module rbs_output_recorder

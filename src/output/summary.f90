@@ -168,9 +168,8 @@ contains
    end subroutine get_figures
 
    !> How the run ended, if nothing failed.
-   pure function status(self)
+   pure character(len=13) function status(self)
       class(summary_type), intent(in) :: self
-      character(len=13) :: status
 
       status = 'completed'
       if (self%collapsed) status = 'collapsed'

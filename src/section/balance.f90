@@ -95,8 +95,7 @@ contains
    contains
 
       !> Equilibrium at next%curvature, starting from `last`: Newton's method from the extrapolated strain; if
-      !> it
-      !> does not converge nearby, the search of `settle`.
+      !> it does not converge nearby, the search of `settle`.
       subroutine find_strain(last)
          type(state_type), intent(in) :: last
          type(resultants_type) :: sums
@@ -199,9 +198,8 @@ contains
    contains
 
       !> Equilibrium between two strains with residuals of opposite sign: the Illinois form of regula falsi,
-      !> with
-      !> a bisection at every third step. Where the force jumps because a bar breaks, equilibrium lies within
-      !> the jump.
+      !> with a bisection at every third step. Where the force jumps because a bar breaks, equilibrium lies
+      !> within the jump.
       subroutine close_in(first, at_first, second, at_second)
          !> The two strains and the forces at them
          real(wp), intent(in) :: first, second

@@ -17,7 +17,7 @@ module rbs_section_cross_section
    implicit none
    private
 
-   public :: section_type, transverse_type, enclose_core, slice, steel_area, hoop_area, strips_type, &
+   public :: section_type, transverse_type, enclose_core, hoop_area, strips_type, &
              cut_strips, strip_centroids
 
    type :: strips_type
@@ -75,21 +75,6 @@ contains
                        section%core_shape)
       end associate
    end subroutine enclose_core
-
-   !> Cut the section into `count` strips.
-   pure subroutine slice(section, count)
-      type(section_type), intent(inout) :: section
-      integer, intent(in) :: count
-
-      call cut_strips(section%shape, section%core_shape, count, section%strips)
-   end subroutine slice
-
-   !> Area of all bars [m2].
-   pure real(wp) function steel_area(section)
-      type(section_type), intent(in) :: section
-
-      steel_area = sum(section%bar_area)
-   end function steel_area
 
    !> Area of one transverse bar [m2].
    elemental real(wp) function hoop_area(transverse)

@@ -12,11 +12,11 @@ module rbs_section_events
    implicit none
    private
 
-   public :: diagram_record, events_type, point_type, rule_type, find_events, check_rules, reach_moment
+   public :: points_record, diagram_record, events_type, point_type, rule_type, find_events, check_rules, &
+             reach_moment
 
    !> Rules of yield: the first bar in tension at its yield strain; that, or the extreme fibre at a strain of
    !> compression, whichever comes first (Priestley, Calvi, Kowalsky 2007: 0.002).
-   character(len=7), parameter, public :: yield_names(2) = ['tension', 'first  ']
    integer, parameter, public :: yield_tension = 1, yield_first = 2
 
    !> Rules of the ultimate point: the extreme fibre at `eps_cover`; the edge of the core at the strain of
@@ -35,26 +35,32 @@ module rbs_section_events
    real(wp), parameter :: first_step = 2.0e-5_wp, growth = 0.05_wp
 
    type :: rule_type
-      !> Places among `yield_names` and `ultimate_names`
+      !> `yield_tension` or `yield_first`, and place among `ultimate_names`
       integer :: yield = yield_tension, ultimate = ultimate_cover
       !> Strains of the extreme fibre in compression for yield 'first' and ultimate 'cover'
       real(wp) :: eps_yield = 0.002_wp, eps_cover = 0.003_wp
    end type rule_type
 
-   !> A moment-curvature diagram.
-   type, extends(visited_record) :: diagram_record
-      !> Compression positive [N]
-      real(wp) :: axial_load = 0.0_wp
-      !> One of `tension_names`
-      character(len=8) :: tension = 'ts'
+   !> What names the points of diagrams.
+   type, extends(visited_record), abstract :: points_record
       !> Whether the core is confined and the cover spalls
       logical :: confined = .false.
-      !> One of `yield_names` and of `ultimate_names`, with the strains of these rules
-      character(len=8) :: yielding = 'tension', ultimate = 'cover'
+      !> One of `ultimate_names`, and the strains of the rules
+      character(len=8) :: ultimate = 'cover'
       real(wp) :: eps_yield = 0.002_wp, eps_cover = 0.003_wp
    contains
-      procedure :: visit
+      procedure :: visit_points
       procedure :: rule
+   end type points_record
+
+   !> A moment-curvature diagram.
+   type, extends(points_record) :: diagram_record
+      !> Compression positive [N]
+      real(wp) :: axial_load = 0.0_wp
+      !> One of `tension_names`; rule of yield
+      character(len=8) :: tension = 'ts', yielding = 'tension'
+   contains
+      procedure :: visit
    end type diagram_record
 
    type :: point_type
@@ -84,20 +90,28 @@ contains
 
       call v%key('axial_load', self%axial_load, 'N', any_number, 'axial load, compression positive')
       call v%word('tension', self%tension, 'tension law of the concrete', tension_choices)
-      call v%key('confined', self%confined, 'the core is confined and the cover spalls')
       call v%word('yielding', self%yielding, 'rule of yield', 'tension first')
-      call v%word('ultimate', self%ultimate, 'rule of the ultimate point', ultimate_choices)
-      call v%key('eps_yield', self%eps_yield, '', above_zero, &
-                 'strain of the extreme fibre for yielding = first')
-      call v%key('eps_cover', self%eps_cover, '', above_zero, &
-                 'strain of the extreme fibre for ultimate = cover')
+      call self%visit_points(v)
    end subroutine visit
 
-   !> The rules of the named points; the words must be known.
-   pure type(rule_type) function rule(self)
-      class(diagram_record), intent(in) :: self
+   subroutine visit_points(self, v)
+      class(points_record), intent(inout) :: self
+      type(key_visitor), intent(inout) :: v
 
-      rule = rule_type(findloc(yield_names == self%yielding, .true., dim=1), &
+      call v%key('confined', self%confined, 'the core is confined and the cover spalls')
+      call v%word('ultimate', self%ultimate, 'rule of the ultimate point', ultimate_choices)
+      call v%key('eps_yield', self%eps_yield, '', above_zero, &
+                 'strain of the extreme fibre for the yield rule first')
+      call v%key('eps_cover', self%eps_cover, '', above_zero, &
+                 'strain of the extreme fibre for ultimate = cover')
+   end subroutine visit_points
+
+   !> The rules of the named points; the words must be known.
+   pure type(rule_type) function rule(self, yielding)
+      class(points_record), intent(in) :: self
+      character(len=*), intent(in) :: yielding
+
+      rule = rule_type(merge(yield_first, yield_tension, yielding == 'first'), &
                        findloc(ultimate_names == self%ultimate, .true., dim=1), self%eps_yield, &
                        self%eps_cover)
    end function rule

@@ -6,13 +6,12 @@
 module rbs_section_flexural_spring
    use rbs_base_constants, only: unset
    use rbs_base_error, only: error_type, fatal_error, bad_input
-   use rbs_base_key_visitor, only: key_visitor, visited_record
+   use rbs_base_key_visitor, only: key_visitor
    use rbs_base_keys, only: above_zero, any_number, not_negative
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_section_concrete_law, only: tension_bare, tension_ts
-   use rbs_section_events, only: events_type, point_type, rule_type, find_events, reach_moment, &
-                                 ultimate_choices, ultimate_names, yield_first, yield_tension
+   use rbs_section_events, only: events_type, point_type, points_record, find_events, reach_moment
    use rbs_section_resultants, only: laws_type, section_laws
    use rbs_section_cross_section, only: section_type
    use rbs_base_check, only: is_given
@@ -26,7 +25,7 @@ module rbs_section_flexural_spring
       'k_c', 'd_c', 'k_y', 'd_y', 'k_u', 'b0', 'b1', 'k_u_found', 'hinge_length', 'd_m']
 
    !> How the spring is read from the diagrams.
-   type, extends(visited_record) :: hinge_record
+   type, extends(points_record) :: hinge_record
       !> From the base to the point of contraflexure [m], axial load, compression positive [N]
       real(wp) :: length = unset, axial_load = unset
       !> Hinge length [m]; `unset`: by the formula above
@@ -34,18 +33,12 @@ module rbs_section_flexural_spring
       !> Yield of the bare diagram (A); its moment on the diagram with tension stiffening (B); or
       !> `yield_first` (first)
       character(len=8) :: yield_rule = 'A'
-      !> One of `ultimate_names`, and the strains of the rules
-      character(len=8) :: ultimate = 'cover'
-      real(wp) :: eps_yield = 0.002_wp, eps_cover = 0.003_wp
-      !> Confined core and spalling cover
-      logical :: confined = .false.
       !> Factor of M_y and M_u for the shear that acts with the moment
       real(wp) :: moment_factor = 1.0_wp
       !> Exponent B_0, and rotation D_m at which eq 7 is taken for B_1 [rad]; `unset`: the ultimate one
       real(wp) :: b0 = 0.4_wp, d_m = unset
    contains
       procedure :: visit
-      procedure :: rule
    end type hinge_record
 
    type :: flexural_spring_type
@@ -72,27 +65,13 @@ contains
       call v%key('hinge_length', self%hinge_length, 'm', above_zero, &
                  'length of the hinge; without it 0.08 L + 0.022 f_y d_b (MPa)', optional=.true.)
       call v%word('yield_rule', self%yield_rule, 'how the yield rotation is read', 'A B first')
-      call v%word('ultimate', self%ultimate, 'rule of the ultimate point', ultimate_choices)
-      call v%key('eps_yield', self%eps_yield, '', above_zero, &
-                 'strain of the extreme fibre for yield_rule = first')
-      call v%key('eps_cover', self%eps_cover, '', above_zero, &
-                 'strain of the extreme fibre for ultimate = cover')
-      call v%key('confined', self%confined, 'the core is confined and the cover spalls')
+      call self%visit_points(v)
       call v%key('moment_factor', self%moment_factor, '', above_zero, &
                  'factor of the yield and ultimate moments')
       call v%key('b0', self%b0, '', not_negative, 'exponent of the unloading stiffness')
       call v%key('d_m', self%d_m, 'rad', above_zero, 'rotation for B_1; without it the ultimate one', &
                  optional=.true.)
    end subroutine visit
-
-   !> The rules of the named points; the words must be known.
-   pure type(rule_type) function rule(self)
-      class(hinge_record), intent(in) :: self
-
-      rule = rule_type(merge(yield_first, yield_tension, self%yield_rule == 'first'), &
-                       findloc(ultimate_names == self%ultimate, .true., dim=1), self%eps_yield, &
-                       self%eps_cover)
-   end function rule
 
    !> Fit the spring.
    subroutine fit_flexural_spring(section, hinge, spring, error)
@@ -102,13 +81,14 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(laws_type) :: stiffened, bare
       type(events_type) :: with_stiffening, without
+      type(point_type) :: point
 
       stiffened = section_laws(section, tension_ts, hinge%confined)
       bare = section_laws(section, tension_bare, hinge%confined)
-      call find_events(section, stiffened, hinge%axial_load, hinge%rule(), with_stiffening, error, &
-                       only_cracking=.true.)
+      call find_events(section, stiffened, hinge%axial_load, hinge%rule(hinge%yield_rule), with_stiffening, &
+                       error, only_cracking=.true.)
       if (allocated(error)) return
-      call find_events(section, bare, hinge%axial_load, hinge%rule(), without, error)
+      call find_events(section, bare, hinge%axial_load, hinge%rule(hinge%yield_rule), without, error)
       if (allocated(error)) return
       spring%cracking = with_stiffening%cracking
       spring%yield = without%yield
@@ -116,8 +96,12 @@ contains
       spring%peak = without%peak
       call check_points(hinge%axial_load)
       if (allocated(error)) return
-      if (hinge%yield_rule == 'B') call stiffen_yield(stiffened)
-      if (allocated(error)) return
+      if (hinge%yield_rule == 'B') then
+         ! The yield moment of the bare diagram on the one with tension stiffening
+         call reach_moment(section, stiffened, hinge%axial_load, spring%yield%moment, point, error)
+         if (allocated(error)) return
+         if (point%found) spring%yield = point
+      end if
       call draw_line()
 
    contains
@@ -151,16 +135,6 @@ contains
                              to_text(spring%cracking%curvature)//' 1/m; the trilinear line does not apply')
          end if
       end subroutine check_points
-
-      !> Yield rule B: the yield moment of the bare diagram on the one with tension stiffening.
-      subroutine stiffen_yield(laws)
-         type(laws_type), intent(in) :: laws
-         type(point_type) :: point
-
-         call reach_moment(section, laws, hinge%axial_load, spring%yield%moment, point, error)
-         if (allocated(error)) return
-         if (point%found) spring%yield = point
-      end subroutine stiffen_yield
 
       !> The line through the three points, in rotations.
       subroutine draw_line()

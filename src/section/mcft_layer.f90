@@ -154,8 +154,7 @@ contains
    contains
 
       !> Newton's method; a step that does not reduce the residual is halved. A state at which the stress
-      !> falls
-      !> with the strain is not accepted. Without success the state is unchanged.
+      !> falls with the strain is not accepted. Without success the state is unchanged.
       pure subroutine iterate(eps_x, tau, state, found)
          real(wp), intent(in) :: eps_x, tau
          type(layer_state), intent(inout) :: state
@@ -281,8 +280,7 @@ contains
       !> Given eps_1: eps_2 <= eps_x of the state with sigma_z = 0, and its shear stress.
       !>
       !> (1 - c)/2 = (eps_1 - eps_x)/(eps_1 - eps_2) and eps_z = eps_1 + eps_2 - eps_x: sigma_z, not negative
-      !> at
-      !> eps_2 = eps_x, falls to zero as eps_2 decreases.
+      !> at eps_2 = eps_x, falls to zero as eps_2 decreases.
       pure subroutine balance(eps_1, eps_2, tau, balanced)
          real(wp), intent(in) :: eps_1
          real(wp), intent(out) :: eps_2, tau

@@ -54,23 +54,21 @@ contains
       integer :: i, cut
 
       cut = cut_strip(section, laws, eps0, curvature)
-      associate (strips => section%strips)
-         do i = 1, size(strips%y)
-            if (i == cut) cycle
-            strain = eps0 - curvature*strips%y(i)
-            call concrete_both(laws%shell, strain, stress, tangent)
-            force = stress*strips%area(i)
-            stiffness = tangent*strips%area(i)
-            if (laws%confined .and. strips%core_area(i) > 0.0_wp) then
-               call concrete_both(laws%core, strain, stress_core, tangent_core)
-               force = force + (stress_core - stress)*strips%core_area(i)
-               stiffness = stiffness + (tangent_core - tangent)*strips%core_area(i)
-            end if
-            sums%n = sums%n + force
-            sums%m = sums%m - force*strips%y(i)
-            sums%stiffness = sums%stiffness + stiffness
-         end do
-      end associate
+      do i = 1, size(section%strips%y)
+         if (i == cut) cycle
+         strain = eps0 - curvature*section%strips%y(i)
+         call concrete_both(laws%shell, strain, stress, tangent)
+         force = stress*section%strips%area(i)
+         stiffness = tangent*section%strips%area(i)
+         if (laws%confined .and. section%strips%core_area(i) > 0.0_wp) then
+            call concrete_both(laws%core, strain, stress_core, tangent_core)
+            force = force + (stress_core - stress)*section%strips%core_area(i)
+            stiffness = stiffness + (tangent_core - tangent)*section%strips%core_area(i)
+         end if
+         sums%n = sums%n + force
+         sums%m = sums%m - force*section%strips%y(i)
+         sums%stiffness = sums%stiffness + stiffness
+      end do
       if (cut > 0) call add_cut_strip(cut, sums)
       call add_bars(sums)
 

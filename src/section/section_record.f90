@@ -115,9 +115,8 @@ contains
    end subroutine visit_hoops
 
    !> Name of the group that the hoops come from.
-   pure function name_of_hoops(self) result(name)
+   pure character(len=6) function name_of_hoops(self) result(name)
       class(hoops_record), intent(in) :: self
-      character(len=6) :: name
 
       name = merge('ties  ', 'spiral', self%kind == ties)
    end function name_of_hoops

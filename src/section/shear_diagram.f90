@@ -15,7 +15,7 @@ module rbs_section_shear_diagram
    use rbs_section_concrete_law, only: tension_choices, tension_place
    use rbs_section_mcft_layer, only: layer_type, layer_state, solve_layer
    use rbs_section_resultants, only: section_laws
-   use rbs_section_cross_section, only: section_type, slice
+   use rbs_section_cross_section, only: section_type, cut_strips
    use rbs_section_shear_flow, only: flow_type, begin_flow, shear_stresses, transverse_ratio, couple
    implicit none
    private
@@ -161,7 +161,7 @@ contains
          model%axial_load = asked%axial_load
          model%coupled = asked%coupled
          model%flow%section = section
-         call slice(model%flow%section, asked%layers)
+         call cut_strips(section%shape, section%core_shape, asked%layers, model%flow%section%strips)
          model%flow%laws = section_laws(section, tension_place(asked%tension), asked%confined)
          model%flow%span = asked%length
          allocate (model%layers(asked%layers), state%layers(asked%layers))

@@ -77,19 +77,17 @@ contains
       real(wp) :: along, gained, share
       integer :: i, j
 
-      associate (section => flow%section, strips => flow%section%strips)
-         along = 0.0_wp
-         do i = 1, size(tau)
-            gained = concrete_force(i) - flow%concrete_force(i)
-            tau(i) = along + 0.5_wp*gained
-            along = along + gained
-            do j = 1, size(bar_force)
-               share = (strips%y(i) - section%bar_y(j))/strips%dy + 0.5_wp
-               tau(i) = tau(i) + (bar_force(j) - flow%bar_force(j))*min(max(share, 0.0_wp), 1.0_wp)
-            end do
-            tau(i) = tau(i)/flow%span*strips%dy/strips%area(i)
+      along = 0.0_wp
+      do i = 1, size(tau)
+         gained = concrete_force(i) - flow%concrete_force(i)
+         tau(i) = along + 0.5_wp*gained
+         along = along + gained
+         do j = 1, size(bar_force)
+            share = (flow%section%strips%y(i) - flow%section%bar_y(j))/flow%section%strips%dy + 0.5_wp
+            tau(i) = tau(i) + (bar_force(j) - flow%bar_force(j))*min(max(share, 0.0_wp), 1.0_wp)
          end do
-      end associate
+         tau(i) = tau(i)/flow%span*flow%section%strips%dy/flow%section%strips%area(i)
+      end do
    end subroutine stresses_of_forces
 
    !> Forces of the concrete of each layer, and of each bar less the concrete it displaces [N].

@@ -28,9 +28,8 @@ module rbs_structure_spring_place
 contains
 
    !> Which spring it is, for messages: 'the shear spring of joint 3'.
-   pure function spring_name(place) result(name)
+   pure character(len=80) function spring_name(place) result(name)
       type(spring_place), intent(in) :: place
-      character(len=80) :: name
       character(len=9), parameter :: kinds(4) = ['shear    ', 'flexural ', 'axial    ', 'layer    ']
       character(len=12) :: joint
 

@@ -39,21 +39,17 @@ module rbs_structure_structure
    !> Unknowns of one kind and the springs whose forces are of that kind: forces, moments, vertical forces.
    !> Both are slices of their arrays; that of the unknowns is told by first, count and step.
    type :: unknown_group
-      integer :: first = 1, count = 0, step = 1
-      integer :: first_spring = 1, last_spring = 0
+      integer :: first = 1, count = 0, step = 1, first_spring = 1, last_spring = 0
       !> Largest force of the group per lateral force
       real(wp) :: lateral_arm = 0.0_wp
    end type unknown_group
 
    type, abstract :: structure_type
-      !> Number of unknowns, and of diagonals of the stiffness beside the main one
-      integer :: unknowns = 0, half_width = 0
-      !> Number of bodies; those that are held count too
-      integer :: n = 0
-      !> `small`, `pdelta` or `finite`
-      integer :: kinematics = small
-      !> Number of storeys whose drifts are known
-      integer :: storeys = 0
+      !> Number of unknowns, and of diagonals of the stiffness beside the main one; number of bodies; those
+      !> that are held count too
+      integer :: unknowns = 0, half_width = 0, n = 0
+      !> `small`, `pdelta` or `finite`; number of storeys whose drifts are known
+      integer :: kinematics = small, storeys = 0
       !> Lengths of the bodies (n) [m]
       real(wp), allocatable :: length(:)
       !> Height that drifts are in proportion to, and that of the top above the ground [m]
@@ -77,10 +73,9 @@ module rbs_structure_structure
       real(wp), allocatable :: arm(:)
       !> The spring whose force is the base shear; 0: `base_force` tells it
       integer :: base_spring = 0
-      !> Axial load at the top that is there from the start, compression positive [N]
-      real(wp) :: axial_load = 0.0_wp
-      !> Change of the axial load at the top per lateral force on a static path
-      real(wp) :: axial_force_ratio = 0.0_wp
+      !> Axial load at the top that is there from the start, compression positive [N]; change of the axial
+      !> load at the top per lateral force on a static path
+      real(wp) :: axial_load = 0.0_wp, axial_force_ratio = 0.0_wp
       !> Whether a constant axial force does second-order work, from the load or from the weight
       logical :: axially_loaded = .false.
       !> Damping in proportion to the mass [1/s] and to the stiffness of the springs [s], the initial one

@@ -7,10 +7,9 @@ module test_section
    use rbs_section_balance, only: follow
    use rbs_section_concrete_law, only: concrete_both, concrete_stress, concrete_type, confined_concrete, &
                                        plain_concrete, spalling_concrete, tension_zero
-   use rbs_section_confinement, only: volumetric_ratio
+   use rbs_section_section_build, only: build_section, volumetric_ratio
    use rbs_section_resultants, only: section_laws
    use rbs_section_cross_section, only: section_type, ties
-   use rbs_section_section_build, only: build_section
    use rbs_section_shape, only: new_shape
    use rbs_section_steel_law, only: steel_type
    implicit none

@@ -9,7 +9,7 @@ module test_shear
    use rbs_section_concrete_law, only: plain_concrete, tension_ts
    use rbs_section_mcft_layer, only: layer_state, layer_stress, layer_type, solve_layer, stress_of_state
    use rbs_section_resultants, only: section_laws
-   use rbs_section_cross_section, only: section_type, slice, spiral, ties
+   use rbs_section_cross_section, only: section_type, cut_strips, spiral, ties
    use rbs_section_section_build, only: build_section
    use rbs_section_shape, only: new_shape, shape_names
    use rbs_section_shear_diagram, only: follow_shear, shear_diagram_type, shear_record
@@ -346,7 +346,7 @@ contains
       integer :: i
 
       flow%section = sample_section()
-      call slice(flow%section, 80)
+      call cut_strips(flow%section%shape, flow%section%core_shape, 80, flow%section%strips)
       flow%laws = section_laws(flow%section, tension_ts, .false.)
       flow%span = long
       allocate (layers(80), states(80))

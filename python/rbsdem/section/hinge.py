@@ -86,7 +86,7 @@ def cut(
     The strips are those of the Fortran part (`src/section/cross_section.f90`). The confinement is
     that of Mander, Priestley and Park (1988), ASCE Journal of Structural Engineering 114(8), as the
     layered hinge takes it: the confining stress of the direction of loading alone, and the bars
-    that the legs hold spread evenly around the core. `src/section/confinement.f90`, which the
+    that the legs hold spread evenly around the core. `src/section/section_build.f90`, which the
     moment-curvature diagram uses, takes the mean of both directions and the arches between the bars
     of each face. For a spiral the two differ only in the cap on the share of the bars (8 % here,
     50 % there), and single round hoops count as a spiral here. They stay apart because the

@@ -37,7 +37,7 @@ contains
       type(layer_fall), intent(out) :: fall
       type(fibre_section) :: copy
       real(wp) :: begin, gain, most, work, step, next, scale
-      integer :: event, i, way
+      integer :: event, branches, i, way
 
       copy = section
       way = section%failure_way
@@ -48,7 +48,14 @@ contains
       most = 0.0_wp
       work = 0.0_wp
       do event = 1, 1000 + 1000*copy%count
-         call go_on(copy, way)
+         ! Every layer on the branch on which it goes on.
+         do i = 1, copy%count
+            do branches = 1, most_branches
+               if (.not. copy%must_leave(i, way)) exit
+               call copy%leave(i, way)
+            end do
+         end do
+         call copy%sum_up()
          ! What the layers carry beyond the load; it grows with their stiffness.
          gain = way*(tension(copy, 0.0_wp) + copy%axial_load)
          step = no_step
@@ -75,21 +82,6 @@ contains
       end do
       fall%capacity = fall%axial_load - way*most
    end subroutine find_fall
-
-   !> Put every layer on the branch on which it goes on in a direction.
-   subroutine go_on(copy, way)
-      type(fibre_section), intent(inout) :: copy
-      integer, intent(in) :: way
-      integer :: i, branches
-
-      do i = 1, copy%count
-         do branches = 1, most_branches
-            if (.not. copy%must_leave(i, way)) exit
-            call copy%leave(i, way)
-         end do
-      end do
-      call copy%sum_up()
-   end subroutine go_on
 
    !> Force of the layers, tension positive, a way beyond the present opening [N].
    pure real(wp) function tension(copy, further)

@@ -100,8 +100,8 @@ contains
       type(fibre_section), intent(inout) :: self
       !> Rates of the rotation [rad] and of the axial load [N]
       real(wp), intent(in) :: turn, press
-      real(wp) :: least_room
-      integer :: pass
+      real(wp) :: least_room, least_rate, room, v
+      integer :: pass, i
 
       self%failed = .false.
       self%turn = turn
@@ -116,7 +116,17 @@ contains
             call set_ends(self)
             return
          end if
-         call leave_all(self)
+         ! All layers without room leave their branches.
+         least_rate = self%least_rate(self%open, self%turn)
+         room = self%room_in_digits()
+         do i = 1, self%count
+            v = self%open + self%y(i)*self%turn
+            if (abs(v) <= least_rate) cycle
+            if (self%unload_on_reversal(i)*v < 0.0_wp .or. self%ahead(i)*abs(v) <= room + self%slack(i)) then
+               call self%leave(i, merge(1, -1, v > 0.0_wp))
+            end if
+         end do
+         call self%sum_up()
       end do
       call weigh_both_ways(self)
       if (self%failed) return
@@ -142,24 +152,6 @@ contains
       call self%leave(i, way)
       call self%sum_up()
    end subroutine leave_end
-
-   !> All layers without room leave their branches.
-   subroutine leave_all(self)
-      type(fibre_section), intent(inout) :: self
-      real(wp) :: v, least, room
-      integer :: i
-
-      least = self%least_rate(self%open, self%turn)
-      room = self%room_in_digits()
-      do i = 1, self%count
-         v = self%open + self%y(i)*self%turn
-         if (abs(v) <= least) cycle
-         if (self%unload_on_reversal(i)*v < 0.0_wp .or. self%ahead(i)*abs(v) <= room + self%slack(i)) then
-            call self%leave(i, merge(1, -1, v > 0.0_wp))
-         end if
-      end do
-      call self%sum_up()
-   end subroutine leave_all
 
    !> Ways of all layers to the ends of their branches.
    pure subroutine look_ahead(self, least_room)

@@ -215,13 +215,17 @@ contains
       integer, intent(in) :: way
 
       if (self%marked) then
-         if (.not. self%is_kept(i)) call keep(self, i)
+         if (.not. self%is_kept(i)) then
+            self%is_kept(i) = .true.
+            self%number_kept = self%number_kept + 1
+            self%kept(self%number_kept) = i
+            self%kept_branch(self%number_kept) = self%branch(i)
+            call copy_memory(self%slot(i), self%kept_slot(i))
+         end if
       end if
-      associate (branch => self%branch(i))
-         if (branch%unload_on_reversal > 0) branch%lo = self%deformation(i)
-         if (branch%unload_on_reversal < 0) branch%hi = self%deformation(i)
-         call self%rule(self%rule_of(i))%rule%next(self%slot(i)%memory, branch, way)
-      end associate
+      if (self%branch(i)%unload_on_reversal > 0) self%branch(i)%lo = self%deformation(i)
+      if (self%branch(i)%unload_on_reversal < 0) self%branch(i)%hi = self%deformation(i)
+      call self%rule(self%rule_of(i))%rule%next(self%slot(i)%memory, self%branch(i), way)
       call put_branch(self, i)
       if (i == self%on_end) self%on_end = 0
    end subroutine leave
@@ -391,18 +395,6 @@ contains
       self%number_kept = 0
       self%marked = .false.
    end subroutine forget
-
-   !> Save a layer before it changes its branch for the first time.
-   subroutine keep(self, i)
-      type(fibre_section), intent(inout) :: self
-      integer, intent(in) :: i
-
-      self%is_kept(i) = .true.
-      self%number_kept = self%number_kept + 1
-      self%kept(self%number_kept) = i
-      self%kept_branch(self%number_kept) = self%branch(i)
-      call copy_memory(self%slot(i), self%kept_slot(i))
-   end subroutine keep
 
    !> Save a layer before it tries a way.
    subroutine save_layer(self, i)

@@ -50,9 +50,7 @@ contains
       real(wp) :: k(size(self%y))
       integer :: i
 
-      do i = 1, size(k)
-         k(i) = self%rule(self%rule_of(i))%rule%initial_stiffness*self%weight(i)
-      end do
+      k = [(self%rule(self%rule_of(i))%rule%initial_stiffness*self%weight(i), i=1, size(k))]
       self%initial_stiffness = sum(k*(self%y - sum(k*self%y)/sum(k))**2)
    end subroutine prepare
 

@@ -105,16 +105,14 @@ contains
             if (self%last == 0 .or. d > self%d(self%last)) call self%add_corner(d, f)
             slope = hardening
          end if
-         associate (from_d => self%d(self%last), from_f => self%f(self%last))
-            d_x = (f_zero - from_f + slope*from_d)/(slope - softening)
-            ! Without deterioration the cap must equal that of the user to the last bit.
-            if (self%strength >= 1.0_wp .and. self%softening >= 1.0_wp) d_x = b%d_cap
-            f = limit(d_x)
-            if (d_x > d_res) then
-               f = b%f_res
-               if (slope > 0.0_wp) d_x = from_d + (f - from_f)/slope
-            end if
-         end associate
+         d_x = (f_zero - self%f(self%last) + slope*self%d(self%last))/(slope - softening)
+         ! Without deterioration the cap must equal that of the user to the last bit.
+         if (self%strength >= 1.0_wp .and. self%softening >= 1.0_wp) d_x = b%d_cap
+         f = limit(d_x)
+         if (d_x > d_res) then
+            f = b%f_res
+            if (slope > 0.0_wp) d_x = self%d(self%last) + (f - self%f(self%last))/slope
+         end if
          if (self%strength >= 1.0_wp .and. self%softening >= 1.0_wp) f = b%f_cap
          if (d_x > self%d(self%last)) call self%add_corner(d_x, f)
          if (d_res > d_x) call self%add_corner(d_res, b%f_res)
@@ -137,16 +135,14 @@ contains
       type(backbone_parameters), intent(in) :: given
       real(wp) :: f
 
-      associate (d_u => given%d_u)
-         f = self%force(d_u)
-         if (.not. f > 0.0_wp) return
-         do while (self%last > 0)
-            if (self%d(self%last) < d_u) exit
-            self%last = self%last - 1
-         end do
-         call self%add_corner(d_u, f)
-         call self%add_corner(d_u + f*(given%d_y/given%f_y), 0.0_wp)
-      end associate
+      f = self%force(given%d_u)
+      if (.not. f > 0.0_wp) return
+      do while (self%last > 0)
+         if (self%d(self%last) < given%d_u) exit
+         self%last = self%last - 1
+      end do
+      call self%add_corner(given%d_u, f)
+      call self%add_corner(given%d_u + f*(given%d_y/given%f_y), 0.0_wp)
    end subroutine end_at_rupture
 
    pure subroutine add_corner(self, d, f)

@@ -131,15 +131,13 @@ contains
       type(segment), intent(out) :: branch
       integer :: s
 
-      associate (now => memory%now)
-         do s = -1, 1, 2
-            call now%backbone(s)%draw(self%given(s))
-            ! An untouched side reloads toward cracking or yield.
-            now%peak(s) = self%given(s)%d_c
-            if (.not. now%peak(s) > 0.0_wp) now%peak(s) = self%given(s)%d_y
-         end do
-         branch = virgin_branch(self, now, 1)
-      end associate
+      do s = -1, 1, 2
+         call memory%now%backbone(s)%draw(self%given(s))
+         ! An untouched side reloads toward cracking or yield.
+         memory%now%peak(s) = self%given(s)%d_c
+         if (.not. memory%now%peak(s) > 0.0_wp) memory%now%peak(s) = self%given(s)%d_y
+      end do
+      branch = virgin_branch(self, memory%now, 1)
    end subroutine start
 
    !> The elastic line of a side; of both if they have the same slope.
@@ -270,17 +268,15 @@ contains
       subroutine end_excursion(zero)
          real(wp), intent(in) :: zero
 
-         associate (s => now%side)
-            if (now%yielded) now%dissipated(s) = now%dissipated(s) + (now%work - now%work_at_zero)
-            now%work_at_zero = now%work
-            call turns_of(-s)%fade(now%turned%at%d)
-            ! A turn behind others that were closed takes their place.
-            now%turns = now%turns + 1_int64
-            now%turned%number = min(now%closed, now%turns)
-            call turns_of(s)%push(now%turned)
-            now%way_back = now%turned%at%d - now%entered
-            call enter(-s, zero)
-         end associate
+         if (now%yielded) now%dissipated(now%side) = now%dissipated(now%side) + (now%work - now%work_at_zero)
+         now%work_at_zero = now%work
+         call turns_of(-now%side)%fade(now%turned%at%d)
+         ! A turn behind others that were closed takes their place.
+         now%turns = now%turns + 1_int64
+         now%turned%number = min(now%closed, now%turns)
+         call turns_of(now%side)%push(now%turned)
+         now%way_back = now%turned%at%d - now%entered
+         call enter(-now%side, zero)
       end subroutine end_excursion
 
       !> Without force the motion goes toward side s, which deteriorates.
@@ -288,7 +284,7 @@ contains
          integer, intent(in) :: s
          !> Where the force is zero [m or rad]
          real(wp), intent(in) :: zero
-         real(wp) :: least
+         real(wp) :: least, k
 
          now%side = s
          now%begun = point(zero, 0.0_wp)
@@ -296,7 +292,9 @@ contains
          if (self%deterioration%acts() .or. self%hinge_work > 0.0_wp) call deteriorate(s)
          now%start_at = s*zero
          if (self%slips) then
-            least = least_start(s)
+            ! At a share of the permanent deformation, where unloading from the peak ends
+            k = virgin_unloading(s, now%peak(s))*stiffness_left(now%worn)
+            least = self%slip*max(now%peak(s) - now%backbone(s)%force(now%peak(s))/k, 0.0_wp)
             now%start_at = max(now%start_at, least)
             call find_turns(s, least)
          else
@@ -472,16 +470,6 @@ contains
             end if
          end associate
       end subroutine deteriorate
-
-      !> Where reloading of a part that slips starts at least: at a share of the permanent deformation, where
-      !> unloading from the peak ends.
-      real(wp) function least_start(s)
-         integer, intent(in) :: s
-         real(wp) :: k
-
-         k = virgin_unloading(s, now%peak(s))*stiffness_left(now%worn)
-         least_start = self%slip*max(now%peak(s) - now%backbone(s)%force(now%peak(s))/k, 0.0_wp)
-      end function least_start
 
       !> Put the open turns of a side on the lines as they are now.
       subroutine find_turns(s, least)

@@ -165,7 +165,11 @@ contains
             call unload()
          case (opening)
             call widen(c)
-            call close_up(c)
+            ! The line of zero force while the crack closes, until the faces touch
+            now%kind = closing
+            branch = chord(c, 0.0_wp, now%c_p - now%gap, 0.0_wp)
+            ! Openings are added up only if they have an effect.
+            if (self%wear > 0.0_wp) call set_unloading(branch)
          case (releasing, parting)
             call rub(c, f)
          case (between)
@@ -402,16 +406,6 @@ contains
          now%c_opened = c
          branch = segment(d0=-c, lo=-c, hi=unbounded, includes_lower_end=.true., unload_on_reversal=1)
       end subroutine open_up
-
-      !> The line of zero force while the crack closes, from the closing c until the faces touch.
-      subroutine close_up(c)
-         real(wp), intent(in) :: c
-
-         now%kind = closing
-         branch = chord(c, 0.0_wp, now%c_p - now%gap, 0.0_wp)
-         ! Openings are added up only if they have an effect.
-         if (self%wear > 0.0_wp) call set_unloading(branch)
-      end subroutine close_up
 
       !> The crack has opened to a closing c: the wider it was, the earlier its faces touch, and the
       !> strength falls with the way. There is no force, so neither is felt at once.

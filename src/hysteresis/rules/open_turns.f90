@@ -167,11 +167,9 @@ contains
       integer :: i
 
       do i = 1, self%count
-         associate (now => self%list(i))
-            if (d <= now%fades_from) cycle
-            now%start = now%start + rate*(d - now%fades_from)
-            now%fades_from = d
-         end associate
+         if (d <= self%list(i)%fades_from) cycle
+         self%list(i)%start = self%list(i)%start + rate*(d - self%list(i)%fades_from)
+         self%list(i)%fades_from = d
       end do
    end subroutine fade
 

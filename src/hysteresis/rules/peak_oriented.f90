@@ -58,26 +58,24 @@ contains
       class(peak_oriented_rule), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
 
-      associate (part => self%part(1))
-         call part%given(1)%visit(v, negative=.false.)
-         call v%key('b0', part%b0, '', bound_type(0.0_wp, 1.0_wp), &
-                    'exponent of the unloading stiffness over ductility')
-         call v%key('lambda_s', self%lambda(1), '', not_negative, &
-                    'energy over f_y d_y that deterioration of the strength lasts for; 0: none')
-         call v%key('lambda_c', self%lambda(2), '', not_negative, &
-                    'the same for the softening line behind the cap')
-         call v%key('lambda_k', self%lambda(3), '', not_negative, 'the same for the unloading stiffness')
-         call v%key('lambda_a', self%lambda(4), '', not_negative, 'the same for the target of reloading')
-         call v%key('c', part%deterioration%c, '', bound_type(1.0_wp, 2.0_wp, reason=range_of_source), &
-                    'exponent of deterioration')
-         call v%key('lambda_h', self%lambda_h, '', not_negative, 'energy dissipated in the hinge, in f_y '// &
-                    'd_y, after which half of what can be lost is lost; 0: none')
-         call v%key('s_min', part%s_min, '', share_below_one, &
-                    'share of the strength that stays, whatever the flexural spring has done')
-         call v%key('fade', part%deterioration%fade, '', bound_type(0.0_wp, 4.0_wp), &
-                    'strength falls ever more slowly, its rate as its power fade; 0: evenly, to nothing')
-         call part%given(-1)%visit(v, negative=.true.)
-      end associate
+      call self%part(1)%given(1)%visit(v, negative=.false.)
+      call v%key('b0', self%part(1)%b0, '', bound_type(0.0_wp, 1.0_wp), &
+                 'exponent of the unloading stiffness over ductility')
+      call v%key('lambda_s', self%lambda(1), '', not_negative, &
+                 'energy over f_y d_y that deterioration of the strength lasts for; 0: none')
+      call v%key('lambda_c', self%lambda(2), '', not_negative, &
+                 'the same for the softening line behind the cap')
+      call v%key('lambda_k', self%lambda(3), '', not_negative, 'the same for the unloading stiffness')
+      call v%key('lambda_a', self%lambda(4), '', not_negative, 'the same for the target of reloading')
+      call v%key('c', self%part(1)%deterioration%c, '', bound_type(1.0_wp, 2.0_wp, reason=range_of_source), &
+                 'exponent of deterioration')
+      call v%key('lambda_h', self%lambda_h, '', not_negative, 'energy dissipated in the hinge, in f_y '// &
+                 'd_y, after which half of what can be lost is lost; 0: none')
+      call v%key('s_min', self%part(1)%s_min, '', share_below_one, &
+                 'share of the strength that stays, whatever the flexural spring has done')
+      call v%key('fade', self%part(1)%deterioration%fade, '', bound_type(0.0_wp, 4.0_wp), &
+                 'strength falls ever more slowly, its rate as its power fade; 0: evenly, to nothing')
+      call self%part(1)%given(-1)%visit(v, negative=.true.)
    end subroutine visit
 
    subroutine prepare(self)
@@ -127,12 +125,10 @@ contains
       ! Otherwise errors of the positive side would be reported twice.
       if (messages%count == known) call self%part(1)%given(-1)%check(name, '_neg', messages)
       if (messages%count > known) return
-      associate (law => self%part(1)%deterioration)
-         call check_capacity(law%strength, 'lambda_s')
-         call check_capacity(law%softening, 'lambda_c')
-         call check_capacity(law%unloading, 'lambda_k')
-         call check_capacity(law%target, 'lambda_a')
-      end associate
+      call check_capacity(self%part(1)%deterioration%strength, 'lambda_s')
+      call check_capacity(self%part(1)%deterioration%softening, 'lambda_c')
+      call check_capacity(self%part(1)%deterioration%unloading, 'lambda_k')
+      call check_capacity(self%part(1)%deterioration%target, 'lambda_a')
 
    contains
 

@@ -122,6 +122,7 @@ contains
       class(steel_rule), intent(inout) :: self
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
+      type(table_type) :: table
       real(wp) :: largest
       integer :: before
 
@@ -148,7 +149,9 @@ contains
       end if
       call check_product(self%k, self%f_y/self%k, name, 'k d_y', messages)
       if (messages%count > before .or. .not. self%endurance > 0.0_wp) return
-      largest = largest_limit(self)
+      ! The widest limit of an element that has one, over k_i d_y
+      call make_table(self, table)
+      largest = maxval(table%y(:merge(elements, yielding, is_given(self%f_u)), :table%rows))
       if (self%endurance < largest) then
          call messages%add(name//': endurance = '//to_text(self%endurance)//' must be '//to_text(largest)// &
                            ' or more, the widest limit of an element over d_y; 0 means no wear')
@@ -319,17 +322,6 @@ contains
       end subroutine wear
    end subroutine find_branch
 
-   !> The widest limit of an element that has one, over k_i d_y.
-   real(wp) function largest_limit(self)
-      type(steel_rule), intent(in) :: self
-      type(table_type) :: table
-      integer :: n
-
-      call make_table(self, table)
-      n = merge(elements, yielding, is_given(self%f_u))
-      largest_limit = maxval(table%y(:n, :table%rows))
-   end function largest_limit
-
    !> The limits by plastic reach.
    pure subroutine make_table(self, table)
       type(steel_rule), intent(in) :: self
@@ -440,11 +432,9 @@ contains
       class(steel_memory), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
 
-      associate (now => self%now)
-         call stream%item(now%s)
-         call stream%item(now%rate)
-         call stream%items(now%d, now%highest, now%lowest, now%worn, now%wear_rate)
-      end associate
+      call stream%item(self%now%s)
+      call stream%item(self%now%rate)
+      call stream%items(self%now%d, self%now%highest, self%now%lowest, self%now%worn, self%now%wear_rate)
    end subroutine serialize
 
 end module rbs_hysteresis_rules_steel

@@ -389,15 +389,13 @@ contains
 
          now%branch = reloading
          now%side = s
-         associate (target => now%aim%goal)
-            way = target%d - from%d
-            ! If round-off leaves no distance, the target is met at once.
-            k = self%k_c
-            if (s*way > 0.0_wp) k = (target%f - from%f)/way
-            now%aim%k = k
-            branch = segment(d0=target%d, f0=target%f, k=k)
-            call branch%lead_outward(s, near=from%d, far=s*max(s*target%d, s*from%d))
-         end associate
+         way = now%aim%goal%d - from%d
+         ! If round-off leaves no distance, the target is met at once.
+         k = self%k_c
+         if (s*way > 0.0_wp) k = (now%aim%goal%f - from%f)/way
+         now%aim%k = k
+         branch = segment(d0=now%aim%goal%d, f0=now%aim%goal%f, k=k)
+         call branch%lead_outward(s, near=from%d, far=s*max(s*now%aim%goal%d, s*from%d))
       end subroutine reload
    end subroutine find_branch
 
@@ -417,17 +415,15 @@ contains
       type(stream_type), intent(inout) :: stream
       integer :: s
 
-      associate (now => self%now)
-         call stream%item(now%branch)
-         call stream%item(now%side)
-         call stream%item(now%cracked)
-         do s = -1, 1, 2
-            call now%peak(s)%serialize(stream)
-         end do
-         call stream%item(now%k_r)
-         call now%aim%serialize(stream)
-         call stream%item(now%peaks)
-      end associate
+      call stream%item(self%now%branch)
+      call stream%item(self%now%side)
+      call stream%item(self%now%cracked)
+      do s = -1, 1, 2
+         call self%now%peak(s)%serialize(stream)
+      end do
+      call stream%item(self%now%k_r)
+      call self%now%aim%serialize(stream)
+      call stream%item(self%now%peaks)
       call self%open%serialize(stream)
    end subroutine serialize
 

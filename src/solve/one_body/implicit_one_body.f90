@@ -29,7 +29,7 @@ module rbs_solve_one_body_implicit_one_body
 
    !> One spring beside its rule: its line, the first and the last deformation that belong to the line,
    !> present deformation and work, and how it has come to its line in this step: +1 or -1 by the end of
-   !> another, 0 it was on it before. It moves as those of `rbs_hysteresis_spring_lines` do, with the same
+   !> another, 0 it was on it before. It moves as those of `rbs_hysteresis_springs` do, with the same
    !> bits.
    type :: body_spring
       type(segment) :: line

@@ -60,8 +60,8 @@ contains
    subroutine create(self, column)
       class(chain_equilibrium), intent(out) :: self
       class(column_type), intent(in) :: column
-      real(wp) :: stiffness(most_unknowns, most_unknowns)
-      integer :: m
+      real(wp) :: stiffness(most_unknowns, most_unknowns), band(2*column%n)
+      integer :: m, i
 
       m = 2*column%n
       self%n = column%n
@@ -79,26 +79,15 @@ contains
          call geometric_stiffness(column, stiffness(:m, :m))
          call self%few%create(stiffness(:m, :m), self%arm)
       else
-         call create_band(self, column%length)
+         allocate (self%lever(m), self%found(m, 2), self%missing(m, 2), self%along(m, 2), self%more(m, 2))
+         do i = 1, self%n
+            self%lever(2*i - 1:2*i) = [1.0_wp, column%length(i)]
+            band(2*i - 1:2*i) = [self%initial(i), self%initial(self%n + i)]
+            if (i < self%n) band(2*i) = band(2*i) + self%initial(self%n + i + 1)
+         end do
+         call self%tangent%create(m, 2, band)
       end if
    end subroutine create
-
-   subroutine create_band(self, length)
-      type(chain_equilibrium), intent(inout) :: self
-      real(wp), intent(in) :: length(:)
-      real(wp) :: stiffness(2*self%n)
-      integer :: i
-
-      associate (n => self%n, m => self%moving)
-         allocate (self%lever(m), self%found(m, 2), self%missing(m, 2), self%along(m, 2), self%more(m, 2))
-         do i = 1, n
-            self%lever(2*i - 1:2*i) = [1.0_wp, length(i)]
-            stiffness(2*i - 1:2*i) = [self%initial(i), self%initial(n + i)]
-            if (i < n) stiffness(2*i) = stiffness(2*i) + self%initial(n + i + 1)
-         end do
-         call self%tangent%create(m, 2, stiffness)
-      end associate
-   end subroutine create_band
 
    !> Residual of the equilibrium: a F - f - K_G q.
    subroutine find_residual(self, q, f, force, r)
@@ -129,20 +118,18 @@ contains
       real(wp) :: shear, moment, of_top
       integer :: i
 
-      associate (n => self%n, m => self%moving)
-         do i = 1, m
-            self%f(i) = springs%f0(i) + springs%k(i)*(springs%d(i) - springs%d0(i))
-         end do
-         call find_residual(self, springs%d(:m), self%f, force, self%residual)
-         shear = 0.0_wp
-         moment = 0.0_wp
-         ! The moment that holds the top acts on all rotations.
-         of_top = merge(self%residual(m), 0.0_wp, self%held)
-         do i = 1, n
-            shear = max(shear, abs(self%residual(i)))
-            moment = max(moment, abs(self%residual(n + i) - of_top))
-         end do
-      end associate
+      do i = 1, self%moving
+         self%f(i) = springs%f0(i) + springs%k(i)*(springs%d(i) - springs%d0(i))
+      end do
+      call find_residual(self, springs%d(:self%moving), self%f, force, self%residual)
+      shear = 0.0_wp
+      moment = 0.0_wp
+      ! The moment that holds the top acts on all rotations.
+      of_top = merge(self%residual(self%moving), 0.0_wp, self%held)
+      do i = 1, self%n
+         shear = max(shear, abs(self%residual(i)))
+         moment = max(moment, abs(self%residual(self%n + i) - of_top))
+      end do
       self%unbalance = max(shear, moment/self%height)
    end subroutine find_unbalance
 
@@ -254,17 +241,15 @@ contains
       integer :: i, n
 
       n = self%n
-      associate (band => self%tangent%band)
-         band = 0.0_wp
-         do i = 1, n
-            band(1, 2*i - 1) = k(i)
-            band(1, 2*i) = k(n + i) - self%axial(i)
-            if (i == n) exit
-            band(1, 2*i) = band(1, 2*i) + k(n + i + 1)
-            band(2, 2*i) = -self%axial(n + i + 1)
-            band(3, 2*i) = -k(n + i + 1)
-         end do
-      end associate
+      self%tangent%band = 0.0_wp
+      do i = 1, n
+         self%tangent%band(1, 2*i - 1) = k(i)
+         self%tangent%band(1, 2*i) = k(n + i) - self%axial(i)
+         if (i == n) exit
+         self%tangent%band(1, 2*i) = self%tangent%band(1, 2*i) + k(n + i + 1)
+         self%tangent%band(2, 2*i) = -self%axial(n + i + 1)
+         self%tangent%band(3, 2*i) = -k(n + i + 1)
+      end do
       if (self%held) call self%tangent%hold(2*n, self%tangent%stiffness(2*n))
    end subroutine fill_tangent
 

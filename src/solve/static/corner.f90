@@ -34,7 +34,7 @@ contains
       integer, intent(in) :: direction
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
-      integer :: changes, count, fewest, left
+      integer :: changes, count, fewest, left, i
       logical :: found
 
       path%direction = 0
@@ -44,13 +44,18 @@ contains
       do changes = 1, 20 + min(10*path%moving, 1000 + path%moving)
          call path%solve_line(direction, found)
          if (.not. found) then
-            call let_unload(path, direction, found)
-            if (found) cycle
+            ! Some springs may unload, though there is no stiffness under the driven force: let them.
+            if (path%by_force .and. any(path%springs%unload_on_reversal(:path%moving) == -direction)) then
+               do i = 1, path%moving
+                  if (path%springs%unload_on_reversal(i) == -direction) call path%springs%leave(i, direction)
+               end do
+               cycle
+            end if
             call report_no_line(path, target, error)
             return
          end if
-         count = without_room(path)
-         if (path%springs%pressed) call choose_planes(path, count)
+         count = without_room()
+         if (path%springs%pressed) call choose_planes(count)
          if (path%springs%lost_joint() > 0) return
          if (count == 0) then
             path%direction = direction
@@ -62,9 +67,9 @@ contains
          else
             left = left - 1
          end if
-         call change_lines(path, left >= 0)
+         call change_lines(left >= 0)
       end do
-      call try_all_ways(path, direction, found)
+      call try_all_ways()
       if (found) then
          path%direction = direction
       else
@@ -73,50 +78,79 @@ contains
                           'top go on; '//trim(weakest_spring(path))//' has the least stiffness left. A '// &
                           'driven top cannot follow that; use a dynamic analysis')
       end if
+
+   contains
+
+      !> The layers of joints whose axial loads vary choose their lines for the present rates; a joint whose
+      !> plane changes by that had no room on it.
+      subroutine choose_planes(count)
+         integer, intent(inout) :: count
+         real(wp) :: before(2)
+         integer :: i, j
+
+         do j = 1, size(path%springs%layered)
+            i = path%springs%layered(j)
+            before = [path%springs%k(i), path%springs%centre(i)]
+            call choose_lines(path%springs, i, path%rate(i), path%axial_rate)
+            if (any(abs(before - [path%springs%k(i), path%springs%centre(i)]) > 0.0_wp)) count = count + 1
+         end do
+      end subroutine choose_planes
+
+      !> Number of springs that cannot go the way they should on their present lines.
+      pure integer function without_room() result(count)
+         integer :: i
+
+         count = 0
+         do i = 1, path%moving
+            if (barred(path, i) /= 0) count = count + 1
+         end do
+      end function without_room
+
+      !> Put the springs without room on the lines that follow, all or the first of them.
+      subroutine change_lines(all_of_them)
+         logical, intent(in) :: all_of_them
+         integer :: i, way
+
+         do i = 1, path%moving
+            way = barred(path, i)
+            if (way == 0) cycle
+            path%changed(i) = path%changed(i) + 1
+            call path%springs%leave(i, way)
+            if (.not. all_of_them) return
+         end do
+      end subroutine change_lines
+
+      !> Try both ways of the springs at the corner in all combinations, one change at a time (Gray code),
+      !> until
+      !> all have room. Of more springs than can be tried, those come first that the search has changed more
+      !> than
+      !> once.
+      subroutine try_all_ways()
+         integer, allocatable :: tried(:)
+         integer :: trial, i, most, count
+
+         tried = pack([(i, i=1, path%moving)], [(way_out(path%springs, i) /= 0, i=1, path%moving)])
+         tried = [pack(tried, path%changed(tried) > 1), pack(tried, path%changed(tried) <= 1)]
+         most = min(most_tried, int(log(real(most_work, wp)/path%moving)/log(2.0_wp)))
+         tried = tried(:min(size(tried), most))
+         found = .false.
+         do trial = 1, 2**size(tried)
+            call path%solve_line(direction, found)
+            if (found) then
+               count = without_room()
+               if (path%springs%pressed) call choose_planes(count)
+               found = count == 0
+               if (found) return
+            end if
+         ! The bit that changes next in the Gray code.
+            if (trial == 2**size(tried)) exit
+            i = tried(trailz(trial) + 1)
+            call path%springs%leave(i, way_out(path%springs, i))
+         end do
+         found = .false.
+      end subroutine try_all_ways
+
    end subroutine turn_corner
-
-   !> The layers of joints whose axial loads vary choose their lines for the present rates; a joint whose
-   !> plane changes by that had no room on it.
-   subroutine choose_planes(path, count)
-      class(static_path), intent(inout) :: path
-      integer, intent(inout) :: count
-      real(wp) :: before(2)
-      integer :: i, j
-
-      do j = 1, size(path%springs%layered)
-         i = path%springs%layered(j)
-         before = [path%springs%k(i), path%springs%centre(i)]
-         call choose_lines(path%springs, i, path%rate(i), path%axial_rate)
-         if (any(abs(before - [path%springs%k(i), path%springs%centre(i)]) > 0.0_wp)) count = count + 1
-      end do
-   end subroutine choose_planes
-
-   !> There is no stiffness under the driven force in this direction, but some springs would unload: let them.
-   subroutine let_unload(path, direction, some)
-      class(static_path), intent(inout) :: path
-      integer, intent(in) :: direction
-      logical, intent(out) :: some
-      integer :: i
-
-      some = .false.
-      if (.not. path%by_force) return
-      do i = 1, path%moving
-         if (path%springs%unload_on_reversal(i) /= -direction) cycle
-         some = .true.
-         call path%springs%leave(i, direction)
-      end do
-   end subroutine let_unload
-
-   !> Number of springs that cannot go the way they should on their present lines.
-   pure integer function without_room(path) result(count)
-      class(static_path), intent(in) :: path
-      integer :: i
-
-      count = 0
-      do i = 1, path%moving
-         if (barred(path, i) /= 0) count = count + 1
-      end do
-   end function without_room
 
    !> The direction in which a spring should go but cannot, 0 if it can.
    pure integer function barred(path, i)
@@ -135,52 +169,6 @@ contains
          end if
       end associate
    end function barred
-
-   !> Put the springs without room on the lines that follow, all or the first of them.
-   subroutine change_lines(path, all_of_them)
-      class(static_path), intent(inout) :: path
-      logical, intent(in) :: all_of_them
-      integer :: i, way
-
-      do i = 1, path%moving
-         way = barred(path, i)
-         if (way == 0) cycle
-         path%changed(i) = path%changed(i) + 1
-         call path%springs%leave(i, way)
-         if (.not. all_of_them) return
-      end do
-   end subroutine change_lines
-
-   !> Try both ways of the springs at the corner in all combinations, one change at a time (Gray code), until
-   !> all have room. Of more springs than can be tried, those come first that the search has changed more than
-   !> once.
-   subroutine try_all_ways(path, direction, found)
-      class(static_path), intent(inout) :: path
-      integer, intent(in) :: direction
-      logical, intent(out) :: found
-      integer, allocatable :: tried(:)
-      integer :: trial, i, most, count
-
-      tried = pack([(i, i=1, path%moving)], [(way_out(path%springs, i) /= 0, i=1, path%moving)])
-      tried = [pack(tried, path%changed(tried) > 1), pack(tried, path%changed(tried) <= 1)]
-      most = min(most_tried, int(log(real(most_work, wp)/path%moving)/log(2.0_wp)))
-      tried = tried(:min(size(tried), most))
-      found = .false.
-      do trial = 1, 2**size(tried)
-         call path%solve_line(direction, found)
-         if (found) then
-            count = without_room(path)
-            if (path%springs%pressed) call choose_planes(path, count)
-            found = count == 0
-            if (found) return
-         end if
-         ! The bit that changes next in the Gray code.
-         if (trial == 2**size(tried)) exit
-         i = tried(trailz(trial) + 1)
-         call path%springs%leave(i, way_out(path%springs, i))
-      end do
-      found = .false.
-   end subroutine try_all_ways
 
    !> The way by which a spring can leave its line where it stands, 0 if it cannot.
    pure integer function way_out(springs, i)

@@ -216,20 +216,18 @@ contains
 
          turns = .false.
          self%there = self%here
-         call find_event(self, limit)
-         associate (way => abs(self%there%t - self%here%t))
-            near = (self%spring > 0 .or. .not. abs(self%goal - limit) > 0.0_wp) .and. &
-                   way <= close_by*self%extent .and. &
-                   way*self%structure%largest_turn(self%here%rate) <= close_by
-         end associate
+         call find_event(limit)
+         near = (self%spring > 0 .or. .not. abs(self%goal - limit) > 0.0_wp) .and. &
+                abs(self%there%t - self%here%t) <= close_by*self%extent .and. &
+                abs(self%there%t - self%here%t)*self%structure%largest_turn(self%here%rate) <= close_by
          done = near
-         if (.not. near) call find_point(self, limit, .true., done)
+         if (.not. near) call find_point(limit, .true., done)
          if (done) call self%curve%set(self%structure, self%here, self%there)
          if (done .and. .not. near) then
             done = self%curve%is_gentle(self%structure)
             if (done) turns = self%curve%least_rate(self%springs, self%there) < 0.0_wp
             if (turns) then
-               call find_turn(self, done)
+               call find_turn()
                if (done) call self%curve%set(self%structure, self%here, self%there)
             end if
             ! With small rotations the curve is so slight that no layer goes out of its line and back.
@@ -238,7 +236,7 @@ contains
                                                           cuts < most_looks)
          end if
          if (.not. done) return
-         call find_works(self, cuts < most_cuts_for_work .and. .not. near, works, done)
+         call find_works(cuts < most_cuts_for_work .and. .not. near, works)
          if (done) call accept(turns, works)
       end subroutine try_stride
 
@@ -313,7 +311,7 @@ contains
             if (.not. springs%pressed) return
             do j = 1, size(springs%layered)
                i = springs%layered(j)
-               work = work_of_joint(self, i)
+               work = work_of_joint(i)
                call put_on_plane(springs, i, there%q(i), there%axial_load + self%equilibrium%above(i), &
                                  there%rate(i), there%axial_rate, merge(self%layer, 0, i == self%spring))
                springs%work(i) = springs%work(i) + work
@@ -321,194 +319,187 @@ contains
          end associate
       end subroutine put_springs
 
-   end subroutine take_stride
+      !> Go from the point that is tried along its tangent to the first end of a line, if there is one before
+      !> the
+      !> limit, else to the limit; not back beyond the present point.
+      subroutine find_event(limit, change)
+         real(wp), intent(in) :: limit
+         !> Of the deformations, to be added to
+         real(wp), intent(inout), optional :: change(:)
+         real(wp) :: room, way
+         integer :: i, side, spring, layer
 
-   !> Go from the point that is tried along its tangent to the first end of a line, if there is one before the
-   !> limit, else to the limit; not back beyond the present point.
-   subroutine find_event(self, limit, change)
-      class(curved_path), intent(inout) :: self
-      real(wp), intent(in) :: limit
-      !> Of the deformations, to be added to
-      real(wp), intent(inout), optional :: change(:)
-      real(wp) :: room, way
-      integer :: i, side, spring, layer
-
-      self%spring = 0
-      self%layer = 0
-      associate (there => self%there)
-         room = self%direction*(limit - there%t)
-         do i = 1, self%springs%count
-            associate (rise => self%direction*there%rate(i))
-               if (.not. abs(rise) > 0.0_wp) cycle
-               side = merge(1, -1, rise > 0.0_wp)
-               if (self%springs%unload_on_reversal(i) == -side) cycle
-               way = side*(self%springs%end_toward(i, side) - there%q(i))
-               if (way < room*abs(rise)) then
-                  room = way/abs(rise)
-                  self%spring = i
+         self%spring = 0
+         self%layer = 0
+         associate (there => self%there)
+            room = self%direction*(limit - there%t)
+            do i = 1, self%springs%count
+               associate (rise => self%direction*there%rate(i))
+                  if (.not. abs(rise) > 0.0_wp) cycle
+                  side = merge(1, -1, rise > 0.0_wp)
+                  if (self%springs%unload_on_reversal(i) == -side) cycle
+                  way = side*(self%springs%end_toward(i, side) - there%q(i))
+                  if (way < room*abs(rise)) then
+                     room = way/abs(rise)
+                     self%spring = i
+                  end if
+               end associate
+            end do
+            if (self%springs%pressed) then
+               call nearest_layer(self%springs, there%q, there%axial_load + self%equilibrium%above, &
+                                  there%rate, there%axial_rate, way, spring, layer)
+               if (way < room) then
+                  room = way
+                  self%spring = spring
+                  self%layer = layer
                end if
-            end associate
-         end do
-         if (self%springs%pressed) then
-            call nearest_layer(self%springs, there%q, there%axial_load + self%equilibrium%above, there%rate, &
-                               there%axial_rate, way, spring, layer)
-            if (way < room) then
-               room = way
-               self%spring = spring
-               self%layer = layer
             end if
-         end if
-         room = max(room, self%direction*(self%here%t - there%t))
-         if (present(change)) change = change + there%rate*(self%direction*room)
-         call move(self, self%direction*room)
-         if (self%spring > 0 .and. self%layer == 0) then
-            there%q(self%spring) = self%springs%end_toward(self%spring, merge(1, -1, self%direction &
-                                                                         *there%rate(self%spring) > 0.0_wp))
-         else if (self%spring == 0) then
-            there%t = limit
-         end if
-      end associate
-   end subroutine find_event
-
-   !> Move the point that is tried along its tangent.
-   pure subroutine move(self, step)
-      class(curved_path), intent(inout) :: self
-      !> Of the parameter
-      real(wp), intent(in) :: step
-
-      associate (there => self%there)
-         there%t = there%t + step
-         there%q = there%q + there%rate*step
-         there%force = there%force + there%force_rate*step
-         there%displacement = there%displacement + there%displacement_rate*step
-         there%axial_load = there%axial_load + there%axial_rate*step
-      end associate
-   end subroutine move
-
-   !> Newton's method from the point that is tried to the first event before a limit, or to the limit.
-   subroutine find_point(self, limit, with_events, found)
-      class(curved_path), intent(inout) :: self
-      real(wp), intent(in) :: limit
-      logical, intent(in) :: with_events
-      logical, intent(out) :: found
-      real(wp) :: change(size(self%here%q)), share, last_share
-      logical :: regular
-      integer :: i
-
-      found = .false.
-      last_share = huge(1.0_wp)
-      associate (there => self%there, equilibrium => self%equilibrium)
-         do i = 1, most_iterations
-            call equilibrium%solve(self%springs, there, regular)
-            if (.not. regular) return
-            if (equilibrium%varies) there%rate = clean(equilibrium%column, there)
-            change = equilibrium%correction
-            there%q = there%q + change
-            there%force = there%force + equilibrium%force_correction
-            there%axial_load = there%axial_load + equilibrium%ratio*equilibrium%force_correction
-            if (with_events) call find_event(self, limit, change)
-            share = equilibrium%size_of(change, there%q - change)
-            found = share <= arrived .or. (share <= no_progress .and. share > 0.25_wp*last_share)
-            if (found) exit
-            if (i > 3 .and. share > 2.0_wp*last_share) return
-            last_share = share
-         end do
-         if (.not. found) return
-         if (self%equilibrium%by_force) then
-            there%force = equilibrium%driven(1) + equilibrium%driven(2)*there%t
-            there%displacement = self%equilibrium%column%top_displacement(there%q)
-         else
-            there%displacement = equilibrium%driven(1) + equilibrium%driven(2)*there%t
-         end if
-      end associate
-   end subroutine find_point
-
-   !> Find the point where the first motion turns back.
-   subroutine find_turn(self, done)
-      class(curved_path), intent(inout) :: self
-      logical, intent(out) :: done
-      type(false_position) :: line
-      real(wp) :: value, reached
-      integer :: i
-
-      self%spring = 0
-      self%layer = 0
-      line = false_position(self%here%t, self%there%t, self%curve%least_rate(self%springs, self%here), &
-                            self%curve%least_rate(self%springs, self%there))
-      done = line%at_low > 0.0_wp .and. line%at_high < 0.0_wp
-      if (.not. done) return
-      do i = 1, 60
-         reached = line%next()
-         if (i > 40) reached = 0.5_wp*(line%low + line%high)
-         call self%curve%guess(reached, self%there)
-         call find_point(self, reached, .false., done)
-         if (.not. done) return
-         value = self%curve%least_rate(self%springs, self%there)
-         if (abs(value) < 0.9_wp*same_rate) return
-         call line%narrow(reached, value)
-      end do
-      done = .false.
-   end subroutine find_turn
-
-   !> Works of the lateral force and of the axial load on the way that was tried, and of the layered joints
-   !> whose axial loads vary, all by the cubics of the curve.
-   subroutine find_works(self, strict, works, done)
-      class(curved_path), intent(inout) :: self
-      !> Whether a stride whose works are not exact enough is refused
-      logical, intent(in) :: strict
-      !> Of force, axial load and layered joints [J]
-      real(wp), intent(out) :: works(3)
-      logical, intent(out) :: done
-      real(wp) :: work(2), change(size(self%here%q)), f(size(self%here%q)), lift(2), weight(2), missing, &
-           turnover
-      integer :: j
-
-      associate (here => self%here, there => self%there)
-         work = self%curve%work([here%force, there%force], [here%displacement, there%displacement], &
-                                [here%force_rate, there%force_rate], &
-                                [here%displacement_rate, there%displacement_rate])
-         works = [sum(work), 0.0_wp, 0.0_wp]
-         change = there%q - here%q
-         f = self%springs%f0 + self%springs%k*(there%q - self%springs%d0)
-         if (.not. self%equilibrium%varies) then
-            turnover = sum(abs(change*f))
-            done = .not. strict .or. abs(work(2)) <= most_correction*max(self%most_work, turnover)
-            return
-         end if
-         associate (unit => self%equilibrium%unit, steady => self%equilibrium%steady)
-            lift = [unit%potential_energy(here%q), unit%potential_energy(there%q)]
-            weight = [steady%potential_energy(here%q), steady%potential_energy(there%q)]
+            room = max(room, self%direction*(self%here%t - there%t))
+            if (present(change)) change = change + there%rate*(self%direction*room)
+            call move(self%direction*room)
+            if (self%spring > 0 .and. self%layer == 0) then
+               there%q(self%spring) = self%springs%end_toward(self%spring, &
+                       merge(1, -1, self%direction *there%rate(self%spring) > 0.0_wp))
+            else if (self%spring == 0) then
+               there%t = limit
+            end if
          end associate
-         works(2) = sum(self%curve%work([here%axial_load, there%axial_load], lift, &
-                                        [here%axial_rate, there%axial_rate], &
-                                        [here%lift_rate, there%lift_rate]))
-         f(:) = f - 0.5_wp*self%springs%k*change
-         do j = 1, size(self%springs%layered)
-            if (self%springs%pressed) f(self%springs%layered(j)) = 0.0_wp
-            if (self%springs%pressed) works(3) = works(3) + work_of_joint(self, self%springs%layered(j))
+      end subroutine find_event
+
+      !> Move the point that is tried along its tangent.
+      subroutine move(step)
+         !> Of the parameter
+         real(wp), intent(in) :: step
+
+         associate (there => self%there)
+            there%t = there%t + step
+            there%q = there%q + there%rate*step
+            there%force = there%force + there%force_rate*step
+            there%displacement = there%displacement + there%displacement_rate*step
+            there%axial_load = there%axial_load + there%axial_rate*step
+         end associate
+      end subroutine move
+
+      !> Newton's method from the point that is tried to the first event before a limit, or to the limit.
+      subroutine find_point(limit, with_events, found)
+         real(wp), intent(in) :: limit
+         logical, intent(in) :: with_events
+         logical, intent(out) :: found
+         real(wp) :: change(size(self%here%q)), share, last_share
+         logical :: regular
+         integer :: i
+
+         found = .false.
+         last_share = huge(1.0_wp)
+         associate (there => self%there, equilibrium => self%equilibrium)
+            do i = 1, most_iterations
+               call equilibrium%solve(self%springs, there, regular)
+               if (.not. regular) return
+               if (equilibrium%varies) there%rate = clean(equilibrium%column, there)
+               change = equilibrium%correction
+               there%q = there%q + change
+               there%force = there%force + equilibrium%force_correction
+               there%axial_load = there%axial_load + equilibrium%ratio*equilibrium%force_correction
+               if (with_events) call find_event(limit, change)
+               share = equilibrium%size_of(change, there%q - change)
+               found = share <= arrived .or. (share <= no_progress .and. share > 0.25_wp*last_share)
+               if (found) exit
+               if (i > 3 .and. share > 2.0_wp*last_share) return
+               last_share = share
+            end do
+            if (.not. found) return
+            if (self%equilibrium%by_force) then
+               there%force = equilibrium%driven(1) + equilibrium%driven(2)*there%t
+               there%displacement = self%equilibrium%column%top_displacement(there%q)
+            else
+               there%displacement = equilibrium%driven(1) + equilibrium%driven(2)*there%t
+            end if
+         end associate
+      end subroutine find_point
+
+      !> Find the point where the first motion turns back.
+      subroutine find_turn()
+         type(false_position) :: line
+         real(wp) :: value, reached
+         integer :: i
+
+         self%spring = 0
+         self%layer = 0
+         line = false_position(self%here%t, self%there%t, self%curve%least_rate(self%springs, self%here), &
+                               self%curve%least_rate(self%springs, self%there))
+         done = line%at_low > 0.0_wp .and. line%at_high < 0.0_wp
+         if (.not. done) return
+         do i = 1, 60
+            reached = line%next()
+            if (i > 40) reached = 0.5_wp*(line%low + line%high)
+            call self%curve%guess(reached, self%there)
+            call find_point(reached, .false., done)
+            if (.not. done) return
+            value = self%curve%least_rate(self%springs, self%there)
+            if (abs(value) < 0.9_wp*same_rate) return
+            call line%narrow(reached, value)
          end do
-         turnover = sum(abs(change*f)) + sum(abs(works))
-         missing = works(1) - works(2) - works(3) - sum(change*f) - (weight(2) - weight(1))
-         done = .not. strict .or. abs(missing) <= max(self%most_work, turnover) &
-                *most_missing(merge(1, 2, self%structure%kinematics == finite)) &
-                + round_off*(abs(there%axial_load)*maxval(abs(lift)) + maxval(abs(weight)))
-      end associate
-   end subroutine find_works
+         done = .false.
+      end subroutine find_turn
 
-   !> Work of a layered joint on its plane.
-   pure real(wp) function work_of_joint(self, i) result(work)
-      class(curved_path), intent(in) :: self
-      integer, intent(in) :: i
+      !> Works of the lateral force and of the axial load on the way that was tried, and of the layered joints
+      !> whose axial loads vary, all by the cubics of the curve.
+      subroutine find_works(strict, works)
+         !> Whether a stride whose works are not exact enough is refused
+         logical, intent(in) :: strict
+         !> Of force, axial load and layered joints [J]
+         real(wp), intent(out) :: works(3)
+         real(wp) :: work(2), change(size(self%here%q)), f(size(self%here%q)), lift(2), weight(2), missing, &
+              turnover
+         integer :: j
 
-      associate (here => self%here, there => self%there)
-         work = sum(self%curve%work( &
-                    moment_on_plane(self%springs, i, [here%q(i), there%q(i)], &
-                                    [here%axial_load, there%axial_load] + self%equilibrium%above(i)), &
-                    [here%q(i), there%q(i)], self%springs%k(i)*[here%rate(i), there%rate(i)] &
-                    - self%springs%centre(i)*[here%axial_rate, there%axial_rate], &
-                    [here%rate(i), there%rate(i)]))
-      end associate
-   end function work_of_joint
+         associate (here => self%here, there => self%there)
+            work = self%curve%work([here%force, there%force], [here%displacement, there%displacement], &
+                                   [here%force_rate, there%force_rate], &
+                                   [here%displacement_rate, there%displacement_rate])
+            works = [sum(work), 0.0_wp, 0.0_wp]
+            change = there%q - here%q
+            f = self%springs%f0 + self%springs%k*(there%q - self%springs%d0)
+            if (.not. self%equilibrium%varies) then
+               turnover = sum(abs(change*f))
+               done = .not. strict .or. abs(work(2)) <= most_correction*max(self%most_work, turnover)
+               return
+            end if
+            associate (unit => self%equilibrium%unit, steady => self%equilibrium%steady)
+               lift = [unit%potential_energy(here%q), unit%potential_energy(there%q)]
+               weight = [steady%potential_energy(here%q), steady%potential_energy(there%q)]
+            end associate
+            works(2) = sum(self%curve%work([here%axial_load, there%axial_load], lift, &
+                                           [here%axial_rate, there%axial_rate], &
+                                           [here%lift_rate, there%lift_rate]))
+            f(:) = f - 0.5_wp*self%springs%k*change
+            do j = 1, size(self%springs%layered)
+               if (self%springs%pressed) f(self%springs%layered(j)) = 0.0_wp
+               if (self%springs%pressed) works(3) = works(3) + work_of_joint(self%springs%layered(j))
+            end do
+            turnover = sum(abs(change*f)) + sum(abs(works))
+            missing = works(1) - works(2) - works(3) - sum(change*f) - (weight(2) - weight(1))
+            done = .not. strict .or. abs(missing) <= max(self%most_work, turnover) &
+                   *most_missing(merge(1, 2, self%structure%kinematics == finite)) &
+                   + round_off*(abs(there%axial_load)*maxval(abs(lift)) + maxval(abs(weight)))
+         end associate
+      end subroutine find_works
+
+      !> Work of a layered joint on its plane.
+      pure real(wp) function work_of_joint(i) result(work)
+         integer, intent(in) :: i
+
+         associate (here => self%here, there => self%there)
+            work = sum(self%curve%work( &
+                       moment_on_plane(self%springs, i, [here%q(i), there%q(i)], &
+                                       [here%axial_load, there%axial_load] + self%equilibrium%above(i)), &
+                       [here%q(i), there%q(i)], self%springs%k(i)*[here%rate(i), there%rate(i)] &
+                       - self%springs%centre(i)*[here%axial_rate, there%axial_rate], &
+                       [here%rate(i), there%rate(i)]))
+         end associate
+      end function work_of_joint
+
+   end subroutine take_stride
 
    !> Report why the path cannot be continued.
    subroutine report_no_way(self, target, error)

@@ -1,5 +1,9 @@
 !> What the static paths have in common, whatever the structure: the springs, what is driven, the way from
 !> target to target, and the rows.
+!>
+!> Whether a point of a static path is a state of the structure: the top is where its springs are, each joint
+!> is in equilibrium, and no work is missing. A path is found without tolerances, so that what a point may
+!> miss is round-off; more means that the arithmetic could not carry the path on.
 module rbs_solve_static_path
    use rbs_base_check, only: is_given
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
@@ -8,15 +12,46 @@ module rbs_solve_static_path
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: fall_of
    use rbs_hysteresis_springs, only: spring_array
-   use rbs_solve_static_row_check, only: row_check, on_the_end
    use rbs_solve_task, only: task_type
    use rbs_structure_channel, only: energy_type, response_type
-   use rbs_structure_spring_place, only: spring_name, axial
+   use rbs_structure_spring_place, only: spring_name, axial, flexure
    use rbs_structure_structure, only: structure_type, finite
    implicit none
    private
 
    public :: static_path, kept_rows, is_on_end, state_of, weakest_spring, on_the_end, serialize_path
+
+   !> A spring this close to an end of its line, relative to the end, is on it. Not a tolerance of the
+   !> solution: where a cycle returns to its peak, round-off would otherwise decide between outer and inner
+   !> unloading.
+   real(wp), parameter :: on_the_end = 1.0e-11_wp
+
+   !> What a point may miss: of the displacement, in shares of what all springs contribute; of equilibrium, in
+   !> shares of the forces; of work, in shares of the works; each the largest so far. Where Newton's method
+   !> follows a curve, and work is an integral over it, place and work have limits of their own.
+   real(wp), parameter :: of_place = 1.0e-12_wp, of_force = 1.0e-9_wp, of_work = 1.0e-9_wp
+   real(wp), parameter :: of_place_on_curve = 1.0e-10_wp, of_work_on_curve = 1.0e-5_wp
+   !> A way below this share of the height and a force below this share of the axial load have no digits to
+   !> lose.
+   real(wp), parameter :: no_digits = 1.0e-3_wp
+   !> Way, in shares of the height, and rotation by which stiff springs have forces and works.
+   real(wp), parameter :: no_way = 1.0e-6_wp
+   !> Round-off of forces and works by the initial stiffness of the springs.
+   real(wp), parameter :: digits = 1.0e-13_wp
+
+   type :: row_check
+      real(wp) :: place = of_place, work = of_work
+      !> Largest way of all springs, force and work so far [m, N, J]; the work that was missing at the start
+      real(wp) :: largest_place = 0.0_wp, largest_force = 0.0_wp, largest_work = 0.0_wp
+      real(wp) :: at_begin = 0.0_wp
+      !> Displacement up to which these have been measured [m]
+      real(wp) :: farthest = 0.0_wp
+      !> Force and work of the springs if they had their initial stiffness, the largest so far [N, J]
+      real(wp) :: stiff_force = 0.0_wp, stiff_work = 0.0_wp
+      !> What a force of each spring is at the top: moments count by the height; those of axial springs not
+      !> at all (springs)
+      real(wp), allocatable :: share(:)
+   end type row_check
 
    !> What round-off alone moves the top, as a share of what all springs do.
    real(wp), parameter :: same_place = 2.0e-13_wp
@@ -212,7 +247,7 @@ contains
       may_collapse = is_given(task%collapse_drift)
       self%task => task
       energy = self%energies()
-      call self%check%begin(self%structure, energy%residual)
+      call begin_check(self%check, self%structure, energy%residual)
       ! A path that goes on has forces and works from before, and the round-off of theirs.
       call self%look(self%control, self%unbalance(), .false., failure)
       if (allocated(failure)) deallocate (failure)
@@ -296,13 +331,47 @@ contains
       type(error_type), allocatable, intent(inout) :: failure
       character(len=:), allocatable :: fault
       type(energy_type) :: energy
+      real(wp) :: there, gap, missing, place, ways, works, term
+      integer :: i
 
       energy = self%energies()
       call see_turn(self)
       call self%task%summary%see_energies(energy)
-      call self%check%look(self%structure, self%springs, self%displacement, self%force, unbalance, energy, &
-                           on_ends, fault)
-      if (.not. allocated(fault)) return
+      there = self%structure%top_displacement(self%springs%d)
+      gap = abs(there - self%displacement)
+      missing = energy%residual - self%check%at_begin
+      place = self%check%place + merge(2.0_wp*on_the_end, 0.0_wp, on_ends)
+      associate (check => self%check, springs => self%springs)
+         check%largest_force = max(check%largest_force, abs(self%force))
+         check%largest_work = max(check%largest_work, abs(energy%input), abs(energy%spring), &
+                                  abs(energy%axial))
+         if (abs(self%displacement) > check%farthest .or. wrong() > 0) then
+            check%farthest = max(check%farthest, abs(self%displacement))
+            ways = 0.0_wp
+            works = 0.0_wp
+            do i = 1, springs%count
+               if (.not. check%share(i) > 0.0_wp) cycle
+               ways = ways + abs(self%structure%arm(i)*springs%d(i))
+               check%largest_force = max(check%largest_force, abs(springs%force(i))*check%share(i))
+               term = self%structure%initial_stiffness(i)*abs(springs%d(i))
+               check%stiff_force = max(check%stiff_force, term*check%share(i))
+               works = works + term*abs(springs%d(i))
+            end do
+            call see_parts(check, self%structure, self%displacement)
+            check%largest_place = max(check%largest_place, ways)
+            check%stiff_work = max(check%stiff_work, works)
+         end if
+      end associate
+      select case (wrong())
+      case (0)
+         return
+      case (1)
+         fault = 'its joints move the top by '//to_text(there)//' m'
+      case (2)
+         fault = to_text(unbalance)//' N of its forces are out of balance'
+      case default
+         fault = to_text(missing)//' J of its work are missing'
+      end select
       self%is_wrong = .true.
       call fatal_error(failure, analysis_failed, 'on the way to '//to_text(target)//' '//merge('N', 'm', &
                        self%by_force)//' the arithmetic has lost the static path: at a displacement of '// &
@@ -310,6 +379,21 @@ contains
                        'stiffnesses of the springs are too far apart ('//trim(weakest_spring(self))// &
                        ' has the least left): give it more stiffness after yield, or take stiff springs '// &
                        'less stiff')
+
+   contains
+
+      !> What misses more than round-off: place, forces, work; 0: nothing.
+      pure integer function wrong()
+         wrong = 0
+         if (gap > place*self%check%largest_place) then
+            wrong = 1
+         else if (unbalance > of_force*self%check%largest_force + digits*self%check%stiff_force) then
+            wrong = 2
+         else if (abs(missing) > self%check%work*self%check%largest_work + digits*self%check%stiff_work) then
+            wrong = 3
+         end if
+      end function wrong
+
    end subroutine look
 
    !> The path is at a corner, a share of the way to the present target: its figures belong to the summary,
@@ -415,22 +499,57 @@ contains
    end function energies
 
    !> Where the path is, for a message.
-   pure function state_of(path) result(text)
+   pure character(len=80) function state_of(path) result(text)
       class(static_path), intent(in) :: path
-      character(len=80) :: text
 
       text = 'force '//to_text(path%force)//' N, displacement '//to_text(path%displacement)//' m'
    end function state_of
 
    !> The spring that has least of its initial stiffness left, for a message.
-   pure function weakest_spring(path) result(text)
+   pure character(len=80) function weakest_spring(path) result(text)
       class(static_path), intent(in) :: path
-      character(len=80) :: text
 
       associate (structure => path%structure, m => path%moving)
          text = spring_name(structure%place(minloc(path%springs%k(:m)/structure%initial_stiffness(:m), &
                                                    dim=1)))
       end associate
    end function weakest_spring
+
+   !> Measure points from here on.
+   subroutine begin_check(self, structure, missing_work)
+      type(row_check), intent(out) :: self
+      class(structure_type), intent(in) :: structure
+      real(wp), intent(in) :: missing_work
+      real(wp) :: d
+      integer :: i
+
+      self%at_begin = missing_work
+      self%largest_place = no_digits*structure%total_height
+      self%largest_force = no_digits*maxval(abs(structure%constant_axial))
+      allocate (self%share(size(structure%place)))
+      do i = 1, size(self%share)
+         self%share(i) = merge(1.0_wp/structure%total_height, 1.0_wp, structure%place(i)%kind == flexure)
+         if (structure%place(i)%kind == axial) self%share(i) = 0.0_wp
+         d = no_way*structure%total_height*self%share(i)
+         self%stiff_force = max(self%stiff_force, structure%initial_stiffness(i)*d*self%share(i))
+         self%stiff_work = self%stiff_work + structure%initial_stiffness(i)*d**2
+      end do
+      call see_parts(self, structure, no_way*structure%total_height)
+      if (structure%kinematics /= finite) return
+      self%place = of_place_on_curve
+      self%work = of_work_on_curve
+   end subroutine begin_check
+
+   !> Forces and work of parts without springs, if they took all of a displacement.
+   pure subroutine see_parts(self, structure, displacement)
+      type(row_check), intent(inout) :: self
+      class(structure_type), intent(in) :: structure
+      real(wp), intent(in) :: displacement
+
+      associate (force => structure%stiffest_part*abs(displacement))
+         self%stiff_force = max(self%stiff_force, force)
+         self%stiff_work = max(self%stiff_work, force*abs(displacement))
+      end associate
+   end subroutine see_parts
 
 end module rbs_solve_static_path

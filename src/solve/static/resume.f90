@@ -50,9 +50,8 @@ contains
    contains
 
       !> Begin in the state that another analysis ended in. A static path of the same kind under the same
-      !> axial
-      !> load goes on as if it had not been cut. Otherwise the top is held where it is, velocities vanish, and
-      !> the joints come to equilibrium.
+      !> axial load goes on as if it had not been cut. Otherwise the top is held where it is, velocities
+      !> vanish, and the joints come to equilibrium.
       subroutine begin_from()
          type(standing_type) :: standing
          real(wp) :: press(size(path%structure%place)), missing
@@ -209,7 +208,6 @@ contains
       type(end_state), intent(inout) :: after
       type(standing_type) :: standing
       type(energy_type) :: energy
-      integer :: i
 
       standing%kind = static_state
       standing%pressed = path%springs%pressed
@@ -220,11 +218,9 @@ contains
       if (varies) then
          standing%press = path%load_now + path%structure%axial_force_ratio*path%force &
                           + (path%structure%constant_axial - path%structure%axial_load)
-         if (path%springs%pressed) then
-            do i = 1, size(path%springs%layered)
-               standing%press(path%springs%layered(i)) = path%springs%press_at(path%springs%layered(i))
-            end do
-         end if
+         associate (layered => path%springs%layered)
+            if (path%springs%pressed) standing%press(layered) = path%springs%press_at(layered)
+         end associate
       end if
       allocate (standing%v(path%springs%count), source=0.0_wp)
       standing%input = path%work

@@ -73,7 +73,7 @@ contains
          class(column_type), allocatable, target :: other
          class(column_type), pointer :: loaded
          type(chain_equilibrium) :: equilibrium
-         real(wp) :: load(size(target))
+         real(wp) :: load(size(target)), factor
          logical :: varies, curved
 
          loaded => column
@@ -105,23 +105,16 @@ contains
             call trace_straight(loaded, equilibrium, by_force, target, task, error)
          end if
          if (allocated(error) .and. by_force .and. .not. abs(task%summary%peak_displacement) > 0.0_wp) then
-            call explain_buckling(loaded, task%summary%steps)
+            ! A column that could not be moved by a force may have buckled before.
+            call critical_factor(loaded, factor)
+            if (factor <= 1.0_wp .and. task%summary%steps > 0) then
+               error%message = 'row '//to_text(task%summary%steps)//': the axial load is '// &
+                               to_text(1.0_wp/factor)//' times the critical load of the uncracked '// &
+                               'column, which buckles by itself; reduce axial_load, stiffen the springs, '// &
+                               'or drive it by displacement'
+            end if
          end if
       end subroutine trace_column
-
-      !> A column that could not be moved by a force may have buckled before.
-      subroutine explain_buckling(column, row)
-         class(column_type), intent(in) :: column
-         !> In which the path failed
-         integer, intent(in) :: row
-         real(wp) :: factor
-
-         call critical_factor(column, factor)
-         if (factor > 1.0_wp .or. row == 0) return
-         error%message = 'row '//to_text(row)//': the axial load is '//to_text(1.0_wp/factor)// &
-                         ' times the critical load of the uncracked column, which buckles by itself; '// &
-                         'reduce axial_load, stiffen the springs, or drive it by displacement'
-      end subroutine explain_buckling
 
       !> One axial load for each target.
       subroutine check_axial_load(column, targets)

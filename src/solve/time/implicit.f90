@@ -43,8 +43,7 @@ module rbs_solve_time_implicit
 contains
 
    !> Newmark's average acceleration.
-   function new_newmark() result(stepper)
-      type(implicit_stepper) :: stepper
+   type(implicit_stepper) function new_newmark() result(stepper)
 
       stepper%step%beta = 0.25_wp
       stepper%average = .true.
@@ -52,10 +51,9 @@ contains
 
    !> Generalised-alpha with the least damping of low frequencies for a spectral radius at infinite
    !> frequency.
-   function new_generalised_alpha(rho) result(stepper)
+   type(implicit_stepper) function new_generalised_alpha(rho) result(stepper)
       !> From 0 (all damped in one step) to 1 (no damping)
       real(wp), intent(in) :: rho
-      type(implicit_stepper) :: stepper
 
       stepper%step%alpha_m = (2.0_wp*rho - 1.0_wp)/(rho + 1.0_wp)
       stepper%step%alpha_f = rho/(rho + 1.0_wp)
@@ -64,10 +62,9 @@ contains
    end function new_generalised_alpha
 
    !> The method of Hilber, Hughes and Taylor (1977): alpha_f = (1 - rho)/(1 + rho) = -alpha of the authors.
-   function new_hht(rho) result(stepper)
+   type(implicit_stepper) function new_hht(rho) result(stepper)
       !> From 1/2 to 1
       real(wp), intent(in) :: rho
-      type(implicit_stepper) :: stepper
 
       stepper%step%alpha_f = (1.0_wp - rho)/(1.0_wp + rho)
       stepper%step%gamma = 0.5_wp + stepper%step%alpha_f
@@ -75,9 +72,8 @@ contains
    end function new_hht
 
    !> The same method with finite rotations.
-   function with_finite_rotations(method) result(stepper)
+   type(finite_stepper) function with_finite_rotations(method) result(stepper)
       type(implicit_stepper), intent(in) :: method
-      type(finite_stepper) :: stepper
 
       stepper%average = method%average
       stepper%by = method%step%family_type
@@ -215,23 +211,21 @@ contains
          share = 1.0_wp
          first = 0
          way = 0
-         associate (springs => state%springs)
-            do i = 1, springs%count
-               ! Most springs stay on their lines.
-               if (q(i) + dq(i) >= springs%first(i) .and. q(i) + dq(i) <= springs%last(i)) cycle
-               if (dq(i) > 0.0_wp) then
-                  ! The rear end of a one-way line is where the spring was put last.
-                  room = springs%end_toward(i, 1) - q(i)
-               else
-                  room = q(i) - springs%end_toward(i, -1)
-               end if
-               if (room >= share*abs(dq(i))) cycle
-               share = max(room, 0.0_wp)/abs(dq(i))
-               first = i
-               way = merge(1, -1, dq(i) > 0.0_wp)
-               if (.not. share > 0.0_wp) return
-            end do
-         end associate
+         do i = 1, state%springs%count
+            ! Most springs stay on their lines.
+            if (q(i) + dq(i) >= state%springs%first(i) .and. q(i) + dq(i) <= state%springs%last(i)) cycle
+            if (dq(i) > 0.0_wp) then
+               ! The rear end of a one-way line is where the spring was put last.
+               room = state%springs%end_toward(i, 1) - q(i)
+            else
+               room = q(i) - state%springs%end_toward(i, -1)
+            end if
+            if (room >= share*abs(dq(i))) cycle
+            share = max(room, 0.0_wp)/abs(dq(i))
+            first = i
+            way = merge(1, -1, dq(i) > 0.0_wp)
+            if (.not. share > 0.0_wp) return
+         end do
       end subroutine first_end
 
       !> The end of the step becomes the state. Works by the trapezoidal rule along the way, which balances

@@ -288,17 +288,15 @@ contains
       ! An unknown is coupled with the others of its part: |k_ij| is at most the root of k_ii k_jj.
       reach = 0.0_wp
       do j = 1, size(structure%group)
-         associate (group => structure%group(j))
-            way = 0.0_wp
-            do k = 0, group%count - 1
-               i = group%first + k*group%step
-               way = max(way, abs(self%moved(i)) + h*abs(self%v0(i)) + h**2*abs(self%a0(i)))
-            end do
-            do k = 0, group%count - 1
-               i = group%first + k*group%step
-               reach(structure%part(i)) = reach(structure%part(i)) + sqrt(max(stiffness(i), 0.0_wp))*way
-            end do
-         end associate
+         way = 0.0_wp
+         do k = 0, structure%group(j)%count - 1
+            i = structure%group(j)%first + k*structure%group(j)%step
+            way = max(way, abs(self%moved(i)) + h*abs(self%v0(i)) + h**2*abs(self%a0(i)))
+         end do
+         do k = 0, structure%group(j)%count - 1
+            i = structure%group(j)%first + k*structure%group(j)%step
+            reach(structure%part(i)) = reach(structure%part(i)) + sqrt(max(stiffness(i), 0.0_wp))*way
+         end do
       end do
       is_round_off = all(abs(self%r) <= round_off*sqrt(max(stiffness, 0.0_wp))*reach(structure%part))
    end function is_round_off
@@ -339,7 +337,8 @@ contains
 
       real(wp) :: relative, load(signals)
 
-      if (.not. is_stale(self, state, h)) return
+      if (state%springs%version == self%factor_version .and. abs(h - self%factor_step) <= 1.0e-14_wp*h .and. &
+          .not. (state%motion%second_order .and. state%motion%varies)) return
       call set_tangent()
       ! What lies between the unknowns is condensed by the new tangent.
       if (size(step%now%tangent) == 0) return
@@ -398,15 +397,5 @@ contains
       end subroutine hold_free
 
    end subroutine fit
-
-   pure logical function is_stale(self, state, h)
-      type(step_tangent), intent(in) :: self
-      type(state_type), intent(in) :: state
-      real(wp), intent(in) :: h
-
-      is_stale = state%springs%version /= self%factor_version .or. &
-                 abs(h - self%factor_step) > 1.0e-14_wp*h
-      if (state%motion%second_order) is_stale = is_stale .or. state%motion%varies
-   end function is_stale
 
 end module rbs_solve_time_implicit_balance

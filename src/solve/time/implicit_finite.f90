@@ -147,7 +147,11 @@ contains
       state%springs%work_before(:) = self%work
       state%springs%work = 0.0_wp
       call state%motion%press(state%springs, self%load)
-      call start_step(self, state%q)
+      call see_bodies(self, state%q)
+      self%from(:) = self%rotation
+      self%joint%start(1) = self%joint%finish(1)
+      self%joint%start(2) = self%joint%finish(2)
+      self%moved = 0.0_wp
       call self%try(state, 0.0_wp)
       call self%iterate(state)
       self%busiest = maxloc(abs(self%change)*self%column%initial_stiffness, dim=1)
@@ -163,18 +167,6 @@ contains
       state%springs%work_before(:) = 0.0_wp
       if (self%marked) call state%springs%forget_mark()
    end subroutine take_step
-
-   !> Rotations of the bodies, and where the joints are.
-   subroutine start_step(self, q)
-      type(finite_stepper), intent(inout) :: self
-      real(wp), intent(in), contiguous :: q(:)
-
-      call see_bodies(self, q)
-      self%from(:) = self%rotation
-      self%joint%start(1) = self%joint%finish(1)
-      self%joint%start(2) = self%joint%finish(2)
-      self%moved = 0.0_wp
-   end subroutine start_step
 
    !> The bodies and joints at one state.
    subroutine see_bodies(self, q)
@@ -366,10 +358,8 @@ contains
       real(wp), intent(out) :: g(:, 0:)
 
       call find_damping(self, state)
-      associate (springs => state%springs)
-         self%f = springs%f0 + springs%k*(q - springs%d0) + self%viscous*v
-         self%k = springs%k + self%viscous*(self%by%gamma/(self%by%beta*h))
-      end associate
+      self%f = state%springs%f0 + state%springs%k*(q - state%springs%d0) + self%viscous*v
+      self%k = state%springs%k + self%viscous*(self%by%gamma/(self%by%beta*h))
       if (allocated(state%motion%modal)) self%f = self%f + matmul(state%motion%modal, v)
       call find_balance(self, load, g)
       if (self%column%mass_damping > 0.0_wp) then

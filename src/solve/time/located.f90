@@ -8,9 +8,8 @@ module rbs_solve_time_located
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: choose_lines, put_on_plane
-   use rbs_hysteresis_layer_events, only: turn_layer
    use rbs_solve_time_event, only: event_type, find_event, same_event, distance_to, standing_rotation, &
-                                   round_off_of, felt
+                                   round_off_of, felt, turn_layer
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type, stepper_type, in_bounds
@@ -52,7 +51,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       type(event_type) :: event
       real(wp) :: finish, left, part, corner, wrong, no_length, clock_digits
-      integer :: tries, idle
+      integer :: tries, idle, i
 
       if (allocated(error)) return
       if (.not. allocated(self%now%a)) then
@@ -81,14 +80,14 @@ contains
          end if
          if (state%springs%pressed) then
             call state%loads%slope_after(state%time, self%slope)
-            call choose_planes(self, state)
+            call choose_planes()
             if (state%springs%lost_joint() > 0) return
          end if
          call leave_at_once(self, state, part, error)
          if (allocated(error)) return
          do tries = 1, 200
             call self%scheme%attempt(state, part)
-            wrong = error_of(self, state)
+            wrong = error_of()
             if (.not. wrong > 1.0_wp) exit
             ! A load may jump within the last digits of the clock; a shorter step would not help then.
             if (part <= clock_digits .and. wrong < not_finite) exit
@@ -96,13 +95,19 @@ contains
                part = max(part*max(0.2_wp, 0.9_wp*wrong**(-1.0_wp/self%scheme%order)), 0.5_wp*self%shortest)
                self%cut_steps = self%cut_steps + 1
             else
-               call report_no_step(self, state, part, error)
+               i = maxloc(abs(self%scheme%error_q)*sqrt(state%motion%structure%initial_stiffness), dim=1)
+               call fatal_error(error, analysis_failed, 'the step of '//to_text(part)//' s at time '// &
+                                to_text(state%begin + state%time)//' s does not reach the tolerance of '// &
+                                to_text(self%tolerance)//'; the largest error is in '// &
+                                trim(spring_name(state%motion%structure%place(i)))//'. Rows up to there '// &
+                                "are kept. Give a larger tolerance, or method = 'generalised_alpha' for "// &
+                                'a stiff column')
                return
             end if
          end do
          call find_event(state, self%scheme, part, self%slope, event)
-         if (event%spring > 0) call locate(self, state, event, part)
-         call accept(self, state, event, part, wrong)
+         if (event%spring > 0) call locate(part)
+         call accept(part)
          left = left - part
          state%time = finish - left
          idle = merge(0, idle + 1, part > no_length)
@@ -120,6 +125,166 @@ contains
          if (state%sight%collapsed) return
       end do
       state%time = finish
+
+   contains
+
+      !> Layered joints whose axial loads vary choose the lines of their layers for the present rates, or
+      !> where
+      !> nothing moves for those that follow.
+      subroutine choose_planes()
+         real(wp) :: turn, press
+         integer :: i, j
+         logical :: known
+
+         known = .false.
+         do j = 1, size(state%springs%layered)
+            i = state%springs%layered(j)
+            turn = state%v(i)
+            press = state%motion%structure%axial_rate(i, self%slope)
+            if (.not. abs(turn) + abs(press) > 0.0_wp) then
+               if (.not. known) then
+                  call state%motion%acceleration(state%springs, state%q, state%v, state%load, self%now)
+                  known = .true.
+               end if
+               turn = felt(self%now%a(i), round_off_of(state, i))
+            end if
+            if (abs(turn) + abs(press) > 0.0_wp) call choose_lines(state%springs, i, turn, press)
+         end do
+         self%scheme%begun = .false.
+      end subroutine choose_planes
+
+      !> Take the attempt; the springs follow, that of the event onto its next line.
+      subroutine accept(h)
+         real(wp), intent(in) :: h
+         integer :: i
+
+         call self%scheme%accept(state, h)
+         state%lost = .not. in_bounds(size(state%q), state%q)
+         if (state%lost) return
+         i = event%spring
+         if (i > 0) then
+            self%cut_steps = self%cut_steps + 1
+            if (event%layer > 0) then
+               if (event%turns) state%v(i) = standing_rotation(state, event, self%slope)
+            else if (event%turns) then
+               state%v(i) = 0.0_wp
+            else
+               state%q(i) = state%springs%end_toward(i, event%way)
+            end if
+         end if
+         call state%sight%see_within(state%motion, state%springs, self%scheme%q, self%scheme%v, state%q, &
+                                     state%v, h, state%begin + state%time)
+         if (state%springs%pressed) call carry_planes(h)
+      ! No other spring has passed an end by more than the last digits.
+         call state%springs%carry_to(state%q)
+         if (i > 0 .and. event%layer == 0) call state%springs%leave(i, event%way)
+         if (self%tolerance > 0.0_wp) then
+            self%longest_step = max(self%longest_step, h)
+            self%largest = max(self%largest, energy_of(state%q, state%v))
+         ! A step that ends at an event does not tell what accuracy would allow.
+            if (i == 0) then
+               self%next_step = h*min(5.0_wp, 0.9_wp*max(wrong, 1.0e-10_wp)**(-1.0_wp/self%scheme%order))
+               self%next_step = min(self%next_step, self%longest)
+            end if
+         end if
+      end subroutine accept
+
+      !> Layered joints whose axial loads vary go on their planes to the end of a step. Between its ends the
+      !> load
+      !> is straight in time and the rotation a cubic: the work of the moment is that of the trapezoidal rule
+      !> and
+      !> a correction by the velocities.
+      subroutine carry_planes(h)
+         real(wp), intent(in) :: h
+         real(wp) :: turned, before, press, centre
+         integer :: i, j, layer
+
+         associate (springs => state%springs)
+            do j = 1, size(springs%layered)
+               i = springs%layered(j)
+               layer = merge(event%layer, 0, i == event%spring .and. .not. event%turns)
+               press = state%motion%structure%axial_rate(i, self%slope)
+               turned = state%q(i) - springs%d(i)
+               before = springs%force(i)
+               centre = springs%centre(i)
+               call put_on_plane(springs, i, state%q(i), springs%press_to(i), state%v(i), press, layer)
+               springs%work(i) = springs%work(i) + 0.5_wp*(before + springs%force(i))*turned &
+                                 + centre*press*h**2/12.0_wp*(self%scheme%v(i) - state%v(i))
+            end do
+            if (event%layer > 0 .and. event%turns) call turn_layer(springs, event%spring, event%layer, &
+                event%way)
+         end associate
+      end subroutine carry_planes
+
+      !> Error of the attempt over the tolerance, in energy norm; above 1 also where it is not finite.
+      real(wp) function error_of() result(wrong)
+         real(wp) :: measure
+
+         wrong = 0.0_wp
+         if (.not. self%tolerance > 0.0_wp) return
+         wrong = not_finite
+         if (.not. all(ieee_is_finite(self%scheme%v))) return
+         if (.not. all(ieee_is_finite(self%scheme%q))) return
+         wrong = 0.0_wp
+         if (.not. in_bounds(size(self%scheme%q), self%scheme%q)) return
+         measure = max(self%largest, energy_of(self%scheme%q, self%scheme%v))
+         if (measure > 0.0_wp) then
+            wrong = sqrt(energy_of(self%scheme%error_q, self%scheme%error_v)/measure)/self%tolerance
+         end if
+      end function error_of
+
+      !> Energy of small deformations and their velocities, no spring having yielded [J].
+      pure real(wp) function energy_of(q, v) result(energy)
+         real(wp), intent(in), contiguous :: q(:), v(:)
+
+         energy = 0.5_wp*sum(state%motion%structure%initial_stiffness*q**2) &
+                  + state%motion%structure%kinetic_energy(self%at_rest, v)
+      end function energy_of
+
+      !> Shorten the step to the event: attempts of shorter and shorter steps, by Newton's method within
+      !> bounds. If another event turns out to come before, that one is located.
+      subroutine locate(h)
+         !> On entry the length of the attempt, on return that up to the event [s]
+         real(wp), intent(inout) :: h
+         type(event_type) :: other
+         integer :: rounds
+
+         do rounds = 1, 2 + most_idle(state)/5
+            call approach(h)
+            call find_event(state, self%scheme, h, self%slope, other)
+            if (other%spring == 0) return
+            if (same_event(other, event)) return
+            event = other
+         end do
+      end subroutine locate
+
+      !> Newton's method for the time of one event.
+      subroutine approach(h)
+         real(wp), intent(inout) :: h
+         real(wp) :: low, high, t, wrong, growth, small
+         integer :: iteration
+
+         low = 0.0_wp
+         high = min(event%latest, h)
+         t = min(max(event%estimate, 0.0_wp), high)
+         if (.not. t > 0.0_wp) t = 0.5_wp*high
+         do iteration = 1, 60
+            call self%scheme%attempt(state, t)
+            call distance_to(state, self%scheme, event, self%slope, self%now, wrong, growth, small)
+            h = t
+            if (abs(wrong) <= small .or. high - low <= 4.0_wp*epsilon(1.0_wp)*high) exit
+            if (wrong > 0.0_wp) then
+               high = t
+            else
+               low = t
+            end if
+            t = 0.5_wp*(low + high)
+            if (growth > 0.0_wp) then
+               if (h - wrong/growth > low .and. h - wrong/growth < high) t = h - wrong/growth
+            end if
+         end do
+      end subroutine approach
+
    end subroutine advance
 
    !> With a tolerance the length of the next step and the measure of its error depend on the steps before.
@@ -140,127 +305,6 @@ contains
       most_idle = 20 + 10*state%springs%count
       if (state%springs%pressed) most_idle = most_idle + 100*size(state%springs%layered)
    end function most_idle
-
-   !> Layered joints whose axial loads vary choose the lines of their layers for the present rates, or where
-   !> nothing moves for those that follow.
-   subroutine choose_planes(self, state)
-      class(located_stepper), intent(inout) :: self
-      type(state_type), intent(inout) :: state
-      real(wp) :: turn, press
-      integer :: i, j
-      logical :: known
-
-      known = .false.
-      do j = 1, size(state%springs%layered)
-         i = state%springs%layered(j)
-         turn = state%v(i)
-         press = state%motion%structure%axial_rate(i, self%slope)
-         if (.not. abs(turn) + abs(press) > 0.0_wp) then
-            if (.not. known) then
-               call state%motion%acceleration(state%springs, state%q, state%v, state%load, self%now)
-               known = .true.
-            end if
-            turn = felt(self%now%a(i), round_off_of(state, i))
-         end if
-         if (abs(turn) + abs(press) > 0.0_wp) call choose_lines(state%springs, i, turn, press)
-      end do
-      self%scheme%begun = .false.
-   end subroutine choose_planes
-
-   !> Take the attempt; the springs follow, that of the event onto its next line.
-   subroutine accept(self, state, event, h, wrong)
-      type(located_stepper), intent(inout) :: self
-      type(state_type), intent(inout) :: state
-      type(event_type), intent(in) :: event
-      real(wp), intent(in) :: h, wrong
-      integer :: i
-
-      call self%scheme%accept(state, h)
-      state%lost = .not. in_bounds(size(state%q), state%q)
-      if (state%lost) return
-      i = event%spring
-      if (i > 0) then
-         self%cut_steps = self%cut_steps + 1
-         if (event%layer > 0) then
-            if (event%turns) state%v(i) = standing_rotation(state, event, self%slope)
-         else if (event%turns) then
-            state%v(i) = 0.0_wp
-         else
-            state%q(i) = state%springs%end_toward(i, event%way)
-         end if
-      end if
-      call state%sight%see_within(state%motion, state%springs, self%scheme%q, self%scheme%v, state%q, &
-                                  state%v, h, state%begin + state%time)
-      if (state%springs%pressed) call carry_planes(self, state, event, h)
-      ! No other spring has passed an end by more than the last digits.
-      call state%springs%carry_to(state%q)
-      if (i > 0 .and. event%layer == 0) call state%springs%leave(i, event%way)
-      if (self%tolerance > 0.0_wp) then
-         self%longest_step = max(self%longest_step, h)
-         self%largest = max(self%largest, energy_of(self, state, state%q, state%v))
-         ! A step that ends at an event does not tell what accuracy would allow.
-         if (i == 0) then
-            self%next_step = h*min(5.0_wp, 0.9_wp*max(wrong, 1.0e-10_wp)**(-1.0_wp/self%scheme%order))
-            self%next_step = min(self%next_step, self%longest)
-         end if
-      end if
-   end subroutine accept
-
-   !> Layered joints whose axial loads vary go on their planes to the end of a step. Between its ends the load
-   !> is straight in time and the rotation a cubic: the work of the moment is that of the trapezoidal rule and
-   !> a correction by the velocities.
-   subroutine carry_planes(self, state, event, h)
-      class(located_stepper), intent(in) :: self
-      type(state_type), intent(inout) :: state
-      type(event_type), intent(in) :: event
-      real(wp), intent(in) :: h
-      real(wp) :: turned, before, press, centre
-      integer :: i, j, layer
-
-      associate (springs => state%springs)
-         do j = 1, size(springs%layered)
-            i = springs%layered(j)
-            layer = merge(event%layer, 0, i == event%spring .and. .not. event%turns)
-            press = state%motion%structure%axial_rate(i, self%slope)
-            turned = state%q(i) - springs%d(i)
-            before = springs%force(i)
-            centre = springs%centre(i)
-            call put_on_plane(springs, i, state%q(i), springs%press_to(i), state%v(i), press, layer)
-            springs%work(i) = springs%work(i) + 0.5_wp*(before + springs%force(i))*turned &
-                              + centre*press*h**2/12.0_wp*(self%scheme%v(i) - state%v(i))
-         end do
-         if (event%layer > 0 .and. event%turns) call turn_layer(springs, event%spring, event%layer, event%way)
-      end associate
-   end subroutine carry_planes
-
-   !> Error of the attempt over the tolerance, in energy norm; above 1 also where it is not finite.
-   real(wp) function error_of(self, state) result(wrong)
-      type(located_stepper), intent(in) :: self
-      type(state_type), intent(in) :: state
-      real(wp) :: measure
-
-      wrong = 0.0_wp
-      if (.not. self%tolerance > 0.0_wp) return
-      wrong = not_finite
-      if (.not. all(ieee_is_finite(self%scheme%v))) return
-      if (.not. all(ieee_is_finite(self%scheme%q))) return
-      wrong = 0.0_wp
-      if (.not. in_bounds(size(self%scheme%q), self%scheme%q)) return
-      measure = max(self%largest, energy_of(self, state, self%scheme%q, self%scheme%v))
-      if (measure > 0.0_wp) then
-         wrong = sqrt(energy_of(self, state, self%scheme%error_q, self%scheme%error_v)/measure)/self%tolerance
-      end if
-   end function error_of
-
-   !> Energy of small deformations and their velocities, no spring having yielded [J].
-   pure real(wp) function energy_of(self, state, q, v) result(energy)
-      type(located_stepper), intent(in) :: self
-      type(state_type), intent(in) :: state
-      real(wp), intent(in), contiguous :: q(:), v(:)
-
-      energy = 0.5_wp*sum(state%motion%structure%initial_stiffness*q**2) &
-               + state%motion%structure%kinetic_energy(self%at_rest, v)
-   end function energy_of
 
    !> Springs that stand at an end of their line and go on, or have turned back already, change their line
    !> before the step.
@@ -333,71 +377,5 @@ contains
       if (x > 0.0_wp) direction_of = 1
       if (x < 0.0_wp) direction_of = -1
    end function direction_of
-
-   !> Shorten the step to the event: attempts of shorter and shorter steps, by Newton's method within
-   !> bounds. If another event turns out to come before, that one is located.
-   subroutine locate(self, state, event, h)
-      type(located_stepper), intent(inout) :: self
-      type(state_type), intent(inout) :: state
-      type(event_type), intent(inout) :: event
-      !> On entry the length of the attempt, on return that up to the event [s]
-      real(wp), intent(inout) :: h
-      type(event_type) :: other
-      integer :: rounds
-
-      do rounds = 1, 2 + most_idle(state)/5
-         call approach(self, state, event, h)
-         call find_event(state, self%scheme, h, self%slope, other)
-         if (other%spring == 0) return
-         if (same_event(other, event)) return
-         event = other
-      end do
-   end subroutine locate
-
-   !> Newton's method for the time of one event.
-   subroutine approach(self, state, event, h)
-      type(located_stepper), intent(inout) :: self
-      type(state_type), intent(inout) :: state
-      type(event_type), intent(in) :: event
-      real(wp), intent(inout) :: h
-      real(wp) :: low, high, t, wrong, growth, small
-      integer :: iteration
-
-      low = 0.0_wp
-      high = min(event%latest, h)
-      t = min(max(event%estimate, 0.0_wp), high)
-      if (.not. t > 0.0_wp) t = 0.5_wp*high
-      do iteration = 1, 60
-         call self%scheme%attempt(state, t)
-         call distance_to(state, self%scheme, event, self%slope, self%now, wrong, growth, small)
-         h = t
-         if (abs(wrong) <= small .or. high - low <= 4.0_wp*epsilon(1.0_wp)*high) exit
-         if (wrong > 0.0_wp) then
-            high = t
-         else
-            low = t
-         end if
-         t = 0.5_wp*(low + high)
-         if (growth > 0.0_wp) then
-            if (h - wrong/growth > low .and. h - wrong/growth < high) t = h - wrong/growth
-         end if
-      end do
-   end subroutine approach
-
-   !> Report that the tolerance is not reached, or that the motion has no bounds.
-   subroutine report_no_step(self, state, h, error)
-      type(located_stepper), intent(in) :: self
-      type(state_type), intent(in) :: state
-      real(wp), intent(in) :: h
-      type(error_type), allocatable, intent(inout) :: error
-      integer :: i
-
-      i = maxloc(abs(self%scheme%error_q)*sqrt(state%motion%structure%initial_stiffness), dim=1)
-      call fatal_error(error, analysis_failed, 'the step of '//to_text(h)//' s at time '// &
-                       to_text(state%begin + state%time)//' s does not reach the tolerance of '// &
-                       to_text(self%tolerance)//'; the largest error is in '// &
-                       trim(spring_name(state%motion%structure%place(i)))//'. Rows up to there are kept. '// &
-                       "Give a larger tolerance, or method = 'generalised_alpha' for a stiff column")
-   end subroutine report_no_step
 
 end module rbs_solve_time_located

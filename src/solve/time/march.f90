@@ -58,16 +58,14 @@ contains
       task%summary%time_step = plan%dt
       call take_steps()
       if (present(sight)) sight = state%sight
-      associate (summary => task%summary)
-         summary%last_time = response%time
-         summary%last_displacement = response%displacement
-         summary%peaks_type = state%sight%peaks_type
-         summary%collapsed = state%sight%collapsed
-         summary%events = state%springs%events
-         summary%steps = stepper%steps
-         summary%cut_steps = stepper%cut_steps
-         if (stepper%longest_step > 0.0_wp) summary%time_step = stepper%longest_step
-      end associate
+      task%summary%last_time = response%time
+      task%summary%last_displacement = response%displacement
+      task%summary%peaks_type = state%sight%peaks_type
+      task%summary%collapsed = state%sight%collapsed
+      task%summary%events = state%springs%events
+      task%summary%steps = stepper%steps
+      task%summary%cut_steps = stepper%cut_steps
+      if (stepper%longest_step > 0.0_wp) task%summary%time_step = stepper%longest_step
       if (allocated(error) .or. .not. task%keeps_end .or. task%summary%lost_joint > 0) return
       call keep_state(state, stepper, plan, step, response%energy%residual, task%after)
 

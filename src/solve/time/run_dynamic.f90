@@ -113,8 +113,7 @@ contains
       end subroutine plan_steps
 
       !> The method for a case whose user leaves it to the program: the most accurate one if it takes hardly
-      !> any
-      !> time, else the cheapest. It is chosen by counts of steps, never by a clock.
+      !> any time, else the cheapest. It is chosen by counts of steps, never by a clock.
       subroutine choose_method()
          type(method_type) :: explicit_choice, implicit_choice, chosen
          real(wp) :: lowest, highest, explicit_steps, implicit_steps, longest, step_cost, work

@@ -221,16 +221,14 @@ contains
 
       open = .not. self%reached < huge(1.0_wp)
       do i = 1, size(self%watch)
-         associate (watch => self%watch(i))
-            if (.not. open(watch%state)) cycle
-            after = value_of(watch, q, self%openings_now(i))
-            if (.not. after >= watch%threshold) cycle
-            before = value_of(watch, self%q, self%openings(i))
-            share = 1.0_wp
-            if (after > before) share = (watch%threshold - before)/(after - before)
-            at = self%clock + share*(clock - self%clock)
-            call reach(self, i, at, self%displacement + share*(displacement - self%displacement))
-         end associate
+         if (.not. open(self%watch(i)%state)) cycle
+         after = value_of(self%watch(i), q, self%openings_now(i))
+         if (.not. after >= self%watch(i)%threshold) cycle
+         before = value_of(self%watch(i), self%q, self%openings(i))
+         share = 1.0_wp
+         if (after > before) share = (self%watch(i)%threshold - before)/(after - before)
+         at = self%clock + share*(clock - self%clock)
+         call reach(self, i, at, self%displacement + share*(displacement - self%displacement))
       end do
       call set_bounds(self)
    end subroutine look_closely

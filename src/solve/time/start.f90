@@ -56,9 +56,7 @@ contains
       call state%loads%find_largest(largest)
       largest = same_step*max(largest, abs(standing%load))
       if (all(abs(state%load - standing%load) <= largest)) state%load = standing%load
-      do i = 1, size(press)
-         press(i) = structure%axial_force(i, state%load)
-      end do
+      press = [(structure%axial_force(i, state%load), i=1, size(press))]
       call go_under(state%springs, press, standing%pressed)
       lost = state%springs%lost_joint()
       if (lost > 0) then
@@ -74,19 +72,13 @@ contains
       state%of_damping = standing%damping
       state%at_begin = standing%at_begin
       state%along_joints = standing%along_joints
-      missing = standing%residual - residual_of(state)
+      ! What is missing from the balance of energy
+      missing = standing%residual - (state%of_loads + state%at_begin &
+                                     - (structure%kinetic_energy(state%q, state%v) + state%along_joints) &
+                                     - sum(state%springs%work) - state%of_damping &
+                                     - structure%potential_energy(state%q))
       if (abs(missing) > 0.0_wp) state%at_begin = state%at_begin + missing
    end subroutine resume_state
-
-   !> What is missing from the balance of energy [J].
-   real(wp) function residual_of(state)
-      type(state_type), intent(in) :: state
-
-      residual_of = state%of_loads + state%at_begin &
-                    - (state%motion%structure%kinetic_energy(state%q, state%v) + state%along_joints) &
-                    - sum(state%springs%work) - state%of_damping &
-                    - state%motion%structure%potential_energy(state%q)
-   end function residual_of
 
    !> The same method goes on with what it remembers, unless a load jumps at the start.
    subroutine resume_steps(state, stepper, before, standing)
@@ -119,10 +111,7 @@ contains
          standing%displacement = structure%top_displacement(state%q)
          standing%force = state%load(lateral)
          standing%axial_load = structure%axial_load + state%load(top_axial)
-         allocate (standing%press(size(structure%place)))
-         do i = 1, size(structure%place)
-            standing%press(i) = structure%axial_force(i, state%load)
-         end do
+         standing%press = [(structure%axial_force(i, state%load), i=1, size(structure%place))]
          standing%v = state%v
          standing%input = state%of_loads
          standing%damping = state%of_damping
@@ -188,6 +177,8 @@ contains
       type(loads_type), intent(in) :: loads
       real(wp), intent(in) :: begin
       type(error_type), allocatable, intent(out) :: error
+      real(wp) :: press(size(structure%place))
+      integer :: i
 
       state%loads = loads
       state%begin = begin
@@ -196,7 +187,14 @@ contains
       call state%motion%create(structure, state%loads%acts, error)
       if (allocated(error)) return
       call prepare_loads(state, structure)
-      call create_springs(state, structure)
+      ! Layered joints begin under the axial forces of the first moment.
+      press = structure%constant_axial
+      if (state%motion%varies) press = [(structure%axial_force(i, state%load), i=1, size(press))]
+      call structure%create_springs(state%springs, press)
+      if (state%motion%varies) then
+         call vary_axial_loads(state%springs)
+         call state%motion%press(state%springs, state%load)
+      end if
       allocate (state%q(size(structure%place)), state%v(size(structure%place)), source=0.0_wp)
    end subroutine create_state
 
@@ -213,25 +211,6 @@ contains
       end if
       call state%loads%at_time(state%time, state%load)
    end subroutine prepare_loads
-
-   !> Virgin springs; layered joints begin under the axial forces of the first moment.
-   subroutine create_springs(state, structure)
-      type(state_type), intent(inout) :: state
-      class(structure_type), intent(in) :: structure
-      real(wp) :: axial_load(size(structure%place))
-      integer :: i
-
-      axial_load = structure%constant_axial
-      if (state%motion%varies) then
-         do i = 1, size(axial_load)
-            axial_load(i) = structure%axial_force(i, state%load)
-         end do
-      end if
-      call structure%create_springs(state%springs, axial_load)
-      if (.not. state%motion%varies) return
-      call vary_axial_loads(state%springs)
-      call state%motion%press(state%springs, state%load)
-   end subroutine create_springs
 
    !> Openings of axial springs in equilibrium with axial load and weight.
    subroutine close_joints(state, error)

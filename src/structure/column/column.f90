@@ -54,10 +54,9 @@ module rbs_structure_column_column
       !> Whether the first body is a footing, so that its joint is joint 0, and whether the last body is held
       !> against rotation
       logical :: footing = .false., held = .false.
-      !> Masses [kg] and rotary inertias about the centroid [kg m2] of the bodies (n)
-      real(wp), allocatable :: mass(:), inertia(:)
-      !> Distance of the centroid from the bottom and from the top of its body (n) [m]
-      real(wp), allocatable :: lower(:), upper(:)
+      !> Masses [kg] and rotary inertias about the centroid [kg m2] of the bodies (n); distance of the
+      !> centroid from the bottom and from the top of its body (n) [m]
+      real(wp), allocatable :: mass(:), inertia(:), lower(:), upper(:)
       !> Height of the joints above the ground (n + 1) [m]; the last is the top
       real(wp), allocatable :: joint_height(:)
       !> Inertia load per acceleration of the ground, for small rotations (unknowns) [kg, kg m, 0]
@@ -409,16 +408,14 @@ contains
       real(wp), intent(in), contiguous :: d(:)
       real(wp) :: unit(2*self%n)
 
-      associate (n => self%n)
-         y = self%joint_height(n + 1)
-         if (self%kinematics /= small) then
-            unit = 1.0_wp
-            unit(:n) = self%length
-            if (self%held) unit(2*n) = 0.0_wp
-            y = y + second_order_energy(n, unit, d)
-         end if
-         if (self%opens) y = y + sum(d(2*n + 1:))
-      end associate
+      y = self%joint_height(self%n + 1)
+      if (self%kinematics /= small) then
+         unit = 1.0_wp
+         unit(:self%n) = self%length
+         if (self%held) unit(2*self%n) = 0.0_wp
+         y = y + second_order_energy(self%n, unit, d)
+      end if
+      if (self%opens) y = y + sum(d(2*self%n + 1:))
    end function top_height
 
    pure subroutine rotations(self, d, rotation)

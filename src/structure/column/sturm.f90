@@ -29,10 +29,9 @@ module rbs_structure_column_sturm
       logical :: held = .false.
       !> Stiffness of the joints, translation and rotation; masses and rotary inertias of the bodies (2, n)
       real(wp), allocatable :: k(:, :), mass(:, :)
-      !> Distance of the centroid from the bottom and from the top of the body (n)
-      real(wp), allocatable :: lower(:), upper(:)
-      !> Axial force times length of each body, axial force across the slip of each joint (n)
-      real(wp), allocatable :: turning(:), sliding(:)
+      !> Distance of the centroid from the bottom and from the top of the body (n); axial force times length
+      !> of each body, axial force across the slip of each joint (n)
+      real(wp), allocatable :: lower(:), upper(:), turning(:), sliding(:)
       !> Pivots, T and C of the joints at the last shift (7, n)
       real(wp), allocatable, private :: joint(:, :)
    contains
@@ -166,18 +165,15 @@ contains
       force = 0.0_wp
       moment = 0.0_wp
       do i = self%n, 1, -1
-         associate (p1 => self%joint(1, i), p2 => self%joint(2, i), t12 => self%joint(4, i), &
-                    c12 => self%joint(5, i), c21 => self%joint(6, i), c22 => self%joint(7, i))
-            moment = moment + self%upper(i)*force
-            force = force + self%mass(1, i)*x(1, i)
-            moment = moment + self%mass(2, i)*x(2, i) + self%lower(i)*force
-            d(1, i) = force*p1
-            half = moment + t12*d(1, i)
-            d(2, i) = half*p2
-            force = force*(self%k(1, i)*p1) + c21*d(2, i)
-            moment = moment + c12*d(1, i) + c22*d(2, i)
-            if (self%held .and. i == self%n) moment = 0.0_wp
-         end associate
+         moment = moment + self%upper(i)*force
+         force = force + self%mass(1, i)*x(1, i)
+         moment = moment + self%mass(2, i)*x(2, i) + self%lower(i)*force
+         d(1, i) = force*self%joint(1, i)
+         half = moment + self%joint(4, i)*d(1, i)
+         d(2, i) = half*self%joint(2, i)
+         force = force*(self%k(1, i)*self%joint(1, i)) + self%joint(6, i)*d(2, i)
+         moment = moment + self%joint(5, i)*d(1, i) + self%joint(7, i)*d(2, i)
+         if (self%held .and. i == self%n) moment = 0.0_wp
       end do
       top = 0.0_wp
       turned = 0.0_wp
