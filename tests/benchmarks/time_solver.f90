@@ -31,7 +31,8 @@ program time_solver
    use rbs_solve_time_run_dynamic, only: plan_dynamic, run_dynamic
    use rbs_case_analysis_record, only: analysis_record
    use rbs_structure_column_column_record, only: column_record
-   use rbs_hysteresis_spring_record, only: spring_record
+   use rbs_hysteresis_rule, only: spring_rules
+   use rbs_hysteresis_spring_record, only: spring_record, add_rules
    implicit none
 
    integer :: repeats, divisor, repeat
@@ -192,6 +193,7 @@ contains
    subroutine time_joint()
       integer, parameter :: strips = 28, cycles = 40
       type(spring_record) :: joint(1), layer(strips + 2)
+      type(spring_rules), target :: rules
       type(spring_array) :: spring
       real(wp) :: y(strips + 2), begin, turning
       integer :: i, m, events, run, runs
@@ -220,11 +222,11 @@ contains
       call joint(1)%set_layers(y, layer)
 
       runs = max(50/divisor, 2)
-      call spring%create(joint)
+      call add_rules(rules, joint, 1)
       events = 0
       turning = 0.0_wp
       do run = 1, runs
-         call spring%create(joint)
+         call spring%create(rules, spread([0], 1, 2), joint%axial_load)
          call cpu_time(begin)
          turning = turning - begin
          do i = 1, cycles
