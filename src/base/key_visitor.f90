@@ -372,7 +372,9 @@ contains
       case (putting)
          if (key%name == self%wanted) text = trim(self%text)
       case (checking)
-         if (key%kind /= word_kind .or. text == '' .or. choice_place(key, text) > 0) return
+         ! Other texts may not be allocated.
+         if (key%kind /= word_kind) return
+         if (text == '' .or. choice_place(key, text) > 0) return
          self%sound = .false.
          name = [(choice_name(key, i), i=1, size(name))]
          call self%messages%add(self%group//': '//trim(key%name)//" = '"//text//"' is not known; it is "// &
