@@ -137,6 +137,7 @@ module rbs_structure_structure
       procedure :: find_lost
       procedure :: let_go
       procedure :: has_fallen
+      procedure :: find_runaway
       ! Where deformations follow from the unknowns and the present stiffness of the springs
       procedure :: linearise
       procedure :: damp
@@ -480,6 +481,16 @@ contains
 
       has_fallen = size(d) < self%base_spring
    end function has_fallen
+
+   !> A spring without mass that nothing in its part holds any more, 0: none.
+   pure integer function find_runaway(self, d) result(spring)
+      class(structure_type), intent(in) :: self
+      !> Deformations of the springs (springs)
+      real(wp), intent(in), contiguous :: d(:)
+
+      spring = 0
+      if (size(d) < self%base_spring) spring = self%base_spring
+   end function find_runaway
 
    !> What follows from the present stiffness of the springs; nothing, where it is not asked for.
    subroutine linearise(self, k, tangent, unstable)

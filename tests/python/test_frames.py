@@ -750,6 +750,27 @@ def test_a_run_ends_where_nothing_carries_the_load():
     assert -run.y[-1, 3:].mean() == pytest.approx(fallen, rel=0.02)
 
 
+def test_a_beam_that_cannot_carry_its_load_any_more_is_told():
+    """Two slips against each other move no node: the nodes alone would not show it."""
+    slips = PeakOriented(d_y=1e-3, f_y=65e3, d_cap=5e-3, f_cap=66e3, d_pc=5e-3)
+    turns = Bilinear(k=1e8, d_y=1.2e-3, k_post=1e6)
+    beam = FrameMember(
+        E, A, INERTIA, flexure=turns, shear={0.0: slips, 1.0: slips}, between="rigid"
+    )
+    frame = Frame.grid(
+        [3.0], [6.0], columns=COLUMN, beams=beam, beam_load=20e3, floor_mass=40e3,
+        damping=rbsdem.Damping(stiffness=2e-3),
+    )  # fmt: skip
+    t = np.arange(0, 6, 0.005)
+    ground = 0.8 * t * np.sin(9 * t)
+    with pytest.raises(rbsdem.SolveError, match=r"the shear spring .* of member B-1-1") as caught:
+        rbsdem.time_history(frame, t, ground_acceleration=ground, method="newmark", dt=0.005)
+    rows = caught.value.result
+    assert rows.time.size > 100
+    assert rows.summary["relative_energy_residual"] < 1e-2
+    assert np.abs(rows.springs["slip"]).max() < 3.0
+
+
 def test_a_static_path_ends_where_a_column_loses_its_load():
     with pytest.raises(rbsdem.SolveError, match="C-2-1 has failed in shear and loses") as caught:
         rbsdem.pushover(bent(), drift=0.08)

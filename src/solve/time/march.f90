@@ -15,6 +15,7 @@ module rbs_solve_time_march
    use rbs_solve_time_start, only: initial_state, start_state, resume_state, resume_steps, keep_state
    use rbs_solve_time_state, only: state_type, stepper_type, out_of_bounds
    use rbs_structure_channel, only: energy_type, response_type
+   use rbs_structure_spring_place, only: spring_name
    use rbs_structure_structure, only: structure_type
    implicit none
    private
@@ -102,6 +103,10 @@ contains
                   call report_state(state, error)
                   return
                end if
+               if (state%motion%structure%find_runaway(state%q) > 0) then
+                  call report_runaway()
+                  return
+               end if
                state%clock = begin + part*h
                if (part == parts) state%clock = finish
                lost = state%springs%lost_joint()
@@ -132,6 +137,18 @@ contains
             end do
          end do
       end subroutine take_steps
+
+      !> A member has failed inside, where nothing has mass.
+      subroutine report_runaway()
+
+         associate (structure => state%motion%structure)
+            call fatal_error(error, analysis_failed, 'at time '//to_text(state%begin + state%time)//' s '// &
+                             trim(spring_name(structure%place(structure%find_runaway(state%q))))// &
+                             ' slides or turns away: its strength is below what the dead load of its '// &
+                             'member, or the hinges beside it, ask of it. Rows up to there are kept; '// &
+                             'make the member stronger, or leave it out from then on (losses)')
+         end associate
+      end subroutine report_runaway
 
       !> Members that are lost carry nothing from the next step on, which begins with other accelerations.
       subroutine let_go()

@@ -43,6 +43,9 @@ module rbs_structure_frame_frame
    !> Share of the height of a storey that a node may sink.
    real(wp), parameter :: deepest = 0.1_wp
 
+   !> A rotation that no hinge of a frame has [rad].
+   real(wp), parameter :: farthest = 10.0_wp
+
    !> Times that differ by less than this share are the same.
    real(wp), parameter :: same_time = 1.0e-9_wp
 
@@ -118,6 +121,7 @@ module rbs_structure_frame_frame
       procedure :: find_lost
       procedure :: let_go
       procedure :: has_fallen
+      procedure :: find_runaway
    end type frame_type
 
 contains
@@ -1052,6 +1056,19 @@ contains
                       d(self%inside + self%number(2, i)) < -deepest*self%height/max(self%storeys, 1)
       end do
    end function has_fallen
+
+   !> A spring in a member that has slid by the height of the frame, or turned several times: it does not
+   !> carry the dead load, or the end moments, of its member any more.
+   pure integer function find_runaway(self, d) result(spring)
+      class(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+
+      do spring = 1, self%inside
+         if (abs(d(spring)) < min(self%height, farthest)) cycle
+         if (abs(d(spring)) > merge(farthest, self%height, self%place(spring)%kind == flexure)) return
+      end do
+      spring = 0
+   end function find_runaway
 
    !> Energy of the elastic rest of an element [J].
    pure real(wp) function energy_of_rest(e, gap) result(energy)
