@@ -23,18 +23,18 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from rbsdem.section.directions import ENDS
 from scipy.optimize import least_squares
 
 import rbsdem
 from rbsdem import peer
 from rbsdem.calibration.misfit import Target
 from rbsdem.errors import RbsdemError
+from rbsdem.section.parameters import table
 from rbsdem.solve.analysis import reached_force
 
 # Bounds as factors of the value, or as values where it may be zero.
 FACTORS = {
-    **ENDS,
+    **{name: (row.low, row.high) for name, row in table().items() if row.low < row.high},
     # Several at once.
     "strength": (0.7, 1.5),
     "flexibility": (0.2, 4.0),
