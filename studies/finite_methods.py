@@ -17,7 +17,7 @@ import numpy as np
 
 import rbsdem
 from rbsdem.solve.solver import IMPLICIT
-from rbsdem.springs import Bilinear, Elastic, Takeda
+from rbsdem.springs import Bilinear, Elastic, Spring, Takeda
 
 TIME = np.linspace(0.0, 1.0, 101)
 WAVE = np.sin(20.0 * TIME)
@@ -25,8 +25,8 @@ WAVE = np.sin(20.0 * TIME)
 
 def chain(n: int, *, yields: bool) -> rbsdem.Column:
     """Return a chain of n bodies with a mass at its top."""
-    flexure: rbsdem.Spring = Elastic(1.5e6 * n)
-    shear: rbsdem.Spring = Elastic(1e8 * n)
+    flexure: Spring = Elastic(1.5e6 * n)
+    shear: Spring = Elastic(1e8 * n)
     if yields:
         flexure = Takeda(6e6 * n, 3e-3 / n, 1.5e6 * n, 1.5e-2 / n, 1.5e5 * n)
         shear = Bilinear(1e7 * n, 1e-3 / n, 2e5 * n)

@@ -21,7 +21,7 @@ import warnings
 import numpy as np
 
 import rbsdem
-from rbsdem.springs import Bilinear, Elastic, PeakOriented, Takeda
+from rbsdem.springs import Bilinear, Elastic, PeakOriented, Spring, Takeda
 
 Generator = np.random.Generator
 
@@ -32,7 +32,7 @@ SAME_END = 1e-3
 SAME_ANSWER = 1e-6
 
 
-def spring(rng: Generator, force: float, yielding: float, *, softens: bool) -> rbsdem.Spring:
+def spring(rng: Generator, force: float, yielding: float, *, softens: bool) -> Spring:
     """Return a spring of some rule that yields near a force and a deformation."""
     kind = rng.integers(5 if softens else 4)
     k = force / yielding

@@ -15,7 +15,7 @@ import time
 import numpy as np
 
 import rbsdem
-from rbsdem.springs import ConcreteSpring, Elastic, Layered, SteelSpring, Takeda
+from rbsdem.springs import ConcreteSpring, Elastic, Layered, Spring, SteelSpring, Takeda
 
 TAKEDA = Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b0=0.4, b1=0.22)
 DRIFTS = np.linspace(0.005, 0.03, 20)
@@ -39,7 +39,7 @@ def joint(strips: int) -> Layered:
     return Layered((*((y, strip) for y in ys), (-0.16, bar), (0.16, bar)))
 
 
-def cost(spring: rbsdem.Spring, repeats: int) -> tuple[float, int]:
+def cost(spring: Spring, repeats: int) -> tuple[float, int]:
     """Return the seconds of one run and its events."""
     load = 700e3 if isinstance(spring, Layered) else 0.0
     column = rbsdem.Column(1.6, 614.4, Elastic(1e9), spring, kinematics="pdelta", axial_load=load)

@@ -21,7 +21,7 @@ import pytest
 from scipy.optimize import brentq
 
 import rbsdem
-from rbsdem.springs import Bilinear, Elastic
+from rbsdem.springs import Bilinear, Elastic, Spring
 
 INCH = 0.0254
 KIP = 1000 * 0.45359237 * 9.80665
@@ -30,7 +30,7 @@ RIGID = 1e9
 
 
 def oscillator(
-    mass: float, stiffness: float, damping: float = 0.0, spring: rbsdem.Spring | None = None
+    mass: float, stiffness: float, damping: float = 0.0, spring: Spring | None = None
 ) -> rbsdem.Column:
     """One degree of freedom, in units of kips, inches and seconds."""
     k = stiffness * KIP / INCH
