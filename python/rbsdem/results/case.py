@@ -21,7 +21,13 @@ from rbsdem.model.damping import Damping
 from rbsdem.model.files import FORMAT, FORMAT_VERSION, ending_of
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.model.frame_result import FrameResult
-from rbsdem.results.groups import ColumnSprings, frame_of, layered_column, recipe_of
+from rbsdem.results.groups import (
+    SPRING_GROUPS,
+    frame_of,
+    layered_column,
+    recipe_of,
+    springs_of_joints,
+)
 from rbsdem.results.result import Result, cyclic, time_history
 from rbsdem.solve.solver import Solver
 
@@ -179,7 +185,6 @@ def read_case(path: str | os.PathLike[str]) -> Case:
         groups.setdefault(name, []).append(given)
     # Of springs and of what a drawing has there are several.
     found = {name: given[-1] for name, given in groups.items()}
-    springs = ColumnSprings(groups)
     settings = _core.typed("analysis", found.get("analysis", {}))
     settings |= _core.typed("output", found.get("output", {}))
     # The histories already end at the duration; the csv file is for the executable only.
@@ -190,8 +195,8 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     if "frame" in groups:
         return _case_of(frame_of(groups), found, settings, time, values, acting)
     column = _core.typed("column", found["column"])
-    column |= springs.of_joints(column.get("n", 1) + (column.get("top") == "fixed"))
-    beneath = {name: column.pop(f"{name}_0", None) for name in ("shear", "flexure", "axial_spring")}
+    column |= springs_of_joints(groups, column.get("n", 1) + (column.get("top") == "fixed"))
+    beneath = {name: column.pop(f"{name}_0", None) for name in SPRING_GROUPS}
     footing = {
         name: column.pop(f"footing_{name}")
         for name in ("mass", "inertia", "height")

@@ -30,9 +30,11 @@ SHAPES: dict[str, type[Section]] = {
     "tee": TeeSection,
 }
 
-#: What groups with steels stand for.
+#: Groups of springs.
+SPRING_GROUPS = ("shear", "flexure", "axial_spring")
 #: Keys of the place of a spring.
 _NO_KEYS = ("rule", "joint", "kind", "node", "panel", "place", "id")
+#: What groups with steels stand for.
 _PARTS: dict[str, type] = {"layout": Layout, "inner_layout": Layout, "ties": Ties, "spiral": Spiral}
 
 
@@ -149,50 +151,43 @@ def _spring(given: Mapping[str, Any], layers: Sequence[tuple[float, Spring]] = (
     return SPRINGS[given["rule"]](**({"layers": layers} if layers else values))
 
 
+def _layer_springs(groups: Groups) -> dict[int, Spring]:
+    """Return the springs of layers by their numbers."""
+    return {int(one["id"]): _spring(one) for one in groups.get("layer_spring", [])}
+
+
 def _layers(given: Mapping[str, Any], springs: Mapping[int, Spring]) -> list[tuple[float, Spring]]:
     """Return the layers that a group states."""
     numbers = (int(number) for number in _core.several(given["spring"]))
     return list(zip(_core.several(given["y"]), (springs[i] for i in numbers), strict=True))
 
 
-class ColumnSprings:
-    """The springs of a case, from its groups."""
+def springs_of_joints(groups: Groups, last: int) -> dict[str, Any]:
+    """Return the springs of a column, one for all joints or one for each from 1 to the last.
 
-    def __init__(self, groups: Groups) -> None:
-        names = ("shear", "flexure", "axial_spring", "layer_spring", "layers")
-        self.stated = {name: groups.get(name, []) for name in names}
-
-    def of_joints(self, last: int) -> dict[str, Any]:
-        """Return the springs of a column, one for all joints or one for each from 1 to the last.
-
-        Those of joint 0, beneath a footing, have its number in their names.
-        """
-        springs = {int(given["id"]): _spring(given) for given in self.stated["layer_spring"]}
-        layers = {_joints(given): _layers(given, springs) for given in self.stated["layers"]}
-        column: dict[str, Any] = {}
-        for name in ("shear", "flexure", "axial_spring"):
-            places: dict[int | None, Spring] = {}
-            for given in self.stated[name]:
-                joints = _joints(given)
-                spring = _spring(given, layers[joints] if given["rule"] == "layered" else ())
-                places |= dict.fromkeys(joints or (None,), spring)
-            if 0 in places:
-                column[f"{name}_0"] = places.pop(0)
-            if None in places:
-                column[name] = places[None]
-            elif places:
-                column[name] = [places[joint] for joint in range(1, last + 1)]
-        return column
+    Those of joint 0, beneath a footing, have its number in their names.
+    """
+    springs = _layer_springs(groups)
+    layers = {_joints(given): _layers(given, springs) for given in groups.get("layers", [])}
+    column: dict[str, Any] = {}
+    for name in SPRING_GROUPS:
+        places: dict[int | None, Spring] = {}
+        for given in groups.get(name, []):
+            joints = _joints(given)
+            spring = _spring(given, layers[joints] if given["rule"] == "layered" else ())
+            places |= dict.fromkeys(joints or (None,), spring)
+        if 0 in places:
+            column[f"{name}_0"] = places.pop(0)
+        if None in places:
+            column[name] = places[None]
+        elif places:
+            column[name] = [places[joint] for joint in range(1, last + 1)]
+    return column
 
 
 def _joints(given: dict[str, Any]) -> tuple[int, ...]:
     """Return the joints that a group names; an empty tuple means all joints."""
     return tuple(int(joint) for joint in _core.several(given.get("joint", [])))
-
-
-#: Groups by name, each as often as it was given.
-
-_SPRINGS = ("shear", "flexure", "axial_spring")
 
 
 def frame_of(groups: Groups) -> Frame:
@@ -239,13 +234,12 @@ def _kind(given: dict[str, Any], groups: Groups) -> FrameMember:
 
 def _layered(given: dict[str, Any], groups: Groups) -> Layered:
     """Return a joint of layers, whose kind and places are those of its spring."""
-    springs = {int(one["id"]): _spring(one) for one in groups["layer_spring"]}
 
     def where(group: dict[str, Any]) -> tuple[Any, ...]:
         return group.get("kind"), *_core.several(group.get("place", []))
 
     layers = next(one for one in groups["layers"] if where(one) == where(given))
-    return Layered(_layers(layers, springs))
+    return Layered(_layers(layers, _layer_springs(groups)))
 
 
 def _cells(
@@ -273,7 +267,7 @@ def _by_floor(name: str, storeys: int, groups: Groups) -> list[float]:
 def _nodes(groups: Groups, lines: int) -> list[FrameNode]:
     """Return the nodes with the springs that hold them to the ground."""
     nodes = {given["name"]: dict(given) for given in groups.get("node", [])}
-    for group in _SPRINGS:
+    for group in SPRING_GROUPS:
         for spring in groups.get(group, []):
             name = spring.get("node", "")
             base = [f"N-{line}-0" for line in range(1, lines + 1)]
