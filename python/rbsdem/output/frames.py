@@ -414,6 +414,20 @@ def _panel_rotations(result: FrameResult, member: _Member, row: int) -> Array:
     return turned
 
 
+def cubic(across: Array, slopes: Array, shares: Array) -> Array:
+    """Return cubic lines at shares of their lengths, shape (..., points) [m].
+
+    Displacements across the lines, and slopes times lengths, are those of both ends: (..., 2).
+    """
+    s = shares
+    return np.asarray(
+        np.multiply.outer(across[..., 0], 1 - 3 * s**2 + 2 * s**3)
+        + np.multiply.outer(slopes[..., 0], s - 2 * s**2 + s**3)
+        + np.multiply.outer(across[..., 1], 3 * s**2 - 2 * s**3)
+        + np.multiply.outer(slopes[..., 1], s**3 - s**2)
+    )
+
+
 def _deformed(
     result: FrameResult, member: _Member, row: int, scale: float, shares: Array | None = None
 ) -> Array:
@@ -427,14 +441,9 @@ def _deformed(
     along, across = moved @ member.axis, moved @ member.normal
     hinges = _hinge_rotations(result, member.name, row)
     slopes = member.length * (turn + hinges * (1, -1))
-    s = shares
-    bent = (
-        across[0] * (1 - 3 * s**2 + 2 * s**3)
-        + slopes[0] * (s - 2 * s**2 + s**3)
-        + across[1] * (3 * s**2 - 2 * s**3)
-        + slopes[1] * (s**3 - s**2)
-    )
-    drawn = np.outer(s * member.length + scale * (along[0] + s * np.diff(along)), member.axis)
+    bent = cubic(across, slopes, shares)
+    way = shares * member.length + scale * (along[0] + shares * np.diff(along))
+    drawn = np.outer(way, member.axis)
     return np.asarray(_start(result.frame, member) + drawn + scale * np.outer(bent, member.normal))
 
 

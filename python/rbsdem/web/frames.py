@@ -19,6 +19,7 @@ from rbsdem._types import Array, NDArray
 from rbsdem.errors import InputError, RbsdemError, SolveError
 from rbsdem.model.frame import Frame, FrameMember
 from rbsdem.model.frame_result import FrameResult
+from rbsdem.output.frames import cubic
 from rbsdem.results.result import pushover
 from rbsdem.solve.analysis import modes
 from rbsdem.web.state import Faults, group
@@ -192,14 +193,9 @@ def _moved(result: FrameResult, rows: NDArray[np.intp]) -> Array:
     kinks = plastic.reshape(len(rows), len(parts.members), 3)[:, :, ::2]
     slopes = length[:, None] * (result.turn[rows][:, parts.ends] + kinks * (1, -1))
     along, across = (np.einsum("rmej,mj->rme", moved, way) for way in (axis, normal))
-    s = _SHARES
-    bent = (
-        np.multiply.outer(across[..., 0], 1 - 3 * s**2 + 2 * s**3)
-        + np.multiply.outer(slopes[..., 0], s - 2 * s**2 + s**3)
-        + np.multiply.outer(across[..., 1], 3 * s**2 - 2 * s**3)
-        + np.multiply.outer(slopes[..., 1], s**3 - s**2)
-    )
-    stretched = np.multiply.outer(along[..., 0], 1 - s) + np.multiply.outer(along[..., 1], s)
+    bent = cubic(across, slopes, _SHARES)
+    stretched = np.multiply.outer(along[..., 0], 1 - _SHARES)
+    stretched += np.multiply.outer(along[..., 1], _SHARES)
     return np.asarray(stretched[..., None] * axis[:, None] + bent[..., None] * normal[:, None])
 
 
