@@ -6,7 +6,6 @@
 !> is positive; what the load does on the way beyond the work of the layers is set free.
 module rbs_hysteresis_layered_fibre_fall
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_layered_fibre_path, only: most_branches
    use rbs_hysteresis_layered_fibre_section, only: fibre_section
    implicit none
    private
@@ -37,7 +36,7 @@ contains
       type(layer_fall), intent(out) :: fall
       type(fibre_section) :: copy
       real(wp) :: begin, gain, most, work, step, next, scale
-      integer :: event, branches, i, way
+      integer :: event, i, way
 
       copy = section
       way = section%failure_way
@@ -50,10 +49,7 @@ contains
       do event = 1, 1000 + 1000*copy%count
          ! Every layer on the branch on which it goes on.
          do i = 1, copy%count
-            do branches = 1, most_branches
-               if (.not. copy%must_leave(i, way)) exit
-               call copy%leave(i, way)
-            end do
+            call copy%go_on(i, way)
          end do
          call copy%sum_up()
          ! What the layers carry beyond the load; it grows with their stiffness.

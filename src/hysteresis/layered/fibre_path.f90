@@ -13,8 +13,6 @@ module rbs_hysteresis_layered_fibre_path
    !> Passes in which all layers without room change their branches at once, before both ways of each are
    !> weighed.
    integer, parameter :: most_passes = 4
-   !> Branches without length that one layer may pass at one point.
-   integer, parameter, public :: most_branches = 8
    !> A way beyond this, in units of the rates, is none.
    real(wp), parameter :: beyond = 1.0e100_wp
    !> Layers that are looked at together.
@@ -210,7 +208,7 @@ contains
       type(fibre_section), intent(inout) :: self
       real(wp), dimension(self%count) :: opening, closing, corner
       real(wp) :: x, best, wanted, at, next_at, slope, value, free, rate
-      integer :: order(self%count), i, j, m, way, branches
+      integer :: order(self%count), i, j, m
       logical :: found
 
       m = 0
@@ -265,11 +263,7 @@ contains
       do i = 1, self%count
          rate = best + self%y(i)*self%turn
          if (abs(rate) <= self%least_rate(best, self%turn)) cycle
-         way = merge(1, -1, rate > 0.0_wp)
-         do branches = 1, most_branches
-            if (.not. self%must_leave(i, way)) exit
-            call self%leave(i, way)
-         end do
+         call self%go_on(i, merge(1, -1, rate > 0.0_wp))
       end do
       call self%sum_up()
 
@@ -307,16 +301,13 @@ contains
    real(wp) function slope_ahead(self, i, way) result(k)
       type(fibre_section), intent(inout) :: self
       integer, intent(in) :: i, way
-      integer :: branches, on_end
+      integer :: on_end
 
       k = self%k(i)
       if (.not. self%must_leave(i, way)) return
       on_end = self%on_end
       call self%save_layer(i)
-      do branches = 1, most_branches
-         if (.not. self%must_leave(i, way)) exit
-         call self%leave(i, way)
-      end do
+      call self%go_on(i, way)
       k = self%k(i)
       call self%restore_layer(i)
       self%on_end = on_end

@@ -35,6 +35,8 @@ module rbs_hysteresis_layered_fibre_section
    real(wp), parameter :: least_speed = 1.0e-150_wp
    !> Where a path comes back to zero, what is left is round-off of the largest deformation so far.
    real(wp), parameter :: round_off = 4.0_wp*epsilon(1.0_wp)
+   !> Branches without length that one layer may pass at one point.
+   integer, parameter :: most_branches = 8
    !> In the arrays of the ends, what stands for none.
    real(wp), parameter :: no_end = 1.0e140_wp
    !> Below this share, what is missing from equilibrium is not put right: its round-off would move the joint.
@@ -117,6 +119,7 @@ module rbs_hysteresis_layered_fibre_section
       procedure :: deformation
       procedure :: leave
       procedure :: must_leave
+      procedure :: go_on
       procedure :: room_in_digits
       procedure :: least_rate
       procedure :: place
@@ -242,6 +245,18 @@ contains
       far = self%branch(i)%end_toward(way)
       must_leave = way*(far - self%deformation(i)) <= self%room_in_digits() + on_the_end*abs(far)
    end function must_leave
+
+   !> Put a layer that goes in a direction on the branch on which it goes on. `sum_up` is left to the caller.
+   subroutine go_on(self, i, way)
+      class(fibre_section), intent(inout) :: self
+      integer, intent(in) :: i, way
+      integer :: branches
+
+      do branches = 1, most_branches
+         if (.not. self%must_leave(i, way)) exit
+         call self%leave(i, way)
+      end do
+   end subroutine go_on
 
    !> What the last digits of opening and rotation leave undecided of a deformation [m].
    pure real(wp) function room_in_digits(self)
