@@ -21,7 +21,7 @@ module rbs_solve_time_event
    private
 
    public :: event_type, find_event, same_event, distance_to, standing_rotation, round_off_of, felt, &
-             layer_motion, layer_end, first_layer_exit, turn_layer
+             layer_motion, layer_end, first_layer_exit, turn_layer, direction_of
 
    !> Deformations beyond this [m, rad] have no meaning: an end there is none.
    real(wp), parameter :: no_end = 1.0e100_wp
@@ -341,6 +341,7 @@ contains
 
    end subroutine find_exit
 
+   !> Which way a value points: +1, -1, or 0 where it is zero.
    pure integer function direction_of(x)
       real(wp), intent(in) :: x
 

@@ -9,7 +9,7 @@ module rbs_solve_time_located
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: choose_lines, put_on_plane
    use rbs_solve_time_event, only: event_type, find_event, same_event, distance_to, standing_rotation, &
-                                   round_off_of, felt, turn_layer
+                                   round_off_of, felt, turn_layer, direction_of
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type, stepper_type, in_bounds
@@ -369,13 +369,5 @@ contains
                        ' changes its line again and again at time '//to_text(state%begin + state%time)// &
                        " s without moving. Rows up to there are kept; try method = 'newmark'")
    end subroutine report_standstill
-
-   pure integer function direction_of(x)
-      real(wp), intent(in) :: x
-
-      direction_of = 0
-      if (x > 0.0_wp) direction_of = 1
-      if (x < 0.0_wp) direction_of = -1
-   end function direction_of
 
 end module rbs_solve_time_located
