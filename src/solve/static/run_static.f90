@@ -5,6 +5,7 @@ module rbs_solve_static_run_static
    use rbs_base_text, only: to_text
    use rbs_structure_column_sturm, only: critical_factor
    use rbs_structure_column_column, only: column_type, small, finite
+   use rbs_structure_column_column_record, only: no_potential
    use rbs_base_check, only: check_values
    use rbs_solve_static_chain_equilibrium, only: chain_equilibrium
    use rbs_solve_static_curved, only: trace_curved
@@ -93,9 +94,7 @@ contains
          end if
          curved = varies .or. column%kinematics == finite
          if (curved .and. (column%axial_follows .or. column%force_follows)) then
-            call fatal_error(error, bad_input, 'column: loads that follow the top (axial_follows, '// &
-                             'force_follows) have no potential, and a static path could miss the loss of '// &
-                             'stability; use a dynamic analysis')
+            call fatal_error(error, bad_input, no_potential)
             return
          end if
          if (curved) then

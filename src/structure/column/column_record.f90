@@ -14,10 +14,15 @@ module rbs_structure_column_column_record
    implicit none
    private
 
-   public :: column_record, damping_record, most_bodies, most_dense, most_modes
+   public :: column_record, damping_record, most_bodies, most_dense, most_modes, no_potential
 
    character(len=*), parameter :: kinematics_names = 'small pdelta finite'
    character(len=*), parameter :: top_names = 'free fixed'
+
+   !> Why a curved static path is refused where loads follow the top
+   character(len=*), parameter :: no_potential = &
+      'column: loads that follow the top (axial_follows, force_follows) have no potential, and a static '// &
+      'path could miss the loss of stability; use a dynamic analysis'
 
    !> Every row holds four numbers or more for each body: more bodies are a slip of the pen.
    integer, parameter :: most_bodies = 10000
