@@ -67,8 +67,6 @@ module rbs_structure_structure
       type(spring_place), allocatable :: place(:)
       type(spring_rules) :: rules
       real(wp), allocatable :: initial_stiffness(:), constant_axial(:)
-      !> Largest stiffness of parts that have no spring [N/m]
-      real(wp) :: stiffest_part = 0.0_wp
       !> Displacement of the top per deformation, for small rotations: what static paths control (springs)
       real(wp), allocatable :: arm(:)
       !> The spring whose force is the base shear; 0: `base_force` tells it
@@ -142,6 +140,7 @@ module rbs_structure_structure
       procedure :: linearise
       procedure :: damp
       procedure :: add_damping
+      procedure :: size_of_parts
       procedure :: spring_of
       procedure :: create_springs
       procedure :: add_ground
@@ -526,6 +525,22 @@ contains
 
       if (size(tangent) < self%tangent_numbers) band = factor
    end subroutine add_damping
+
+   !> Sizes of forces and works in parts that have no spring, measures of round-off; there are none.
+   subroutine size_of_parts(self, springs, least, force, terms, work)
+      class(structure_type), intent(in) :: self
+      type(spring_array), intent(in) :: springs
+      !> Least displacement that counts, in shares of the height
+      real(wp), intent(in) :: least
+      !> Largest force [N], moments over the height; the largest force [N] and the work [J] if no terms of
+      !> different signs cancelled
+      real(wp), intent(out) :: force, terms, work
+
+      force = 0.0_wp
+      terms = 0.0_wp
+      work = 0.0_wp
+      if (.false.) work = least*self%height*springs%count
+   end subroutine size_of_parts
 
    !> The spring of a kind that comes in a place among those of the kind; 0 if there are not so many.
    pure integer function spring_of(self, kind, number) result(i)

@@ -310,6 +310,35 @@ def test_paths_of_random_frames(seed):
     assert (np.append(first.force, second.force) == whole.force).all()
 
 
+@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("kinematics", ["small", "pdelta"])
+def test_elastic_frames_follow_one_line(seed, kinematics):
+    """The line of force and displacement passes through the state under dead load alone.
+
+    That state has one set of axial forces: those that it causes are those whose second-order work
+    it has. The round-off of members without springs is that of their own forces.
+    """
+    rng = np.random.default_rng(seed)
+    columns, beams = (
+        FrameMember(E, between(rng, 0.05, 0.5), between(rng, 5e-4, 2e-2)) for _ in "cb"
+    )
+    frame = Frame.grid(
+        [between(rng, 2.5, 4.5) for _ in range(rng.integers(1, 7))],
+        [between(rng, 3, 8) for _ in range(rng.integers(1, 5))],
+        columns=columns,
+        beams=beams,
+        floor_mass=between(rng, 1e4, 1e5),
+        beam_load=between(rng, 1e3, 3e4),
+        kinematics=kinematics,
+    )
+    still = rbsdem.cyclic(frame, force=[0.0])
+    far = 0.02 * frame.height
+    pushed = rbsdem.cyclic(frame, displacement=[far, -far, still.displacement[0]])
+    slope = (pushed.force[0] - pushed.force[1]) / (2 * far)
+    line = slope * (pushed.displacement - still.displacement[0])
+    assert pushed.force == pytest.approx(line, abs=1e-10 * abs(slope) * far)
+
+
 def test_mirrored_loads_have_mirrored_answers():
     """A symmetric frame pushed to the other side, and shaken with the sign turned."""
     frame = three_storeys(beam_load=0.0, kinematics="small")

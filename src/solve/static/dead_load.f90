@@ -15,6 +15,11 @@ module rbs_solve_static_dead_load
 
    public :: put_dead_load
 
+   !> Axial forces have settled if they change by less than this share of the largest one; where round-off
+   !> ends the progress before, by less than the second.
+   real(wp), parameter :: same_force = 1.0e-14_wp, nearly_same = 1.0e-9_wp
+   integer, parameter :: most_rounds = 100
+
 contains
 
    !> Put the dead load on a frame: its axial forces, and the state in which every analysis begins.
@@ -22,15 +27,21 @@ contains
       type(frame_type), intent(inout) :: frame
       type(end_state), intent(out) :: state
       type(error_type), allocatable, intent(out) :: error
-      logical :: second_order
+      real(wp) :: before(frame%members), change, last
+      integer :: round
 
       if (.not. frame%is_loaded()) return
-      ! First without second-order work, then with that of the axial forces found.
-      second_order = frame%axially_loaded
-      frame%axially_loaded = .false.
-      call load_once(frame, state, error)
-      frame%axially_loaded = second_order
-      if (second_order .and. .not. allocated(error)) call load_once(frame, state, error)
+      ! The axial forces that do second-order work are those which the load has on the path with their work.
+      change = huge(1.0_wp)
+      do round = 1, most_rounds
+         before = frame%compression(:frame%members)
+         call load_once(frame, state, error)
+         if (allocated(error) .or. .not. frame%axially_loaded) exit
+         last = change
+         change = maxval(abs(frame%compression(:frame%members) - before))
+         if (change <= same_force*maxval(abs(before))) exit
+         if (change <= nearly_same*maxval(abs(before)) .and. change > 0.5_wp*last) exit
+      end do
       ! The path has one row, from no load to all of it.
       if (allocated(error)) error%message = 'dead load: '//error%message(len('row 1: ') + 1:)
    end subroutine put_dead_load

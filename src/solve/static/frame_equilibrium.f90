@@ -76,7 +76,7 @@ contains
       associate (frame => self%frame, always => corrects)
          call linearise(self, springs, found)
          if (.not. found) return
-         call self%find_unbalance(springs, force)
+         call find_residual(self, springs, force)
          call find_pattern(self)
          if (by_force) then
             call self%matrix%factor()
@@ -148,8 +148,19 @@ contains
       end if
    end subroutine find_pattern
 
-   !> The residual where the springs are, and the largest of it.
+   !> The largest force out of equilibrium where the springs are.
    subroutine find_unbalance(self, springs, force)
+      class(frame_equilibrium), intent(inout) :: self
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(in) :: force
+
+      ! Where an element snaps back its last tangent serves.
+      call self%frame%linearise(springs%k, self%tangent, self%unstable)
+      call find_residual(self, springs, force)
+   end subroutine find_unbalance
+
+   !> The residual where the springs are, and the largest of it.
+   subroutine find_residual(self, springs, force)
       class(frame_equilibrium), intent(inout) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in) :: force
@@ -165,6 +176,6 @@ contains
             self%unbalance = max(self%unbalance, abs(self%right(i, 2))/frame%reach(i))
          end do
       end associate
-   end subroutine find_unbalance
+   end subroutine find_residual
 
 end module rbs_solve_static_frame_equilibrium

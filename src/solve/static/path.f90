@@ -247,7 +247,7 @@ contains
       may_collapse = is_given(task%collapse_drift)
       self%task => task
       energy = self%energies()
-      call begin_check(self%check, self%structure, energy%residual)
+      call begin_check(self%check, self%structure, self%springs, energy%residual)
       ! A path that goes on has forces and works from before, and the round-off of theirs.
       call self%look(self%control, self%unbalance(), .false., failure)
       if (allocated(failure)) deallocate (failure)
@@ -357,7 +357,7 @@ contains
                check%stiff_force = max(check%stiff_force, term*check%share(i))
                works = works + term*abs(springs%d(i))
             end do
-            call see_parts(check, self%structure, self%displacement)
+            if (wrong() > 0) call see_parts(check, self%structure, springs)
             check%largest_place = max(check%largest_place, ways)
             check%stiff_work = max(check%stiff_work, works)
          end if
@@ -516,9 +516,10 @@ contains
    end function weakest_spring
 
    !> Measure points from here on.
-   subroutine begin_check(self, structure, missing_work)
+   subroutine begin_check(self, structure, springs, missing_work)
       type(row_check), intent(out) :: self
       class(structure_type), intent(in) :: structure
+      type(spring_array), intent(in) :: springs
       real(wp), intent(in) :: missing_work
       real(wp) :: d
       integer :: i
@@ -534,22 +535,23 @@ contains
          self%stiff_force = max(self%stiff_force, structure%initial_stiffness(i)*d*self%share(i))
          self%stiff_work = self%stiff_work + structure%initial_stiffness(i)*d**2
       end do
-      call see_parts(self, structure, no_way*structure%total_height)
+      call see_parts(self, structure, springs)
       if (structure%kinematics /= finite) return
       self%place = of_place_on_curve
       self%work = of_work_on_curve
    end subroutine begin_check
 
-   !> Forces and work of parts without springs, if they took all of a displacement.
-   pure subroutine see_parts(self, structure, displacement)
+   !> Forces and work of parts without springs.
+   subroutine see_parts(self, structure, springs)
       type(row_check), intent(inout) :: self
       class(structure_type), intent(in) :: structure
-      real(wp), intent(in) :: displacement
+      type(spring_array), intent(in) :: springs
+      real(wp) :: force, terms, work
 
-      associate (force => structure%stiffest_part*abs(displacement))
-         self%stiff_force = max(self%stiff_force, force)
-         self%stiff_work = max(self%stiff_work, force*abs(displacement))
-      end associate
+      call structure%size_of_parts(springs, no_way, force, terms, work)
+      self%largest_force = max(self%largest_force, force)
+      self%stiff_force = max(self%stiff_force, terms)
+      self%stiff_work = max(self%stiff_work, work)
    end subroutine see_parts
 
 end module rbs_solve_static_path

@@ -100,6 +100,7 @@ module rbs_structure_frame_frame
       procedure :: set_compression
       procedure :: basic
       procedure :: drop_round_off
+      procedure :: size_of_parts
       procedure :: end_forces
       procedure :: add_element
       procedure :: spring_rates
@@ -513,32 +514,62 @@ contains
 
       largest = 0.0_wp
       do i = 1, size(self%element)
-         largest = max(largest, size_at(self%element(i)))
+         largest = max(largest, terms_of(self%element(i), dx))
       end do
       do i = 1, size(self%element)
          associate (e => self%element(i))
-            size_of = size_at(e)
+            size_of = terms_of(e, dx)
             ! The share of a layer in a motion may be as small without being round-off.
             if (.not. e%layered) size_of = max(size_of, of_all*largest)
             call drop_small(e, size(dd), self%tangent_numbers, tangent, size_of, dd)
          end associate
       end do
 
-   contains
-
-      !> What the changes at the ends of an element add up from, in size.
-      pure function size_at(e) result(terms)
-         type(frame_element), intent(in) :: e
-         real(wp) :: terms(3)
-         integer :: k
-
-         terms = 0.0_wp
-         do k = 1, 6
-            if (e%number(k) > 0) terms = terms + abs(e%to_basic(:, k)*dx(e%number(k)))
-         end do
-      end function size_at
-
    end subroutine drop_round_off
+
+   !> Sizes of the terms that elongation and rotations of an element are sums of.
+   pure function terms_of(e, x) result(terms)
+      type(frame_element), intent(in) :: e
+      !> Displacements of the nodes (unknowns)
+      real(wp), intent(in) :: x(:)
+      real(wp) :: terms(3)
+      integer :: k
+
+      terms = 0.0_wp
+      do k = 1, 6
+         if (e%number(k) > 0) terms = terms + abs(e%to_basic(:, k)*x(e%number(k)))
+      end do
+   end function terms_of
+
+   !> Largest force of elements and dead loads, and the largest force and the work of elements that are
+   !> sums of terms of one sign; moments over the height.
+   subroutine size_of_parts(self, springs, least, force, terms, work)
+      class(frame_type), intent(in) :: self
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(in) :: least
+      real(wp), intent(out) :: force, terms, work
+      real(wp) :: s(3), q(3), to_force(3)
+      integer :: i
+
+      to_force = [1.0_wp, 1.0_wp/self%total_height, 1.0_wp/self%total_height]
+      force = maxval(abs(self%dead)/self%reach)
+      terms = 0.0_wp
+      work = 0.0_wp
+      associate (x => springs%d(self%inside + 1:))
+         do i = 1, size(self%element)
+            associate (e => self%element(i))
+               if (i <= self%members) then
+                  call find_ends(self, i, springs, s)
+                  force = max(force, maxval(abs(s)*to_force))
+               end if
+               q = terms_of(e, max(abs(x), least*self%total_height/self%reach))
+               s = matmul(abs(reshape(self%initial_tangent(e%at:e%at + 8), [3, 3])), q)
+               terms = max(terms, maxval(s*to_force))
+               work = work + sum(s*q)
+            end associate
+         end do
+      end associate
+   end subroutine size_of_parts
 
    pure subroutine drop_small(e, springs, numbers, tangent, size_of, dd)
       type(frame_element), intent(in) :: e
