@@ -31,7 +31,7 @@ import strategies  # noqa: E402
 
 import rbsdem  # noqa: E402
 from rbsdem.__main__ import executable  # noqa: E402
-from rbsdem.results.case import Case  # noqa: E402
+from rbsdem.run.case import Case  # noqa: E402
 
 #: Kinds of cases with their shares.
 KINDS = {"static": 0.35, "layered": 0.15, "varying": 0.15, "time": 0.35}

@@ -29,8 +29,8 @@ import rbsdem
 from rbsdem import peer
 from rbsdem.calibration.misfit import Target
 from rbsdem.errors import RbsdemError
+from rbsdem.run.analysis import reached_force
 from rbsdem.section.parameters import table
-from rbsdem.solve.analysis import reached_force
 
 # Bounds as factors of the value, or as values where it may be zero.
 FACTORS = {

@@ -31,8 +31,8 @@ import numpy as np
 from calibration_choice import TOGETHER
 
 from rbsdem.errors import RbsdemError
+from rbsdem.run.analysis import reached_force
 from rbsdem.section.parameters import table
-from rbsdem.solve.analysis import reached_force
 
 ROOT = Path(__file__).resolve().parents[1]
 ROWS = {name: row for name, row in table().items() if row.low == row.low}

@@ -26,7 +26,7 @@ import numpy as np
 import rbsdem
 from rbsdem.methods.scene import Setting as Way
 from rbsdem.methods.scene import make_scene
-from rbsdem.results.accuracy import Answer, answer_of, errors_of
+from rbsdem.run.accuracy import Answer, answer_of, errors_of
 from rbsdem.springs import Elastic, PeakOriented, Pinching
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -18,7 +18,7 @@ import sys
 import numpy as np
 
 import rbsdem
-from rbsdem.results.lumped import MATERIALS, LumpedHinge
+from rbsdem.run.lumped import MATERIALS, LumpedHinge
 
 try:
     import openseespy.opensees as ops

@@ -16,7 +16,7 @@ import warnings
 import numpy as np
 
 import rbsdem
-from rbsdem.solve.solver import IMPLICIT
+from rbsdem.run.solver import IMPLICIT
 from rbsdem.springs import Bilinear, Elastic, Spring, Takeda
 
 TIME = np.linspace(0.0, 1.0, 101)

@@ -39,8 +39,8 @@ import numpy as np
 from rbsdem import peer
 from rbsdem.calibration.misfit import Target
 from rbsdem.errors import AccuracyWarning, RbsdemError
+from rbsdem.run.analysis import reached_force
 from rbsdem.section.parameters import ModelParameters, parameters, table
-from rbsdem.solve.analysis import reached_force
 
 ROOT = Path(__file__).resolve().parents[1]
 #: nrmse of a test that counts half.

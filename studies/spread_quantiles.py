@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rbsdem.section.spread import Middle, Place
-from rbsdem.section.spread import between as place_between
+from rbsdem.run.bands import Middle, Place
+from rbsdem.run.bands import between as place_between
 
 #: What bands and intervals are to hold.
 LEVEL = 0.8

@@ -13,7 +13,7 @@ series alike. There are three sets of numbers: for columns far from their shear 
 squat and for slender ones at it, as far as the model says, whatever the test said.
 
 **Distance.** Left-out tests are the farther from their prediction the farther they are from the
-middle of the tests that were not left out, in five properties (`spread.likeness`). The band
+middle of the tests that were not left out, in five properties (`bands.likeness`). The band
 grows with this distance, by the slope of the logarithm of the distance that holds 80 % of a test's
 points. How much of the band is there without samples (`SHAPE`) is what makes the interval score of
 left-out tests least (Winkler 1972: the width, and ten times what a point is beyond); the table of
@@ -52,8 +52,7 @@ from spread_quantiles import LEVEL, Growth, Numbers, Points, Ratios, between, gr
 
 from rbsdem import peer
 from rbsdem.curves.metrics import PathPoints, secant_stiffness
-from rbsdem.section.parameters import VERSION
-from rbsdem.section.spread import (
+from rbsdem.run.bands import (
     Place,
     Scatter,
     half_band,
@@ -64,6 +63,7 @@ from rbsdem.section.spread import (
     sample,
     slender,
 )
+from rbsdem.section.parameters import VERSION
 
 #: What the band has without samples, over the largest force; and what else was tried.
 SHAPE = 0.15

@@ -32,16 +32,16 @@ from rbsdem.model.shape import CircularSection as CircularSection
 from rbsdem.model.shape import RectangularSection as RectangularSection
 from rbsdem.motions.motion import GroundMotion as GroundMotion
 from rbsdem.motions.read import read_motions as read_motions
-from rbsdem.results.case import read_case as read_case
-from rbsdem.results.case import read_result as read_result
-from rbsdem.results.result import Result as Result
-from rbsdem.results.result import cyclic as cyclic
-from rbsdem.results.result import pushover as pushover
-from rbsdem.results.result import time_history as time_history
-from rbsdem.solve.analysis import matrices as matrices
-from rbsdem.solve.analysis import modes as modes
-from rbsdem.solve.protocol import protocol as protocol
-from rbsdem.solve.solver import Solver as Solver
+from rbsdem.run.analysis import matrices as matrices
+from rbsdem.run.analysis import modes as modes
+from rbsdem.run.case import read_case as read_case
+from rbsdem.run.case import read_result as read_result
+from rbsdem.run.protocol import protocol as protocol
+from rbsdem.run.result import Result as Result
+from rbsdem.run.result import cyclic as cyclic
+from rbsdem.run.result import pushover as pushover
+from rbsdem.run.result import time_history as time_history
+from rbsdem.run.solver import Solver as Solver
 
 __version__: str
 __all__: list[str]

@@ -10,6 +10,6 @@ from rbsdem.model.frame_result import FrameEvent as FrameEvent
 from rbsdem.model.frame_result import FrameResult as FrameResult
 from rbsdem.model.frame_result import MemberHistory as MemberHistory
 from rbsdem.model.shape import TeeSection as TeeSection
+from rbsdem.run.analysis import FrameModes as FrameModes
 from rbsdem.section.panel import Panel as Panel
 from rbsdem.section.panel import panel_strength as panel_strength
-from rbsdem.solve.analysis import FrameModes as FrameModes

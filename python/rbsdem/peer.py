@@ -35,7 +35,9 @@ from rbsdem.measured.specimens import Observed as Observed
 from rbsdem.measured.specimens import Specimen as Specimen
 from rbsdem.measured.specimens import Specimens as Specimens
 from rbsdem.measured.specimens import read_specimens as read_specimens
+from rbsdem.run.bands import Band as Band
+from rbsdem.run.bands import band as band
+from rbsdem.run.bands import likeness as likeness
 from rbsdem.section.paper import paper_columns as paper_columns
 from rbsdem.section.paper import paper_sections as paper_sections
-from rbsdem.section.spread import likeness as likeness
 from rbsdem.web.pages import gallery as gallery

@@ -26,10 +26,10 @@ from rbsdem.output.many import ida as ida
 from rbsdem.output.many import motion as motion
 from rbsdem.output.many import spectrum as spectrum
 from rbsdem.output.many import stripes as stripes
+from rbsdem.output.measured import band as band
 from rbsdem.output.measured import band_sheet as band_sheet
 from rbsdem.output.measured import contact_sheet as contact_sheet
 from rbsdem.output.measured import prediction as prediction
-from rbsdem.output.measured import spread as spread
 from rbsdem.output.methods import methods as methods
 from rbsdem.output.response import energy as energy
 from rbsdem.output.response import history as history

@@ -299,7 +299,7 @@ def static_path(rng: Rng, made: rbsdem.Column) -> dict[str, np.ndarray]:
 
 def methods(rng: Rng, stable: float, interval: float) -> dict[str, Any]:
     """Return a method in time and its settings, of steps that are a binary fraction."""
-    kinds = [name for name in rbsdem.solve.solver.IN_TIME if name != "auto"]
+    kinds = [name for name in rbsdem.run.solver.IN_TIME if name != "auto"]
     name = str(rng.choice([*kinds, "located"]))
     settings: dict[str, Any] = {"method": "rk4" if name == "located" else name}
     if name in ("rk4", "located"):
@@ -307,7 +307,7 @@ def methods(rng: Rng, stable: float, interval: float) -> dict[str, Any]:
         settings["events"] = "located" if name == "located" else "step"
     elif name != "rk45":
         settings["dt"] = interval / float(rng.choice([1, 2, 8]))
-    if "rho_infinity" in rbsdem.solve.solver.METHODS[settings["method"]].settings:
+    if "rho_infinity" in rbsdem.run.solver.METHODS[settings["method"]].settings:
         settings["rho_infinity"] = float(rng.uniform(0.6, 1))
     return settings
 

@@ -19,7 +19,7 @@ from rbsdem.calibration.search import COARSE, Search
 from rbsdem.curves.cycles import half_cycle_numbers
 from rbsdem.errors import AccuracyWarning
 from rbsdem.peer import find_history, read_peer
-from rbsdem.solve import analysis
+from rbsdem.run import analysis
 from rbsdem.springs import Bilinear, ConcreteSpring, Elastic, Layered, Pinching, SteelSpring, Takeda
 
 PEER = os.environ.get("RBSDEM_PEER_DIR") or Path(__file__).resolve().parents[3] / "shared" / "peer"

@@ -19,7 +19,7 @@ from strategies import Rng, accepted, any_column, motion, rules, spring, static_
 
 import rbsdem
 from rbsdem.errors import AccuracyWarning
-from rbsdem.results.case import Case
+from rbsdem.run.case import Case
 from rbsdem.section.parameters import parameters
 from rbsdem.springs import Bilinear, ConcreteSpring, Elastic, Layered, SteelSpring, Takeda
 

@@ -18,8 +18,8 @@ import pytest
 import rbsdem
 from rbsdem import InputError
 from rbsdem import __main__ as command
-from rbsdem.results.accuracy import Answer, errors_of
-from rbsdem.solve.solver import METHODS
+from rbsdem.run.accuracy import Answer, errors_of
+from rbsdem.run.solver import METHODS
 from rbsdem.springs import Elastic
 
 COLUMN = rbsdem.peer.paper_columns("pdelta", top_mass=75.9e3)["soesianawati_1"]

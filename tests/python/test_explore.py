@@ -251,7 +251,7 @@ def test_section_and_band_are_those_of_the_functions(post):
     assert peak > 1.05 * laws.moment_at(744e3)
     assert peak < 1.02 * joint.moment_at(744e3)
     (band,) = post("bands", state=state())["columns"]
-    spread = rbsdem.section.spread(
+    spread = rbsdem.peer.band(
         rbsdem.section.column(section(), 1.6, axial_load=744e3),
         1.6 * rbsdem.protocol([0.005, 0.02]),
     )
@@ -338,7 +338,7 @@ def test_an_error_that_is_no_input_error_is_a_defect_and_says_so(post, monkeypat
     (answer,) = post("sections", state=state(), code="aci318")["columns"]
     assert "A defect of rbsdem, not of the input (ZeroDivisionError" in answer["codes"]["fault"]
     assert answer["code"]["moment"]  # the other panels stand
-    monkeypatch.setattr("rbsdem.results.case.cyclic", broken)
+    monkeypatch.setattr("rbsdem.run.case.cyclic", broken)
     (answer,) = post("loops", state=state(section_width=0.41))["columns"]
     assert "force" not in answer
     assert "A defect of rbsdem" in answer["faults"][0]["text"]

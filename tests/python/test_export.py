@@ -10,7 +10,7 @@ import pytest
 
 import rbsdem
 from rbsdem import InputError
-from rbsdem.results.lumped import MATERIALS, _hysteretic
+from rbsdem.run.lumped import MATERIALS, _hysteretic
 from rbsdem.springs import Bilinear, Elastic, PeakOriented
 
 TIME = np.arange(0.0, 1.0, 0.01)

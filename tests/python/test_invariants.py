@@ -1090,7 +1090,7 @@ def test_huge_axial_springs_in_time(rng: Rng) -> None:
         rng, kinematics=kinematics, axial_spring=None, axial_height=None, flexure=rules_of_joints,
         damping=None,
     )  # fmt: skip
-    if chosen["method"] not in rbsdem.solve.solver.IMPLICIT:
+    if chosen["method"] not in rbsdem.run.solver.IMPLICIT:
         raise Discard
     loading.pop("vertical_acceleration", None)
     loading.pop("axial_load", None)
@@ -1130,7 +1130,7 @@ def test_methods_have_one_answer(rng: Rng) -> None:
     sensitive = error(move(column, changed(loading, 1e-8), **located, **fine)) > 1e-5
     if one.summary["status"] != "completed" or sensitive:
         raise Discard
-    name = str(rng.choice(["rk4", "rk45", *rbsdem.solve.solver.IMPLICIT]))
+    name = str(rng.choice(["rk4", "rk45", *rbsdem.run.solver.IMPLICIT]))
     if name == "rk45":
         assert error(move(column, loading, method=name, tolerance=1e-10)) <= 1e-5
         return

@@ -19,8 +19,8 @@ from strategies import GOOD
 import rbsdem
 from rbsdem import _core
 from rbsdem.model.damping import Damping
-from rbsdem.results.case import Case
-from rbsdem.results.groups import SHAPES
+from rbsdem.run.case import Case
+from rbsdem.run.groups import SHAPES
 from rbsdem.springs import SPRINGS, Elastic, Layered
 
 KEYS = _core.keys()
@@ -138,7 +138,7 @@ def test_keywords_of_the_analyses_are_the_keys_of_their_groups():
         assert default == (False if settings[name]["kind"] == "logical" else None), name
     assert words(hints["events"]) == set(settings["events"]["choices"])
     assert words(hints["method"]) == set(settings["method"]["choices"]) - {"static"}
-    assert set(rbsdem.solve.solver.IN_TIME) == words(hints["method"])
+    assert set(rbsdem.run.solver.IN_TIME) == words(hints["method"])
 
 
 def test_drives_of_a_case_are_the_loads_of_python():

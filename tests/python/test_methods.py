@@ -9,7 +9,7 @@ import pytest
 
 import rbsdem
 from rbsdem import _core
-from rbsdem.solve.solver import IMPLICIT, IN_TIME, METHODS
+from rbsdem.run.solver import IMPLICIT, IN_TIME, METHODS
 from rbsdem.springs import Elastic
 
 ROOT = Path(__file__).resolve().parents[2]

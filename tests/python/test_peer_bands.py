@@ -44,7 +44,7 @@ def test_one_test(table: peer.Specimens) -> None:
     """Band, intervals and the tests of the folder of its table; the nearest in axial load first."""
     row = peer.predict(table["T1"], samples=8)
     path = table["T1"].test().displacement
-    band = rbsdem.section.spread(peer.column(table["T1"]), path, samples=8)
+    band = rbsdem.peer.band(peer.column(table["T1"]), path, samples=8)
     for name in ("force", "median", "lower", "upper", "samples"):
         np.testing.assert_array_equal(getattr(row.band, name), getattr(band, name))
     assert [one.specimen.name for one in row.nearest] == ["T2", "T3", "T4"]

@@ -63,7 +63,7 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
     hinge = RESULT.lumped_hinge()
     states, history, spectrum = BENT.limit_states(), shaken(), records[0].spectrum()
     line = Envelope(1, np.array([0.0, 0.02, 0.06]), np.array([0.0, 2e5, 2e5]))
-    band = rbsdem.section.spread(LAYERED, BENT.displacement, samples=8)
+    band = rbsdem.peer.band(LAYERED, BENT.displacement, samples=8)
     fit = rbsdem.calibrate(COLUMN, TEST, free=["flexure.k_u"])
     study = rbsdem.compare_methods(COLUMN, displacement=D[:40], budget=0.5)
     peak, first, p, knee = (
@@ -124,7 +124,7 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
             (spectrum,),
             (spectrum.period[9], spectrum.pseudo_acceleration[9]),
         ),
-        "spread": (plot.spread, (band,), (0.0, band.force[0] / 1e3)),
+        "band": (plot.band, (band,), (0.0, band.force[0] / 1e3)),
         "frame": (plot.frame, (pushed,), None),
         "pushover": (plot.pushover, (pushed,), (roof, shear_of)),
         "storey_drift": (plot.storey_drift, (pushed,), (100 * pushed.storey_drift[-1, 0], 3.2)),
@@ -156,7 +156,7 @@ LABELS = {
     "fragilities": ("", "Probability"),
     "motion": ("Time (s)", "Acceleration (m/s²)"),
     "spectrum": ("Period (s)", "Pseudo-acceleration (m/s²)"),
-    "spread": ("Path of displacement (mm)", "Force (kN)"),
+    "band": ("Path of displacement (mm)", "Force (kN)"),
     "frame": ("Distance (m)", "Height (m)"),
     "pushover": ("Roof displacement (mm)", "Base shear (kN)"),
     "storey_drift": ("Storey drift (%)", "Height (m)"),
@@ -306,8 +306,8 @@ def test_what_is_written_and_marked(figures):
     (envelope,) = figures["envelope"][1]
     corner = plot.envelope(envelope, method="asce_41").get_lines()[1].get_xydata()[1]
     assert corner == pytest.approx([20.0, 200.0])
-    (band,) = figures["spread"][1]
-    ax = plot.spread(band, test=band)
+    (band,) = figures["band"][1]
+    ax = plot.band(band, test=band)
     assert (len(ax.lines), len(ax.collections)) == (3, 1)
     springs = rbsdem.section.springs(PAPER.section, 1.6, PAPER.axial_load)
     assert len(plot.section_springs(springs)) == 2

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem.results.case import Case
+from rbsdem.run.case import Case
 from rbsdem.springs import (
     Bilinear,
     Compression,

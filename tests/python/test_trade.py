@@ -24,7 +24,7 @@ from rbsdem.methods.physics import split_bodies
 from rbsdem.methods.scene import make_scene
 from rbsdem.methods.study import MethodStudy
 from rbsdem.output.methods import report
-from rbsdem.results.accuracy import Answer, at_times, common_interval, errors_of
+from rbsdem.run.accuracy import Answer, at_times, common_interval, errors_of
 from rbsdem.springs import Bilinear, Compression, Elastic
 
 LENGTH, MASS = 1.6, 614.4
@@ -146,7 +146,7 @@ def test_settings_of_all_kinds_are_there(shaken):
             assert row.error == max(row.response_rms, row.moment, row.energy, row.peak)
             assert row.response_rms <= row.response_max
     chosen = next(row for row in shaken.rows if row.setting.method == "auto")
-    assert chosen.reason.split(":")[0] in rbsdem.solve.solver.IN_TIME
+    assert chosen.reason.split(":")[0] in rbsdem.run.solver.IN_TIME
 
 
 def test_a_step_beyond_the_limit_stays_in_the_table(shaken):

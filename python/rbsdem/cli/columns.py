@@ -36,8 +36,8 @@ from rbsdem.motions.shaping import synthetic
 from rbsdem.output import many as ensemble_figures
 from rbsdem.output import methods as methods_output
 from rbsdem.output import tables
-from rbsdem.results.case import Case, read_case
-from rbsdem.solve.solver import COLLAPSE_DRIFT, Solver
+from rbsdem.run.case import Case, read_case
+from rbsdem.run.solver import COLLAPSE_DRIFT, Solver
 from rbsdem.web.answers import NearestTests
 from rbsdem.web.exports import drawing_in, opened
 from rbsdem.web.report import report as report_record

@@ -26,8 +26,8 @@ from rbsdem.output import measured, tables
 from rbsdem.output.measured import band_sheet, contact_sheet
 from rbsdem.output.measured import prediction as draw_prediction
 from rbsdem.output.tables import console
+from rbsdem.run.protocol import protocol
 from rbsdem.section.columns import DEFAULT, MODELS, model_name
-from rbsdem.solve.protocol import protocol
 from rbsdem.web.pages import gallery
 
 #: Name of the store in the folder of `--out`, as long as the batch is not finished.

@@ -22,8 +22,8 @@ from rbsdem.errors import InputError, Interrupted
 from rbsdem.many import inputs
 from rbsdem.many.plan import Outcome, Piece, Plan, RunStore, compute, cut, expected, one_run
 from rbsdem.model.frame import Structure
-from rbsdem.results.result import Result
-from rbsdem.solve.solver import Solver, checked_solver
+from rbsdem.run.result import Result
+from rbsdem.run.solver import Solver, checked_solver
 
 #: Seconds of a task at the most, as far as that is known: what a kill may cost.
 _LONGEST = 2.0

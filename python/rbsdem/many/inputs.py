@@ -20,7 +20,7 @@ from rbsdem.errors import InputError
 from rbsdem.model.column import Column
 from rbsdem.model.frame import Frame, Structure, checked_structure
 from rbsdem.model.response import Response, state_of
-from rbsdem.results.result import Result
+from rbsdem.run.result import Result
 
 #: The state of a column at rest.
 AT_REST: Array = np.empty(0)

@@ -27,7 +27,7 @@ from rbsdem.many import inputs
 from rbsdem.model.column import Column, without_notes
 from rbsdem.model.frame import Structure
 from rbsdem.model.springs import Layered
-from rbsdem.results.result import time_history
+from rbsdem.run.result import time_history
 
 Integers = NDArray[np.int32]
 

@@ -21,8 +21,8 @@ from rbsdem.many.plan import FAULT_OF_MEASURE
 from rbsdem.model.column import Column
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.motions.motion import GroundMotion, checked_motion
-from rbsdem.solve.analysis import modes
-from rbsdem.solve.solver import COLLAPSE_DRIFT, Solver, checked_solver
+from rbsdem.run.analysis import modes
+from rbsdem.run.solver import COLLAPSE_DRIFT, Solver, checked_solver
 
 Name = Literal["sa_t1", "pga", "sa_avg"]
 NAMES: tuple[Name, ...] = ("sa_t1", "pga", "sa_avg")

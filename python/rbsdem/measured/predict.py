@@ -36,10 +36,11 @@ from rbsdem.measured.predictions import Neighbour, Prediction, Predictions, Pred
 from rbsdem.measured.specimens import TABLE, Specimen, read_specimens
 from rbsdem.model.column import Column
 from rbsdem.model.shape import CircularSection, Section
-from rbsdem.results.result import Result, cyclic
+from rbsdem.run.bands import band as band_of
+from rbsdem.run.bands import has_bands, place_of
+from rbsdem.run.result import Result, cyclic
 from rbsdem.section.columns import DEFAULT, model_name
 from rbsdem.section.parameters import parameters
-from rbsdem.section.spread import has_bands, place_of, spread
 
 #: Tests most like a column that stand beside its prediction.
 _NEIGHBOURS = 5
@@ -113,7 +114,7 @@ def predict(
         most like it with their errors. By default for one specimen by the layered model. A band
         takes the time of `samples` predictions more.
     samples : int, optional
-        Samples of a band, as for `rbsdem.section.spread`.
+        Samples of a band, as for `rbsdem.peer.band`.
     displacement : array_like, shape (m,), optional
         Path of the top [m], for columns that nobody tested; with bands. Without it, that of each
         test.
@@ -438,7 +439,7 @@ def _analyse(
     end = time.perf_counter()
     band = None
     if how.bands and status != "failed":
-        band = spread(column, path, samples=how.samples)
+        band = band_of(column, path, samples=how.samples)
     found: Any = {"status": status, "error": error, "band": band, "limit_states": states}
     times: Any = {"seconds_model": built - begin, "seconds_analysis": end - built}
     return replace(row, remarks=getattr(column, "outside", ()), **found, **times), result

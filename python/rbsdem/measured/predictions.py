@@ -26,7 +26,7 @@ from rbsdem.checks.criteria import WATCHED
 from rbsdem.curves.scores import SCORES, Comparison, compare
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.measured.specimens import Rows, Specimen
-from rbsdem.section.spread import Interval, Spread, numbers
+from rbsdem.run.bands import Band, Interval, numbers
 
 #: How far a model is drawn beyond its test: of the largest force that is in the box.
 _BEYOND = 1.08
@@ -169,7 +169,7 @@ class Prediction:
     comparison : Comparison or None
         Scores; None without a history, along another path than that of the test, or where the
         process died. A test that failed has an nrmse of 1.
-    band : Spread or None
+    band : Band or None
         The prediction with its 80 % band and intervals; None unless bands were asked for.
     nearest : tuple of Neighbour
         The tests that are most like it, with the errors of their predictions; with bands only.
@@ -188,7 +188,7 @@ class Prediction:
     seconds_model: float = 0.0
     seconds_analysis: float = 0.0
     comparison: Comparison | None = None
-    band: Spread | None = None
+    band: Band | None = None
     nearest: tuple[Neighbour, ...] = ()
     remarks: tuple[str, ...] = ()
     limit_states: dict[str, float] | None = None
@@ -580,7 +580,7 @@ def _unpacked(text: str) -> Array:
     return np.frombuffer(base64.b64decode(text), "<f8").astype(np.float64)
 
 
-def _band_line(band: Spread) -> dict[str, Any]:
+def _band_line(band: Band) -> dict[str, Any]:
     """Return a band as values of json; its samples are left out."""
     line: dict[str, Any] = {name: _packed(getattr(band, name)) for name in _CURVES}
     line |= {name: dataclasses.astuple(getattr(band, name)) for name in _INTERVALS}
@@ -588,12 +588,12 @@ def _band_line(band: Spread) -> dict[str, Any]:
     return line | {"remarks": list(band.remarks)}
 
 
-def _band_of(line: dict[str, Any]) -> Spread:
+def _band_of(line: dict[str, Any]) -> Band:
     values: dict[str, Any] = {name: _unpacked(line[name]) for name in _CURVES}
     values |= {name: Interval(*map(float, line[name])) for name in _INTERVALS}
     values |= {name: float(line[name]) for name in _SHARES}
     samples = np.empty((0, values["force"].size))
-    return Spread(**values, samples=samples, remarks=tuple(map(str, line["remarks"])))
+    return Band(**values, samples=samples, remarks=tuple(map(str, line["remarks"])))
 
 
 def _key(specimen: Specimen, given: bytes) -> str:

@@ -16,9 +16,9 @@ from rbsdem import _arguments
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.methods.scene import Attempt, Run, Scene, Setting
 from rbsdem.model.column import Column, Kinematics
-from rbsdem.results.accuracy import common_interval
-from rbsdem.solve.analysis import no_watch, time_history
-from rbsdem.solve.solver import IMPLICIT, IN_TIME, METHODS, Solver
+from rbsdem.run.accuracy import common_interval
+from rbsdem.run.analysis import no_watch, time_history
+from rbsdem.run.solver import IMPLICIT, IN_TIME, METHODS, Solver
 
 #: Levels of kinematics, each with more physics than the one before.
 LEVELS: tuple[Kinematics, ...] = ("small", "pdelta", "finite")

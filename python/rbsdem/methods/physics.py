@@ -19,8 +19,8 @@ from rbsdem.methods.scene import VERTICAL, Run, Scene, Setting
 from rbsdem.model.column import PLACES, Column, bodies, without_notes
 from rbsdem.model.damping import Damping
 from rbsdem.model.springs import Spring
-from rbsdem.results.accuracy import errors_of
-from rbsdem.solve.solver import IMPLICIT
+from rbsdem.run.accuracy import errors_of
+from rbsdem.run.solver import IMPLICIT
 
 #: Share of the rotary inertia that stays when it is taken off: a body without any has no equation
 #: of motion.

@@ -10,8 +10,8 @@ import numpy as np
 from rbsdem.errors import RbsdemError
 from rbsdem.methods.ladder import Budget, Trials
 from rbsdem.methods.scene import Run, Scene, Setting
-from rbsdem.results.accuracy import Answer, errors_of
-from rbsdem.solve.solver import IMPLICIT
+from rbsdem.run.accuracy import Answer, errors_of
+from rbsdem.run.solver import IMPLICIT
 
 #: First refinement of a method that was not run before: tolerance of rk45, and the part of the
 #: stable step of rk4. Then the tolerance is divided by 100, down to the least, or the step by 2.

@@ -17,9 +17,9 @@ from rbsdem._package import unwarned
 from rbsdem._types import Array, ArrayLike, NDArray
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError
 from rbsdem.model.column import Column, Kinematics, checked_column, without_notes
-from rbsdem.results.accuracy import Answer, answer_of
-from rbsdem.solve.analysis import cyclic, no_watch, time_history
-from rbsdem.solve.solver import Solver
+from rbsdem.run.accuracy import Answer, answer_of
+from rbsdem.run.analysis import cyclic, no_watch, time_history
+from rbsdem.run.solver import Solver
 
 #: Least number of times at which histories are compared; a loading with fewer is interpolated.
 LEAST_ROWS = 200

@@ -18,8 +18,8 @@ from rbsdem.methods.scene import Attempt, Run, Scene, make_scene
 from rbsdem.model.column import Column
 from rbsdem.model.springs import Spring
 from rbsdem.motions.motion import GroundMotion, acting
-from rbsdem.results.accuracy import Errors, errors_of
-from rbsdem.solve.solver import IMPLICIT, Solver
+from rbsdem.run.accuracy import Errors, errors_of
+from rbsdem.run.solver import IMPLICIT, Solver
 
 #: Shares of the budget at which the settings, and then the reference, have to be done.
 SETTINGS_SHARE, REFERENCE_SHARE = 0.4, 0.75

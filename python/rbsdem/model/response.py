@@ -29,7 +29,7 @@ R = TypeVar("R", bound="Response")
 
 
 class Recorded(Protocol):
-    """The case of which a response is: `rbsdem.results.case.Case`."""
+    """The case of which a response is: `rbsdem.run.case.Case`."""
 
     @property
     def title(self) -> str:
@@ -104,7 +104,7 @@ class Response(Reported):
         The loading and the settings that were given, as keywords of `cyclic` or `time_history`.
     channels : tuple of str
         Names of the quantities that the rows hold, in the order of the executable's csv.
-    case : rbsdem.results.case.Case or None
+    case : rbsdem.run.case.Case or None
         The case that was run; None if the analysis was called for the column.
     state : ndarray or None
         The state at the end, in numbers whose meaning is the program's own: what the springs

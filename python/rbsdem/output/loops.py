@@ -32,7 +32,7 @@ from rbsdem.output.style import (
     new_axes,
     style,
 )
-from rbsdem.results.lumped import LumpedHinge, Material
+from rbsdem.run.lumped import LumpedHinge, Material
 
 FIGURE_SIZE = (6.9, 6.0)
 

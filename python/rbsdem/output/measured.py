@@ -27,7 +27,7 @@ from rbsdem.output.style import (
     style,
 )
 from rbsdem.output.tables import table
-from rbsdem.section.spread import Spread
+from rbsdem.run.bands import Band
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -46,12 +46,12 @@ _CELL = 1.15, 1.05
 _REACH = np.array((0.46, 0.38))
 
 
-def spread(found: Spread, *, test: Any = None, ax: Axes | None = None, **line: Any) -> Axes:
+def band(found: Band, *, test: Any = None, ax: Axes | None = None, **line: Any) -> Axes:
     """Draw band, prediction and median along the path of displacement, and a test over them.
 
     Parameters
     ----------
-    found : Spread
+    found : Band
         The prediction with its band.
     test : optional
         A measured test with the same rows.
@@ -112,7 +112,7 @@ def prediction(row: Prediction) -> AxesArray:
         left.set(xlabel="Displacement (mm)", ylabel="Force (kN)")
         if row.band is not None:
             measured = None if test is None else test.test_force
-            spread(row.band, test=measured, ax=right)
+            band(row.band, test=measured, ax=right)
         else:
             right.set_axis_off()
         s = row.specimen

@@ -26,6 +26,4 @@ from rbsdem.section.parameters import ModelParameters as ModelParameters
 from rbsdem.section.parameters import parameters as parameters
 from rbsdem.section.shear import ShearDiagram as ShearDiagram
 from rbsdem.section.shear import shear_diagram as shear_diagram
-from rbsdem.section.spread import Spread as Spread
-from rbsdem.section.spread import spread as spread
 from rbsdem.section.strength import shear_strength as shear_strength

@@ -31,12 +31,12 @@ from rbsdem.model.shape import Section
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.read import read_motion
 from rbsdem.output.section import hoop_lines
-from rbsdem.results.case import Case
-from rbsdem.results.result import Result
+from rbsdem.run.bands import band as band_of
+from rbsdem.run.case import Case
+from rbsdem.run.result import Result
 from rbsdem.section.axial_moment import InteractionDiagram, interaction
 from rbsdem.section.curvature import diagram as diagram_of
 from rbsdem.section.layered import LayeredColumn
-from rbsdem.section.spread import spread as spread_of
 from rbsdem.web import exports, frames
 from rbsdem.web.pages import card
 from rbsdem.web.state import (
@@ -402,7 +402,7 @@ def _band(found: Answered) -> dict[str, Any]:
         return {"none": "no band: its scatter is that of columns with one hinge"}
     with unwarned(Warning):
         try:
-            spread = spread_of(column, result.displacement)
+            spread = band_of(column, result.displacement)
         except InputError as error:
             return {"none": str(error)}
     return {

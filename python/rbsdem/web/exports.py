@@ -19,9 +19,9 @@ from rbsdem._arguments import Derived
 from rbsdem._package import unwarned
 from rbsdem.errors import InputError
 from rbsdem.model.springs import Spring
-from rbsdem.results.case import Case, case_of_text
-from rbsdem.results.result import Result
-from rbsdem.solve.solver import COLLAPSE_DRIFT
+from rbsdem.run.case import Case, case_of_text
+from rbsdem.run.result import Result
+from rbsdem.run.solver import COLLAPSE_DRIFT
 from rbsdem.web.state import Drawn, Faults, RefusedError, drawn_case, state_of
 
 _MARK = "! rbsdem explore: "

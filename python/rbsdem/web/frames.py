@@ -20,8 +20,8 @@ from rbsdem.errors import InputError, RbsdemError, SolveError
 from rbsdem.model.frame import Frame, FrameMember
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.output.frames import cubic
-from rbsdem.results.result import pushover
-from rbsdem.solve.analysis import modes
+from rbsdem.run.analysis import modes
+from rbsdem.run.result import pushover
 from rbsdem.web.state import Faults, group
 
 #: The frame that the page begins with.

@@ -32,8 +32,8 @@ from rbsdem.output import frames, many, section
 from rbsdem.output.response import history
 from rbsdem.output.style import style
 from rbsdem.output.tables import PAPER, cells
-from rbsdem.results.case import Case, case_of
-from rbsdem.results.result import Result
+from rbsdem.run.case import Case, case_of
+from rbsdem.run.result import Result
 from rbsdem.section.axial_moment import Code, interaction
 from rbsdem.section.curvature import diagram
 from rbsdem.section.layered import LayeredColumn

@@ -26,11 +26,11 @@ from rbsdem.model.shape import CircularSection, RectangularSection, Section
 from rbsdem.model.springs import Elastic
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.shaping import synthetic
-from rbsdem.results.case import Case
+from rbsdem.run.case import Case
+from rbsdem.run.protocol import protocol
+from rbsdem.run.solver import COLLAPSE_DRIFT
 from rbsdem.section import columns
 from rbsdem.section.ranges import column_length
-from rbsdem.solve.protocol import protocol
-from rbsdem.solve.solver import COLLAPSE_DRIFT
 
 #: The column that the page begins with: test No 1 of Soesianawati and others (1986).
 DEFAULT: dict[str, Any] = {

@@ -12,8 +12,7 @@ from samples import SECTION
 import rbsdem
 from rbsdem import Concrete, Layout, Steel
 from rbsdem.errors import AccuracyWarning, InputError
-from rbsdem.section.parameters import parameters
-from rbsdem.section.spread import (
+from rbsdem.run.bands import (
     Interval,
     Middle,
     Scatter,
@@ -21,7 +20,8 @@ from rbsdem.section.spread import (
     near_shear,
     path_force,
 )
-from rbsdem.solve.protocol import protocol
+from rbsdem.run.protocol import protocol
+from rbsdem.section.parameters import parameters
 
 PATH = 1.6 * protocol([0.005, 0.01, 0.02], cycles=2)
 NONE = Scatter(
@@ -41,7 +41,7 @@ def column(**changes: float):
 
 
 def test_without_scatter_the_band_is_that_of_the_shape() -> None:
-    found = rbsdem.section.spread(column(), PATH, scatter=NONE)
+    found = rbsdem.peer.band(column(), PATH, scatter=NONE)
     peak = np.max(np.abs(found.force))
     np.testing.assert_allclose(found.upper - found.force, 2 * 0.05 * peak, rtol=1e-9)
     np.testing.assert_allclose(found.force - found.lower, 2 * 0.05 * peak, rtol=1e-9)
@@ -56,18 +56,18 @@ def test_the_band_grows_with_the_distance_from_the_tests() -> None:
     axes = np.linalg.inv(np.linalg.cholesky(covariance))
     mean = (0.2, 1.2, 0.3, -1.5, -3.0)
     middle = Middle(mean, tuple(tuple(row[: i + 1]) for i, row in enumerate(axes.tolist())))
-    found = rbsdem.section.spread(column(), PATH, scatter=replace(NONE, growth=0.3, middle=middle))
+    found = rbsdem.peer.band(column(), PATH, scatter=replace(NONE, growth=0.3, middle=middle))
     bars, ties = 8 * np.pi / 4 * 0.02**2 * 450 / 40, 3 * np.pi / 4 * 0.01**2 / 0.08 * 400 / 40
     logs = np.log([1.6 / 0.4, 40 / 30, bars / 0.16, ties / 0.4])
     way = np.array([1.2e6 / (0.16 * 40e6), *logs]) - mean
     distance = math.sqrt(way @ np.linalg.solve(covariance, way))
     assert found.distance == pytest.approx(distance, rel=1e-12)
     assert found.width == pytest.approx(0.2 * math.exp(0.3 * distance))
-    assert math.isnan(rbsdem.section.spread(column(), PATH, scatter=NONE).distance)
+    assert math.isnan(rbsdem.peer.band(column(), PATH, scatter=NONE).distance)
 
 
 def test_scatter_of_strength_is_a_factor() -> None:
-    found = rbsdem.section.spread(column(), PATH, scatter=replace(NONE, strength=(0.06, 0.08)))
+    found = rbsdem.peer.band(column(), PATH, scatter=replace(NONE, strength=(0.06, 0.08)))
     factors = np.exp(0.1 * _normal_points(16)[:, 0])
     np.testing.assert_allclose(found.samples, np.outer(factors, found.force), rtol=1e-12)
     at = int(np.argmax(found.force))
@@ -77,14 +77,14 @@ def test_scatter_of_strength_is_a_factor() -> None:
 
 
 def test_a_softer_column_is_where_the_other_is_at_a_smaller_displacement() -> None:
-    found = rbsdem.section.spread(column(), PATH[:2], scatter=replace(NONE, stiffness=(0.0, 0.3)))
+    found = rbsdem.peer.band(column(), PATH[:2], scatter=replace(NONE, stiffness=(0.0, 0.3)))
     path = PATH[:2, None] * np.exp(0.3 * _normal_points(16)[:, 1])
     again = [path_force(column(), row) for row in path.T]
     np.testing.assert_allclose(found.samples, again, rtol=1e-12)
 
 
 def test_degradation_changes_late_cycles_only() -> None:
-    found = rbsdem.section.spread(column(), PATH, scatter=replace(NONE, degradation=(0.7, 0.0)))
+    found = rbsdem.peer.band(column(), PATH, scatter=replace(NONE, degradation=(0.7, 0.0)))
     range_of = np.ptp(found.samples, axis=0) / np.max(np.abs(found.force))
     assert range_of[: PATH.size // 6].max() < 0.02 < range_of[PATH.size // 2 :].max()
 
@@ -92,7 +92,7 @@ def test_degradation_changes_late_cycles_only() -> None:
 def test_an_energy_near_zero_has_a_width() -> None:
     """A loop that gives back nearly all that it took: 0.5 and 1.5 times 0.15 of what F moved."""
     push = np.append(np.linspace(0.0, 0.003, 20), np.linspace(0.003, 0.0, 400))
-    found = rbsdem.section.spread(column(), push, scatter=NONE)
+    found = rbsdem.peer.band(column(), push, scatter=NONE)
     moved = np.abs(np.diff(push)) @ np.abs(0.5 * (found.force[1:] + found.force[:-1]))
     energy = found.energy
     assert abs(energy.value) < 0.15 * moved
@@ -101,7 +101,7 @@ def test_an_energy_near_zero_has_a_width() -> None:
 
 
 def test_intervals() -> None:
-    found = rbsdem.section.spread(column(), PATH, scatter=NONE)
+    found = rbsdem.peer.band(column(), PATH, scatter=NONE)
     assert found.peak_force.value == np.max(np.abs(found.force))
     assert found.peak_force.upper == pytest.approx(1.2 * found.peak_force.value)
     assert found.energy.lower == pytest.approx(0.5 * found.energy.value)
@@ -136,14 +136,14 @@ def test_outside_the_range_of_the_tests_it_says_so() -> None:
     assert said.startswith("axial_load = -100000 N is tension; compression is positive")
     assert said.endswith("; ".join(far.outside))
     with pytest.warns(AccuracyWarning, match="concrete strength = 140 MPa is outside"):
-        found = rbsdem.section.spread(far, PATH[:3], scatter=NONE)
+        found = rbsdem.peer.band(far, PATH[:3], scatter=NONE)
     assert found.remarks == far.outside
     with pytest.warns(AccuracyWarning, match="there are no ties"):
         rbsdem.section.column(replace(SECTION, ties=None, layout=None), 1.6, axial_load=1.2e6)
 
 
 def test_the_parameters_have_bands() -> None:
-    found = rbsdem.section.spread(column(), PATH)
+    found = rbsdem.peer.band(column(), PATH)
     assert np.all(found.lower < found.force)
     assert np.all(found.force < found.upper)
     assert 0.1 < found.width < 0.6
@@ -151,13 +151,13 @@ def test_the_parameters_have_bands() -> None:
 
 def test_near_the_shear_strength_the_band_is_wider() -> None:
     """Halfway from 0.7 to 0.95 of it the widening is halfway between its two numbers."""
-    peak = np.max(np.abs(rbsdem.section.spread(column(), PATH, scatter=NONE).force))
+    peak = np.max(np.abs(rbsdem.peer.band(column(), PATH, scatter=NONE).force))
     strength = column().shear[0].f_y
     assert near_shear(column(), 0.7 * strength) == pytest.approx(0.0)
     assert near_shear(column(), 0.825 * strength) == pytest.approx(0.5)
     assert near_shear(column(), 2.0 * strength) == 1.0
     weak = column(shear_strength=parameters().shear_strength * peak / strength / 0.825)
-    found = rbsdem.section.spread(weak, PATH, scatter=NONE)
+    found = rbsdem.peer.band(weak, PATH, scatter=NONE)
     share = near_shear(weak, np.max(np.abs(found.force)))
     assert 0.3 < share < 0.6
     assert found.width == pytest.approx(2 * 0.05 * (2 + 2 * share))
@@ -165,7 +165,7 @@ def test_near_the_shear_strength_the_band_is_wider() -> None:
 
 
 def test_what_a_band_holds() -> None:
-    found = rbsdem.section.spread(column(), PATH, scatter=NONE)
+    found = rbsdem.peer.band(column(), PATH, scatter=NONE)
     assert found.holds(found.force) == 1.0
     assert found.holds(found.upper + 1.0) == 0.0
     # Far off along the second half of the path.

@@ -19,7 +19,7 @@ from rbsdem.model.frame import Frame, Structure, checked_structure
 from rbsdem.model.frame_result import FrameResult, frame_result_of
 from rbsdem.model.response import Ended, Response, response_of, settings_of, state_of
 from rbsdem.motions.motion import GroundMotion, acting
-from rbsdem.solve.solver import Solver, checked_solver
+from rbsdem.run.solver import Solver, checked_solver
 
 #: What a run in time is watched for: limit states of the column as criteria in numbers, shape
 #: (criteria, 6), given whether openings are kept.

@@ -29,10 +29,10 @@ from rbsdem.model.column import Column
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.response import Response
-from rbsdem.results.accuracy import Errors, refined_error
-from rbsdem.results.lumped import LumpedHinge, lumped_hinge
-from rbsdem.solve import analysis
-from rbsdem.solve.solver import METHODS
+from rbsdem.run import analysis
+from rbsdem.run.accuracy import Errors, refined_error
+from rbsdem.run.lumped import LumpedHinge, lumped_hinge
+from rbsdem.run.solver import METHODS
 
 P = ParamSpec("P")
 
@@ -248,7 +248,7 @@ class Result(Response):
 
         Returns
         -------
-        rbsdem.results.accuracy.Errors
+        rbsdem.run.accuracy.Errors
             Relative differences of the response (rms and largest), of the base moment, the energy
             and the peak; `largest` is the largest of them.
 

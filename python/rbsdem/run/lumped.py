@@ -24,7 +24,7 @@ from rbsdem.curves.envelope import Envelope, envelope
 from rbsdem.errors import InputError, SolveError
 from rbsdem.model.response import Response
 from rbsdem.model.springs import PeakOriented
-from rbsdem.solve.analysis import cyclic
+from rbsdem.run.analysis import cyclic
 
 Material = Literal["Hysteretic", "IMKPeakOriented"]
 Language = Literal["tcl", "py"]

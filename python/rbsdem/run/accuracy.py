@@ -12,8 +12,8 @@ import numpy as np
 from rbsdem._package import unwarned
 from rbsdem._types import Array
 from rbsdem.model.response import Response
-from rbsdem.solve.analysis import cyclic, no_watch, time_history
-from rbsdem.solve.solver import METHODS
+from rbsdem.run.analysis import cyclic, no_watch, time_history
+from rbsdem.run.solver import METHODS
 
 #: By how much a tolerance is sharpened, at least to where it and not the stability limits the
 #: steps, and the least one.

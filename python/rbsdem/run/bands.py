@@ -31,10 +31,10 @@ from rbsdem.curves.metrics import PathPoints, work
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import Column
 from rbsdem.model.shape import Section
+from rbsdem.run.analysis import reached_force
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.parameters import VERSION
 from rbsdem.section.strength import shear_sizes
-from rbsdem.solve.analysis import reached_force
 
 LEAST, MOST = 8, 4096
 """Fewest and most samples of a band."""
@@ -183,7 +183,7 @@ class Interval:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Spread(Tabular):
+class Band(Tabular):
     """A prediction along a path with its 80 % band.
 
     Attributes
@@ -226,7 +226,7 @@ class Spread(Tabular):
 
     def __repr__(self) -> str:
         rows, near = self.displacement.size, self.near_shear
-        return f"<Spread: {rows} rows, width {self.width:.2f}, near_shear {near:.2f}>"
+        return f"<Band: {rows} rows, width {self.width:.2f}, near_shear {near:.2f}>"
 
     @property
     def width(self) -> float:
@@ -266,7 +266,7 @@ class Spread(Tabular):
         force = _arguments.finite_vector(getattr(test, "force", test), "test")
         if force.size != self.force.size:
             raise InputError(
-                f"spread: the test has {force.size} rows and the prediction {self.force.size}; "
+                f"band: the test has {force.size} rows and the prediction {self.force.size}; "
                 "predict the displacements of the test"
             )
         return force
@@ -316,13 +316,13 @@ def has_bands(version: str) -> bool:
     return version == VERSION
 
 
-def spread(
+def band(
     column: LayeredColumn,
     displacement: ArrayLike,
     *,
     samples: int = 16,
     scatter: Scatter | None = None,
-) -> Spread:
+) -> Band:
     """Predict the force along a path, with the band that holds 80 % of left-out tests.
 
     Parameters
@@ -339,9 +339,9 @@ def spread(
 
     Returns
     -------
-    Spread
+    Band
         Prediction, band, intervals of largest force, work and drift at 20 % loss, remarks;
-        `rbsdem.plot.spread` draws it.
+        `rbsdem.plot.band` draws it.
 
     Raises
     ------
@@ -355,7 +355,7 @@ def spread(
         Where the column is outside the range of the tests.
     """
     remedy = "a column of rbsdem.section.column has bands; of other columns no tests are known"
-    _arguments.instance(column, "spread: column", LayeredColumn, remedy)
+    _arguments.instance(column, "band: column", LayeredColumn, remedy)
     number = _arguments.integer(samples, "samples")
     if not LEAST <= number <= MOST:
         raise InputError(f"samples = {samples} must be {LEAST} to {MOST}; 16 are enough")
@@ -364,16 +364,16 @@ def spread(
         scatter, made = scatter_of_tests(), column._recipe.parameters
         if not has_bands(made.version):
             raise InputError(
-                f"spread: no tests were left out of the fit of version {made.version!r}; there are "
+                f"band: no tests were left out of the fit of version {made.version!r}; there are "
                 f"bands for {VERSION}, or give scatter="
             )
         if made.own:
             remarks = (*remarks, f"the band is that of {VERSION}, whose parameters changed")
     d = _arguments.finite_vector(displacement, "displacement")
     if d.size < 2 or not np.any(np.diff(d)):
-        raise InputError("spread: the displacement does not change; give a path")
+        raise InputError("band: the displacement does not change; give a path")
     if remarks:
-        warnings.warn(f"spread: {'; '.join(remarks)}", AccuracyWarning, stacklevel=2)
+        warnings.warn(f"band: {'; '.join(remarks)}", AccuracyWarning, stacklevel=2)
     force = path_force(column, d)
     sampled = sample(column, d, scatter, number)
     peak = float(np.max(np.abs(force)))
@@ -386,7 +386,7 @@ def spread(
         widen *= math.exp(scatter.growth * distance)
     values = numbers(d, force, column.height)
     moved = float(np.abs(np.diff(d)) @ np.abs(0.5 * (force[1:] + force[:-1])))
-    return Spread(
+    return Band(
         displacement=d,
         force=force,
         median=np.median(sampled, axis=0),
@@ -422,7 +422,7 @@ def sample(column: LayeredColumn, displacement: Array, scatter: Scatter, number:
     for name, made in recipe.made.items():
         if getattr(column, name) != made:
             raise InputError(
-                f"spread: {name} of this column is not that of its model, whose scatter is known; "
+                f"band: {name} of this column is not that of its model, whose scatter is known; "
                 "change parameters by with_parameters"
             )
     sizes = [math.hypot(*two) for two in (scatter.strength, scatter.stiffness, scatter.degradation)]

@@ -21,15 +21,15 @@ from rbsdem.model.damping import Damping
 from rbsdem.model.files import FORMAT, FORMAT_VERSION, ending_of
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.model.frame_result import FrameResult
-from rbsdem.results.groups import (
+from rbsdem.run.groups import (
     SPRING_GROUPS,
     frame_of,
     layered_column,
     recipe_of,
     springs_of_joints,
 )
-from rbsdem.results.result import Result, cyclic, time_history
-from rbsdem.solve.solver import Solver
+from rbsdem.run.result import Result, cyclic, time_history
+from rbsdem.run.solver import Solver
 
 #: What an analysis was given that no case file has.
 _NO_SETTINGS = ("initial", "corners", "progress")

@@ -1,1 +1,0 @@
-"""The result that users get, its files, its error, and the cases of the executable."""

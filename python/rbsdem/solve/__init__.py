@@ -1,1 +1,0 @@
-"""Analyses of a structure, their settings and cases."""
