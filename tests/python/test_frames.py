@@ -114,6 +114,50 @@ def test_dead_load_on_a_clamped_beam():
     assert still.member("post").moment[0] == pytest.approx([0, 0], abs=1e-6)
 
 
+@pytest.mark.parametrize("kinematics", ["small", "pdelta"])
+@pytest.mark.parametrize("seed", range(8))
+def test_reactions_are_the_loads(seed, kinematics):
+    """Vertical forces and moments about the origin, for any rigid ends and inclined members.
+
+    Moments of the undeformed frame, so that they hold without second-order work.
+    """
+    rng = np.random.default_rng(seed)
+
+    def kind() -> FrameMember:
+        flexure = Bilinear(k=between(rng, 5e6, 5e7), d_y=1.0, k_post=1e5)
+        springs = {} if rng.random() < 0.5 else {"flexure": flexure}
+        return FrameMember(E, A, INERTIA, panel=float(rng.uniform(0, 0.8)), **springs)
+
+    heights = [between(rng, 2.5, 4.5) for _ in range(rng.integers(1, 4))]
+    widths = [between(rng, 3, 8) for _ in range(rng.integers(1, 4))]
+    loads = [float(rng.uniform(0, 3e4)) for _ in heights]
+    top = heights[0]
+    hung = FrameNode(
+        "end", x=-2.5, y=top - float(rng.uniform(-1, 1)), load_y=-float(rng.uniform(0, 1e5))
+    )
+    arm = Member("arm", "N-1-1", "end", kind(), tuple(rng.uniform(0, 1, 2)), load=8e3)
+    frame = Frame.grid(
+        heights, widths, columns=kind(), beams=kind(), beam_load=loads, kinematics=kinematics,
+        nodes=[hung], members=[arm],
+    )  # fmt: skip
+    lines = np.concatenate([[0.0], np.cumsum(widths)])
+    feet = [f"C-{i + 1}-1" for i in range(lines.size)]
+    places = [frame.parts.members.index(foot) for foot in feet]
+    whole = sum(loads) * sum(widths) + 2.5 * 8e3 - hung.load_y
+    assert frame.parts.compression[places].sum() == pytest.approx(whole, rel=1e-12)
+    if kinematics == "pdelta":
+        return
+    push = rbsdem.cyclic(frame, displacement=[0.01])
+    upward = push.member_axial[0, places]
+    assert upward.sum() == pytest.approx(whole, rel=1e-12)
+    overturning = sum(loads) * sum(widths) ** 2 / 2 - 2.5 * (2.5 * 8e3 / 2 - hung.load_y)
+    # Without masses all nodes that move are pushed as their heights.
+    levels = np.concatenate([np.repeat(np.cumsum(heights), lines.size), [hung.y]])
+    overturning += push.force[0] * (levels**2).sum() / levels.sum()
+    held = upward @ lines - push.moment_from[0, places].sum()
+    assert held == pytest.approx(overturning, abs=1e-12 * whole * lines[-1])
+
+
 def test_a_frame_of_rigid_beams_is_the_shear_building():
     """Two storeys on columns of 12 E I/h^3: the periods of two masses by hand, all mass in them."""
     h, mass = 3.0, 4e4

@@ -422,19 +422,20 @@ contains
       if (m%sliding > 0.0_wp) e%rest(1) = 1.0_wp/(1.0_wp/e%rest(1) + 1.0_wp/(clear*m%sliding))
    end subroutine set_rest
 
-   !> Dead load on a member: it is carried to the nodes as by a beam on two supports, with moments in between.
+   !> Dead load on a member: that of the clear length is carried to the rigid ends as by a beam on two
+   !> supports, with moments in between; that of the rigid ends is on them.
    subroutine put_load(frame, m, i, axis, clear)
       type(frame_type), intent(inout) :: frame
       type(frame_member), intent(in) :: m
       integer, intent(in) :: i
       real(wp), intent(in) :: axis(2), clear
-      real(wp) :: down, all, share, lever
+      real(wp) :: down, per_length, share, lever, over_node
       integer :: j, k, at
 
       if (.not. abs(m%load) > 0.0_wp) return
-      ! Downward, and its part across the member per length of it.
-      all = m%load*clear*abs(axis(1))
-      down = all*axis(1)/clear
+      ! Downward, and its part across the member, both per length of it.
+      per_length = m%load*abs(axis(1))
+      down = per_length*axis(1)
       do j = 1, size(m%kind)
          share = m%place(j)
          at = frame%element(i)%before + j
@@ -447,11 +448,12 @@ contains
          frame%dead_rotation(:, i) = [1.0_wp, -1.0_wp]*down*clear**3/(24.0_wp*m%bending)
       end if
       do k = 1, 2
+         over_node = per_length*m%rigid(k)
          at = frame%number(2, m%node(k))
-         if (at > 0) frame%dead(at) = frame%dead(at) - all/2.0_wp
+         if (at > 0) frame%dead(at) = frame%dead(at) - (per_length*clear/2.0_wp + over_node)
          at = frame%element(i)%number(3*k)
          lever = merge(1.0_wp, -1.0_wp, k == 1)*m%rigid(k)*axis(1)
-         if (at > 0) frame%dead(at) = frame%dead(at) + lever*all/2.0_wp
+         if (at > 0) frame%dead(at) = frame%dead(at) + lever*(per_length*clear + over_node)/2.0_wp
       end do
 
    contains
