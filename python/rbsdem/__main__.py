@@ -15,6 +15,7 @@ _OF_COLUMNS = ("trade", "ensemble", "ida", "explore", "report")
 COMMANDS = dict.fromkeys(_OF_COLUMNS, "rbsdem.cli.columns") | {
     "peer": "rbsdem.cli.measured",
     "predict": "rbsdem.cli.measured",
+    "verify": "rbsdem.cli.verification",
     "completion": "rbsdem.cli",
 }
 

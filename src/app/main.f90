@@ -72,7 +72,7 @@ contains
       !> The command; empty for all of them
       character(len=*), intent(in) :: topic
       type(error_type), allocatable, intent(inout) :: error
-      character(len=*), parameter :: text(37) = [character(len=84) :: &
+      character(len=*), parameter :: text(38) = [character(len=84) :: &
          'rbsdem '//version//': reinforced-concrete columns as rigid bodies and springs', &
          '', &
          'usage:', &
@@ -91,6 +91,7 @@ contains
          '  rbsdem ida CASE.nml RECORD ...                  incremental dynamic analysis', &
          '  rbsdem peer DIR                                 columns beside their tests', &
          '  rbsdem predict DIR                              tests predicted from drawings', &
+         '  rbsdem verify                                   printed numbers of others', &
          '  rbsdem completion SHELL                         completion of the command line', &
          '', &
          'CASE.nml may be -, which is standard input.', &

@@ -1,7 +1,7 @@
 """Extremes of rotation and contact: full turns, bodies that fly off and land.
 
 Motions are held against `reference_chain`, which knows nothing but the energies. The elastica to
-a right angle and beyond: `test_textbook.py`.
+a right angle and beyond: `rbsdem verify`.
 """
 
 from __future__ import annotations

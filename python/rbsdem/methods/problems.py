@@ -15,24 +15,21 @@ from typing import Any
 
 import numpy as np
 
-from rbsdem._types import Array, ArrayLike
+from rbsdem._types import Array
 from rbsdem.errors import InputError
+from rbsdem.methods import problems_of_frames as frames
+from rbsdem.methods.problems_of_frames import FOOT, INCH, KIP, KSI, MASS
 from rbsdem.methods.verification import Problem
 from rbsdem.model.column import Column
 from rbsdem.model.damping import Damping
-from rbsdem.model.frame import Frame, FrameMember, FrameNode, Member
 from rbsdem.model.materials import Concrete, Steel, Ties
 from rbsdem.model.shape import RectangularSection
 from rbsdem.model.springs import Bilinear, Elastic, Spring
-from rbsdem.results.result import cyclic, pushover, time_history
+from rbsdem.run.analysis import modes
+from rbsdem.run.result import cyclic, time_history
 from rbsdem.section.axial_moment import interaction
 from rbsdem.section.strength import axial_failure_drift
-from rbsdem.solve.analysis import modes
 
-INCH, FOOT = 0.0254, 0.3048
-KIP = 1000 * 0.45359237 * 9.80665
-MASS = KIP / INCH  # kip s2/in
-KSI = KIP / INCH**2
 RIGID = 1e9
 
 
@@ -199,107 +196,15 @@ def bent(n: int, force: float) -> list[float]:
     return [run.top[-1, 0], 1 - run.top[-1, 1], float(np.sum(run.rotation[-1]))]
 
 
-# ---- frames -------------------------------------------------------------------------------------
-
-
-def seven_storeys() -> Frame:
-    """Return the frame of example 1-022: two bays, masses on the left line, rigid floors."""
-    shapes = {
-        "W14X176": (51.7, 2150), "W14X211": (62.1, 2670), "W14X246": (72.3, 3230),
-        "W14X287": (84.4, 3910), "W24X110": (32.5, 3330), "W24X130": (38.3, 4020),
-        "W24X160": (47.1, 5120),
-    }  # fmt: skip
-    modulus = 29500 * KSI
-    kinds = {
-        name: FrameMember(modulus, area * INCH**2, inertia * INCH**4)
-        for name, (area, inertia) in shapes.items()
-    }
-    outer = ["W14X246"] * 3 + ["W14X211"] * 2 + ["W14X176"] * 2
-    inner = ["W14X287"] * 3 + ["W14X246"] * 2 + ["W14X211"] * 2
-    beams = ["W24X160"] * 2 + ["W24X130"] * 2 + ["W24X110"] * 3
-    storeys = np.array([162] * 2 + [156] * 5) * INCH
-    pushes = np.array([2.5, 5, 7.5, 10, 12.5, 15, 20])
-    nodes = [FrameNode(f"N-1-{i + 1}", push_x=push / pushes.sum()) for i, push in enumerate(pushes)]
-    # The masses have no weight upward: they stand on rollers, held by members without stiffness.
-    nodes += [
-        FrameNode(f"M-{i + 1}", x=-1, y=y, support="roller", mass=0.49 * MASS,
-                  moves_with=f"N-1-{i + 1}")
-        for i, y in enumerate(np.cumsum(storeys))
-    ]  # fmt: skip
-    weak = FrameMember(modulus, 1e-9, 1e-14)
-    return Frame.grid(
-        storeys,
-        [360 * INCH] * 2,
-        columns={(i, s + 1): kinds[(outer, inner)[i == 2][s]] for i in (1, 2, 3) for s in range(7)},
-        beams={(b, s + 1): kinds[beams[s]] for b in (1, 2) for s in range(7)},
-        nodes=nodes,
-        members=[Member(f"M-{i}", f"N-1-{i}", f"M-{i}", kind=weak) for i in range(1, 8)],
-        diaphragm=True,
-        pattern="nodes",
-    )
-
-
-def pushed_seven_storeys() -> list[float]:
-    """Return the displacement of its top under 72.5 kip [in]."""
-    push = pushover(seven_storeys(), force=72.5 * KIP, points=1)
-    return [push.displacement[-1] / INCH]
-
-
-def nine_storeys() -> Array:
-    """Return eigenvalues of the frame of Bathe and Wilson: 10 bays, all members alike."""
-    kind = FrameMember(432000 * KIP / FOOT**2, 3 * FOOT**2, FOOT**4)
-    half = 3 * KIP / FOOT**2 / 2  # mass of half a length of a member
-    nodes = [
-        FrameNode(
-            f"N-{line}-{floor}",
-            mass=half
-            * FOOT
-            * (10 * (1 + (floor < 9)) + 20 * (1 + (1 < line < 11)))  # columns, then beams
-        )
-        for line in range(1, 12)
-        for floor in range(1, 10)
-    ]  # fmt: skip
-    frame = Frame.grid([10 * FOOT] * 9, [20 * FOOT] * 10, columns=kind, beams=kind, nodes=nodes)
-    return np.asarray(modes(frame, 3).omega ** 2)
-
-
-def flexible_beams() -> Array:
-    """Return frequencies of two storeys over sqrt(EI/(m h^3)); 2 m and 2 EI below, bay of 2 h."""
-    inertia, height, mass = 1e-4, 3.0, 1e4
-    upper, lower = (FrameMember(2e11, 10.0, share * inertia) for share in (1, 2))
-    kinds = {(0, 1): lower, (0, 2): upper}
-    frame = Frame.grid(
-        [height] * 2, [2 * height], columns=kinds, beams=kinds, floor_mass=[2 * mass, mass],
-        diaphragm=True,
-    )  # fmt: skip
-    return np.asarray(modes(frame, 2).omega / np.sqrt(2e11 * inertia / (mass * height**3)))
-
-
-def plastic_sway() -> list[float]:
-    """Return the sway load of a portal whose beam is stronger, over M_p/h."""
-    column = FrameMember(30e9, 1e3, 2e-3, yield_moment=2e5)
-    portal = Frame.grid([3.0], [6.0], columns=column, beams=FrameMember(30e9, 1e3, 2e-3))
-    return [pushover(portal, drift=0.1).base_shear.max() * 3.0 / 2e5]
-
-
-def lost_column() -> list[float]:
-    """Return the pushdown load of three floors without their middle column, over M_p/L."""
-    frame = Frame.grid(
-        [3.0] * 3, [6.0] * 2, columns=FrameMember(30e9, 10.0, 0.1), pattern="nodes", control="y",
-        beams=FrameMember(30e9, 0.15, 2e-3, yield_moment=2e5), control_node="N-2-1",
-        nodes=[FrameNode("N-2-1", push_y=-1.0)],
-    )  # fmt: skip
-    return [cyclic(frame.without("C-2-1"), displacement=[-0.5]).force[-1] * 6.0 / 2e5]
-
-
 # ---- sections -----------------------------------------------------------------------------------
 
 
-def _at(diagram: Any, values: Array, wanted: ArrayLike, units: tuple[float, float]) -> Array:
-    """Return axial loads and moments between points of a diagram, by other values that fall."""
+def _at(diagram: Any, values: Array, wanted: list[float], units: tuple[float, float]) -> Array:
+    """Return axial load and moment between points of a diagram, at each of some other values."""
     order = np.argsort(values)
     pairs = zip((diagram.axial_load, diagram.moment), units, strict=True)
-    return np.ravel([np.interp(wanted, values[order], one[order]) / unit for one, unit in pairs], "F")
+    found = [np.interp(wanted, values[order], one[order]) / unit for one, unit in pairs]
+    return np.ravel(np.column_stack(found))
 
 
 def eight_bars() -> Array:
@@ -307,11 +212,11 @@ def eight_bars() -> Array:
     steel, bar = Steel(460e6, 575e6, es=200e9), np.pi / 4 * 0.025**2
     bars = [(0.1875, 3 * bar, steel), (0.0, 2 * bar, steel), (-0.1875, 3 * bar, steel)]
     section = RectangularSection(
-        0.5, 0.5, Concrete(35e6), bars=bars, bar_diameter=0.025, ties=Ties(0.01, 0.1, steel, legs=3),
-        cover=0.04,
+        0.5, 0.5, Concrete(35e6), bars=bars, bar_diameter=0.025, cover=0.04,
+        ties=Ties(0.01, 0.1, steel, legs=3),
     )  # fmt: skip
     found = interaction(section, "aci318")
-    axes = 0.5, 0.4375, 0.247642, 0.164062, 0.158133
+    axes = [0.5, 0.4375, 0.247642, 0.164062, 0.158133]
     return _at(found, found.neutral_axis, axes, (1e3, 1e3))
 
 
@@ -328,7 +233,7 @@ def spcolumn() -> list[float]:
         side, side, Concrete(5e3 * psi), bars=bars, bar_diameter=1.128 * INCH
     )
     found = interaction(section, "aci318", points=200)
-    numbers = _at(found, found.tension_strain, (0.0, 60 / 29000, 0.005), units)
+    numbers = _at(found, found.tension_strain, [0.0, 60 / 29000, 0.005], units)
     ends = found.axial_load[[-1, 0]] / KIP
     return [*numbers, found.moment_at(0.0) / units[1], *ends]
 
@@ -360,6 +265,8 @@ STEPS = "0.0437 0.2326 0.6121 1.0825 1.4309 1.4231 0.9622 0.1908 -0.6044 -1.1442
 YIELDS = "0.0437 0.2326 0.6121 1.1143 1.6214 1.9891 2.0951 1.9240 1.5602"
 TRAPEZOIDS = "0.364 1.35 2.68 4.00 4.95 5.34 5.13 4.48 3.64 2.90 2.44 2.31"
 SUPERPOSED = "0.382 1.41 2.78 4.09 5.00 5.29 4.986 4.277 3.457 2.806 2.484 2.489"
+ENGESSER = "with shear by the slope of the axis; the source does not tell its own"
+CHORDS = "16 members, of chords"
 ROUNDED = "the book goes on with rounded numbers"
 
 PROBLEMS: list[Problem] = [
@@ -379,7 +286,8 @@ PROBLEMS: list[Problem] = [
             "period [s], after 1 and 6 cycles [in]", "1.40 0.16 0.0524", jacked_building, ROUNDED,
             6e-3),
     Problem("Two degrees, trapezoidal rule", "Bathe, Finite Element Procedures, chapter 9",
-            "displacement at 12 steps", TRAPEZOIDS, partial(two_degrees, method="newmark", dt=0.28)),
+            "displacement at 12 steps", TRAPEZOIDS,
+            partial(two_degrees, method="newmark", dt=0.28)),
     Problem("Two degrees, exact", "Bathe, Finite Element Procedures, chapter 9",
             "displacement at 12 steps", SUPERPOSED,
             partial(two_degrees, method="rk45", tolerance=1e-9)),
@@ -410,26 +318,45 @@ PROBLEMS: list[Problem] = [
         )
     ),
     Problem("Two storeys with flexible beams", f"{CHOPRA}, example 10.5",
-            "omega over sqrt(EI/(m h^3))", "2.198 5.850", flexible_beams),
+            "omega over sqrt(EI/(m h^3))", "2.198 5.850", frames.flexible_beams),
     Problem("Seven storeys, periods", "SAP2000 verification manual, example 1-022",
             "periods [s]", "1.2732 0.4313 0.2420 0.1602 0.1190 0.0951 0.0795",
-            lambda: modes(seven_storeys(), 7).period),
+            lambda: modes(frames.seven_storeys(), 7).period),
     Problem("Seven storeys, lateral loads", "SAP2000 verification manual, example 1-022",
-            "displacement of the top [in]", "1.45076", pushed_seven_storeys),
+            "displacement of the top [in]", "1.45076", frames.pushed_seven_storeys),
     Problem("Nine storeys, ten bays", "Bathe and Wilson; SAP2000 verification manual, 1-021",
-            "eigenvalues [1/s2]", "0.589541 5.52695 16.5878", nine_storeys),
-    Problem("Sway mechanism of a portal", "limit analysis, 4 M_p/h", "load over M_p/h", "4.00000000",
-            plastic_sway),
+            "eigenvalues [1/s2]", "0.589541 5.52695 16.5878", frames.nine_storeys),
+    *(
+        Problem(f"AISC benchmark case {case}{', with shear' if shear else ''}",
+                f"AISC 360-16, figure C-C2.{case + 1}", "moments [kip in], displacements [in]",
+                printed, partial(frames.aisc, loads, shear=shear, **more),
+                ENGESSER if shear else "", 2e-3 if shear else 0.0)
+        for case, shear, loads, more, printed in (
+            (1, False, "0 150 300 450", {"across": 0.2 * KIP / FOOT},
+             "235 269 313 375 0.197 0.224 0.261 0.311"),
+            (1, True, "0 150 300 450", {"across": 0.2 * KIP / FOOT},
+             "235 270 316 380 0.202 0.230 0.269 0.322"),
+            (2, False, "0 100 150 200", {"tip": KIP}, "336 469 598 848 0.901 1.33 1.75 2.56"),
+            (2, True, "0 100 150 200", {"tip": KIP}, "336 470 601 856 0.907 1.34 1.77 2.60"),
+        )
+    ),
+    Problem("Beam-column", "AISC Design Guide 25, closed form",
+            "moments [kip in], sways [in] at 1/4, 1/2 and 0.67 of Euler's load", *
+            frames.beam_column((0.25, 0.5, 0.67)), CHORDS, 5e-3),
+    Problem("Slender cantilever", "CSI, test problem 109, closed form",
+            "moment [N m], displacement [m]", "1126.5 0.169134", frames.slender, CHORDS, 2e-3),
+    Problem("Sway mechanism of a portal", "limit analysis, 4 M_p/h", "load over M_p/h",
+            "4.00000000", frames.plastic_sway),
     Problem("Loss of a column, three floors", "limit analysis, 3 x 4 M_p/L", "load over M_p/L",
-            "12.0000000", lost_column),
+            "12.0000000", frames.lost_column),
     Problem("Square section, eight bars", "program concreteproperties 0.7.0, ACI 318",
             "N [kN], M [kN m] at five neutral axes",
-            "6959.36 395.59 6063.09 509.27 2880.68 687.48 1469.55 581.32 1352.70 570.41", eight_bars,
-            "the neutral axes are printed to a micrometre", 1e-5),
+            "6959.36 395.59 6063.09 509.27 2880.68 687.48 1469.55 581.32 1352.70 570.41",
+            eight_bars, "the neutral axes are printed to a micrometre", 1e-5),
     Problem("Column of 16 x 16 in", "published example of spColumn, ACI 318",
             "N [kip], M [kip ft] at three strains; M at N = 0; ends of N",
             "957 261 417 386 195 320 238 1534 -480", spcolumn,
-            "beta_1 falls from 4 ksi in the inch-pound edition, from 28 MPa in the metric one", 5e-3),
+            "beta_1 falls from 4 ksi in the inch-pound edition, from 28 MPa in the metric", 5e-3),
     Problem("Axial load after shear failure", "Elwood and Moehle 2005, formula", "drift", elwood(),
             shed),
 ]  # fmt: skip

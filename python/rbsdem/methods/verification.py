@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import ArrayLike, DataFrame
@@ -180,7 +182,7 @@ def verify(problems: Sequence[str] | None = None) -> Verification:
     for problem in wanted:
         printed = problem.printed.split()
         with without_notes():
-            values = [float(value) for value in problem.solve()]  # type: ignore[union-attr]
+            values = np.ravel(problem.solve()).astype(float).tolist()
         if len(values) != len(printed) or not all(map(math.isfinite, values)):
             raise AssertionError(f"{problem.name}: {values} for {problem.printed}")
         found += [Comparison(problem, *pair) for pair in zip(printed, values, strict=True)]
