@@ -9,8 +9,8 @@ import pytest
 
 import rbsdem
 from rbsdem.cli import main
-from rbsdem.methods.problems import PROBLEMS
-from rbsdem.methods.verification import Comparison, Problem
+from rbsdem.methods.problems import PROBLEMS, Problem
+from rbsdem.methods.verification import Comparison
 
 
 @pytest.mark.parametrize("problem", PROBLEMS, ids=[one.name for one in PROBLEMS])

@@ -10,16 +10,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from rbsdem._types import Array
+from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
 from rbsdem.methods import problems_of_frames as frames
 from rbsdem.methods.problems_of_frames import FOOT, INCH, KIP, KSI, MASS
-from rbsdem.methods.verification import Problem
 from rbsdem.model.column import Column
 from rbsdem.model.damping import Damping
 from rbsdem.model.materials import Concrete, Steel, Ties
@@ -31,6 +31,37 @@ from rbsdem.section.axial_moment import interaction
 from rbsdem.section.strength import axial_failure_drift
 
 RIGID = 1e9
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A problem whose answer is printed elsewhere.
+
+    Attributes
+    ----------
+    name : str
+        Short name, by which it is asked for.
+    source : str
+        Where the numbers are printed.
+    what : str
+        The quantity, and its unit.
+    printed : str
+        The numbers as they are printed, with blanks between them.
+    solve : callable
+        Returns the same numbers of the program.
+    remark : str
+        Why numbers may lie beyond the digits that are printed; "" where none does.
+    within : float
+        Largest difference then, over the printed number.
+    """
+
+    name: str
+    source: str
+    what: str
+    printed: str
+    solve: Callable[[], ArrayLike]
+    remark: str = ""
+    within: float = 0.0
 
 
 # ---- oscillators --------------------------------------------------------------------------------

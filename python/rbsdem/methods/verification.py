@@ -3,47 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
-from rbsdem._types import ArrayLike, DataFrame
+from rbsdem._types import DataFrame
 from rbsdem.errors import InputError
+from rbsdem.methods.problems import PROBLEMS, Problem
 from rbsdem.model.column import without_notes
-
-
-@dataclass(frozen=True)
-class Problem:
-    """A problem whose answer is printed elsewhere.
-
-    Attributes
-    ----------
-    name : str
-        Short name, by which it is asked for.
-    source : str
-        Where the numbers are printed.
-    what : str
-        The quantity, and its unit.
-    printed : str
-        The numbers as they are printed, with blanks between them.
-    solve : callable
-        Returns the same numbers of the program.
-    remark : str
-        Why numbers may lie beyond the digits that are printed; "" where none does.
-    within : float
-        Largest difference then, over the printed number.
-    """
-
-    name: str
-    source: str
-    what: str
-    printed: str
-    solve: Callable[[], ArrayLike]
-    remark: str = ""
-    within: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -168,8 +138,6 @@ def verify(problems: Sequence[str] | None = None) -> Verification:
     InputError
         If no problem has such a name.
     """
-    from rbsdem.methods.problems import PROBLEMS  # noqa: PLC0415
-
     wanted = PROBLEMS
     if problems is not None:
         begins = _arguments.several(problems, "verify: problems", "names")
