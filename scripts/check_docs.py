@@ -10,11 +10,18 @@ In the Markdown files of docs (README.md of the project too, if named):
 - a block of language ``python`` is run there with this interpreter and must not fail;
 - a block after ``<!-- skip -->`` is left alone;
 - a name of a test (``test_...``, or its begin with an ellipsis) must be that of one.
+
+Of these files, README.md, CONTRIBUTING.md and the docstrings of the package, the words in backticks
+are resolved: `rbsdem.x.y` and `Class.member` are names of the package, paths are those of files.
 """
 
 from __future__ import annotations
 
+import ast
+import importlib
+import inspect
 import os
+import pkgutil
 import re
 import subprocess
 import sys
@@ -46,6 +53,85 @@ def missing_tests(path: Path, source: str) -> list[str]:
         sought = {".py": f"file {name}.py\n", "…": f"def {name}"}.get(ending, f"def {name}(")
         if sought not in source:
             faults.append(f"{path.name}: there is no test {name}{ending}")
+    return faults
+
+
+def classes() -> dict[str, list[type]]:
+    """Return the classes of the package by their names."""
+    package = importlib.import_module("rbsdem")
+    found: dict[str, list[type]] = {}
+    for module in pkgutil.walk_packages([str(ROOT / "python/rbsdem")], "rbsdem."):
+        if module.name != "rbsdem.__main__":
+            for name, kind in inspect.getmembers(importlib.import_module(module.name)):
+                if inspect.isclass(kind) and kind.__module__.startswith(package.__name__):
+                    found.setdefault(name, []).append(kind)
+    return found
+
+
+def resolves(words: list[str], known: dict[str, list[type]]) -> bool:
+    """Return whether a dotted name of the package, or of a class and its member, is there."""
+    if words[0] != "rbsdem":
+        return any(member(kind, words[1:]) for kind in known.get(words[0], ()))
+    for end in range(len(words), 0, -1):
+        try:
+            module = importlib.import_module(".".join(words[:end]))
+        except ImportError:
+            continue
+        return member(module, words[end:])
+    return False
+
+
+def member(owner: object, words: list[str]) -> bool:
+    """Return whether an attribute, or a field of a dataclass, can be reached."""
+    if not words:
+        return True
+    if hasattr(owner, words[0]):
+        return member(getattr(owner, words[0]), words[1:])
+    return words[0] in {
+        n for k in getattr(owner, "__mro__", ()) for n in inspect.get_annotations(k)
+    }
+
+
+#: A dotted name in single backticks, with or without arguments behind it.
+DOTTED = re.compile(r"(?<![`\w])`((?:rbsdem|[A-Z]\w*[a-z]\w*)(?:\.\w+)+)(?:`(?!`)|\()")
+PATHS = re.compile(r"`+([\w-]+(?:/[\w.-]+)+|\w+)\.(py|f90|c|sh|md|csv|json|toml|js)`")
+
+
+def unknown_names(name: str, text: str, known: dict[str, list[type]], files: set[str]) -> list[str]:
+    """Return the names and paths in backticks that are not there."""
+    faults = [
+        f"{name}: there is no {dotted}"
+        for dotted in dict.fromkeys(DOTTED.findall(text))
+        if not dotted.endswith(".csv") and not resolves(dotted.split("."), known)
+    ]
+    made = set(re.findall(r"<!-- file: (\S+) -->", text))
+    for stem, ending in dict.fromkeys(PATHS.findall(text)):
+        path = f"{stem}.{ending}"
+        # Data may be a user's own, and NAME is for one to choose.
+        sought = ending in ("py", "f90", "c", "sh", "js") and "NAME" not in path
+        there = path in made or any(f"/{file}".endswith(f"/{path}") for file in files)
+        if sought and not there:
+            faults.append(f"{name}: there is no file {path}")
+    return faults
+
+
+def check_names() -> list[str]:
+    """Return the names in documentation and docstrings that are not there."""
+    listed = subprocess.run(
+        ["git", "ls-files", "--cached", "--others", "--exclude-standard"],
+        cwd=ROOT, capture_output=True, text=True, check=False,
+    ).stdout.split()  # fmt: skip
+    files = set(listed) or {str(p.relative_to(ROOT)) for p in ROOT.rglob("*") if p.is_file()}
+    known, faults = classes(), []
+    pages = [*sorted((ROOT / "docs").glob("*.md")), ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
+    for page in pages:
+        faults += unknown_names(page.name, page.read_text("utf-8"), known, files)
+    documented = (ast.Module, ast.ClassDef, ast.FunctionDef)
+    for path in sorted((ROOT / "python/rbsdem").rglob("*.py")):
+        tree = ast.parse(path.read_text("utf-8"))
+        texts = [ast.get_docstring(n) or "" for n in ast.walk(tree) if isinstance(n, documented)]
+        name = str(path.relative_to(ROOT / "python"))
+        faults += unknown_names(name, "\n".join(texts), known, files)
     return faults
 
 
@@ -109,7 +195,7 @@ def run(command: list[str], folder: Path) -> tuple[int, str]:
 def main() -> int:
     """Check all files; return 1 if an example does not do what it says."""
     paths = [Path(name) for name in sys.argv[1:]] or sorted((ROOT / "docs").glob("*.md"))
-    faults = []
+    faults = [] if sys.argv[1:] else check_names()
     source = tests()
     for path in paths:
         faults += missing_tests(path, source)

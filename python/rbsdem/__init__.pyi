@@ -12,7 +12,6 @@ from rbsdem import springs as springs
 from rbsdem.calibration.fit import calibrate as calibrate
 from rbsdem.curves.scores import compare as compare
 from rbsdem.errors import InputError as InputError
-from rbsdem.errors import Interrupted as Interrupted
 from rbsdem.errors import SolveError as SolveError
 from rbsdem.many.ensemble import ensemble as ensemble
 from rbsdem.many.ida import ida as ida
@@ -43,6 +42,7 @@ from rbsdem.run.result import cyclic as cyclic
 from rbsdem.run.result import pushover as pushover
 from rbsdem.run.result import time_history as time_history
 from rbsdem.run.solver import Solver as Solver
+from rbsdem.web.report import report as report
 
 __version__: str
 __all__: list[str]

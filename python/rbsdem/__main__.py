@@ -7,17 +7,9 @@ from __future__ import annotations
 
 import os
 import sys
-from importlib import import_module
 from importlib.resources import files
 
-#: Commands that are run by Python, and their modules.
-_OF_COLUMNS = ("trade", "ensemble", "ida", "explore", "report")
-COMMANDS = dict.fromkeys(_OF_COLUMNS, "rbsdem.cli.columns") | {
-    "peer": "rbsdem.cli.measured",
-    "predict": "rbsdem.cli.measured",
-    "verify": "rbsdem.cli.verification",
-    "completion": "rbsdem.cli",
-}
+from rbsdem._package import COMMANDS
 
 
 def executable() -> str:
@@ -43,9 +35,10 @@ def main() -> int:
     if words[:1] in (["--help"], ["-h"]) and words[1:2] and words[1] in COMMANDS:
         words = [words[1], "--help"]
     if (words and words[0] in COMMANDS) or "_RBSDEM_COMPLETE" in os.environ:
-        # Only now: the executable starts without the package.
-        code: int = import_module("rbsdem.cli").main(words)
-        return code
+        # Only now: the executable starts without click.
+        from rbsdem.cli import main as run_command  # noqa: PLC0415
+
+        return run_command(words)
     try:
         program = executable()
     except FileNotFoundError as error:

@@ -10,7 +10,6 @@ import os
 import stat
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from importlib import import_module
 from itertools import count
 from pathlib import Path
 from typing import IO, Any, ClassVar
@@ -97,39 +96,6 @@ def write_csv(path: str | os.PathLike[str], rows: Iterable[Sequence[object]]) ->
     writer.writerows([_cell(value) for value in row] for row in rows)
     with atomic_write(path) as file:
         file.write(text.getvalue().encode())
-
-
-class Reported:
-    """A record that can be reported as html.
-
-    The one call to a room above, by its name: what reports is above what is reported.
-    """
-
-    __slots__ = ()
-
-    def report(self, path: str | os.PathLike[str], **given: Any) -> Path:
-        """Write a report as one html file that opens offline and prints on A4.
-
-        It has the inputs with their units and meanings, drawings and figures, limit states, the
-        values of codes, and tables; all tables stand beside it as csv, the case as ``.nml``. A
-        column made from its drawing has its section, moment-curvature and interaction, too.
-
-        Parameters
-        ----------
-        path : path
-            File to write; the names of the others begin with its own.
-        **given
-            `title`, `author`, `project` and `date` (today) for its head. Of a section: the
-            `axial_load` [N], and the `length` of its column for the values of codes [m]. Of an IDA:
-            the `limits` of its fragility curves, as for `IDA.fragilities`.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        made: Path = import_module("rbsdem.web.report").report(self, path, **given)
-        return made
 
 
 class Tabular:
@@ -264,6 +230,8 @@ def _cell(value: object) -> str:
 
 def _own_file(target: Path) -> tuple[int, Path]:
     """Open a file that was not there; return its descriptor and its name."""
+    if not target.parent.is_dir():
+        raise InputError(f"{target}: there is no folder {target.parent}; make it first")
     start = os.fsdecode(os.fsencode(target.name)[:_LONGEST])
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_CLOEXEC", 0)
     flags |= getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
@@ -274,6 +242,8 @@ def _own_file(target: Path) -> tuple[int, Path]:
         except FileExistsError:
             if number == _TRIES:
                 raise
+        except OSError as error:
+            raise type(error)(error.errno, error.strerror, os.fspath(target)) from None
     raise AssertionError
 
 

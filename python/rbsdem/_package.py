@@ -1,4 +1,4 @@
-"""What is installed: the files of the package, its code, and the packages of the extras."""
+"""What is installed: files of the package, its code, its commands, packages of the extras."""
 
 from __future__ import annotations
 
@@ -61,6 +61,16 @@ def code_digest() -> bytes:
         digest.update(hashlib.sha256(file.read_bytes()).digest())
     return digest.digest()
 
+
+#: Commands that are run by Python, and their modules.
+COMMANDS = dict.fromkeys(
+    ("trade", "ensemble", "ida", "explore", "report"), "rbsdem.cli.columns"
+) | {
+    "peer": "rbsdem.cli.measured",
+    "predict": "rbsdem.cli.measured",
+    "verify": "rbsdem.cli.verification",
+    "completion": "rbsdem.cli",
+}
 
 #: Extra of each package.
 _EXTRAS = {"pyarrow": "ensembles", "xarray": "netcdf", "distributed": "cluster"}

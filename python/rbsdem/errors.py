@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import sys
+import warnings
 from typing import Any
 
 #: How a message begins that tells of a value: "cover = ...", "layout: number = ...", after the
@@ -117,3 +119,23 @@ class AccuracyWarning(UserWarning):
 
 class RepairWarning(UserWarning):
     """A file was repaired while it was read: the message says what was missing, and where."""
+
+
+#: Packages whose lines are not those of a user: a warning names the first line of another one.
+_BETWEEN = ("rbsdem", "dataclasses", "functools")
+
+
+def warn(text: str, kind: type[Warning] = AccuracyWarning) -> None:
+    """Warn, at the line of the user's program that called the package.
+
+    Parameters
+    ----------
+    text : str
+        What may mislead, and what to do.
+    kind : type, optional
+        Class of the warning.
+    """
+    level, frame = 2, sys._getframe(1)
+    while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] in _BETWEEN:
+        level, frame = level + 1, frame.f_back
+    warnings.warn(text, kind, stacklevel=level)

@@ -174,7 +174,7 @@ def test_ctrl_c_is_an_exception_with_what_is_done(
     monkeypatch.setattr(ensemble, "compute", break_off)
     with pytest.raises(KeyboardInterrupt, match=r"interrupted after [0-9]+ of 24 runs") as caught:
         run(tmp_path)
-    assert isinstance(caught.value, rbsdem.Interrupted)
+    assert isinstance(caught.value, rbsdem.errors.Interrupted)
     found = caught.value.ensemble
     assert found.interrupted
     done = int((found.status != "").sum())

@@ -604,7 +604,7 @@ def test_a_record_is_reported_with_its_tables_and_its_case(at, tmp_path):
     """Its case, run again, ends in the same point; csv files hold the tables; it stands alone."""
     record, words, asked = next(itertools.islice(records(), at, None))
     head = {"title": "Pier <3>", "author": "A. Engineer", "project": "Bridge", "date": "2026"}
-    path = record.report(tmp_path / "x.html", **head, **asked)
+    path = rbsdem.report(record, tmp_path / "x.html", **head, **asked)
     page = path.read_text("utf-8")
     for word in ("Pier &lt;3&gt;", "A. Engineer", "Bridge", "2026", "rbsdem 0", *words):
         assert word in page, word
@@ -619,7 +619,7 @@ def test_a_record_is_reported_with_its_tables_and_its_case(at, tmp_path):
         assert again.base_shear[-1] == pytest.approx(record.base_shear[-1], rel=1e-12)
         assert len(tables["x_rows"]) == record.time.size
     with pytest.raises(rbsdem.InputError, match="date"):
-        record.report(tmp_path / "y.html", **asked, date=2026)
+        rbsdem.report(record, tmp_path / "y.html", **asked, date=2026)
 
 
 def test_what_has_no_report_says_so(tmp_path):

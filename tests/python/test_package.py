@@ -8,7 +8,7 @@ import os
 import re
 import subprocess
 import sys
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from importlib.resources import files
 
 import pytest
@@ -133,3 +133,16 @@ except ImportError as error:
     project = (REPOSITORY / "pyproject.toml").read_text()
     assert re.search(rf'^{extra} = \["{package}>=', project, re.M)
     assert f".[{extra}]" in (REPOSITORY / "README.md").read_text()
+
+
+def test_a_warning_names_the_line_of_the_caller():
+    """Through two wrappers of an analysis, and through the `__init__` of a dataclass."""
+    column = rbsdem.peer.paper_columns()["zahn_7"]
+    for call in (
+        lambda: rbsdem.pushover(column, drift=0.8),
+        lambda: rbsdem.cyclic(column, displacement=[1.3]),
+        lambda: replace(column, axial_load=1500.0),
+    ):
+        with pytest.warns(rbsdem.errors.AccuracyWarning) as told:
+            call()
+        assert told[0].filename == __file__

@@ -251,7 +251,7 @@ def test_four_panels_are_lettered_symmetric_and_written(tmp_path):
         (drift,) = ax.child_axes
         assert drift.get_xlim()[1] == pytest.approx(0.1 * ax.get_xlim()[1] / panel.height)
     assert len(figure.legends) == 1
-    files = plot.save(figure, tmp_path / "new" / "figure", pdf=True)
+    files = plot.save(figure, tmp_path / "figure", pdf=True)
     assert [file.name for file in files] == ["figure.png", "figure.pdf"]
     assert [file.read_bytes()[:4] for file in files] == [b"\x89PNG", b"%PDF"]
     assert dict(mpl.rcParams) == before

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -21,7 +20,7 @@ from rbsdem.calibration.outcome import Calibration, Fitted
 from rbsdem.calibration.paths import Parameters, free_parameters
 from rbsdem.calibration.search import Search
 from rbsdem.curves.scores import Comparison, compare
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.errors import InputError, warn
 from rbsdem.model.column import Column, Parameter
 from rbsdem.run.analysis import reached_force
 
@@ -167,7 +166,7 @@ def calibrate(
         before, after = (_compared(tried, target, column) for tried in (column, fitted))
     lines = tuple(determined.warnings_of(list(chosen), found))
     for line in lines:
-        warnings.warn(f"calibrate: {line}", AccuracyWarning, stacklevel=2)
+        warn(f"calibrate: {line}")
     return Calibration(
         column=fitted,
         start=column,

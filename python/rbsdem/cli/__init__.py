@@ -16,6 +16,7 @@ import click
 from click.shell_completion import CompletionItem, get_completion_class
 
 from rbsdem import _core
+from rbsdem._package import COMMANDS
 from rbsdem.errors import InputError, RbsdemError
 
 #: Variable of the environment by which a shell asks for completions.
@@ -61,15 +62,13 @@ class _Commands(click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names, those of the executable among them."""
-        # The program imports this package by name, as this does the program.
-        return [*self.commands, *import_module("rbsdem.__main__").COMMANDS]
+        return [*self.commands, *COMMANDS]
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         """Return a command by its name."""
-        modules = import_module("rbsdem.__main__").COMMANDS
-        if name not in modules:
+        if name not in COMMANDS:
             return self.commands.get(name)
-        command: click.Command = getattr(import_module(modules[name]), name)
+        command: click.Command = getattr(import_module(COMMANDS[name]), name)
         return command
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,7 +14,7 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._files import Tabular
 from rbsdem._types import Array, ArrayLike, DataFrame, NDArray
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.errors import InputError, warn
 from rbsdem.many.inputs import limit_states
 from rbsdem.many.lognormal import Bounds, bounds_of_counts, fit_bounds, fit_points
 from rbsdem.many.runs import Runs
@@ -96,12 +95,10 @@ class Hazard:
         slope = (x[place + 1] - x[place]) / (y[place + 1] - y[place])
         found = float(np.exp(x[place] + slope * (np.log(rate) - y[place])))
         if not self.frequencies[-1] <= rate <= self.frequencies[0]:
-            warnings.warn(
+            warn(
                 f"hazard: a frequency of {rate:.4g} a year is beyond its points "
                 f"({self.frequencies[0]:g} to {self.frequencies[-1]:g}); the power law of the "
                 "nearest two is followed",
-                AccuracyWarning,
-                stacklevel=2,
             )
         return found
 
@@ -151,12 +148,10 @@ class Hazard:
         beyond = before - failed[0] + behind + failed[1]
         share = beyond / total if 0.0 < total < np.inf else float(total > 0.0)
         if share > _BEYOND:
-            warnings.warn(
+            warn(
                 f"hazard: {100 * share:.0f} % of the mean annual frequency come from "
                 f"intensities beyond its points ({self.intensities[0]:g} to "
                 f"{self.intensities[-1]:g}); give it a wider range",
-                AccuracyWarning,
-                stacklevel=3,
             )
         return float(total)
 
@@ -411,7 +406,7 @@ class Fragility:
             )
             if lost > 0.5:
                 raise InputError(text)
-            warnings.warn(f"{text}. The others are the band", AccuracyWarning, stacklevel=3)
+            warn(f"{text}. The others are the band")
         return np.exp(mu[good]), beta[good]
 
     def band(

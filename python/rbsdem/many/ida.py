@@ -16,7 +16,6 @@ from typing import Any, Literal
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._files import Reported
 from rbsdem._types import Array, ArrayLike, NDArray, Unpack
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import InputError
@@ -211,7 +210,7 @@ FRACTILES = (16.0, 50.0, 84.0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class IDA(Fragile[Fragility], Reported):
+class IDA(Fragile[Fragility]):
     """Curves of response over intensity, one for each column and motion.
 
     Attributes

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
@@ -14,7 +13,7 @@ from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame, NDArray, Unpack
 from rbsdem.checks.criteria import WATCHED
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.errors import InputError, warn
 from rbsdem.many import inputs
 from rbsdem.many.ensemble import ensemble
 from rbsdem.many.plan import FAULT_OF_MEASURE
@@ -351,11 +350,9 @@ class Collector:
         whole = {name: values[order] for name, values in whole.items()}
         failed = int((whole["status"] == "failed").sum())
         if failed:
-            warnings.warn(
+            warn(
                 f"{failed} of {order.size} runs failed by two methods and count as collapses; "
                 "their status in the table is 'failed'",
-                AccuracyWarning,
-                stacklevel=4,
             )
         start = len("measure ")
         found = {name[start:]: v for name, v in whole.items() if name.startswith("measure ")}

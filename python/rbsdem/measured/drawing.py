@@ -16,14 +16,13 @@ What the table does not report is filled in by rules, each named in `DrawnSpecim
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import Any, Literal, TypeAlias, get_args, overload
 
 from rbsdem import _arguments
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.errors import InputError, warn
 from rbsdem.measured.specimens import Specimen
 from rbsdem.model.column import Column
 from rbsdem.model.materials import Concrete, Spiral, Steel, Ties
@@ -98,7 +97,7 @@ class _Sheet:
 
     def warn(self, what: str) -> None:
         """Warn of an assumption."""
-        warnings.warn(f"{self.specimen.name}: {what}", AccuracyWarning, stacklevel=4)
+        warn(f"{self.specimen.name}: {what}")
 
 
 def draw(specimen: Specimen) -> DrawnSpecimen:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import os
 import time
-import warnings
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
@@ -29,7 +28,7 @@ from rbsdem.batch.work import (
     work_through,
 )
 from rbsdem.curves.scores import compare
-from rbsdem.errors import AccuracyWarning, InputError, RbsdemError, SolveError
+from rbsdem.errors import InputError, RbsdemError, SolveError, warn
 from rbsdem.measured.drawing import check_options, checked_specimen, draw
 from rbsdem.measured.drawing import column as column_of
 from rbsdem.measured.predictions import Neighbour, Prediction, Predictions, PredictionStore
@@ -282,7 +281,7 @@ def _alone(
     if row.status == "failed":
         raise InputError(f"{specimen.name}: {row.error}")
     if row.remarks:
-        warnings.warn(f"{specimen.name}: {'; '.join(row.remarks)}", AccuracyWarning, stacklevel=3)
+        warn(f"{specimen.name}: {'; '.join(row.remarks)}")
     return row
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, cast, runtim
 from rbsdem import _arguments, _core
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import ArrayLike, Self
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.errors import InputError, warn
 from rbsdem.model.damping import Damping
 from rbsdem.model.shape import Section
 from rbsdem.model.springs import Gauge, Layered, Spring, checked_spring, layer_springs, whole_column
@@ -315,7 +314,7 @@ class Column:
         put("_statement", self._state())
         notes = _core.evaluate("check_structure", self._statement).text.splitlines()
         for note in notes if TELLING.get() else ():
-            warnings.warn(note, AccuracyWarning, stacklevel=4)
+            warn(note)
 
     def __repr__(self) -> str:
         kinds = [type(spring).__name__ for spring in dict.fromkeys(self.joints("flexure"))]
@@ -579,7 +578,7 @@ def _springs(springs: Any, name: str, n: int) -> Spring | tuple[Spring, ...]:
     if isinstance(springs, Spring):
         return springs
     try:
-        several = tuple(springs)
+        several = (springs,) if isinstance(springs, str | bytes) else tuple(springs)
     except Exception:  # Of any class of the caller.
         several = (springs,)
     for spring in several:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
@@ -13,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rbsdem import _arguments, _core
 from rbsdem._types import Array
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.errors import InputError, warn
 from rbsdem.model.column import TELLING, Column, checked_column
 from rbsdem.model.damping import Damping
 from rbsdem.model.springs import Layered, Spring, layer_springs
@@ -451,7 +450,7 @@ class Frame:
         put("_statement", self._state())
         notes = _core.evaluate("check_structure", self._statement).text.splitlines()
         for note in notes if TELLING.get() else ():
-            warnings.warn(note, AccuracyWarning, stacklevel=4)
+            warn(note)
 
     @classmethod
     def grid(

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 
 from rbsdem import _core
-from rbsdem._files import Reported
 from rbsdem._package import extra
 from rbsdem._types import Array
 from rbsdem.errors import InputError
@@ -103,7 +102,7 @@ class MemberHistory:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class FrameResult(Reported):
+class FrameResult:
     """Rows of an analysis of a frame: arrays with a row for each that was kept.
 
     Attributes

@@ -11,7 +11,6 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 import numpy as np
 
 from rbsdem import _arguments, _core
-from rbsdem._files import Reported
 from rbsdem._types import Array
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
@@ -53,7 +52,7 @@ class Ended(Protocol):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Response(Reported):
+class Response:
     """Rows of an analysis: arrays with a row for each kept step and a column for each joint.
 
     Attributes

@@ -17,7 +17,6 @@ import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem._arguments import Derived, given
-from rbsdem._files import Reported
 from rbsdem._types import Array, Self
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Bar, Concrete, Layout, Spiral, Steel, Ties
@@ -90,7 +89,7 @@ class _Parts:
 
 
 @dataclass(frozen=True)
-class Section(_Parts, Reported, ABC):
+class Section(_Parts, ABC):
     """What a section of any shape is made of.
 
     A new shape is a class with the abstract methods below, beside its type in `src/section`.

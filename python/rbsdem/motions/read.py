@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 import os
 import re
-import warnings
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +18,7 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._tables import STANDARD_GRAVITY, NumberTable, read_lines, read_table
 from rbsdem._types import Array
-from rbsdem.errors import InputError, RepairWarning
+from rbsdem.errors import InputError, RepairWarning, warn
 from rbsdem.motions.motion import GroundMotion
 
 #: Value of each unit in m/s2.
@@ -158,11 +157,10 @@ def read_at2(lines: list[str], path: str, name: str, units: str | None) -> Groun
             "not belong to the record"
         )
     if missing:
-        warnings.warn(
+        warn(
             f"{path}: the last {missing} of NPTS = {count} values are missing; the record ends at "
             f"{dt * (len(values) - 1):g} s",
             RepairWarning,
-            stacklevel=4,
         )
     about = lines[1].strip() if first > 1 and "NPTS" not in lines[1].upper() else ""
     return GroundMotion(np.array(values) * UNITS[unit], dt, name, about)

@@ -391,7 +391,7 @@ def code_comparison(found: CodeComparison, *, ax: Axes | None = None) -> Axes:
     Parameters
     ----------
     found : CodeComparison
-        What `CodeValues.compare` returns.
+        What `rbsdem.codes.compare` returns.
     ax : matplotlib Axes, optional
         Where to draw; a new figure without it.
 

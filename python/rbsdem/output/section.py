@@ -229,7 +229,7 @@ def shear_diagram(
     Parameters
     ----------
     diagram : ShearDiagram
-        What `Section.shear_diagram` returns.
+        What `rbsdem.section.shear_diagram` returns.
     spring : ShearSpring, optional
         Draw the lines of this spring as well.
     ax : matplotlib Axes, optional
@@ -280,7 +280,7 @@ def interaction(
     Parameters
     ----------
     diagram : InteractionDiagram
-        What `Section.interaction` returns.
+        What `rbsdem.section.interaction` returns.
     demand : array_like, shape (p, 2), optional
         Axial loads [N] and moments [N m] to mark.
     design : bool, optional

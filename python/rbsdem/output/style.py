@@ -156,7 +156,6 @@ def save(figure: Any, path: str | os.PathLike[str], *, pdf: bool = False) -> lis
     target = Path(path)
     if not target.suffix:
         target = target.with_suffix(".png")
-    target.parent.mkdir(parents=True, exist_ok=True)
     files = [target, target.with_suffix(".pdf")] if pdf else [target]
     with style():
         for file in files:

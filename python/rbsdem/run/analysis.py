@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -13,7 +12,7 @@ import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem._types import Array, ArrayLike, Unpack
-from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError
+from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError, warn
 from rbsdem.model.column import TELLING, Column
 from rbsdem.model.frame import Frame, Structure, checked_structure
 from rbsdem.model.frame_result import FrameResult, frame_result_of
@@ -148,7 +147,7 @@ def modes(column: Structure, count: int | None = None) -> Modes | FrameModes:
         return _frame_modes(column, count)
     answer = _core.evaluate("modes", checked_structure(column)._statement, count=count)
     if answer.text:
-        warnings.warn(answer.text, AccuracyWarning, stacklevel=2)
+        warn(answer.text)
     stable_step, omega = float(answer.values[0]), answer.values[1:]
     return Modes(omega, omega / (2 * np.pi), answer.rows.T, stable_step)
 
@@ -388,15 +387,15 @@ def time_history(
         begin, state = (_NONE, False), state_of(initial, "time_history")
         kept_initial = _recorded_state(initial)
     statement, watches = column._statement + settings, watch(column, kept)
-    tell = partial(_tell, kind=LongRunWarning, stacklevel=5)
+    tell = partial(_tell, kind=LongRunWarning)
     run, reached = _core.time_history(statement, times, loads, *begin, state, watches, tell)
     call = {"time": times, **loads, "initial": kept_initial, **chosen, "every": every}
     return _return(column, run, {"analysis": "dynamic"}, call, reached)
 
 
-def _tell(note: str, kind: type[Warning], stacklevel: int) -> None:
+def _tell(note: str, kind: type[Warning] = AccuracyWarning) -> None:
     if TELLING.get():
-        warnings.warn(note, kind, stacklevel=stacklevel)
+        warn(note, kind)
 
 
 def _recorded_state(initial: Any) -> Any:
@@ -459,5 +458,5 @@ def _return(
         error.result = result
         raise error
     if note:
-        _tell(note, AccuracyWarning, 5)
+        _tell(note)
     return result

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import json
 import math
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -28,7 +27,7 @@ from rbsdem._package import unwarned
 from rbsdem._types import Array, ArrayLike
 from rbsdem.curves.envelope import strength_loss
 from rbsdem.curves.metrics import PathPoints, work
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.errors import InputError, warn
 from rbsdem.model.column import Column
 from rbsdem.model.shape import Section
 from rbsdem.run.analysis import reached_force
@@ -373,7 +372,7 @@ def band(
     if d.size < 2 or not np.any(np.diff(d)):
         raise InputError("band: the displacement does not change; give a path")
     if remarks:
-        warnings.warn(f"band: {'; '.join(remarks)}", AccuracyWarning, stacklevel=2)
+        warn(f"band: {'; '.join(remarks)}")
     force = path_force(column, d)
     sampled = sample(column, d, scatter, number)
     peak = float(np.max(np.abs(force)))

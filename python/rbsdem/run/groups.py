@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
 from rbsdem import _core
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.errors import InputError, warn
 from rbsdem.model.column import Column
 from rbsdem.model.damping import Damping
 from rbsdem.model.frame import Frame, FrameMember, FrameNode, Member, with_panel
@@ -61,23 +60,19 @@ def layered_column(recipe: LayeredModel, given: Mapping[str, Any]) -> Column:
     """
     column = LayeredColumn(**given, recipe=recipe)
     if column.recipe != recipe:
-        warnings.warn(
+        warn(
             f"the springs of the case were drawn for axial_load = {recipe.axial_load:g} N, and its "
             f"column has {column.axial_load:g} N; it is solved with its own springs, and nothing "
             "is known of bars and concrete. To draw it again, make the column of its section",
-            AccuracyWarning,
-            stacklevel=3,
         )
         return Column(**given)
     other = column.replaced
     if other:
-        warnings.warn(
+        warn(
             f"the case has {' and '.join(other)} other than layered {recipe.parameters.label} "
             "draws from its section; it is solved with its own springs, and what bars and concrete "
             "undergo is known only for a hinge that is as drawn. To draw the springs anew, make "
             "the column of case.column.recipe.section",
-            AccuracyWarning,
-            stacklevel=3,
         )
     return column
 

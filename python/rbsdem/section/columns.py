@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 from typing import Any, Literal, TypeAlias, get_args, overload
 
 from rbsdem import _arguments
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.errors import InputError, warn
 from rbsdem.model.column import MOST_BODIES, Column, Footing, Top, bodies
 from rbsdem.model.frame import FrameMember
 from rbsdem.model.shape import Section, checked_section
@@ -324,7 +323,7 @@ def _layered(
     note = axial_load_note(axial_load, section)
     remarks = [note, *made.outside] if note else made.outside
     if remarks:
-        warnings.warn("; ".join(remarks), AccuracyWarning, stacklevel=3)
+        warn("; ".join(remarks))
     return made
 
 

@@ -6,7 +6,6 @@ The model stands on the section alone; no number of a test at hand enters.
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -14,7 +13,7 @@ from itertools import pairwise
 from typing import Any
 
 from rbsdem import _arguments, _core
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.errors import InputError, warn
 from rbsdem.model.column import Column, Parameter, without_notes
 from rbsdem.model.shape import Section
 from rbsdem.model.springs import (
@@ -268,7 +267,7 @@ class LayeredColumn(Column):
         object.__setattr__(self, "recipe", now)
         notes = (axial_load_note(axial_load, now.section), *self.outside)
         if any(notes):
-            warnings.warn("; ".join(filter(None, notes)), AccuracyWarning, stacklevel=5)
+            warn("; ".join(filter(None, notes)))
 
     @property
     def _is_other(self) -> bool:

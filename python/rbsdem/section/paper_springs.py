@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass
 from typing import Any
 
 from rbsdem import _arguments, _core
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.errors import InputError, warn
 from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Bilinear, Takeda, for_whole_column
 from rbsdem.section.curvature import Events, make_point
@@ -193,7 +192,7 @@ def springs(
     if spring is not None:
         for_whole_column(spring, "shear")
     for note in notes:
-        warnings.warn(note, AccuracyWarning, stacklevel=2)
+        warn(note)
     parts = flexure, spring, shear_fit, events
     sizes = found["hinge_length"], length, axial_load, found["d_m"]
     made = SectionSprings(section, confined, *parts, *sizes, tuple(notes), "")

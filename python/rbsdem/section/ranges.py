@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-import warnings
 from typing import Any
 
 from rbsdem import _arguments
-from rbsdem.errors import AccuracyWarning, InputError
+from rbsdem.errors import InputError, warn
 from rbsdem.model.shape import Section, checked_section
 
 #: Least and largest length of a column [m]: a number in millimetres is outside.
@@ -101,7 +100,7 @@ def checked_load(section: Section, axial_load: Any) -> float:
         raise InputError(f"axial_load = {value} N must be a finite number")
     note = axial_load_note(value, section)
     if note:
-        warnings.warn(note, AccuracyWarning, stacklevel=3)
+        warn(note)
     return value
 
 

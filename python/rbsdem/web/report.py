@@ -179,16 +179,28 @@ def report(
     date: str | None = None,
     **asked: Any,
 ) -> Path:
-    """Write a report of a record; see `Result.report`.
+    """Write a report as one html file that opens offline and prints on A4.
+
+    It has the inputs with their units and meanings, drawings and figures, limit states, values of
+    codes, and tables. All tables are written beside it as csv, the case as ``.nml``. A column made
+    from its drawing has its section, moment-curvature and interaction, too.
 
     Parameters
     ----------
     record : Result, FrameResult, Section or IDA
         What it is about.
-    path, title, author, project, date
-        As for `Result.report`.
+    path : path
+        File to write; the names of the others begin with its own.
+    title, author, project, date : str, optional
+        For its head; the date is that of today.
     **asked
-        What the sheets of the record need besides.
+        Of a section: the `axial_load` [N], and the `length` of its column for the values of codes
+        [m]. Of an IDA: the `limits` of its fragility curves, as for `IDA.fragilities`.
+
+    Returns
+    -------
+    Path
+        The file.
     """
     for name, text in (("title", title), ("author", author), ("project", project), ("date", date)):
         if not isinstance(text, str | None):
