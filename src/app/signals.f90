@@ -9,7 +9,7 @@ module rbs_app_signals
    implicit none
    private
 
-   public :: prepare_process, remove_if_stopped, remove_unfinished
+   public :: prepare_process, remove_if_stopped
 
    !> Numbers of signals: hangup, interrupt, broken pipe, end, file too large.
    integer(c_int), parameter :: hangup = 1, interrupt = 2, broken_pipe = 13, termination = 15, too_large = 25

@@ -6,7 +6,7 @@ module rbs_case_case_record
    use rbs_base_units, only: unit_system, unit_named, length_units, force_units, mass_units
    use rbs_case_analysis_record, only: analysis_record, output_record
    use rbs_case_drawing_record, only: drawing_groups, drawing_record
-   use rbs_structure_column_column_record, only: column_record, no_potential
+   use rbs_structure_column_column_record, only: column_record
    use rbs_loading_loading_record, only: loading_record
    use rbs_structure_frame_frame_parts, only: frame_parts
    use rbs_structure_frame_frame_record, only: frame_groups, frame_record
@@ -268,9 +268,6 @@ contains
                               'a static path has none; use a response in time, or leave the member out')
          end if
       end if
-      if (self%column%kinematics /= 'finite') return
-      if (.not. (self%column%axial_follows .or. self%column%force_follows)) return
-      call messages%add(no_potential)
    end subroutine check_static
 
 end module rbs_case_case_record

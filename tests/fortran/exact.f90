@@ -26,7 +26,7 @@ module exact
 
    !> Properties by which the columns differ.
    type :: variant
-      logical :: opens = .false., axial_follows = .false., force_follows = .false., lumped = .false.
+      logical :: opens = .false., lumped = .false.
    end type variant
 
    !> A state of motion and its loads.
@@ -92,8 +92,6 @@ contains
       spec%self_weight = .true.
       spec%depth = 0.4_wp
       spec%damping%mass = 0.7_wp
-      spec%axial_follows = kind%axial_follows
-      spec%force_follows = kind%force_follows
       if (kind%lumped) then
          spec%top_mass = 500.0_wp
          spec%top_inertia = 30.0_wp
@@ -108,7 +106,7 @@ contains
    pure type(variant) function variant_of(i)
       integer, intent(in) :: i
 
-      variant_of = variant(btest(i, 0), btest(i, 1), btest(i, 2), btest(i, 3))
+      variant_of = variant(btest(i, 0), btest(i, 1))
    end function variant_of
 
    !> A state far from the straight column, with more than full turns.
@@ -216,7 +214,7 @@ contains
       real(wp), intent(out) :: largest
       type(point) :: points(spec%n + 1)
       real(wp) :: jacobian(3, spec%n + 1, size(now%q)), mass(size(now%q), size(now%q))
-      real(wp) :: force(3), right(size(now%q)), axial, s, c, g
+      real(wp) :: force(3), right(size(now%q)), axial, g
       integer :: j, k, n
       logical :: regular
 
@@ -235,18 +233,7 @@ contains
          end associate
          if (k > n) then
             axial = spec%axial_load + now%load(4)
-            s = sin(points(k)%rotation%d(0))
-            c = cos(points(k)%rotation%d(0))
-            if (spec%axial_follows) then
-               force(:2) = force(:2) - axial*[s, c]
-            else
-               force(2) = force(2) - axial
-            end if
-            if (spec%force_follows) then
-               force(:2) = force(:2) + now%load(1)*[c, -s]
-            else
-               force(1) = force(1) + now%load(1)
-            end if
+            force(:2) = force(:2) + [now%load(1), -axial]
          end if
          do j = 1, size(a)
             right(j) = right(j) + sum(force*jacobian(:, k, j))

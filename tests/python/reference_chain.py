@@ -254,7 +254,7 @@ class Chain:
         rows, (top, *_) = self.bodies(q, np.zeros(self.size))
         energy = 0.5 * np.sum(self.k * q**2, axis=-1)
         energy = energy + sum(g * row[0][1] for g, row in zip(self.weight, rows, strict=True))
-        return energy + (not self.column.axial_follows) * self.column.axial_load * top[1]
+        return energy + self.column.axial_load * top[1]
 
     def mass(self, q):
         """Mass matrix, the second derivatives of T by the velocities."""
@@ -267,11 +267,8 @@ class Chain:
         """Generalised forces of the loads that have no potential here."""
         c = self.column
         lateral, along, upward, axial = self.loads(time)
-        rows, (_, fast, turn, _) = self.bodies(q, np.eye(self.size))
-        e, t = np.array([np.sin(turn), np.cos(turn)]), np.array([np.cos(turn), -np.sin(turn)])
-        across = t if c.force_follows else np.array([[1.0], [0.0]])
-        down = -e if c.axial_follows else np.array([[0.0], [-1.0]])
-        load = lateral * across + (axial + c.axial_follows * c.axial_load) * down
+        rows, (_, fast, _, _) = self.bodies(q, np.eye(self.size))
+        load = np.array([[lateral], [-axial]])
         ground = np.array([[along], [upward]])
         force = np.sum((load - c.top_mass * ground) * fast, axis=0)
         for (_, rate, *_), m in zip(rows, self.own, strict=True):

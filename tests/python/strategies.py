@@ -214,8 +214,6 @@ def column(rng: Rng, *, in_time: bool = False, **fixed: Any) -> rbsdem.Column:
     given["damping"] = one("damping", 0.6, lambda: damping(rng))
     if one("footing", 0.15, lambda: True):
         given["footing"] = footing(rng, bool(opens), moment, lateral)
-    if kinematics == "finite" and in_time:
-        given |= {name: bool(rng.random() < 0.15) for name in ("axial_follows", "force_follows")}
     if kinematics == "pdelta":
         given["axial_height"] = one("axial_height", 0.1, lambda: height * between(rng, 0.5, 2))
     return rbsdem.Column(**({"height": height, "mass": None} | masses | given | fixed))

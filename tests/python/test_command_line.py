@@ -557,40 +557,6 @@ def test_full_disk_is_told(run_cli, case_text, dynamic_text, folder, points, kin
     assert "free some space" in text
 
 
-def test_lack_of_memory_is_told(run_cli, case_text, folder):
-    """The limits lie between what the program needs for a small case and what the large one needs.
-
-    The first depends on the libraries. OpenBLAS takes a buffer for each thread when it is loaded,
-    and waits for ever where there is no room for them.
-    """
-
-    def within(megabytes, *words):
-        limit = megabytes << 20
-        return run_cli(
-            words,
-            folder,
-            env=os.environ | {"OPENBLAS_NUM_THREADS": "1"},
-            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)),
-        )
-
-    (folder / "small.nml").write_text(case_text())
-    too_little, enough = 4, 4096
-    assert within(enough, "check", "small.nml").returncode == 0
-    while enough - too_little > 1:
-        middle = (too_little + enough) // 2
-        if within(middle, "check", "small.nml").returncode == 0:
-            enough = middle
-        else:
-            too_little = middle
-    (folder / "small.nml").unlink()
-    (folder / "case.nml").write_text(case_text(column="n = 10000, height = 1.6, mass = 614.4"))
-    assert run_cli(["check", "case.nml"], folder).returncode == 0
-    for more in (1, 4, 8):
-        result = within(enough + more, "run", "case.nml", "-o", "out.csv")
-        assert "not enough memory" in faults(result, 1)
-        assert os.listdir(folder) == ["case.nml"]
-
-
 @pytest.mark.parametrize("case", ["-", "/dev/stdin"])
 def test_case_from_a_pipe(executable, folder, good, case):
     text = (folder / "case.nml").read_bytes()

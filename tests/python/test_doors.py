@@ -128,9 +128,7 @@ def test_columns_come_back_from_text(tmp_path, seed):
             column = replace(column, model='it\'s "mine", 2026.1 / & !')
         text = column.to_namelist()
         assert max(map(len, text.splitlines())) <= 132
-        follows = column.axial_follows or column.force_follows
-        shaken = "&loading drive = 'ground_acceleration', amplitudes = 1, period = 1 /\n"
-        case = read_back(tmp_path, text + (shaken if follows else LOADING))
+        case = read_back(tmp_path, text + LOADING)
         assert case.column == column
         assert case.column.to_namelist() == text
 
@@ -158,11 +156,11 @@ def random_case(rng: Rng) -> Case:
         title = ["", 'it\'s "quoted" / & !', "Säule 1 — Nr. ½"][rng.integers(3)]
         settings = {"every": int(rng.integers(1, 5))} if rng.random() < 0.5 else {}
         settings |= {"collapse_drift": 0.03} if rng.random() < 0.3 else {}
-        if rng.random() < 0.4 and not (column.axial_follows or column.force_follows):
+        if rng.random() < 0.4:
             return made(column, "static", title, **static_path(rng, column), **settings)
         if column.top == "fixed" and not column.top_mass:
             continue  # it has no motion
-        found = motion(rng, replace(column, axial_follows=False, force_follows=False))
+        found = motion(rng, column)
         if found is None:
             continue
         loads, solver = found
@@ -234,7 +232,7 @@ def test_random_cases_are_of_all_kinds():
         assert any(getattr(case, name) is not None for case in cases)
     columns = [case.column for case in cases]
     assert {column.kinematics for column in columns} == {"small", "pdelta", "finite"}
-    for name in ("axial_spring", "footing", "masses", "self_weight", "axial_follows", "damping"):
+    for name in ("axial_spring", "footing", "masses", "self_weight", "damping"):
         assert any(getattr(column, name) for column in columns), name
     damping = [column.damping for column in columns if column.damping]
     for name in ("mass", "stiffness", "tangent", "modal"):

@@ -203,8 +203,6 @@ KEPT = {
     "axial_height": {"axial_height": 2.0},
     "axial_force_ratio": {"axial_force_ratio": 1.5},
     "model": {"model": "mine"},
-    "axial_follows": {"kinematics": "finite", "axial_follows": True},
-    "force_follows": {"kinematics": "finite", "force_follows": True},
     "footing": {"footing": rbsdem.Footing(Elastic(1e9), Elastic(1e9))},
 }
 # With the height and the number of bodies the springs are others; joints that open have no layers.

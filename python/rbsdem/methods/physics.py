@@ -162,11 +162,9 @@ def _little_inertia(column: Column) -> Column:
 def variants(scene: Scene, axial: Spring | None) -> Iterator[Variant]:
     """Yield the models to compare with; each has one part changed."""
     column, moving = scene.column, not scene.static
-    straight: dict[str, object] = {"axial_follows": False, "force_follows": False}
     switches: list[tuple[object, str, dict[str, object]]] = [
         (column.axial_load, "no axial load", {"axial_load": 0.0}),
         (column.self_weight, "no self-weight", {"self_weight": False}),
-        (any(getattr(column, name) for name in straight), "loads keep direction", straight),
         (column.axial_spring, "joints do not open", {"axial_spring": None}),
         (axial and not column.axial_spring, "joints open", {"axial_spring": axial}),
         (moving and column.top_mass, "no top mass", {"top_mass": 0.0, "top_inertia": 0.0}),

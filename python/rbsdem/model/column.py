@@ -237,9 +237,6 @@ class Column:
     rotary_inertia : float or array_like, shape (n,), optional
         Rotary inertia of the bodies about their centroids [kg m2], one value for all or one for
         each, in place of m (l^2 + depth^2)/12.
-    axial_follows, force_follows : bool, optional
-        Whether the axial load, and the lateral force, turn with the top body; `kinematics` "finite"
-        only.
     damping : float or Damping, optional
         Viscous damping; a number is the damping ratio of every mode.
     top : {"free", "fixed"}, optional
@@ -280,8 +277,6 @@ class Column:
     top_inertia: float = 0.0
     depth: float = 0.0
     rotary_inertia: ArrayLike | None = None
-    axial_follows: bool = False
-    force_follows: bool = False
     damping: float | Damping | None = None
     axial_height: float | None = None
     axial_force_ratio: float = 0.0
@@ -436,7 +431,6 @@ class Column:
             "footing": self.footing is not None,
             "top_mass": bool(self.top_mass or self.top_inertia),
             "axial_height": self.axial_height is not None,
-            "axial_follows or force_follows": self.axial_follows or self.force_follows,
         }
         for name, given in refused.items():
             if given:

@@ -5,7 +5,6 @@ module rbs_solve_static_run_static
    use rbs_base_text, only: to_text
    use rbs_structure_column_sturm, only: critical_factor
    use rbs_structure_column_column, only: column_type, small, finite
-   use rbs_structure_column_column_record, only: no_potential
    use rbs_base_check, only: check_values
    use rbs_solve_static_chain_equilibrium, only: chain_equilibrium
    use rbs_solve_static_curved, only: trace_curved
@@ -93,10 +92,6 @@ contains
             end if
          end if
          curved = varies .or. column%kinematics == finite
-         if (curved .and. (column%axial_follows .or. column%force_follows)) then
-            call fatal_error(error, bad_input, no_potential)
-            return
-         end if
          if (curved) then
             call trace_curved(loaded, by_force, target, pack(load, varies), task, error)
          else

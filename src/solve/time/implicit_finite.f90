@@ -62,9 +62,9 @@ module rbs_solve_time_implicit_finite
       !> Of joints that do not open: how far they have opened, axial forces, tension positive, and these at
       !> the start of the step (n)
       real(wp), allocatable, private :: gap(:), reaction(:), reaction0(:)
-      !> Derivative of the load on the top body by its rotation; largest force, moment of the present trial
+      !> Derivative of the moment on the top body by its rotation; largest force, moment of the present trial
       !> and of all steps so far
-      real(wp), private :: load_rate(3) = 0.0_wp, scale(2) = 0.0_wp, largest(2) = 0.0_wp
+      real(wp), private :: load_rate = 0.0_wp, scale(2) = 0.0_wp, largest(2) = 0.0_wp
       !> Correction of the bodies (3, n) and of the axial forces (n)
       real(wp), allocatable, private :: dx(:, :), dn(:)
       real(wp), allocatable, private :: band(:, :), right(:, :)
@@ -405,18 +405,16 @@ contains
       !> Whether loads that have a potential count too
       logical, intent(in) :: constant
       real(wp), intent(inout) :: g(:, 0:)
-      !> Derivative of the load on the top body by its rotation
-      real(wp), intent(out) :: rate(3)
-      real(wp) :: force(2), following(2), turning(2)
+      !> Derivative of the moment on the top body by its rotation
+      real(wp), intent(out) :: rate
+      real(wp) :: force(2)
 
       associate (column => self%column, n => self%column%n)
          g(1, 1:) = g(1, 1:) - load(horizontal)*column%mass
          g(2, 1:) = g(2, 1:) - load(vertical)*column%mass
-         call column%find_top_force(load, constant, force, following)
-         force = force + following(1)*top%tb + following(2)*top%eb
-         turning = following(1)*top%tb_rate + following(2)*top%eb_rate
+         call column%find_top_force(load, constant, force)
          g(:, n) = g(:, n) + [force, column%upper(n)*sum(top%tb*force)]
-         rate = [turning, column%upper(n)*(sum(top%tb_rate*force) + sum(top%tb*turning))]
+         rate = column%upper(n)*sum(top%tb_rate*force)
       end associate
    end subroutine add_loads
 
@@ -453,10 +451,7 @@ contains
             end do
             if (.not. self%column%opens) self%right(l - 3, 1) = -per_force*self%gap(i)
          end do
-         do j = 1, 3
-            l = last - 3 + j
-            self%band(main + l - last, last) = self%band(main + l - last, last) - share*self%load_rate(j)
-         end do
+         self%band(main, last) = self%band(main, last) - share*self%load_rate
       end associate
       call solve_general_band(self%band, self%beside, self%beside, self%right, self%regular, self%pivot)
       do i = 1, n

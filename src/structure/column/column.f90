@@ -71,7 +71,7 @@ module rbs_structure_column_column
       !> Weight of the bodies (n) [N]
       real(wp), allocatable :: weight(:)
       !> Axial force of load and weight for the rotation of body i, and across the slip of joint i,
-      !> compression positive (n) [N]; a load that follows the top has no potential and is not in them
+      !> compression positive (n) [N]
       real(wp), allocatable :: axial_body(:), axial_joint(:)
       !> The latter as far as it does second-order work on slips: not where they keep their direction (n) [N]
       real(wp), allocatable :: axial_slip(:)
@@ -81,8 +81,6 @@ module rbs_structure_column_column
       real(wp), allocatable :: compression(:)
       !> The same per vertical acceleration of the ground, from all masses (n) [kg]
       real(wp), allocatable :: lifted_body(:), lifted_joint(:)
-      !> Whether the axial load, and the lateral force, turn with the top body
-      logical :: axial_follows = .false., force_follows = .false.
       !> One over the mass or rotary inertia of each body, 0 for a rotation that is held (n)
       real(wp), allocatable :: inverse_mass(:), inverse_inertia(:)
       !> Number of the spring of a kind in a joint, from the bottom up (3, n); 0: there is none
@@ -122,7 +120,7 @@ contains
       real(wp) :: above(self%n + 1), dead
       integer :: i
 
-      dead = merge(0.0_wp, load*self%axial_lever, self%axial_follows)
+      dead = load*self%axial_lever
       above(self%n + 1) = 0.0_wp
       do i = self%n, 1, -1
          above(i) = above(i + 1) + self%weight(i)

@@ -14,15 +14,10 @@ module rbs_structure_column_column_record
    implicit none
    private
 
-   public :: column_record, damping_record, most_bodies, most_dense, most_modes, no_potential
+   public :: column_record, damping_record, most_bodies, most_dense, most_modes
 
    character(len=*), parameter :: kinematics_names = 'small pdelta finite'
    character(len=*), parameter :: top_names = 'free fixed'
-
-   !> Why a curved static path is refused where loads follow the top
-   character(len=*), parameter :: no_potential = &
-      'column: loads that follow the top (axial_follows, force_follows) have no potential, and a static '// &
-      'path could miss the loss of stability; use a dynamic analysis'
 
    !> Every row holds four numbers or more for each body: more bodies are a slip of the pen.
    integer, parameter :: most_bodies = 10000
@@ -67,8 +62,6 @@ module rbs_structure_column_column_record
       real(wp) :: axial_height = unset
       logical :: self_weight = .false.
       real(wp) :: gravity = standard_gravity
-      !> Whether the axial load, and the lateral force, turn with the top body (`finite` only)
-      logical :: axial_follows = .false., force_follows = .false.
       real(wp) :: top_mass = 0.0_wp, top_inertia = 0.0_wp
       !> 'free', or 'fixed' against rotation
       character(len=16) :: top = 'free'
@@ -118,10 +111,6 @@ contains
                  'acts and leans with the column (pdelta); by default the top', optional=.true.)
       call v%key('self_weight', self%self_weight, 'whether the weight of the bodies acts')
       call v%key('gravity', self%gravity, 'm/s2', not_negative, 'acceleration of gravity for the weight')
-      call v%key('axial_follows', self%axial_follows, &
-                 'whether the axial load turns with the top body (finite)')
-      call v%key('force_follows', self%force_follows, &
-                 'whether the lateral force turns with the top body (finite)')
       call v%key('top_mass', self%top_mass, 'kg', not_negative, &
                  'mass lumped at the top; its weight belongs to the axial load')
       call v%key('top_inertia', self%top_inertia, 'kg m2', not_negative, 'its rotary inertia about the top')
@@ -179,10 +168,6 @@ contains
       if (allocated(self%lengths)) call check_count('lengths', size(self%lengths), self%n)
       if (allocated(self%masses)) call check_count('masses', size(self%masses), self%n)
       if (allocated(self%lengths)) call check_sum()
-      if (self%kinematics /= 'finite' .and. (self%axial_follows .or. self%force_follows)) then
-         call messages%add('column: a load that follows the top (axial_follows, force_follows) needs '// &
-                           "kinematics = 'finite'; remove it or change the kinematics")
-      end if
       call check_axial_height()
       call check_inertia()
       call check_top()
@@ -204,10 +189,6 @@ contains
          if (self%top_inertia > 0.0_wp) then
             call messages%add('column: top_inertia = '//to_text(self%top_inertia)//' kg m2 has no effect '// &
                               "with top = 'fixed', as the top does not turn; remove it")
-         end if
-         if (self%axial_follows .or. self%force_follows) then
-            call messages%add("column: with top = 'fixed' the top does not turn, and no load can turn "// &
-                              'with it; remove axial_follows and force_follows')
          end if
       end subroutine check_top
 

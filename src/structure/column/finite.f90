@@ -69,7 +69,7 @@ contains
       integer, intent(in) :: pressing
       type(motion_result), intent(inout) :: result
 
-      if (pressing == 0 .and. size(d) == 2 .and. .not. (self%axial_follows .or. self%force_follows)) then
+      if (pressing == 0 .and. size(d) == 2) then
          call accelerate_one_body(self, d, v, result%f, load, result%a, result%power)
          result%has_power = .true.
       else
@@ -140,7 +140,7 @@ contains
       real(wp) :: bottom(2), below(2)
       real(wp) :: per_mass, per_inertia, s, c, separation, flexibility, rotation
       !> Sine and cosine of the last joint where the top is held, then of the top; transverse of the former
-      real(wp) :: held(2), along, fixed(2), following(2)
+      real(wp) :: held(2), along, fixed(2)
       integer :: i, n
 
       n = column%n
@@ -189,9 +189,9 @@ contains
             opening_above = 0.0_wp
             held = [s, c]
             if (n > 1) held = [sin(rotation), cos(rotation)]
-            call column%find_top_force(load, .true., fixed, following)
-            transverse_above = following(1) + held(2)*fixed(1) - held(1)*fixed(2)
-            tension_above = following(2) + held(1)*fixed(1) + held(2)*fixed(2)
+            call column%find_top_force(load, .true., fixed)
+            transverse_above = held(2)*fixed(1) - held(1)*fixed(2)
+            tension_above = held(1)*fixed(1) + held(2)*fixed(2)
          end if
          per_mass = 1.0_wp/column%mass(i)
          per_inertia = 1.0_wp/column%inertia(i)
@@ -248,32 +248,18 @@ contains
       end do
    end subroutine accelerate_under_forces
 
-   !> Force at the top: along x and y, and what follows it along its normal and its axis. The weight of all
-   !> masses is in the field of acceleration; that of the lumped mass belongs to the axial load and is taken
-   !> away again.
-   pure subroutine find_top_force(self, load, constant, fixed, following)
+   !> Force at the top along x and y [N]. The weight of all masses is in the field of acceleration; that of
+   !> the lumped mass belongs to the axial load and is taken away again.
+   pure subroutine find_top_force(self, load, constant, force)
       class(finite_chain_type), intent(in) :: self
       real(wp), intent(in) :: load(:)
       !> Whether loads that have a potential count too
       logical, intent(in) :: constant
-      real(wp), intent(out) :: fixed(2), following(2)
-      real(wp) :: press
+      real(wp), intent(out) :: force(2)
 
-      fixed = 0.0_wp
-      following = 0.0_wp
-      press = load(top_axial)
-      if (constant .or. self%axial_follows) press = press + self%axial_load
-      if (constant) fixed(2) = -(self%weight(self%n) - self%gravity*self%mass(self%n))
-      if (self%axial_follows) then
-         following(2) = -press
-      else
-         fixed(2) = fixed(2) - press
-      end if
-      if (self%force_follows) then
-         following(1) = load(lateral)
-      else
-         fixed(1) = load(lateral)
-      end if
+      force = [load(lateral), -load(top_axial)]
+      if (.not. constant) return
+      force(2) = -(self%weight(self%n) - self%gravity*self%mass(self%n)) - (load(top_axial) + self%axial_load)
    end subroutine find_top_force
 
    !> Find the reactions of joints that do not open, and add what they give to the accelerations.
@@ -465,7 +451,7 @@ contains
          energy = energy + self%weight(i)*(rise - 0.5_wp*drop)
          rise = rise - drop
       end do
-      if (.not. self%axial_follows) energy = energy + self%axial_load*rise
+      energy = energy + self%axial_load*rise
    end function potential_energy
 
    !> Velocities of the bodies: x and y of the centroids, rotation (3, n).
@@ -504,13 +490,12 @@ contains
       if (signal == lateral) speed = body%top(1)
    end function speed
 
-   !> Power of the loads that are in no potential: lateral force, ground, additional axial load, and the
-   !> column's axial load if it follows the top [W].
+   !> Power of the loads that are in no potential: lateral force, ground, additional axial load [W].
    pure real(wp) function power_of_loads(self, d, v, load) result(power)
       class(finite_chain_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:), v(:), load(:)
       type(moving_body) :: body
-      real(wp) :: fixed(2), following(2)
+      real(wp) :: force(2)
       integer :: i
 
       power = 0.0_wp
@@ -518,9 +503,8 @@ contains
          call climb(self, d, v, i, body)
          power = power - self%mass(i)*(load(horizontal)*body%centroid(1) + load(vertical)*body%centroid(2))
       end do
-      call self%find_top_force(load, .false., fixed, following)
-      power = power + sum(fixed*body%top) + following(1)*(body%top(1)*body%c - body%top(2)*body%s) &
-              + following(2)*(body%top(1)*body%s + body%top(2)*body%c)
+      call self%find_top_force(load, .false., force)
+      power = power + sum(force*body%top)
    end function power_of_loads
 
    !> Angular momentum about the lowest joint, as it has slipped and opened [kg m2/s].

@@ -70,8 +70,6 @@ contains
       if (allocated(spec%damping%modal)) column%modal_damping = spec%damping%modal
       column%damped = column%mass_damping > 0.0_wp .or. column%stiffness_damping > 0.0_wp .or. &
                       allocated(column%modal_damping)
-      column%axial_follows = spec%axial_follows
-      column%force_follows = spec%force_follows
 
       call set_heights()
       if (spec%self_weight) column%gravity = spec%gravity
