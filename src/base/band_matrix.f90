@@ -58,6 +58,7 @@ module rbs_base_band_matrix
       procedure :: factor
       generic :: solve => solve_one, solve_many
       procedure, private :: solve_one, solve_many
+      procedure :: substitute
       procedure :: set_border
       procedure :: solve_bordered
    end type band_matrix
@@ -262,6 +263,20 @@ contains
       call solve_scaled(self, 1, b, regular)
       call scale_rows(self, 1, b)
    end subroutine solve_one
+
+   !> Solve with the factor as it is, also where the matrix is not positive definite: inverse iteration asks
+   !> for no more. A matrix with a scale is not for this.
+   pure subroutine substitute(self, b)
+      class(band_matrix), intent(in) :: self
+      !> Right-hand side (size), replaced by the solution
+      real(wp), intent(inout), contiguous :: b(:)
+
+      if (self%width <= narrow) then
+         call solve_narrow(self%size, self%triangle, b)
+      else
+         call solve_wide(self%size, self%width, self%triangle, b)
+      end if
+   end subroutine substitute
 
    !> The same with several.
    subroutine solve_many(self, b, regular)

@@ -128,7 +128,7 @@ def modes(column: Structure, count: int | None = None) -> Modes | FrameModes:
         The axial load takes part with `kinematics` "pdelta" and "finite".
     count : int, optional
         How many modes, the lowest first; each takes a time in proportion to the number of bodies.
-        Without it all of them, for up to 500 bodies.
+        Without it all of them, up to 1506 modes.
 
     Raises
     ------

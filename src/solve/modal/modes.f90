@@ -1,38 +1,36 @@
-!> Natural frequencies, mode shapes and the stable step of RK4.
+!> Natural frequencies, mode shapes and the stable step of RK4, for every structure.
 !>
-!> Modes of a chain one by one, each in a number of operations proportional to the number of bodies: bisection
-!> on the number of squared frequencies below a shift until one is left between two of them, then Rayleigh
-!> quotient iteration with the same factor (B. N. Parlett, The symmetric eigenvalue problem, SIAM 1998).
+!> Modes come one by one: bisection on the number of squared frequencies below a shift until one is left
+!> between two of them, then Rayleigh quotient iteration with the same factor (B. N. Parlett, The symmetric
+!> eigenvalue problem, SIAM 1998). Each takes a number of operations proportional to the number of bodies.
 !>
-!> Shapes are found as motions of the joints. The Rayleigh quotient of those is a quotient of sums of positive
-!> terms without axial forces, so that the smallest frequency too has the relative accuracy of stiffnesses and
-!> masses.
+!> Shapes of a column are found as motions of its joints. The Rayleigh quotient of those is a quotient of sums
+!> of positive terms without axial forces, so that the smallest frequency too has the relative accuracy of
+!> stiffnesses and masses. Shapes of a frame are those of its nodes.
 module rbs_solve_modal_modes
-   use rbs_base_band_matrix, only: band_matrix
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_base_linalg, only: symmetric_modes
    use rbs_base_text, only: to_text
    use rbs_structure_column_column, only: column_type
-   use rbs_structure_column_column_record, only: most_dense
-   use rbs_structure_column_sturm, only: lateral_chain, opening_chain, critical_factor, check_stable, &
-                                         check_inertia_of_ends, sturm_chain
+   use rbs_structure_column_column_record, only: most_modes
+   use rbs_structure_column_sturm, only: lateral_chain, opening_chain, check_inertia_of_ends
+   use rbs_structure_dynamic_stiffness, only: dynamic_stiffness, new_band_stiffness
    use rbs_structure_spring_place, only: shear, flexure, axial
-   use rbs_structure_structure, only: structure_type, horizontal, signals
+   use rbs_structure_structure, only: structure_type, horizontal
    implicit none
    private
 
    public :: modes_type, find_modes, frequency_bounds, stability_limit, most_numbers
 
-   !> The Rayleigh quotient has converged: its error is the square of that of the shape.
-   real(wp), parameter :: arrived = 1.0e-13_wp
+   !> Change of the Rayleigh quotient at which it has converged: its error is the square of that of the shape.
+   real(wp), parameter :: converged = 1.0e-13_wp
 
-   !> Below this change it may be as exact as round-off lets it be.
+   !> Change below which it may be as exact as round-off lets it be.
    real(wp), parameter :: nearly = 1.0e-9_wp
 
-   !> The shift stands so far beside the frequency: where a shape is at home in a part of the chain, its pivot
-   !> vanishes there, and what is below would drown in its round-off.
-   real(wp), parameter :: beside = 1.0e-8_wp
+   !> Distance of the shift from the frequency, as a share of it: where one part of the chain has most of the
+   !> motion its pivot vanishes at the frequency, and round-off would hide the parts below.
+   real(wp), parameter :: shift_offset = 1.0e-8_wp
 
    !> Most steps of the iteration before the bounds are drawn closer.
    integer, parameter :: most_steps = 10
@@ -42,13 +40,14 @@ module rbs_solve_modal_modes
    real(wp), parameter :: close_by = 1.0e-5_wp
    integer, parameter :: neighbours = 6
 
+   !> Modes that nothing couples with others: all of a frame, slips with rotations or openings of a column
    type :: mode_search
-      type(sturm_chain) :: chain
+      class(dynamic_stiffness), allocatable :: dynamic
       !> Bounds of the square of each frequency, and how many are below them (modes)
       real(wp), allocatable, private :: low(:), high(:)
       integer, allocatable, private :: below_low(:), below_high(:)
-      !> Motion of the bodies in a shape, and in one found before (2, n)
-      real(wp), allocatable, private :: x(:, :), other(:, :)
+      !> Unknowns of a shape, and of one found before (unknowns)
+      real(wp), allocatable, private :: x(:), other(:)
    contains
       procedure :: start
       procedure :: find
@@ -73,10 +72,10 @@ module rbs_solve_modal_modes
    type :: modes_type
       !> Circular frequencies, ascending (modes) [rad/s]
       real(wp), allocatable :: omega(:)
-      !> Shapes in (slip, relative rotation [, opening]), one a column, with shape' M shape = 1 and the
-      !> top going to +x or up (unknowns, modes)
+      !> Shapes with shape' M shape = 1, one a column (unknowns, modes): of a column in (slip, relative
+      !> rotation [, opening]), its top going to +x or up; of a frame in the displacements of its nodes
       real(wp), allocatable :: shapes(:, :)
-      !> Longest step for which RK4 is stable [s]
+      !> Longest step for which RK4 is stable [s]; 0 where unknowns have no mass
       real(wp) :: stable_step = 0.0_wp
       !> How much a relative error of a stiffness or of the axial load can grow in the square of a
       !> frequency: (f + 1)/(f - 1), where f times the axial load is the critical one; 1 without
@@ -87,7 +86,7 @@ module rbs_solve_modal_modes
 
 contains
 
-   !> Modes of the uncracked column; the axial forces count where the kinematics let them. Openings are
+   !> Modes before any spring yields; the axial forces count where the kinematics let them. Openings are
    !> modes of their own.
    subroutine find_modes(structure, modes, error, count)
       class(structure_type), intent(in) :: structure
@@ -95,6 +94,11 @@ contains
       type(error_type), allocatable, intent(out) :: error
       !> How many, the lowest first; without it all
       integer, intent(in), optional :: count
+      type(mode_search), allocatable :: search(:)
+      real(wp), allocatable :: squares(:, :), shapes(:, :, :)
+      integer :: b, i, wanted
+      integer, allocatable :: next(:)
+      logical, allocatable :: left(:)
 
       if (present(count)) then
          if (count < 1) then
@@ -102,181 +106,152 @@ contains
             return
          end if
       end if
-      select type (structure)
-      class is (column_type)
-         call find_column_modes(structure)
-      class default
-         call find_assembled_modes()
-      end select
-
-   contains
-
-      !> Modes of a structure from its matrices: what has no mass follows the rest, and with the flexibility
-      !> F = (K + K_G)^-1 between the masses M^(1/2) F M^(1/2) y = y/omega^2, by LAPACK. Shapes are those of
-      !> the unknowns, and the stable step of RK4 is that of none where unknowns have no mass.
-      subroutine find_assembled_modes()
-         type(band_matrix) :: matrix
-         real(wp), allocatable :: flexible(:, :), all_of(:, :), square(:), root(:)
-         integer, allocatable :: heavy(:)
-         integer :: i, wanted
-         logical :: found
-
-         call frequency_bounds(structure, modes%condition, modes%stable_step, error)
-         modes%condition = 1.0_wp
-         modes%stable_step = 0.0_wp
-         if (allocated(error)) return
-         heavy = pack([(i, i=1, structure%unknowns)], structure%inertias > 0.0_wp &
-                 .and. .not. structure%is_held)
-         if (size(heavy) == 0) then
-            call fatal_error(error, bad_input, 'modes: nothing has mass; give &floor mass, or mass to nodes')
+      ! These also refuse a structure that buckles under its axial load alone.
+      if (structure%tangent_numbers > 0) then
+         call check_at_rest(structure, error)
+      else
+         call stability_limit(structure, modes%stable_step, error)
+      end if
+      if (allocated(error)) return
+      call new_searches(structure, structure%axially_loaded, search)
+      wanted = sum([(search(b)%dynamic%modes, b=1, size(search))])
+      if (present(count)) then
+         wanted = min(wanted, count)
+         if (real(wanted, wp)*structure%unknowns > most_numbers) then
+            call fatal_error(error, bad_input, 'modes: the shapes of '//to_text(wanted)//' modes of '// &
+                             to_text(structure%unknowns)//' unknowns take too much memory; ask for '// &
+                             to_text(int(most_numbers/structure%unknowns))//' at the most')
             return
          end if
-         wanted = size(heavy)
-         if (present(count)) wanted = min(wanted, count)
-         call assemble_initial(structure, structure%axially_loaded, matrix)
-         call matrix%factor()
-         allocate (all_of(structure%unknowns, size(heavy)), source=0.0_wp)
-         root = sqrt(structure%inertias(heavy))
-         do i = 1, size(heavy)
-            all_of(heavy(i), i) = root(i)
-         end do
-         call matrix%solve(all_of, found)
-         flexible = all_of(heavy, :)*spread(root, 2, size(heavy))
-         allocate (square(size(heavy)))
-         if (found) call symmetric_modes(flexible, square, found)
-         if (.not. found) then
-            call fatal_error(error, bad_input, 'modes: the stiffness has no inverse; look for parts that '// &
-                             'can move without force')
-            return
+      else if (wanted > most_modes) then
+         call fatal_error(error, bad_input, 'modes: all modes are found for up to '//to_text(most_modes)// &
+                          ' of them, not for '//to_text(wanted)//'; ask for the first ones by count. '// &
+                          'A dynamic analysis does not need them, it finds its stable step for any n')
+         return
+      end if
+      call set_condition(structure, search(1)%dynamic, modes)
+
+      associate (blocks => size(search), m => size(search(1)%dynamic%inertia))
+         allocate (squares(wanted, blocks), shapes(m, wanted, blocks), next(blocks), left(blocks))
+      end associate
+      next = 1
+      left = .true.
+      do b = 1, size(search)
+         call search(b)%find(1, 1, squares(:, b), shapes(:, :, b))
+      end do
+      allocate (modes%omega(wanted))
+      allocate (modes%shapes(structure%unknowns, wanted), source=0.0_wp)
+      do i = 1, wanted
+         b = minloc([(squares(min(next(b), wanted), b), b=1, size(search))], mask=left, dim=1)
+         modes%omega(i) = sqrt(squares(next(b), b))
+         call set_shape(structure, b == 2, shapes(:, next(b), b), modes%shapes(:, i))
+         next(b) = next(b) + 1
+         left(b) = next(b) <= min(wanted, search(b)%dynamic%modes)
+         if (left(b) .and. i < wanted) then
+            call search(b)%find(next(b), next(b), squares(:, b), shapes(:, :, b))
          end if
-         allocate (modes%omega(wanted), modes%shapes(structure%unknowns, wanted))
-         do i = 1, wanted
-            associate (from => size(heavy) + 1 - i)
-               modes%omega(i) = 1.0_wp/sqrt(max(square(from), tiny(1.0_wp)))
-               ! F M^(1/2) y omega^2 is the shape of all unknowns, with unit modal mass.
-               modes%shapes(:, i) = matmul(all_of, flexible(:, from))*modes%omega(i)**2
-            end associate
-            if (structure%work_of(horizontal, modes%shapes(:, i)) > 0.0_wp) then
-               modes%shapes(:, i) = -modes%shapes(:, i)
-            end if
-         end do
-      end subroutine find_assembled_modes
-
-      subroutine find_column_modes(column)
-         class(column_type), intent(in) :: column
-         type(mode_search) :: search(2)
-         real(wp), allocatable :: squares(:, :), shapes(:, :, :, :)
-         real(wp) :: lowest(2), top
-         integer :: b, blocks, i, n, next(2), wanted
-
-         n = column%n
-         blocks = merge(2, 1, column%opens)
-         wanted = column%unknowns - merge(1, 0, column%held)
-         if (present(count)) then
-            wanted = min(wanted, count)
-            if (real(wanted, wp)*column%unknowns > most_numbers) then
-               call fatal_error(error, bad_input, 'modes: the shapes of '//to_text(wanted)//' modes of n '// &
-                                '= '//to_text(n)//' bodies take too much memory; ask for '// &
-                                to_text(int(most_numbers/column%unknowns))//' at the most')
-               return
-            end if
-         else if (n > most_dense) then
-            call fatal_error(error, bad_input, 'modes: all modes are found for up to '// &
-                             to_text(most_dense)//' bodies, not for n = '// &
-                             to_text(n)//'; ask for the first ones by count. '// &
-                             'A dynamic analysis does not need them, it finds its stable step for any n')
-            return
-         end if
-         ! This also refuses a column that buckles under its axial load alone.
-         call stability_limit(column, modes%stable_step, error)
-         if (allocated(error)) return
-         call set_condition(column)
-
-         allocate (squares(wanted, blocks), shapes(2, n, wanted, blocks))
-         call search(1)%start(lateral_chain(column, column%axially_loaded))
-         if (column%opens) call search(2)%start(opening_chain(column))
-         lowest = huge(1.0_wp)
-         do b = 1, blocks
-            next(b) = 1
-            call search(b)%find(1, 1, squares(:, b), shapes(:, :, :, b))
-            lowest(b) = squares(1, b)
-         end do
-         allocate (modes%omega(wanted))
-         allocate (modes%shapes(column%unknowns, wanted), source=0.0_wp)
-         do i = 1, wanted
-            b = minloc(lowest, 1)
-            associate (shape => modes%shapes(:, i), found => shapes(:, :, next(b), b))
-               modes%omega(i) = sqrt(lowest(b))
-               if (b == 2) then
-                  shape(column%at(axial, :)) = found(1, :)
-               else
-                  shape(column%at(shear, :)) = found(1, :)
-                  shape(column%at(flexure, :)) = found(2, :)
-               end if
-               ! The top goes to +x or, if it only goes along the column, up.
-               top = dot_product(column%arm, shape) + sum(shape, column%place%kind == axial)
-               shape = sign(1.0_wp, top)*shape
-            end associate
-            next(b) = next(b) + 1
-            lowest(b) = huge(1.0_wp)
-            if (next(b) > min(wanted, search(b)%chain%modes) .or. i == wanted) cycle
-            call search(b)%find(next(b), next(b), squares(:, b), shapes(:, :, :, b))
-            lowest(b) = squares(next(b), b)
-         end do
-      end subroutine find_column_modes
-
-      !> Condition of the modes under axial load.
-      subroutine set_condition(column)
-         class(column_type), intent(in) :: column
-         real(wp) :: factor, share
-
-         if (.not. column%axially_loaded) return
-         call critical_factor(column, factor)
-         share = 1.0_wp/factor
-         modes%condition = (1.0_wp + share)/max(1.0_wp - share, epsilon(1.0_wp))
-         if (modes%condition < worst_condition) return
-         modes%warning = 'the axial load is '//to_text(share)//' of the critical one: a relative error '// &
-                         'of a stiffness or of the load may grow by '//to_text(modes%condition)// &
-                         ' in the square of the lowest frequency'
-      end subroutine set_condition
-
+      end do
    end subroutine find_modes
 
-   !> Stiffness before any spring yields, with the axial forces at rest.
-   subroutine assemble_initial(structure, axial, matrix)
+   !> A shape in the order of the structure, with its sign: the top goes to +x, or up if it goes along the
+   !> column only; the masses of a frame go to +x.
+   subroutine set_shape(structure, opens, found, shape)
       class(structure_type), intent(in) :: structure
+      !> Whether it is one of openings
+      logical, intent(in) :: opens
+      real(wp), intent(in), contiguous :: found(:)
+      real(wp), intent(inout), contiguous :: shape(:)
+      real(wp) :: along
+
+      if (structure%tangent_numbers > 0) then
+         shape = found
+         along = -structure%work_of(horizontal, shape)
+      else if (opens) then
+         shape = unpack(found(::2), structure%place%kind == axial, shape)
+         along = sum(shape)
+      else
+         shape = unpack(found(::2), structure%place%kind == shear, shape)
+         shape = unpack(found(2::2), structure%place%kind == flexure, shape)
+         along = structure%top_displacement(shape)
+      end if
+      shape = sign(1.0_wp, along)*shape
+   end subroutine set_shape
+
+   !> Condition of the modes under axial load.
+   subroutine set_condition(structure, dynamic, modes)
+      class(structure_type), intent(in) :: structure
+      class(dynamic_stiffness), intent(inout) :: dynamic
+      type(modes_type), intent(inout) :: modes
+      !> Digits of the critical load that the condition needs
+      integer, parameter :: few = 24
+      real(wp) :: share
+
+      if (.not. structure%axially_loaded) return
+      share = 1.0_wp/dynamic%critical_multiple(few)
+      modes%condition = (1.0_wp + share)/max(1.0_wp - share, epsilon(1.0_wp))
+      if (modes%condition < worst_condition) return
+      modes%warning = 'the axial load is '//to_text(share)//' of the critical one: a relative error '// &
+                      'of a stiffness or of the load may grow by '//to_text(modes%condition)// &
+                      ' in the square of the lowest frequency'
+   end subroutine set_condition
+
+   !> Dynamic stiffness of the structure, in parts that nothing couples.
+   subroutine new_searches(structure, axial, search)
+      class(structure_type), intent(in) :: structure
+      !> Whether the axial forces count
       logical, intent(in) :: axial
-      type(band_matrix), intent(out) :: matrix
-      real(wp) :: force(structure%axial_count), at_rest(signals)
+      type(mode_search), allocatable, intent(out) :: search(:)
 
-      call matrix%create(structure%unknowns, structure%half_width)
-      matrix%band = 0.0_wp
-      call structure%add_stiffness(structure%initial_stiffness, structure%initial_tangent, matrix%band)
-      if (.not. axial) return
-      at_rest = 0.0_wp
-      call structure%axial_forces(at_rest, force)
-      call structure%add_geometric(force, matrix%band)
-   end subroutine assemble_initial
+      select type (structure)
+      class is (column_type)
+         allocate (search(merge(2, 1, structure%opens)))
+         allocate (search(1)%dynamic, source=lateral_chain(structure, axial))
+         if (structure%opens) allocate (search(2)%dynamic, source=opening_chain(structure))
+      class default
+         allocate (search(1))
+         allocate (search(1)%dynamic)
+         call new_band_stiffness(search(1)%dynamic, structure, axial)
+      end select
+      call search%start()
+   end subroutine new_searches
 
-   !> Lowest and highest circular frequency of the structure before any spring yields [rad/s]; the axial
-   !> forces count where the kinematics let them.
-   subroutine frequency_bounds(structure, lowest, highest, error)
+   !> Refuse a structure that has no modes: without inertia, or buckled by its constant axial forces alone.
+   subroutine check_at_rest(structure, error)
       class(structure_type), intent(in) :: structure
-      real(wp), intent(out) :: lowest, highest
       type(error_type), allocatable, intent(out) :: error
+      type(mode_search), allocatable :: search(:)
+      real(wp) :: factor, force
 
-      lowest = 0.0_wp
-      highest = huge(1.0_wp)
       select type (structure)
       class is (column_type)
          call check_inertia_of_ends(structure, error)
-         if (.not. allocated(error)) call check_stable(structure, error)
-      class default
-         if (modes_below(structure, structure%axially_loaded, 0.0_wp) > 0) then
-            call fatal_error(error, bad_input, 'structure: it is not stable under its constant axial '// &
-                             'forces alone; reduce them, or stiffen the springs')
-         end if
+         if (allocated(error)) return
       end select
+      call new_searches(structure, structure%axially_loaded, search)
+      if (search(1)%dynamic%modes == 0) then
+         call fatal_error(error, bad_input, 'modes: nothing has mass; give &floor mass, or mass to nodes')
+         return
+      end if
+      if (.not. structure%axially_loaded) return
+      if (search(1)%dynamic%factor(0.0_wp) == 0) return
+      factor = search(1)%dynamic%critical_multiple()
+      force = structure%constant_axial(maxloc(abs(structure%constant_axial), dim=1))
+      call fatal_error(error, bad_input, 'structure: the axial load of '//to_text(force)//' N at '// &
+                       'its base is beyond the critical load of '//to_text(factor*force)//' N; it '// &
+                       'buckles by itself. Reduce the axial load or stiffen the springs')
+   end subroutine check_at_rest
+
+   !> Lowest and highest circular frequency of the structure before any spring yields [rad/s]; the axial
+   !> forces count where the kinematics let them.
+   subroutine frequency_bounds(structure, lowest, error, highest)
+      class(structure_type), intent(in) :: structure
+      real(wp), intent(out) :: lowest
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), intent(out), optional :: highest
+
+      lowest = 0.0_wp
+      if (present(highest)) highest = huge(1.0_wp)
+      call check_at_rest(structure, error)
       if (.not. allocated(error)) call frequency_range(structure, structure%axially_loaded, lowest, highest)
    end subroutine frequency_bounds
 
@@ -284,71 +259,16 @@ contains
       class(structure_type), intent(in) :: structure
       !> Whether the axial forces count
       logical, intent(in) :: axial
-      real(wp), intent(out) :: lowest, highest
-      type(mode_search) :: search
+      real(wp), intent(out) :: lowest
+      real(wp), intent(out), optional :: highest
+      type(mode_search), allocatable :: search(:)
+      integer :: b
 
-      select type (structure)
-      class is (column_type)
-         call search%start(lateral_chain(structure, axial))
-         lowest = search%frequency(1)
-         highest = search%frequency(search%chain%modes)
-         if (.not. structure%opens) return
-         call search%start(opening_chain(structure))
-         lowest = min(lowest, search%frequency(1))
-         highest = max(highest, search%frequency(search%chain%modes))
-      class default
-         lowest = frequency_of(structure, axial, 1)
-         highest = frequency_of(structure, axial, &
-                                count(structure%inertias > 0.0_wp .and. .not. structure%is_held))
-      end select
+      call new_searches(structure, axial, search)
+      lowest = minval([(search(b)%frequency(1), b=1, size(search))])
+      if (.not. present(highest)) return
+      highest = maxval([(search(b)%frequency(search(b)%dynamic%modes), b=1, size(search))])
    end subroutine frequency_range
-
-   !> One circular frequency of any structure, by bisection with the number of those below [rad/s].
-   real(wp) function frequency_of(structure, axial, number) result(omega)
-      class(structure_type), intent(in) :: structure
-      !> Whether the axial forces count
-      logical, intent(in) :: axial
-      !> From the lowest up
-      integer, intent(in) :: number
-      real(wp) :: below, above
-      integer :: i
-
-      below = 1.0_wp
-      do while (modes_below(structure, axial, below) >= number .and. below > slowest)
-         below = 0.5_wp*below
-      end do
-      above = 2.0_wp*below
-      do while (modes_below(structure, axial, above) < number .and. above < 1.0_wp/slowest)
-         above = 2.0_wp*above
-      end do
-      below = 0.5_wp*above
-      do i = 1, digits(omega)
-         omega = 0.5_wp*(below + above)
-         if (modes_below(structure, axial, omega) < number) then
-            below = omega
-         else
-            above = omega
-         end if
-      end do
-   end function frequency_of
-
-   !> Number of modes below a circular frequency: that of negative eigenvalues of K + K_G - omega^2 M.
-   integer function modes_below(structure, axial, omega) result(below)
-      class(structure_type), intent(in) :: structure
-      logical, intent(in) :: axial
-      !> [rad/s]
-      real(wp), intent(in) :: omega
-      type(band_matrix) :: matrix
-      integer :: i
-
-      call assemble_initial(structure, axial, matrix)
-      matrix%band(1, :) = matrix%band(1, :) - omega**2*structure%inertias
-      do i = 1, structure%unknowns
-         if (structure%is_held(i)) call matrix%hold(i, 1.0_wp)
-      end do
-      call matrix%factor()
-      below = matrix%negative
-   end function modes_below
 
    !> Longest step for which RK4 is stable [s], for any number of bodies in O(n).
    !>
@@ -362,7 +282,7 @@ contains
       real(wp) :: plain(2), loaded(2)
 
       limit = 0.0_wp
-      call frequency_bounds(structure, loaded(1), loaded(2), error)
+      call frequency_bounds(structure, loaded(1), error, loaded(2))
       if (allocated(error)) return
       plain = loaded
       if (structure%axially_loaded) call frequency_range(structure, .false., plain(1), plain(2))
@@ -437,20 +357,19 @@ contains
       h = below
    end function stable_step
 
-   subroutine start(self, chain)
-      class(mode_search), intent(out) :: self
-      type(sturm_chain), intent(in) :: chain
+   impure elemental subroutine start(self)
+      class(mode_search), intent(inout) :: self
       real(wp) :: s
-      integer :: below, m
+      integer :: below
 
-      self%chain = chain
-      m = chain%modes
-      s = min(chain%sum_of_squares(), sqrt(huge(1.0_wp)))
-      allocate (self%low(m), source=0.0_wp)
-      allocate (self%high(m), source=1.01_wp*s)
-      allocate (self%below_low(m), source=0)
-      allocate (self%below_high(m), source=m)
-      allocate (self%x(2, chain%n), self%other(2, chain%n))
+      associate (m => self%dynamic%modes, unknowns => size(self%dynamic%inertia))
+         s = min(self%dynamic%sum_of_squares(), sqrt(huge(1.0_wp)))
+         allocate (self%low(m), source=0.0_wp)
+         allocate (self%high(m), source=1.01_wp*s)
+         allocate (self%below_low(m), source=0)
+         allocate (self%below_high(m), source=m)
+         allocate (self%x(unknowns), self%other(unknowns))
+      end associate
       do while (s > sqrt(tiny(1.0_wp)))
          s = s/1024.0_wp
          below = count_below(self, s)
@@ -464,13 +383,13 @@ contains
       real(wp), intent(in) :: s
       integer :: i
 
-      below = self%chain%factor(s)
+      below = self%dynamic%factor(s)
       do i = below, 1, -1
          if (.not. s < self%high(i)) exit
          self%high(i) = s
          self%below_high(i) = below
       end do
-      do i = below + 1, self%chain%modes
+      do i = below + 1, self%dynamic%modes
          if (.not. s > self%low(i)) exit
          self%low(i) = s
          self%below_low(i) = below
@@ -481,7 +400,7 @@ contains
    real(wp) function frequency(self, j) result(omega)
       class(mode_search), intent(inout) :: self
       integer, intent(in) :: j
-      real(wp) :: square(1), shape(2, self%chain%n, 1)
+      real(wp) :: square(1), shape(size(self%x), 1)
 
       call self%find(j, 1, square, shape)
       omega = sqrt(square(1))
@@ -493,8 +412,8 @@ contains
       integer, intent(in) :: j
       !> Where it belongs in the arrays; before it stand the modes below
       integer, intent(in) :: place
-      !> Squares of the frequencies, and slips and rotations of unit modal mass (2, n, as many)
-      real(wp), intent(inout), contiguous :: squares(:), shapes(:, :, :)
+      !> Squares of the frequencies, and shapes of unit modal mass (unknowns, as many)
+      real(wp), intent(inout), contiguous :: squares(:), shapes(:, :)
       real(wp) :: change, last_change, rho, shift
       integer :: below, step
       logical :: astray, more
@@ -514,9 +433,9 @@ contains
             step = 0
             shift = self%low(j)
          end if
-         if (step > 0) shift = (1.0_wp - beside)*rho
+         if (step > 0) shift = (1.0_wp - shift_offset)*rho
          ! So near to a frequency the number of pivots is not certain, so it bounds nothing.
-         below = self%chain%factor(shift)
+         below = self%dynamic%factor(shift)
          if (step == 0) then
             last_change = huge(1.0_wp)
             call any_motion()
@@ -528,12 +447,12 @@ contains
          step = step + 1
          change = abs(rho - change)
          if (rho >= self%low(j) .and. rho <= self%high(j)) then
-            if (change <= arrived*rho .or. (change < nearly*rho .and. change > 0.5_wp*last_change)) exit
+            if (change <= converged*rho .or. (change < nearly*rho .and. change > 0.5_wp*last_change)) exit
          end if
          astray = .not. (rho > self%low(j) .and. rho < self%high(j)) .or. step > most_steps
          last_change = change
       end do
-      shapes(:, :, place) = shapes(:, :, place)/sqrt(self%chain%mass_product(self%x, self%x))
+      shapes(:, place) = shapes(:, place)/sqrt(self%dynamic%mass_product(self%x, self%x))
       squares(place) = min(max(rho, self%low(j)), self%high(j))
 
    contains
@@ -544,34 +463,30 @@ contains
          real(wp) :: share
          integer :: i
 
-         associate (chain => self%chain, d => shapes(:, :, place))
-            call chain%solve(self%x, d)
+         associate (dynamic => self%dynamic, d => shapes(:, place))
+            call dynamic%solve(self%x, d)
             d = scale(1.0_wp, -exponent(maxval(abs(d))))*d
-            call chain%body_motion(d, self%x)
+            call dynamic%motion(d, self%x)
             do i = place - 1, 1, -1
                if (i < place - neighbours .and. squares(i) < (1.0_wp - close_by)*shift) exit
-               call chain%body_motion(shapes(:, :, i), self%other)
-               share = chain%mass_product(self%other, self%x)
+               call dynamic%motion(shapes(:, i), self%other)
+               share = dynamic%mass_product(self%other, self%x)
                self%x = self%x - share*self%other
-               d = d - share*shapes(:, :, i)
+               d = d - share*shapes(:, i)
             end do
-            rho = chain%stiffness_of(d, self%x)/chain%mass_product(self%x, self%x)
+            rho = dynamic%stiffness_of(d, self%x)/dynamic%mass_product(self%x, self%x)
          end associate
       end subroutine iterate
 
       !> A motion in which every mode has a share: a logistic map wanders between 0 and 1.
       subroutine any_motion()
-         real(wp) :: length, z
+         real(wp) :: z
          integer :: i
 
-         length = sum(self%chain%lower + self%chain%upper)
-         if (.not. length > 0.0_wp) length = 1.0_wp
          z = 0.5_wp
-         do i = 1, self%chain%n
+         do i = 1, size(self%x)
             z = z*3.9_wp*(1.0_wp - z)
-            self%x(1, i) = (z - 0.4_wp)*length
-            z = z*3.9_wp*(1.0_wp - z)
-            self%x(2, i) = z - 0.4_wp
+            self%x(i) = (z - 0.4_wp)*self%dynamic%reach(i)
          end do
       end subroutine any_motion
 

@@ -59,7 +59,7 @@ contains
       type(method_type) :: method, other
       type(error_type), allocatable :: error
       type(time_plan) :: short
-      real(wp) :: seconds, lowest, highest
+      real(wp) :: seconds, lowest
 
       text = ''
       seconds = expected_seconds(structure, plan)
@@ -70,7 +70,7 @@ contains
       if (.not. method%explicit) return
       text = text//'; the highest frequency limits the stable step to '//to_text(plan%limit)//' s'
       other = method_named(faster)
-      call frequency_bounds(structure, lowest, highest, error)
+      call frequency_bounds(structure, lowest, error)
       if (allocated(error)) return
       short = plan
       short%method = faster

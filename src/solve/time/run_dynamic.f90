@@ -86,13 +86,13 @@ contains
       !> Steps of the method chosen.
       subroutine plan_steps()
          type(method_type) :: method
-         real(wp) :: lowest, highest, longest, bound
+         real(wp) :: lowest, longest, bound
 
          method = method_named(plan%method)
          longest = time(size(time)) - time(1)
          bound = huge(1.0_wp)
          if (method%implicit) then
-            call frequency_bounds(structure, lowest, highest, error)
+            call frequency_bounds(structure, lowest, error)
             if (allocated(error)) return
             longest = min(longest, method%period_share*longest_period(lowest))
          else
@@ -116,14 +116,14 @@ contains
       !> any time, else the cheapest. It is chosen by counts of steps, never by a clock.
       subroutine choose_method()
          type(method_type) :: explicit_choice, implicit_choice, chosen
-         real(wp) :: lowest, highest, explicit_steps, implicit_steps, longest, step_cost, work
+         real(wp) :: lowest, explicit_steps, implicit_steps, longest, step_cost, work
          logical :: affordable
 
          explicit_choice = method_named('rk4')
          implicit_choice = method_named('generalised_alpha')
          call stability_limit(structure, plan%limit, error)
          if (allocated(error)) return
-         call frequency_bounds(structure, lowest, highest, error)
+         call frequency_bounds(structure, lowest, error)
          if (allocated(error)) return
          longest = implicit_choice%period_share*longest_period(lowest)
          step_cost = merge(finite_step_cost, implicit_step_cost, structure%kinematics == finite)

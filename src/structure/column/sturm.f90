@@ -17,29 +17,30 @@ module rbs_structure_column_sturm
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_structure_column_column, only: column_type
+   use rbs_structure_dynamic_stiffness, only: dynamic_stiffness
    implicit none
    private
 
-   public :: sturm_chain, lateral_chain, opening_chain, critical_factor, check_stable, check_inertia_of_ends
+   public :: sturm_chain, lateral_chain, opening_chain, critical_factor, check_inertia_of_ends
 
-   type :: sturm_chain
-      !> Number of bodies, and of modes
-      integer :: n = 0, modes = 0
+   type, extends(dynamic_stiffness) :: sturm_chain
+      private
+      !> Number of bodies
+      integer :: n = 0
       !> Whether the last body is held against rotation
       logical :: held = .false.
-      !> Stiffness of the joints, translation and rotation; masses and rotary inertias of the bodies (2, n)
-      real(wp), allocatable :: k(:, :), mass(:, :)
+      !> Stiffness of the joints, translation and rotation (2, n)
+      real(wp), allocatable :: k(:, :)
       !> Distance of the centroid from the bottom and from the top of the body (n); axial force times length
       !> of each body, axial force across the slip of each joint (n)
       real(wp), allocatable :: lower(:), upper(:), turning(:), sliding(:)
       !> Pivots, T and C of the joints at the last shift (7, n)
-      real(wp), allocatable, private :: joint(:, :)
+      real(wp), allocatable :: joint(:, :)
    contains
       procedure :: factor
       procedure :: solve
-      procedure :: body_motion
+      procedure :: motion
       procedure :: stiffness_of
-      procedure :: mass_product
       procedure :: sum_of_squares
    end type sturm_chain
 
@@ -56,11 +57,13 @@ contains
       self%n = n
       self%held = column%held
       self%modes = merge(2*n - 1, 2*n, column%held)
-      allocate (self%k(2, n), self%mass(2, n), self%joint(7, n))
+      allocate (self%k(2, n), self%joint(7, n))
       self%k(1, :) = column%initial_stiffness(:n)
       self%k(2, :) = column%initial_stiffness(n + 1:2*n)
-      self%mass(1, :) = column%mass
-      self%mass(2, :) = column%inertia
+      allocate (self%inertia(2*n), self%reach(2*n), source=1.0_wp)
+      self%inertia(::2) = column%mass
+      self%inertia(2::2) = column%inertia
+      self%reach(::2) = sum(column%length)
       self%lower = column%lower
       self%upper = column%upper
       self%turning = merge(column%second_order(:n), 0.0_wp, axial)
@@ -76,23 +79,23 @@ contains
       self%n = n
       self%modes = n
       allocate (self%k(2, n), self%joint(7, n), source=1.0_wp)
-      allocate (self%mass(2, n), self%lower(n), self%upper(n), self%turning(n), self%sliding(n), &
-                source=0.0_wp)
+      allocate (self%lower(n), self%upper(n), self%turning(n), self%sliding(n), source=0.0_wp)
       self%k(1, :) = column%initial_stiffness(2*n + 1:)
-      self%mass(1, :) = column%mass
+      allocate (self%inertia(2*n), source=0.0_wp)
+      self%inertia(::2) = column%mass
+      allocate (self%reach(2*n), source=1.0_wp)
    end function opening_chain
 
    !> Number of squared frequencies below s, under a multiple of the axial forces.
    integer function factor(self, s, multiple) result(below)
       class(sturm_chain), intent(inout) :: self
-      !> Square of a circular frequency [1/s2]
       real(wp), intent(in) :: s
       real(wp), intent(in), optional :: multiple
       real(wp) :: axial
 
       axial = 1.0_wp
       if (present(multiple)) axial = multiple
-      call eliminate(self%n, self%held, self%k, self%mass, self%lower, self%upper, self%turning, &
+      call eliminate(self%n, self%held, self%k, self%inertia, self%lower, self%upper, self%turning, &
                      self%sliding, s, axial, self%joint, below)
    end function factor
 
@@ -152,13 +155,20 @@ contains
       end do
    end subroutine eliminate
 
-   !> Solve (K - s M) d = (inertia forces of x), with the pivots of `factor`.
+   !> Slips and relative rotations of the joints under the inertia forces of the bodies.
    subroutine solve(self, x, d)
       class(sturm_chain), intent(in) :: self
-      !> Displacements and rotations of the bodies (2, n)
-      real(wp), intent(in), contiguous :: x(:, :)
-      !> Slips and relative rotations of the joints (2, n)
-      real(wp), intent(out), contiguous :: d(:, :)
+      real(wp), intent(in), contiguous :: x(:)
+      real(wp), intent(out), contiguous :: d(:)
+
+      call substitute(self, self%inertia*x, d)
+   end subroutine solve
+
+   pure subroutine substitute(self, load, d)
+      type(sturm_chain), intent(in) :: self
+      !> Forces and moments on the bodies, slips and relative rotations of the joints (2, n)
+      real(wp), intent(in) :: load(2, self%n)
+      real(wp), intent(out) :: d(2, self%n)
       real(wp) :: force, moment, half, top, turned
       integer :: i
 
@@ -166,8 +176,8 @@ contains
       moment = 0.0_wp
       do i = self%n, 1, -1
          moment = moment + self%upper(i)*force
-         force = force + self%mass(1, i)*x(1, i)
-         moment = moment + self%mass(2, i)*x(2, i) + self%lower(i)*force
+         force = force + load(1, i)
+         moment = moment + load(2, i) + self%lower(i)*force
          d(1, i) = force*self%joint(1, i)
          half = moment + self%joint(4, i)*d(1, i)
          d(2, i) = half*self%joint(2, i)
@@ -188,140 +198,70 @@ contains
             top = top + d(1, i) + (self%lower(i) + self%upper(i))*turned
          end associate
       end do
-   end subroutine solve
+   end subroutine substitute
 
    !> Motion of the bodies from that of the joints.
-   pure subroutine body_motion(self, d, x)
+   pure subroutine motion(self, d, x)
       class(sturm_chain), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:, :)
-      real(wp), intent(out), contiguous :: x(:, :)
+      real(wp), intent(in), contiguous :: d(:)
+      real(wp), intent(out), contiguous :: x(:)
       real(wp) :: top, turned
       integer :: i
 
       top = 0.0_wp
       turned = 0.0_wp
       do i = 1, self%n
-         turned = turned + d(2, i)
-         x(2, i) = turned
-         x(1, i) = top + d(1, i) + self%lower(i)*turned
-         top = x(1, i) + self%upper(i)*turned
+         turned = turned + d(2*i)
+         x(2*i) = turned
+         x(2*i - 1) = top + d(2*i - 1) + self%lower(i)*turned
+         top = x(2*i - 1) + self%upper(i)*turned
       end do
-      if (self%held) x(2, self%n) = 0.0_wp
-   end subroutine body_motion
+      if (self%held) x(2*self%n) = 0.0_wp
+   end subroutine motion
 
-   !> d' K d.
    pure real(wp) function stiffness_of(self, d, x) result(total)
       class(sturm_chain), intent(in) :: self
-      !> Motion of the joints, and of the bodies (2, n)
-      real(wp), intent(in), contiguous :: d(:, :), x(:, :)
+      real(wp), intent(in), contiguous :: d(:), x(:)
       integer :: i
 
       total = 0.0_wp
       do i = 1, self%n
-         total = total + (self%k(1, i)*d(1, i)**2 + self%k(2, i)*d(2, i)**2)
+         total = total + (self%k(1, i)*d(2*i - 1)**2 + self%k(2, i)*d(2*i)**2)
       end do
-      total = total - sum(self%turning*x(2, :)**2)
+      total = total - sum(self%turning*x(2::2)**2)
       do i = 2, self%n
-         total = total - 2.0_wp*self%sliding(i)*d(1, i)*x(2, i - 1)
+         total = total - 2.0_wp*self%sliding(i)*d(2*i - 1)*x(2*i - 2)
       end do
    end function stiffness_of
 
-   !> x' M y.
-   pure real(wp) function mass_product(self, x, y) result(total)
-      class(sturm_chain), intent(in) :: self
-      real(wp), intent(in), contiguous :: x(:, :), y(:, :)
-      integer :: i
-
-      total = 0.0_wp
-      do i = 1, self%n
-         total = total + (self%mass(1, i)*x(1, i)*y(1, i) + self%mass(2, i)*x(2, i)*y(2, i))
-      end do
-   end function mass_product
-
-   !> A bound of the sum of all squared frequencies, which is the trace of M^-1 K.
+   !> The trace of M^-1 K.
    pure real(wp) function sum_of_squares(self) result(total)
       class(sturm_chain), intent(in) :: self
       real(wp) :: turned
       integer :: i, n
 
       n = self%n
-      total = sum((self%k(1, :) + [self%k(1, 2:), 0.0_wp])/self%mass(1, :))
+      total = sum((self%k(1, :) + [self%k(1, 2:), 0.0_wp])/self%inertia(::2))
       do i = 1, n
-         if (self%held .and. i == n .or. .not. self%mass(2, i) > 0.0_wp) cycle
+         if (self%held .and. i == n .or. .not. self%inertia(2*i) > 0.0_wp) cycle
          turned = self%k(1, i)*self%lower(i)**2 + self%k(2, i) + abs(self%turning(i))
          if (i < n) turned = turned + self%k(1, i + 1)*self%upper(i)**2 + self%k(2, i + 1) &
                              + 2.0_wp*abs(self%sliding(i + 1))*self%upper(i)
-         total = total + turned/self%mass(2, i)
+         total = total + turned/self%inertia(2*i)
       end do
    end function sum_of_squares
 
-   !> The number by which all axial forces must be multiplied to make the uncracked column lose its
-   !> stiffness; `huge` if no multiple does. Tension too can buckle a column of several bodies, by slip
-   !> against rotation.
-   !>
-   !> The multiples that the column carries are an interval from zero, so it is bisected; whether it carries
-   !> one is asked in O(n) operations, and to the last digit.
+   !> See `critical_multiple`.
    subroutine critical_factor(column, factor)
       type(column_type), intent(in) :: column
       real(wp), intent(out) :: factor
-      !> Beyond 2**200 times the scale of the problem nothing buckles.
-      integer, parameter :: most_doublings = 200
       type(sturm_chain) :: chain
-      real(wp) :: scale, below, between
-      integer :: i
 
       factor = huge(1.0_wp)
       if (.not. column%axially_loaded) return
       chain = lateral_chain(column, .true.)
-      scale = max(maxval(abs(chain%turning)/chain%k(2, :)), &
-                  maxval(abs(chain%sliding(2:))/sqrt(chain%k(1, 2:))/sqrt(chain%k(2, :column%n - 1))))
-      if (.not. scale > 0.0_wp) return
-      below = 1.0_wp
-      if (carries(below)) then
-         do i = 1, most_doublings
-            if (.not. carries(2.0_wp*below)) exit
-            below = 2.0_wp*below
-         end do
-         if (i > most_doublings) return
-      else
-         do i = 1, most_doublings
-            below = 0.5_wp*below
-            if (carries(below)) exit
-         end do
-      end if
-      between = below
-      do i = 1, digits(1.0_wp)
-         between = 0.5_wp*between
-         if (carries(below + between)) below = below + between
-      end do
-      factor = below/scale
-
-   contains
-
-      logical function carries(multiple)
-         real(wp), intent(in) :: multiple
-
-         carries = chain%factor(0.0_wp, multiple/scale) == 0
-      end function carries
-
+      factor = chain%critical_multiple()
    end subroutine critical_factor
-
-   !> Refuse an axial load that the unloaded column cannot carry.
-   subroutine check_stable(column, error)
-      type(column_type), intent(in) :: column
-      type(error_type), allocatable, intent(out) :: error
-      type(sturm_chain) :: chain
-      real(wp) :: factor
-
-      if (.not. column%axially_loaded) return
-      chain = lateral_chain(column, .true.)
-      if (chain%factor(0.0_wp) == 0) return
-      call critical_factor(column, factor)
-      call fatal_error(error, bad_input, 'column: the axial load of '// &
-                       to_text(column%axial_joint(1))//' N at the base is beyond the critical load of '// &
-                       to_text(factor*column%axial_joint(1))//' N; the column buckles by itself. '// &
-                       'Reduce axial_load or stiffen the springs')
-   end subroutine check_stable
 
    !> Refuse ends without inertia: no equation of motion would hold them.
    subroutine check_inertia_of_ends(column, error)

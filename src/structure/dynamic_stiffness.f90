@@ -1,0 +1,208 @@
+!> The dynamic stiffness K - s M of a structure at rest, as the search for its modes sees it: a factor whose
+!> negative pivots are counted, their number being that of the squared frequencies below s (Sylvester), and
+!> with the same factor the answer to inertia forces.
+!>
+!> The band serves every structure. A chain has a factor of its own (`sturm`), which keeps the relative
+!> accuracy of its lowest frequency whatever the ratios of its stiffnesses; the band loses as many digits as
+!> the squares of the highest and the lowest frequency are apart.
+module rbs_structure_dynamic_stiffness
+   use rbs_base_band_matrix, only: band_matrix
+   use rbs_base_kinds, only: wp
+   use rbs_structure_structure, only: structure_type, signals
+   implicit none
+   private
+
+   public :: dynamic_stiffness, new_band_stiffness
+
+   type :: dynamic_stiffness
+      !> Number of modes
+      integer :: modes = 0
+      !> Masses and rotary inertias of the unknowns x, zero where they are held (unknowns) [kg, kg m2]
+      real(wp), allocatable :: inertia(:)
+      !> Size of a motion that all modes have a share in: a length, or one for rotations (unknowns)
+      real(wp), allocatable :: reach(:)
+      !> K - s M at the last shift
+      type(band_matrix), private :: matrix
+      !> K and K_G (half-width + 1, unknowns); the latter only where axial forces count
+      real(wp), allocatable, private :: stiffness(:, :), geometric(:, :)
+   contains
+      procedure :: factor
+      procedure :: solve
+      procedure :: motion
+      procedure :: stiffness_of
+      procedure :: sum_of_squares
+      procedure, non_overridable :: mass_product
+      procedure, non_overridable :: critical_multiple
+   end type dynamic_stiffness
+
+contains
+
+   !> x' M y.
+   pure real(wp) function mass_product(self, x, y) result(total)
+      class(dynamic_stiffness), intent(in) :: self
+      real(wp), intent(in), contiguous :: x(:), y(:)
+
+      total = sum(self%inertia*x*y)
+   end function mass_product
+
+   !> The number by which all axial forces must be multiplied to make the structure lose its stiffness before
+   !> any spring yields; `huge` if no multiple does. Tension too can buckle a column of several bodies, by
+   !> slip against rotation. The multiples that the structure carries are an interval from zero, so it is
+   !> bisected.
+   real(wp) function critical_multiple(self, bits) result(below)
+      class(dynamic_stiffness), intent(inout) :: self
+      !> Binary digits of the answer; without it all
+      integer, intent(in), optional :: bits
+      !> Beyond 2**200 times the load nothing buckles.
+      integer, parameter :: most_doublings = 200
+      real(wp) :: between
+      integer :: i, most
+
+      below = 1.0_wp
+      if (carries(below)) then
+         do i = 1, most_doublings
+            if (.not. carries(2.0_wp*below)) exit
+            below = 2.0_wp*below
+         end do
+         if (i > most_doublings) then
+            below = huge(1.0_wp)
+            return
+         end if
+      else
+         do i = 1, most_doublings
+            below = 0.5_wp*below
+            if (carries(below)) exit
+         end do
+      end if
+      most = digits(below)
+      if (present(bits)) most = bits
+      between = below
+      do i = 1, most
+         between = 0.5_wp*between
+         if (carries(below + between)) below = below + between
+      end do
+
+   contains
+
+      logical function carries(multiple)
+         real(wp), intent(in) :: multiple
+
+         carries = self%factor(0.0_wp, multiple) == 0
+      end function carries
+
+   end function critical_multiple
+
+   !> A structure before any spring yields, under its constant axial forces.
+   subroutine new_band_stiffness(self, structure, axial)
+      type(dynamic_stiffness), intent(out) :: self
+      class(structure_type), intent(in) :: structure
+      !> Whether the axial forces count
+      logical, intent(in) :: axial
+      real(wp) :: force(structure%axial_count), at_rest(signals)
+
+      self%inertia = merge(0.0_wp, structure%inertias, structure%is_held)
+      self%modes = count(self%inertia > 0.0_wp)
+      allocate (self%reach(structure%unknowns), source=1.0_wp)
+      call self%matrix%create(structure%unknowns, structure%half_width)
+      allocate (self%stiffness(structure%half_width + 1, structure%unknowns), source=0.0_wp)
+      call structure%add_stiffness(structure%initial_stiffness, structure%initial_tangent, self%stiffness)
+      call take_out_held(1.0_wp, self%stiffness)
+      if (.not. axial) return
+      allocate (self%geometric, mold=self%stiffness)
+      self%geometric = 0.0_wp
+      at_rest = 0.0_wp
+      call structure%axial_forces(at_rest, force)
+      call structure%add_geometric(force, self%geometric)
+      call take_out_held(0.0_wp, self%geometric)
+
+   contains
+
+      subroutine take_out_held(diagonal, band)
+         real(wp), intent(in) :: diagonal
+         real(wp), intent(inout) :: band(:, :)
+         integer :: i, j
+
+         do j = 1, structure%unknowns
+            do i = 0, min(structure%half_width, structure%unknowns - j)
+               if (structure%is_held(j) .or. structure%is_held(i + j)) then
+                  band(1 + i, j) = merge(diagonal, 0.0_wp, i == 0)
+               end if
+            end do
+         end do
+      end subroutine take_out_held
+
+   end subroutine new_band_stiffness
+
+   !> Factor K - s M under a multiple of the axial forces; the number of squared frequencies below s.
+   integer function factor(self, s, multiple) result(below)
+      class(dynamic_stiffness), intent(inout) :: self
+      !> Square of a circular frequency [1/s2]
+      real(wp), intent(in) :: s
+      !> One, if it is not given
+      real(wp), intent(in), optional :: multiple
+      real(wp) :: share
+
+      associate (rows => size(self%stiffness, 1))
+         self%matrix%band(:rows, :) = self%stiffness
+         if (allocated(self%geometric)) then
+            share = 1.0_wp
+            if (present(multiple)) share = multiple
+            self%matrix%band(:rows, :) = self%matrix%band(:rows, :) + share*self%geometric
+         end if
+      end associate
+      self%matrix%band(1, :) = self%matrix%band(1, :) - s*self%inertia
+      call self%matrix%factor()
+      below = self%matrix%negative
+   end function factor
+
+   !> Solve (K - s M) d = M x with the last factor, in the coordinates in which shapes are kept.
+   subroutine solve(self, x, d)
+      class(dynamic_stiffness), intent(in) :: self
+      real(wp), intent(in), contiguous :: x(:)
+      real(wp), intent(out), contiguous :: d(:)
+
+      d = self%inertia*x
+      call self%matrix%substitute(d)
+   end subroutine solve
+
+   !> The unknowns x of a shape d.
+   pure subroutine motion(self, d, x)
+      class(dynamic_stiffness), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+      real(wp), intent(out), contiguous :: x(:)
+
+      x(:size(self%inertia)) = d
+   end subroutine motion
+
+   !> d' K d, axial forces included.
+   pure real(wp) function stiffness_of(self, d, x) result(total)
+      class(dynamic_stiffness), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:), x(:)
+
+      total = quadratic_form(self%stiffness, d, x)
+      if (allocated(self%geometric)) total = total + quadratic_form(self%geometric, d, x)
+   end function stiffness_of
+
+   !> d' A x of a symmetric band.
+   pure real(wp) function quadratic_form(band, d, x) result(total)
+      real(wp), intent(in), contiguous :: band(:, :), d(:), x(:)
+      integer :: i, n
+
+      n = size(d)
+      total = sum(band(1, :)*d*x)
+      do i = 1, min(size(band, 1), n) - 1
+         total = total + 2.0_wp*sum(band(1 + i, :n - i)*d(:n - i)*x(1 + i:))
+      end do
+   end function quadratic_form
+
+   !> The trace of M^-1 K; unknowns without mass that follow the others make those only softer.
+   pure real(wp) function sum_of_squares(self) result(total)
+      class(dynamic_stiffness), intent(in) :: self
+      real(wp) :: k(size(self%inertia))
+
+      k = self%stiffness(1, :)
+      if (allocated(self%geometric)) k = k + abs(self%geometric(1, :))
+      total = sum(k/merge(self%inertia, 1.0_wp, self%inertia > 0.0_wp), mask=self%inertia > 0.0_wp)
+   end function sum_of_squares
+
+end module rbs_structure_dynamic_stiffness
