@@ -352,11 +352,13 @@ contains
          real(wp) :: of_mass, of_damping
          integer :: i, unstable
 
-         of_damping = (1.0_wp - step%alpha_f)*step%gamma/(step%beta*h)
-         of_mass = (1.0_wp - step%alpha_m)/(step%beta*h**2) + of_damping*state%motion%structure%mass_damping
+         of_damping = step%gamma/(step%beta*h)
          associate (motion => state%motion, springs => state%springs, structure => state%motion%structure)
-            self%k = (1.0_wp - step%alpha_f)*springs%k
+            of_mass = (1.0_wp - step%alpha_m)/(step%beta*h**2) &
+                      + (1.0_wp - step%alpha_f)*of_damping*structure%mass_damping
+            self%k = springs%k
             if (structure%tangent_numbers > 0) then
+               ! The inside of an element has no mass: it is in equilibrium at the end of the step.
                call structure%linearise(self%k, step%now%tangent, unstable)
             else if (structure%tangent_damping) then
                self%k = self%k + (of_damping*structure%stiffness_damping)*max(springs%k, 0.0_wp)
@@ -368,9 +370,8 @@ contains
             if (structure%stiffness_damping > 0.0_wp) then
                call structure%add_damping(of_damping, step%now%tangent, self%matrix%band)
             end if
-            if (motion%second_order) then
-               call structure%add_geometric((1.0_wp - step%alpha_f)*step%now%axial, self%matrix%band)
-            end if
+            if (motion%second_order) call structure%add_geometric(step%now%axial, self%matrix%band)
+            self%matrix%band = (1.0_wp - step%alpha_f)*self%matrix%band
             self%matrix%band(1, :) = self%matrix%band(1, :) + of_mass*structure%inertias
             if (structure%has_held) then
                do i = 1, structure%unknowns
