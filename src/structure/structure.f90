@@ -62,6 +62,9 @@ module rbs_structure_structure
       !> The body, or the part of it that is coupled, that an unknown belongs to (unknowns)
       integer, allocatable :: part(:)
       type(unknown_group), allocatable :: group(:)
+      !> Height for moments, 1 for forces: what brings those of one group to one unit (unknowns); not
+      !> allocated where no group has both
+      real(wp), allocatable :: reach(:)
       !> Where the springs are, their rules and initial stiffness, and the constant axial force at each,
       !> compression positive [N] (springs)
       type(spring_place), allocatable :: place(:)

@@ -320,7 +320,7 @@ contains
       class(implicit_stepper), intent(in) :: self
       type(state_type), intent(in) :: state
 
-      is_round_off = self%step%is_round_off(state%motion%structure, self%h, self%tangent%stiffness)
+      is_round_off = self%step%is_round_off(state, self%h, self%tangent%stiffness)
    end function is_round_off
 
    !> Vertical loads alone: their work is not that of a force which keeps its direction.

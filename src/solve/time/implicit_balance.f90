@@ -15,6 +15,7 @@ module rbs_solve_time_implicit_balance
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_solve_time_state, only: state_type
+   use rbs_structure_spring_place, only: flexure
    use rbs_structure_structure, only: structure_type, motion_result, unknown_group, lateral, signals
    implicit none
    private
@@ -48,10 +49,14 @@ module rbs_solve_time_implicit_balance
       !> forces of the moment are round-off.
       real(wp), allocatable, private :: scale(:)
       real(wp), allocatable :: largest(:)
+      !> Factors that bring forces and moments of one group to one unit, those of unknowns and of springs; not
+      !> allocated where no group has both (unknowns), (springs)
+      real(wp), allocatable, private :: unit(:), spring_unit(:)
    contains
       procedure :: start
       procedure :: find_residual
       procedure :: find_first
+      procedure, private :: measure
       procedure :: is_round_off
       procedure :: go_on
       procedure :: serialize
@@ -83,7 +88,7 @@ contains
    subroutine start(self, state)
       class(step_balance), intent(inout) :: self
       type(state_type), intent(in) :: state
-      real(wp) :: relative
+      real(wp) :: relative, force, terms, work
       integer :: m, springs, unstable
 
       associate (structure => state%motion%structure)
@@ -94,6 +99,11 @@ contains
                       self%moved(m), self%q1(springs), self%w1(springs), source=0.0_wp)
             allocate (self%scale(size(structure%group)), self%largest(size(structure%group)), source=0.0_wp)
             call self%now%create(structure)
+            if (allocated(structure%reach)) then
+               self%unit = 1.0_wp/structure%reach
+               self%spring_unit = merge(1.0_wp/structure%total_height, 1.0_wp, &
+                                        structure%place%kind == flexure)
+            end if
          end if
          self%known = .false.
          call structure%unknown_rates(state%v, self%v0)
@@ -101,7 +111,11 @@ contains
          call find_forces(state, state%q, state%v, self%v0, state%load, self%now, self%g0)
          self%a0 = 0.0_wp
          where (structure%inertias > 0.0_wp) self%a0 = self%g0/structure%inertias
-         call measure(structure, self%a0, self%now%f, self%r, state%load, self%scale, self%largest, relative)
+         self%largest = 0.0_wp
+         call self%measure(structure, self%a0, state%load, relative)
+         ! A structure at rest is measured by the forces of its members and its dead load.
+         call structure%size_of_parts(state%springs, 0.0_wp, force, terms, work)
+         self%largest = max(self%scale, force)
       end associate
    end subroutine start
 
@@ -181,9 +195,10 @@ contains
       associate (structure => state%motion%structure)
          call balance(size(self%r), self%alpha_m, self%alpha_f, structure%inertias, self%a0, self%a1, &
                       self%g0, self%g1, self%r)
-         call measure(structure, self%a1, self%now%f, self%r, self%load, self%largest, self%scale, relative)
+         call self%measure(structure, self%a1, self%load, relative)
          if (size(self%now%correction) > 0) then
-            relative = max(relative, maxval(abs(structure%initial_stiffness*self%now%correction)) &
+            relative = max(relative, &
+                           maxval(abs(structure%initial_stiffness*self%spring_unit*self%now%correction)) &
                            /max(maxval(self%scale), maxval(self%largest), tiny(1.0_wp)))
          end if
       end associate
@@ -229,76 +244,106 @@ contains
           - mass*((1.0_wp - alpha_m)*a1 + alpha_m*a0)
    end subroutine balance
 
-   !> Largest force of each group at a state: of springs, of inertia and of the loads; and the largest
-   !> residual over the largest force of its group, at the most 1.
-   pure subroutine measure(structure, a, f, r, load, largest, scale, relative)
+   !> Largest force of each group at the present forces: of springs, of inertia and of the loads; and the
+   !> largest residual over the largest force of its group, at the most 1.
+   subroutine measure(self, structure, a, load, relative)
+      class(step_balance), intent(inout) :: self
       class(structure_type), intent(in) :: structure
-      !> Accelerations (unknowns), forces of springs (springs), residual (unknowns), loads
-      real(wp), intent(in), contiguous :: a(:), f(:), r(:)
+      !> Accelerations (unknowns), loads
+      real(wp), intent(in), contiguous :: a(:)
       real(wp), intent(in) :: load(signals)
-      !> Largest forces so far, and at this state (groups)
-      real(wp), intent(in), contiguous :: largest(:)
-      real(wp), intent(out), contiguous :: scale(:)
       real(wp), intent(out) :: relative
       real(wp) :: rest
       integer :: j
 
       relative = 0.0_wp
-      do j = 1, size(scale)
-         call measure_group(structure%group(j), size(a), size(f), structure%inertias, a, f, r, &
-                            abs(load(lateral)), scale(j), rest)
-         relative = max(relative, rest/max(scale(j), largest(j), rest, tiny(1.0_wp)))
+      do j = 1, size(self%scale)
+         if (allocated(self%unit)) then
+            call measure_all(structure%group(j)%last_spring, size(a), self%spring_unit, self%now%f, &
+                             self%unit, structure%inertias, a, self%r, self%scale(j), rest)
+         else
+            call measure_group(structure%group(j), size(a), size(self%now%f), structure%inertias, a, &
+                               self%now%f, self%r, self%scale(j), rest)
+         end if
+         self%scale(j) = max(self%scale(j), abs(load(lateral))*structure%group(j)%lateral_arm)
+         relative = max(relative, rest/max(self%scale(j), self%largest(j), rest, tiny(1.0_wp)))
       end do
    end subroutine measure
 
-   pure subroutine measure_group(group, unknowns, springs, inertias, a, f, r, load, scale, rest)
+   pure subroutine measure_group(group, unknowns, springs, inertias, a, f, r, scale, rest)
       type(unknown_group), intent(in) :: group
       integer, intent(in) :: unknowns, springs
-      real(wp), intent(in) :: inertias(unknowns), a(unknowns), f(springs), r(unknowns), load
+      real(wp), intent(in) :: inertias(unknowns), a(unknowns), f(springs), r(unknowns)
       real(wp), intent(out) :: scale, rest
-      real(wp) :: most, left
       integer :: i, k
 
-      most = load*group%lateral_arm
-      left = 0.0_wp
+      scale = 0.0_wp
+      rest = 0.0_wp
       do i = group%first_spring, group%last_spring
-         most = max(most, abs(f(i)))
+         scale = max(scale, abs(f(i)))
       end do
       i = group%first
       do k = 1, group%count
-         most = max(most, abs(inertias(i)*a(i)))
-         left = max(left, abs(r(i)))
+         scale = max(scale, abs(inertias(i)*a(i)))
+         rest = max(rest, abs(r(i)))
          i = i + group%step
       end do
-      scale = most
-      rest = left
    end subroutine measure_group
+
+   !> As `measure_group`, for one group of forces and moments.
+   pure subroutine measure_all(springs, unknowns, spring_unit, f, unit, inertias, a, r, scale, rest)
+      integer, intent(in) :: springs, unknowns
+      real(wp), intent(in) :: spring_unit(springs), f(springs)
+      real(wp), intent(in) :: unit(unknowns), inertias(unknowns), a(unknowns), r(unknowns)
+      real(wp), intent(out) :: scale, rest
+      integer :: i
+
+      scale = 0.0_wp
+      rest = 0.0_wp
+      do i = 1, springs
+         scale = max(scale, spring_unit(i)*abs(f(i)))
+      end do
+      do i = 1, unknowns
+         scale = max(scale, unit(i)*abs(inertias(i)*a(i)))
+         rest = max(rest, unit(i)*abs(r(i)))
+      end do
+   end subroutine measure_all
 
    !> Whether the residual is what round-off leaves of the terms of the step. Modes that the step does not
    !> resolve have accelerations far beyond what comes of them: after a shock h^2 a0 is many turns.
-   pure logical function is_round_off(self, structure, h, stiffness)
+   logical function is_round_off(self, state, h, stiffness)
       class(step_balance), intent(in) :: self
-      class(structure_type), intent(in) :: structure
+      type(state_type), intent(in) :: state
       real(wp), intent(in) :: h
       !> Diagonal of the tangent (unknowns)
       real(wp), intent(in), contiguous :: stiffness(:)
-      real(wp) :: reach(maxval(structure%part)), way
+      real(wp) :: reach(maxval(state%motion%structure%part)), way, force, terms, work
+      real(wp), dimension(size(stiffness)) :: unit, moved
       integer :: i, j, k
 
       ! An unknown is coupled with the others of its part: |k_ij| is at most the root of k_ii k_jj.
       reach = 0.0_wp
-      do j = 1, size(structure%group)
-         way = 0.0_wp
-         do k = 0, structure%group(j)%count - 1
-            i = structure%group(j)%first + k*structure%group(j)%step
-            way = max(way, abs(self%moved(i)) + h*abs(self%v0(i)) + h**2*abs(self%a0(i)))
+      unit = 1.0_wp
+      if (allocated(self%unit)) unit = self%unit
+      moved = (abs(self%moved) + h*abs(self%v0) + h**2*abs(self%a0))/unit
+      associate (structure => state%motion%structure)
+         do j = 1, size(structure%group)
+            way = 0.0_wp
+            do k = 0, structure%group(j)%count - 1
+               i = structure%group(j)%first + k*structure%group(j)%step
+               way = max(way, moved(i))
+            end do
+            do k = 0, structure%group(j)%count - 1
+               i = structure%group(j)%first + k*structure%group(j)%step
+               reach(structure%part(i)) = reach(structure%part(i)) &
+                                          + sqrt(max(stiffness(i), 0.0_wp))*unit(i)*way
+            end do
          end do
-         do k = 0, structure%group(j)%count - 1
-            i = structure%group(j)%first + k*structure%group(j)%step
-            reach(structure%part(i)) = reach(structure%part(i)) + sqrt(max(stiffness(i), 0.0_wp))*way
-         end do
-      end do
-      is_round_off = all(abs(self%r) <= round_off*sqrt(max(stiffness, 0.0_wp))*reach(structure%part))
+         ! What members carry is a sum over whole displacements, not over those of the step.
+         call structure%size_of_parts(state%springs, 0.0_wp, force, terms, work)
+         is_round_off = all(abs(self%r) <= round_off*(sqrt(max(stiffness, 0.0_wp))*reach(structure%part) &
+                                                      + max(force, terms)/unit))
+      end associate
    end function is_round_off
 
    subroutine create(self, structure)

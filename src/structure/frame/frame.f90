@@ -87,8 +87,6 @@ module rbs_structure_frame_frame
       logical :: may_lose = .false.
       !> Rigid ends and clear length (3, elements) [m]
       real(wp), allocatable :: lengths(:, :)
-      !> Height for moments, 1 for forces: what brings them to one unit (unknowns)
-      real(wp), allocatable :: reach(:)
    contains
       procedure :: linearise
       procedure :: damp
