@@ -157,6 +157,133 @@ def test_reactions_are_the_loads(seed, kinematics):
     assert held == pytest.approx(overturning, abs=1e-12 * whole * lines[-1])
 
 
+def pressed_column(kind, axial, members=1, length=8.0, top="") -> Frame:
+    """Return a cantilever of equal members, pushed at its top."""
+    nodes = [FrameNode("n0", x=0, y=0, support="fixed")]
+    nodes += [
+        FrameNode(f"n{i}", x=0, y=length * i / members, push_x=float(i == members),
+                  load_y=-axial if i == members else 0.0, mass=1e3)
+        for i in range(1, members + 1)
+    ]  # fmt: skip
+    rows = [Member(f"m{i}", f"n{i - 1}", f"n{i}", kind) for i in range(1, members + 1)]
+    if top == "guided":
+        stiff = Elastic(k=1e9 * kind.modulus * kind.inertia)
+        nodes[-1] = replace(nodes[-1], flexure=stiff)
+    return Frame(nodes=nodes, members=rows, pattern="nodes", kinematics="pdelta")
+
+
+@pytest.mark.parametrize("yields", [None, 1e12])
+@pytest.mark.parametrize("members", [1, 3])
+@pytest.mark.parametrize("alpha", [-0.5, 1e-3, 0.3, 0.67, 0.95])
+def test_a_column_of_one_member_is_exact_under_axial_load(alpha, members, yields):
+    """Design Guide 25 of AISC and its benchmark case 2: tan u/u, for any number of members.
+
+    u^2 = P L^2/E I; in tension tanh.
+    """
+    kind = FrameMember(E, A, INERTIA, yield_moment=yields)
+    length, rigidity, force = 8.0, E * INERTIA, 1e4
+    axial = alpha * np.pi**2 * rigidity / (4 * length**2)
+    root = np.emath.sqrt(axial / rigidity) * length
+    moment = (force * length * np.tan(root) / root).real
+    sway = (force * length**3 / rigidity * (np.tan(root) - root) / root**3).real
+    push = rbsdem.cyclic(pressed_column(kind, axial, members), force=[force])
+    assert push.moment_from[0, 0] == pytest.approx(-moment, rel=1e-9)
+    assert push.displacement[0] == pytest.approx(sway, rel=1e-9)
+    # A top that does not turn: half the length twice.
+    guided = rbsdem.cyclic(pressed_column(kind, axial, members, top="guided"), force=[force])
+    half = root / 2
+    moment = (force * length / 2 * np.tan(half) / half).real
+    sway = (force * length**3 / rigidity / 4 * (np.tan(half) - half) / half**3).real
+    assert guided.moment_from[0, 0] == pytest.approx(-moment, rel=1e-7)
+    assert guided.displacement[0] == pytest.approx(sway, rel=1e-7)
+
+
+@pytest.mark.parametrize("yields", [None, 1e12])
+@pytest.mark.parametrize("axial", [-4e6, 0.0, 1e6, 3e6])
+def test_a_beam_of_two_members_is_exact_under_axial_load(axial, yields):
+    """Benchmark case 1 of AISC: simply supported, under w and P: M = w/k^2 (sec(k L/2) - 1)."""
+    kind = FrameMember(E, A, INERTIA, yield_moment=yields)
+    w, length, rigidity = 3e3, 8.0, E * INERTIA
+    nodes = [FrameNode("a", x=0, y=0, support="pinned")]
+    nodes += [FrameNode("b", x=length / 2, y=0, push_y=1.0)]
+    nodes += [FrameNode("c", x=length, y=0, support="roller", load_x=-axial)]
+    rows = [Member("ab", "a", "b", kind, load=w), Member("bc", "b", "c", kind, load=w)]
+    beam = Frame(nodes=nodes, members=rows, pattern="nodes", control="y", control_node="b",
+                 kinematics="pdelta")  # fmt: skip
+    still = rbsdem.cyclic(beam, force=[0.0])
+    moment, sag = w * length**2 / 8, 5 * w * length**4 / (384 * rigidity)
+    if axial:
+        half = np.emath.sqrt(axial / rigidity) * length / 2
+        moment *= (2 * (1 / np.cos(half) - 1) / half**2).real
+        sag *= (12 * (2 / np.cos(half) - 2 - half**2) / (5 * half**4)).real
+    assert abs(still.moment_from[0, 1]) == pytest.approx(moment, rel=1e-9)
+    assert still.displacement[0] == pytest.approx(-sag, rel=1e-9)
+
+
+def euler(ends: str) -> tuple[Frame, float]:
+    """Return one member between two ends under 1 N, and its critical load."""
+    length = 5.0
+    kind = FrameMember(E, 1e3 * A, INERTIA)
+    factor = {"pinned": np.pi**2, "fixed": 20.190728556426629}[ends]
+    nodes = [FrameNode("a", x=0, y=0, support=ends)]
+    nodes += [FrameNode("b", x=length, y=0, support="roller", load_x=-1.0, inertia=1.0, mass=1.0)]
+    rows = [Member("ab", "a", "b", kind)]
+    frame = Frame(nodes=nodes, members=rows, kinematics="pdelta", pattern="uniform")
+    return frame, factor * E * INERTIA / length**2
+
+
+def portal(base: str) -> tuple[Frame, float]:
+    """Return a portal under 1 N on each column, and the load at which it sways."""
+    height, span = 4.0, 6.0
+    kind = FrameMember(E, 1e4 * A, INERTIA)
+    beam = FrameMember(E, 1e4 * A, 0.5 * INERTIA)
+    top = [FrameNode(f"N-{i}-1", load_y=-1.0, mass=1.0) for i in (1, 2)]
+    frame = Frame.grid([height], [span], columns=kind, beams=beam, base=base, nodes=top,
+                       kinematics="pdelta")  # fmt: skip
+    ratio = 6 * 0.5 * height / span  # of the beam, bent to an S, to E I/h of a column
+    # phi tan phi = ratio on pins, -phi/tan phi = ratio on fixed feet
+    low, high = (1e-9, np.pi / 2 - 1e-9) if base == "pinned" else (np.pi / 2, np.pi - 1e-9)
+    for _ in range(200):
+        phi = (low + high) / 2
+        value = phi * np.tan(phi) if base == "pinned" else -phi / np.tan(phi)
+        low, high = (phi, high) if value < ratio else (low, phi)
+    return frame, phi**2 * E * INERTIA / height**2
+
+
+@pytest.mark.parametrize(
+    ("make", "given"), [(euler, "pinned"), (euler, "fixed"), (portal, "pinned"), (portal, "fixed")]
+)
+def test_critical_loads_of_one_member_a_column(make, given):
+    """Just below it the first frequency is all but zero, just above it the frame does not stand."""
+    frame, critical = make(given)
+
+    def under(load: float) -> Frame:
+        loaded = [
+            replace(node, load_x=load * node.load_x, load_y=load * node.load_y)
+            for node in frame.nodes
+        ]
+        return replace(frame, nodes=loaded)
+
+    squares = [rbsdem.modes(under(share * critical), 1).omega[0] ** 2 for share in (0.9, 1 - 1e-5)]
+    assert 0 < squares[1] < 2e-4 * squares[0]
+    with pytest.raises(rbsdem.SolveError):
+        rbsdem.modes(under((1 + 1e-5) * critical), 1)
+
+
+def test_a_mechanism_falls_by_its_chords():
+    """Hinges at both ends leave columns straight: the force falls by P/h, not by more."""
+    plastic, axial, height = 2e5, 4e5, 4.0
+    column = FrameMember(E, A, INERTIA, yield_moment=plastic)
+    portal = Frame.grid(
+        [height], [6.0], columns=column, beams=FrameMember(E, A, 10 * INERTIA),
+        nodes=[FrameNode(f"N-{i}-1", load_y=-axial) for i in (1, 2)], kinematics="pdelta",
+    )  # fmt: skip
+    push = rbsdem.pushover(portal, drift=0.1)
+    for force, top in zip(push.force[-3:], push.displacement[-3:], strict=True):
+        # The axial forces of the columns do not change; their sum is the load.
+        assert force == pytest.approx((4 * plastic - 2 * axial * top) / height, rel=1e-9)
+
+
 def test_a_frame_of_rigid_beams_is_the_shear_building():
     """Two storeys on columns of 12 E I/h^3: the periods of two masses by hand, all mass in them."""
     h, mass = 3.0, 4e4
@@ -290,6 +417,24 @@ def test_a_column_of_layers_as_a_frame():
     assert np.abs(other.springs["axial_force"] + 700e3).max() < 1e-12 * 700e3
     (first,) = [event for event in other.events if event.what == "yield" and event.side == 1]
     assert first.end == "start"
+
+
+@pytest.mark.parametrize(("height", "most"), [(1.35, 0.005), (4.0, 0.04)])
+def test_second_order_work_between_springs_is_that_of_the_chord(height, most):
+    """A drawn member in double curvature against its column, whose bodies lean by themselves."""
+    section, axial = drawn(0.4), 1.4e6
+    column = rbsdem.section.column(section, height, axial_load=axial).double_curvature()
+    kind = rbsdem.section.member(section, 2 * height, axial_load=axial)
+    top = FrameNode("b", 0, 2 * height, load_y=-axial, push_x=1.0, flexure=Elastic(k=1e13))
+    frame = Frame(
+        nodes=[FrameNode("a", 0, 0, "fixed"), top], members=[Member("C", "a", "b", kind)],
+        pattern="nodes", kinematics="pdelta",
+    )  # fmt: skip
+    path = 2 * height * np.array([0.002, 0.005, 0.01, 0.02])
+    whole = rbsdem.cyclic(column, displacement=path).force
+    assert rbsdem.cyclic(frame, displacement=path).force == pytest.approx(whole, rel=most)
+    without = rbsdem.cyclic(replace(frame, kinematics="small"), displacement=path).force
+    assert (without / whole - 1 > 3 * most).all()
 
 
 def test_a_frame_of_drawings():

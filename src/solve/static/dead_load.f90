@@ -1,8 +1,9 @@
 !> Frames under their dead load: the path from no load to all of it, event by event, on which the columns get
 !> the axial forces whose second-order work is counted from then on.
 module rbs_solve_static_dead_load
-   use rbs_base_error, only: error_type
+   use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
+   use rbs_base_text, only: to_text
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_recorder, only: array_recorder
    use rbs_solve_end_state, only: end_state, standing_type
@@ -36,6 +37,7 @@ contains
       do round = 1, most_rounds
          before = frame%compression(:frame%members)
          call load_once(frame, state, error)
+         if (.not. allocated(error)) call check_members(frame, error)
          if (allocated(error) .or. .not. frame%axially_loaded) exit
          last = change
          change = maxval(abs(frame%compression(:frame%members) - before))
@@ -45,6 +47,22 @@ contains
       ! The path has one row, from no load to all of it.
       if (allocated(error)) error%message = 'dead load: '//error%message(len('row 1: ') + 1:)
    end subroutine put_dead_load
+
+   !> Refuse members that buckle between their ends, whatever holds these.
+   subroutine check_members(frame, error)
+      type(frame_type), intent(in) :: frame
+      type(error_type), allocatable, intent(inout) :: error
+      integer :: i
+
+      if (.not. frame%axially_loaded) return
+      do i = 1, frame%members
+         if (.not. frame%element(i)%buckles(frame%compression(i))) cycle
+         call fatal_error(error, analysis_failed, 'row 1: member '//trim(frame%member_name(i))// &
+                          ' buckles between its ends: its compression of '//to_text(frame%compression(i))// &
+                          ' N is more than 4 pi^2 E I/l^2; give it more stiffness, or less load')
+         return
+      end do
+   end subroutine check_members
 
    subroutine load_once(frame, state, error)
       type(frame_type), intent(inout), target :: frame

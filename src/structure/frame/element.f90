@@ -21,6 +21,12 @@
 !> deformation of a single spring, q = sum P z + F_rest s and K_j z' = P' s', so that
 !>
 !>     F = sum P K_j^-1 P' + F_rest,   K_j = sum k [1 y; y y^2],   layers open by w + y theta
+!>
+!> Compression N that does second-order work bends the elastic rest off its chord. With x = N l^2/4EI,
+!> phi = sqrt(x) and c = (1 - phi cot phi)/x, which is 1/3 without compression, end moments (M, M) and (M, -M)
+!> turn the ends by M l c/2EI and M l/2EI(1 - c x), the stability functions of beams (Livesley and Chandler
+!> 1956), and a load w across the member by w l^3/24EI 3 c/(1 - c x). Where springs have the flexibility of
+!> the member, this less its value without compression is in series with them.
 module rbs_structure_frame_element
    use rbs_base_constants, only: no_stiffness
    use rbs_base_kinds, only: wp
@@ -32,6 +38,12 @@ module rbs_structure_frame_element
 
    !> Springs without stiffness share a motion as if each had this part of its initial one.
    real(wp), parameter :: shared = 1.0e-9_wp
+
+   !> x at which a member buckles between ends that are clamped.
+   real(wp), parameter :: largest_x = acos(-1.0_wp)**2
+
+   !> Below the first the series of c is exact, below the second compression does nothing.
+   real(wp), parameter :: small_x = 0.05_wp, no_compression = 1.0e-10_wp
 
    type :: frame_element
       !> The nodes at its ends
@@ -52,6 +64,10 @@ module rbs_structure_frame_element
       !> Stiffness of the elastic rest in its two directions, and along the axis; none, if it is rigid
       real(wp), allocatable :: rest(:)
       real(wp) :: rest_along = 0.0_wp
+      !> E I [N m2] and G A_s [N] between the ends and their distance [m]; 0 where it does not bend, or slip.
+      !> Whether springs have this flexibility
+      real(wp) :: flexural_rigidity = 0.0_wp, shear_rigidity = 0.0_wp, length = 0.0_wp
+      logical :: lumped = .false.
       !> Where its tangent begins in the work array of the frame
       integer :: at = 1
       !> Joints, if some are of layers: first spring of each in the element, and one more (joints + 1); what
@@ -64,6 +80,8 @@ module rbs_structure_frame_element
       real(wp), allocatable :: arm(:, :, :), y(:)
    contains
       procedure :: leave_out_supports
+      procedure :: set_rest
+      procedure :: buckles
    end type frame_element
 
    !> Numbers of a joint in a tangent: w and theta of a joint per axial force and moment.
@@ -85,6 +103,67 @@ contains
          end if
       end do
    end subroutine leave_out_supports
+
+   !> The elastic rest under compression: it bends as a beam on two supports, with end moments alike or
+   !> against each other.
+   pure subroutine set_rest(self, compression, load, turned)
+      class(frame_element), intent(inout) :: self
+      !> Axial force that does second-order work, compression positive [N]; load across the member [N/m]
+      real(wp), intent(in) :: compression, load
+      !> Rotations of the ends of the rest under the load
+      real(wp), intent(out) :: turned(2)
+      real(wp), allocatable :: springs(:, :)
+      real(wp) :: c, x, flexible(2), added
+
+      turned = 0.0_wp
+      springs = self%share(:, :self%bending)
+      self%share = springs
+      if (allocated(self%rest)) deallocate (self%rest)
+      if (.not. self%flexural_rigidity > 0.0_wp) return
+      x = compression*self%length**2/self%flexural_rigidity/4.0_wp
+      if (self%lumped .and. .not. abs(x) > no_compression) return
+      c = shape_of(x)
+      ! Moments (M, M) turn both ends by M l/6EI + 2M/(l GA), moments (M, -M) by M l/2EI without compression.
+      flexible = [c/4.0_wp, 0.25_wp/(1.0_wp - c*x)]
+      added = c/(1.0_wp - c*x)/8.0_wp
+      if (self%lumped) then
+         flexible = flexible - [1.0_wp, 3.0_wp]/12.0_wp
+         added = added - 1.0_wp/24.0_wp
+      end if
+      flexible = flexible*self%length/self%flexural_rigidity
+      if (self%shear_rigidity > 0.0_wp) flexible(1) = flexible(1) + 1.0_wp/(self%length*self%shear_rigidity)
+      self%rest = 1.0_wp/flexible
+      turned = [1.0_wp, -1.0_wp]*added*load*self%length**3/self%flexural_rigidity
+      self%share = reshape([springs, 1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp], [2, self%bending + 2])
+   end subroutine set_rest
+
+   !> Whether it buckles under compression [N] where its ends are clamped.
+   pure logical function buckles(self, compression)
+      class(frame_element), intent(in) :: self
+      real(wp), intent(in) :: compression
+
+      buckles = compression*self%length**2 >= 4.0_wp*largest_x*self%flexural_rigidity &
+                .and. self%flexural_rigidity > 0.0_wp
+   end function buckles
+
+   !> c = (1 - phi cot phi)/x with x = phi^2; of tension x < 0.
+   pure real(wp) function shape_of(x) result(c)
+      real(wp), intent(in) :: x
+      real(wp), parameter :: term(6) = [1.0_wp/3.0_wp, 1.0_wp/45.0_wp, 2.0_wp/945.0_wp, 1.0_wp/4725.0_wp, &
+                                        2.0_wp/93555.0_wp, 1382.0_wp/638512875.0_wp]
+      integer :: i
+
+      if (abs(x) < small_x) then
+         c = 0.0_wp
+         do i = size(term), 1, -1
+            c = term(i) + x*c
+         end do
+      else if (x > 0.0_wp) then
+         c = (1.0_wp - sqrt(x)/tan(sqrt(x)))/x
+      else
+         c = (1.0_wp - sqrt(-x)/tanh(sqrt(-x)))/x
+      end if
+   end function shape_of
 
    !> Numbers of a tangent: K (3, 3), dd/dq (3, springs), H of those that bend and of those that open, and the
    !> stiffness of the springs that it belongs to, each with its initial one.
@@ -191,6 +270,7 @@ contains
          flexible(3, 2) = flexible(2, 3)
       end if
       softening = 0
+      if (allocated(e%rest)) softening = count(e%rest < 0.0_wp)
       do j = 1, size(e%first) - 1
          i = e%first(j)
          associate (last => e%first(j + 1) - 1)
@@ -362,12 +442,12 @@ contains
       real(wp) :: share(2, all), soft(all), across(2, all), determinant, initial, root(all)
       integer :: i, j, l
 
-      root = sqrt(k0)
+      root = sqrt(abs(k0))
       do i = 1, all
          share(:, i) = p(:, i)/root(i)
          across(:, i) = [-share(2, i), share(1, i)]
       end do
-      soft = k/k0
+      soft = k/abs(k0)
       initial = determinant_of(spread(1.0_wp, 1, all))
       determinant = determinant_of(soft)
       stable = determinant > -no_stiffness*initial

@@ -78,8 +78,9 @@ module rbs_structure_frame_frame
       integer :: inside = 0
       !> Dead loads on the unknowns (unknowns), and on the springs of elements whose ends do not move (inside)
       real(wp), allocatable :: dead(:), dead_force(:)
-      !> Rotations of the ends of the elastic rest under dead load (2, elements)
-      real(wp), allocatable :: dead_rotation(:, :)
+      !> Dead load across the elements [N/m] (elements), and rotations of the ends of their elastic rest under
+      !> it (2, elements)
+      real(wp), allocatable :: load_across(:), dead_rotation(:, :)
       !> Compression of the elements under dead load [N] (elements)
       real(wp), allocatable :: compression(:)
       !> When members are lost, see `frame_member` (members)
@@ -96,6 +97,7 @@ module rbs_structure_frame_frame
       procedure :: is_loaded
       procedure :: take_load_off
       procedure :: set_compression
+      procedure :: press
       procedure :: basic
       procedure :: drop_round_off
       procedure :: size_of_parts
@@ -337,13 +339,27 @@ contains
       do i = 1, self%members
          call self%end_forces(i, self%basic(i, d(self%inside + 1:)), d, f, 1.0_wp, self%initial_tangent, s, &
                               correction)
-         self%compression(i) = -s(1)
+         call self%press(i, -s(1))
          ! Springs that open carry it by the path, not from its begin on.
          associate (e => self%element(i))
             self%constant_axial(e%before + 1:e%before + e%bending) = -s(1)
          end associate
       end do
+      self%initial_tangent = 0.0_wp
+      call self%linearise(self%initial_stiffness, self%initial_tangent, i)
    end subroutine set_compression
+
+   !> Put an axial force that does second-order work on an element.
+   pure subroutine press(self, element, compression)
+      class(frame_type), intent(inout) :: self
+      integer, intent(in) :: element
+      !> [N]
+      real(wp), intent(in) :: compression
+
+      self%compression(element) = compression
+      call self%element(element)%set_rest(merge(compression, 0.0_wp, self%axially_loaded), &
+                                          self%load_across(element), self%dead_rotation(:, element))
+   end subroutine press
 
    !> What the load does work on: of the lateral one, or of the dead one.
    pure real(wp) function way_of_load(self, of_dead_load, d) result(way)
@@ -643,9 +659,10 @@ contains
       end associate
    end subroutine unknown_forces
 
-   !> The compression of an element works on the squares of the rotations of its chord and its rigid ends.
+   !> Second-order forces of the compression of an element, N sum l r (r . x): rows r are the rotations of its
+   !> rigid ends and of its chord. What bends off the chord is in the elastic rest.
    pure subroutine add_second_order(self, element, x, g)
-      type(frame_type), intent(in) :: self
+      class(frame_type), intent(in) :: self
       integer, intent(in) :: element
       real(wp), intent(in), contiguous :: x(:)
       real(wp), intent(inout), contiguous :: g(:)
@@ -659,29 +676,23 @@ contains
                if (length(j) > 0.0_wp .and. at > 0) g(at) = g(at) + press*length(j)*x(at)
             end associate
          end do
-         turn = 0.0_wp
-         do j = 1, 6
-            turn = turn + e%chord(j)*x(e%unknown(j))
-         end do
-         turn = press*length(3)*turn
+         turn = press*length(3)*chord_rotation(e, x)
          do j = 1, 6
             g(e%unknown(j)) = g(e%unknown(j)) + turn*e%chord(j)
          end do
       end associate
    end subroutine add_second_order
 
-   !> Rotations of the rigid ends and of the chord per displacement of the nodes.
-   pure subroutine second_order_rows(self, element, row)
-      type(frame_type), intent(in) :: self
-      integer, intent(in) :: element
-      real(wp), intent(out) :: row(6, 3)
+   pure real(wp) function chord_rotation(e, x) result(rotation)
+      type(frame_element), intent(in) :: e
+      real(wp), intent(in), contiguous :: x(:)
+      integer :: j
 
-      row = 0.0_wp
-      row(3, 1) = 1.0_wp
-      row(6, 2) = 1.0_wp
-      row(:, 3) = -self%element(element)%to_basic(2, :)
-      row(3, 3) = row(3, 3) + 1.0_wp
-   end subroutine second_order_rows
+      rotation = 0.0_wp
+      do j = 1, 6
+         rotation = rotation + e%chord(j)*x(e%unknown(j))
+      end do
+   end function chord_rotation
 
    subroutine axial_forces(self, load, axial)
       class(frame_type), intent(in) :: self
@@ -692,26 +703,28 @@ contains
       if (size(load) < 0) axial = 0.0_wp
    end subroutine axial_forces
 
+   !> Add the derivatives of these forces, with their sign turned.
    subroutine add_geometric(self, k, band)
       class(frame_type), intent(in) :: self
       real(wp), intent(in), contiguous :: k(:)
       real(wp), intent(inout), contiguous :: band(:, :)
-      real(wp) :: row(6, 3)
-      integer :: number(6), e, i, j, l
+      integer :: i, j, m
 
-      do e = 1, self%members
-         call second_order_rows(self, e, row)
-         number = self%element(e)%number
-         do l = 1, 3
+      do m = 1, self%members
+         associate (e => self%element(m), length => self%lengths(:, m))
             do j = 1, 6
-               if (number(j) == 0) cycle
-               do i = 1, 6
-                  if (number(i) < number(j)) cycle
-                  band(1 + number(i) - number(j), number(j)) = band(1 + number(i) - number(j), number(j)) &
-                     - k(e)*self%lengths(l, e)*row(i, l)*row(j, l)
-               end do
+               associate (column => e%number(j))
+                  if (column == 0) cycle
+                  if (mod(j, 3) == 0) band(1, column) = band(1, column) - k(m)*length(j/3)
+                  do i = 1, 6
+                     if (e%number(i) < column) cycle
+                     associate (entry => band(1 + e%number(i) - column, column))
+                        entry = entry - k(m)*length(3)*e%chord(i)*e%chord(j)
+                     end associate
+                  end do
+               end associate
             end do
-         end do
+         end associate
       end do
    end subroutine add_geometric
 
@@ -902,8 +915,10 @@ contains
             do j = 1, 2
                if (self%number(1, e%node(j)) > 0) cycle
                force = force - sum(s*e%to_basic(:, 3*j - 2))
+               ! A chord that leans presses the support aside; a rotation against it has the opposite sign.
                if (self%axially_loaded) then
-                  force = force + leaning_of(self, i, j, d(self%inside + 1:))
+                  force = force - self%compression(i)*self%lengths(3, i) &
+                          *chord_rotation(e, d(self%inside + 1:))*e%to_basic(2, 3*j - 2)
                end if
             end do
          end associate
@@ -913,24 +928,6 @@ contains
          if (self%place(i)%kind == shear) force = force + f(i)
       end do
    end function base_force
-
-   !> What a leaning element presses a node with along x.
-   pure real(wp) function leaning_of(frame, element, node, x) result(force)
-      class(frame_type), intent(in) :: frame
-      !> Which of its two nodes
-      integer, intent(in) :: element, node
-      real(wp), intent(in) :: x(:)
-      real(wp) :: row(6, 3), moved(6)
-      integer :: number(6), i
-
-      call second_order_rows(frame, element, row)
-      number = frame%element(element)%number
-      moved = 0.0_wp
-      do i = 1, 6
-         if (number(i) > 0) moved(i) = x(number(i))
-      end do
-      force = frame%compression(element)*sum(frame%lengths(:, element)*matmul(moved, row)*row(3*node - 2, :))
-   end function leaning_of
 
    !> Accelerations of what has mass; where there is none they follow from the motion, not from forces.
    subroutine accelerations(self, d, v, load, pressing, result)

@@ -34,6 +34,8 @@ contains
       m%shear_drift = kind%shear_drift
       if (is_given(kind%yield_moment) .or. &
           (is_given(m%lost_at) .and. all(spring%kind /= kind%name))) then
+         m%bending = kind%modulus*kind%inertia
+         m%lumped = .true.
          do i = 1, 3
             one = elastic(kind%modulus*kind%inertia/(share(i)*clear))
             if (is_given(kind%yield_moment)) then

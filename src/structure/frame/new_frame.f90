@@ -45,8 +45,10 @@ module rbs_structure_frame_new_frame
       integer :: kind_of = 0
       !> Lengths of the rigid ends [m]
       real(wp) :: rigid(2) = 0.0_wp
-      !> E A [N], E I [N m2] and G A_s [N] of the elastic rest; 0 where it is rigid
+      !> E A [N], E I [N m2] and G A_s [N] of the elastic rest; 0 where it is rigid. Whether springs have the
+      !> flexibility of E I
       real(wp) :: axial = 0.0_wp, bending = 0.0_wp, sliding = 0.0_wp
+      logical :: lumped = .false.
       !> Springs: kind, joint, place in shares of the clear length, parameters; those that open come last.
       !> Layers of a joint follow one another, with their distances from its middle [m]
       integer, allocatable :: kind(:), joint(:)
@@ -265,7 +267,8 @@ contains
       associate (elements => size(member) + count(frame%beam_rotation > 0))
          allocate (frame%element(elements))
          allocate (frame%dead_force(frame%inside), frame%compression(elements), &
-                   frame%dead_rotation(2, elements), frame%lengths(3, elements), source=0.0_wp)
+                   frame%load_across(elements), frame%dead_rotation(2, elements), &
+                   frame%lengths(3, elements), source=0.0_wp)
       end associate
       before = 0
       at = 1
@@ -292,7 +295,11 @@ contains
                e%opening = count(m%kind == axial)
                e%bending = size(m%kind) - e%opening
                e%rest_along = m%axial/clear
-               call set_rest(e, m, clear)
+               e%flexural_rigidity = m%bending
+               e%shear_rigidity = m%sliding
+               e%length = clear
+               e%lumped = m%lumped
+               allocate (e%share(2, e%bending), source=0.0_wp)
                do j = 1, size(m%kind)
                   spring(before + j) = m%spring(j)
                   frame%spring_place(before + j) = m%place(j)
@@ -304,6 +311,7 @@ contains
                end do
                if (any(m%kind == layer)) call set_joints(e, m, clear)
                call put_load(frame, m, i, axis, clear)
+               call frame%press(i, 0.0_wp)
                e%at = at
                at = at + tangent_size(e)
                before = before + size(m%kind)
@@ -405,23 +413,6 @@ contains
       end do
    end subroutine set_joints
 
-   !> The elastic rest bends as a beam that is supported at its ends: alike or against each other.
-   subroutine set_rest(e, m, clear)
-      type(frame_element), intent(inout) :: e
-      type(frame_member), intent(in) :: m
-      real(wp), intent(in) :: clear
-      integer :: rest
-
-      rest = merge(2, 0, m%bending > 0.0_wp)
-      allocate (e%share(2, e%bending + rest), source=0.0_wp)
-      if (rest == 0) return
-      e%share(:, e%bending + 1) = [1.0_wp, 1.0_wp]
-      e%share(:, e%bending + 2) = [1.0_wp, -1.0_wp]
-      ! Moments (M, M) turn both ends by M l/6EI + 2M/(l GA), moments (M, -M) by M l/2EI.
-      e%rest = [12.0_wp, 4.0_wp]*m%bending/clear
-      if (m%sliding > 0.0_wp) e%rest(1) = 1.0_wp/(1.0_wp/e%rest(1) + 1.0_wp/(clear*m%sliding))
-   end subroutine set_rest
-
    !> Dead load on a member: that of the clear length is carried to the rigid ends as by a beam on two
    !> supports, with moments in between; that of the rigid ends is on them.
    subroutine put_load(frame, m, i, axis, clear)
@@ -444,9 +435,7 @@ contains
                                                m%y, m%joint == m%joint(j), frame%element(i)%before)
          if (m%kind(j) == shear) frame%dead_force(at) = down*clear*(0.5_wp - share)
       end do
-      if (m%bending > 0.0_wp) then
-         frame%dead_rotation(:, i) = [1.0_wp, -1.0_wp]*down*clear**3/(24.0_wp*m%bending)
-      end if
+      frame%load_across(i) = down
       do k = 1, 2
          over_node = per_length*m%rigid(k)
          at = frame%number(2, m%node(k))
