@@ -297,7 +297,6 @@ YIELDS = "0.0437 0.2326 0.6121 1.1143 1.6214 1.9891 2.0951 1.9240 1.5602"
 TRAPEZOIDS = "0.364 1.35 2.68 4.00 4.95 5.34 5.13 4.48 3.64 2.90 2.44 2.31"
 SUPERPOSED = "0.382 1.41 2.78 4.09 5.00 5.29 4.986 4.277 3.457 2.806 2.484 2.489"
 ENGESSER = "with shear by the slope of the axis; the source does not tell its own"
-CHORDS = "16 members, of chords"
 ROUNDED = "the book goes on with rounded numbers"
 
 PROBLEMS: list[Problem] = [
@@ -373,9 +372,9 @@ PROBLEMS: list[Problem] = [
     ),
     Problem("Beam-column", "AISC Design Guide 25, closed form",
             "moments [kip in], sways [in] at 1/4, 1/2 and 0.67 of Euler's load", *
-            frames.beam_column((0.25, 0.5, 0.67)), CHORDS, 5e-3),
+            frames.beam_column((0.25, 0.5, 0.67))),
     Problem("Slender cantilever", "CSI, test problem 109, closed form",
-            "moment [N m], displacement [m]", "1126.5 0.169134", frames.slender, CHORDS, 2e-3),
+            "moment [N m], displacement [m]", "1126.5 0.169134", frames.slender),
     Problem("Sway mechanism of a portal", "limit analysis, 4 M_p/h", "load over M_p/h",
             "4.00000000", frames.plastic_sway),
     Problem("Loss of a column, three floors", "limit analysis, 3 x 4 M_p/L", "load over M_p/L",

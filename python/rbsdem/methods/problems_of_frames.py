@@ -90,30 +90,28 @@ def flexible_beams() -> Array:
     return np.asarray(modes(frame, 2).omega / np.sqrt(2e11 * inertia / (mass * height**3)))
 
 
-#: Members of a strut: chords for its second-order work, whose error falls as the square.
-PARTS = 16
-
-
 def strut(kind: FrameMember, length: float, loads: ArrayLike, **more: float) -> Array:
     """Return moments [N m], then displacements across [m], of a strut under axial loads [N].
 
     With `tip`, a force across [N], it is a cantilever, of its foot and top; with `across`, a load
-    per length [N/m], it has pins at both ends, and the numbers are those of its middle.
+    per length [N/m], it has pins at both ends, and the numbers are those of its middle. It
+    is one member, or two.
     """
-    pins, at = "across" in more, PARTS // 2 if "across" in more else PARTS
-    ends = {0: "pinned" if pins else "fixed", PARTS: "roller" if pins else "free"}
+    pins = "across" in more
+    parts, at = 1 + pins, 1
+    ends = {0: "pinned" if pins else "fixed", parts: "roller" if pins else "free"}
     members = [
         Member(f"M-{i}", f"{i}", f"{i + 1}", kind, load=more.get("across", 0.0))
-        for i in range(PARTS)
+        for i in range(parts)
     ]
 
     def under(load: float) -> tuple[float, float]:
         nodes = [
             FrameNode(
-                f"{i}", length * i / PARTS, 0.0, ends.get(i, "free"),
-                load_x=-load if i == PARTS else 0.0, push_y=float(-(i == at)),
+                f"{i}", length * i / parts, 0.0, ends.get(i, "free"),
+                load_x=-load if i == parts else 0.0, push_y=float(-(i == at)),
             )
-            for i in range(PARTS + 1)
+            for i in range(parts + 1)
         ]  # fmt: skip
         frame = Frame(nodes=nodes, members=members, pattern="nodes", control="y",
                       control_node=f"{at}", kinematics="pdelta")  # fmt: skip
