@@ -7,18 +7,18 @@ or stated by the caller.
 
 from __future__ import annotations
 
-import itertools
 import os
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+import unicodedata
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._types import Array
-from rbsdem.errors import InputError
+from rbsdem.errors import InputError, RepairWarning, warn
 
 #: Standard acceleration of gravity [m/s2].
 STANDARD_GRAVITY = 9.80665
@@ -27,12 +27,32 @@ STANDARD_GRAVITY = 9.80665
 LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254, "inch": 0.0254, "inches": 0.0254}
 FORCES = {
     "N": 1.0, "kN": 1e3, "MN": 1e6, "kip": 4448.2216152605, "kips": 4448.2216152605,
-    "lbf": 4.4482216152605, "tf": 9806.65, "tonf": 9806.65,
+    "klb": 4448.2216152605, "lbf": 4.4482216152605, "kgf": 9.80665,
+    "tf": 9806.65, "tonf": 9806.65, "t": 9806.65, "ton": 9806.65,
+}  # fmt: skip
+
+#: Parts of the names of a quantity, without accents: English, then German, Spanish, French,
+#: Italian, Turkish. A single letter is a name of its own only; the first that fits one column only
+#: names it.
+WORDS = {
+    "time": ("time", "t", "zeit", "tiempo", "temps", "tempo", "zaman"),
+    "acceleration": (
+        "acceleration", "acc", "ag", "a", "beschleunigung", "aceleracion", "accelerazione", "ivme",
+    ),
+    "displacement": (
+        "displacement", "disp", "deflection", "drift", "delta", "verschiebung", "auslenkung", "weg",
+        "desplazamiento", "deplacement", "spostamento", "yerdegistirme", "yer degistirme",
+        "deplasman", "d", "u", "x",
+    ),
+    "force": (
+        "force", "load", "shear", "kraft", "fuerza", "carga", "effort", "charge", "forza", "carico",
+        "kuvvet", "yuk", "f", "v", "p", "h",
+    ),
 }  # fmt: skip
 
 #: Other words that are units, and not names, at the end of a name or below it.
 _OTHERS = (
-    " s ms sec second seconds min - % rad mrad deg v mv nm ft lb klbf kgf psi ksi pa mpa gpa bar"
+    " s ms sec second seconds min - % rad mrad deg v mv nm ft lb klbf psi ksi pa mpa gpa bar"
     " με µε ue um µm microstrain strain g gal gals hz °c kg knm"
 )
 _UNITS = {*_OTHERS.split(" "), *(unit.lower() for unit in (*LENGTHS, *FORCES))}
@@ -50,6 +70,12 @@ _ROWS = 3
 _MOST_BYTES = 500_000_000
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?$")
+#: How programs write a value that is no number: NaN, -Inf, 1.#IND, -1.#QNAN, -nan(ind).
+_NOT_FINITE = re.compile(r"[+-]?(nan(\(\w*\))?|inf(inity)?|1[.,]#\w+)$", re.IGNORECASE)
+#: A line of key and value, as UNITS: cm/s2 or DT=0.01.
+_STATEMENT = re.compile(r"\W*[A-Za-z][^:=]*[:=]\s*\S")
+#: A comment begins at the start of a line, or after a blank behind something else.
+_COMMENT = re.compile(r"(?<=\S)\s+#.*")
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,13 +89,19 @@ class NumberTable:
     names, units : tuple of str
         A text for each column; empty where the file gives none.
     values : ndarray, shape (rows, columns)
-        The numbers.
+        The numbers; NaN in a column of texts.
+    head : tuple of str
+        The lines above the first row.
+    texts : dict of int to str
+        Columns of texts, dates or clocks, with the first entry of each.
     """
 
     source: str
     names: tuple[str, ...]
     units: tuple[str, ...]
     values: Array
+    head: tuple[str, ...] = ()
+    texts: Mapping[int, str] = field(default_factory=dict)
 
     @property
     def columns(self) -> int:
@@ -82,22 +114,56 @@ class NumberTable:
             return f"{self.columns} columns without names"
         return "columns " + ", ".join(f"{i} {name!r}" for i, name in enumerate(self.names, 1))
 
-    def find(self, words: Sequence[str], but: Sequence[str] = ()) -> int | None:
-        """Return the place of the only column that the first of some words names, or None.
+    def find(self, quantity: str, but: Sequence[str] = ()) -> int | None:
+        """Return the place of the only column of numbers that has the name of a quantity, or None.
 
         A word of one letter names a column only if it stands alone or before its unit. `but` are
         words that the name must not have.
         """
-        for word in words:
+        names = [plain(name) for name in self.names]
+        for word in WORDS[quantity]:
             named = [
                 i
-                for i, name in enumerate(map(str.lower, self.names))
-                if (word in name if len(word) > 1 else bare(name) == word)
+                for i, name in enumerate(names)
+                if i not in self.texts
+                and (word in name if len(word) > 1 else bare(name) == word)
                 and not any(other in name for other in but)
             ]
             if len(named) == 1:
                 return named[0]
         return None
+
+    def place(self, value: object, what: str) -> int:
+        """Return the place of a column that a user names, or counts from 1; `what` it is for."""
+        if isinstance(value, str):
+            word = value.strip().lower()
+            names = [name.lower() for name in self.names]
+            named = [i for i, name in enumerate(names) if word in (name, bare(name))]
+            if len(named) != 1:
+                fault = "is the name of more than one column" if named else "is not there"
+                raise InputError(
+                    f"{self.source}: column {value!r} {fault}; there are {self.describe()}; "
+                    "a number from 1 is taken as well"
+                )
+            at = named[0]
+        else:
+            number = _arguments.integer(value, what)
+            if not 1 <= number <= self.columns:
+                raise InputError(
+                    f"{what} = {number}, but {self.source} has {self.describe()}, counted from 1"
+                )
+            at = number - 1
+        if at in self.texts:
+            raise InputError(
+                f"{self.source}: column {value!r} has texts, as {self.texts[at]!r}, and no numbers"
+            )
+        return at
+
+
+def plain(text: str) -> str:
+    """Return a text in small letters without accents."""
+    parts = unicodedata.normalize("NFKD", text.lower().replace("ı", "i"))
+    return "".join(letter for letter in parts if not unicodedata.combining(letter))
 
 
 def bare(name: str) -> str:
@@ -127,7 +193,7 @@ def read_lines(source: str | os.PathLike[str]) -> tuple[str, list[str]]:
         If the file cannot be read, or holds no text.
     """
     if isinstance(source, str) and "\n" in source:
-        where, text = "text", source
+        where, text = "text", source.lstrip("\ufeff")
     else:
         where = _arguments.file(source)
         if os.path.isdir(where):
@@ -144,7 +210,10 @@ def read_lines(source: str | os.PathLike[str]) -> tuple[str, list[str]]:
             ) from None
         if b"\0" in raw[:4096]:
             raise InputError(f"{where}: is not a text file; save it as csv or text in UTF-8")
-        text = raw.decode("utf-8-sig", "replace")
+        try:
+            text = raw.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            text = raw.decode("latin-1")
     if not text.strip():
         raise InputError(f"{where}: is empty; download or export it again")
     return where, text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
@@ -176,6 +245,11 @@ def read_table(
     InputError
         If there are no rows, what is stated cannot be, or a value is no finite number; with the
         line.
+
+    Warns
+    -----
+    RepairWarning
+        If columns of texts, dates or clocks are left out.
     """
     if separator is not None and separator not in _SEPARATORS:
         raise InputError(f'separator = {separator!r} must be ",", ";", "\\t" or " "')
@@ -184,45 +258,62 @@ def read_table(
     if separator == decimal == ",":
         raise InputError("separator and decimal are both a comma; one of them must be another")
     where, lines = source if isinstance(source, tuple) else read_lines(source)
+    lines = [_COMMENT.sub("", line) if "#" in line else line for line in lines]
     if header is not None and not 0 <= header < len(lines):
         raise InputError(f"header = {header}: {where} has {len(lines)} lines")
     stated: dict[str, Any] = {"separator": separator, "decimal": decimal, "header": header}
-    first, mark, point = _layout(lines, where, stated, least)
-    values = _values(lines, first, mark, point, where)
+    first, mark, point, texts = _layout(lines, where, stated, least)
+    columns = len(_split(lines[first], mark))
+    if header is None:
+        first = _first_row(lines, first, mark, point)
+    values = _values(lines, first, columns, mark, point, where, texts)
     at = first if _is_count(lines, first, mark) else first - 1
-    names: tuple[str, ...]
-    units: tuple[str, ...]
+    head = tuple(lines[:first])
     if header is None and values.shape[1] in (2, 3) and _is_count(lines, at, mark):
         # The format of the PEER database: a title, the number of rows, the rows.
         values = values[at + 1 - first :]
         count = values.shape[1]
         names, units = ("displacement", "force", "axial_load")[:count], ("mm", "kN", "kN")[:count]
     else:
-        above = [line for line in lines[:first] if line.strip()]
+        above = [line for line in head if line.strip()]
         names, units = _head(above, mark, values.shape[1])
-    return NumberTable(where, names, units, values)
+    if texts:
+        said = "; ".join(f"{names[i] or i + 1!r} has {text!r}" for i, text in texts.items())
+        warn(f"{where}: columns of texts are left out: {said}", RepairWarning)
+    return NumberTable(where, names, units, values, head, texts)
 
 
 def _layout(
     lines: list[str], where: str, stated: dict[str, Any], least: int
-) -> tuple[int, str, str]:
-    """Return the lines above the first row, the separator and the decimal point."""
+) -> tuple[int, str, str, dict[int, str]]:
+    """Return the lines above the first row, separator, decimal point and columns of texts."""
     sample, header = lines[:_SAMPLE], stated["header"]
     filled = [i for i, line in enumerate(sample) if line.strip() and line.lstrip()[0] != "#"]
-    # Several columns before one; a few rows in a line are the beginning, and in a file with a
-    # mistake there may be only one.
-    for columns, rows in itertools.product((2, 1) if least == 1 else (2,), (_ROWS, 1)):
-        best: tuple[int, int, str, str] | None = None
+    # Several columns before one, numbers alone before numbers and texts; a few rows in a line are
+    # the beginning, and in a file with a mistake there may be only one.
+    wanted = [(2, _ROWS, False), (2, _ROWS, True), (2, 1, False)]
+    if least == 1:
+        wanted += [(1, _ROWS, False), (1, _ROWS, True), (1, 1, False)]
+    for columns, rows, mixed in wanted:
+        best: tuple[int, int, str, str, tuple[bool, ...]] | None = None
         for mark, point in _LAYOUTS:
             if stated["separator"] not in (None, mark) or stated["decimal"] not in (None, point):
                 continue
-            width = {i: _width(_split(sample[i], mark), point) for i in filled}
-            begin = _begin(width, filled, rows, columns) if header is None else header
-            count = sum(width[i] >= columns for i in filled if i >= (begin or 0))
-            if begin is not None and count and (best is None or count > best[0]):
-                best = count, begin, mark, point
+            kinds = {i: _kinds(_split(sample[i], mark), point) for i in filled}
+            fit = {i for i in filled if sum(kinds[i]) >= columns and all(kinds[i]) is not mixed}
+            begin = _begin(kinds, filled, rows, fit) if header is None else header
+            count = sum(i >= (begin or 0) for i in fit)
+            # A few lines of texts and numbers may stand above the rows of another layout.
+            if begin is None or not count or (mixed and 2 * count < len(filled)):
+                continue
+            if best is None or count > best[0]:
+                row = next(kinds[i] for i in filled if i >= begin and i in fit)
+                best = count, begin, mark, point, row
         if best is not None:
-            return best[1:]
+            _, begin, mark, point, row = best
+            words = _split(next(sample[i] for i in filled if i >= begin), mark) if mixed else []
+            texts = {i: words[i][:40] for i, number in enumerate(row) if not number}
+            return begin, mark, point, texts
     known = ", ".join(f"{name} = {value!r}" for name, value in stated.items() if value is not None)
     raise InputError(
         f"{where}: has no rows of {'two or more ' if least > 1 else ''}numbers"
@@ -230,38 +321,78 @@ def _layout(
     )
 
 
-def _begin(width: dict[int, int], filled: list[int], rows: int, least: int) -> int | None:
-    """Return the first of the rows of numbers: as many in each of a few lines, or to the end."""
+def _begin(
+    kinds: dict[int, tuple[bool, ...]], filled: list[int], rows: int, fit: set[int]
+) -> int | None:
+    """Return the first of the rows of numbers: alike in a few lines, or to the end."""
     for place, i in enumerate(filled):
-        if width[i] >= least and all(width[j] == width[i] for j in filled[place : place + rows]):
+        if i in fit and all(kinds[j] == kinds[i] for j in filled[place : place + rows]):
             return i
     return None
 
 
-def _values(lines: list[str], first: int, mark: str, point: str, where: str) -> Array:
-    """Return the numbers of all rows."""
-    rows = lines[first:]
+def _first_row(lines: list[str], begin: int, mark: str, point: str) -> int:
+    """Return the first row, where one among the first may be wrong.
+
+    A line above with as many fields as the rows, one of them a number, is a row, and so is any line
+    below the names of the columns, and above a row in a file that begins with one.
+    """
+    columns, first, named = len(_split(lines[begin], mark)), begin, False
+    top, between = (begin, False), begin
+    for i in range(begin - 1, -1, -1):
+        words = _split(lines[i], mark)
+        if not words or lines[i].lstrip().startswith("#"):
+            continue
+        numbers = _kinds(words, point)
+        like = any(numbers) or any(map(_NOT_FINITE.match, words))
+        fields = len(words) if mark == " " else lines[i].count(mark) + 1
+        top = i, all(numbers) and (len(words) == columns or mark != " ")
+        # Between blanks, a title is words and numbers too.
+        title = mark == " " and not (numbers[0] or _NOT_FINITE.match(words[0]))
+        if top[1] or (like and columns in (len(words), fields) and not title):
+            first = first if named else i
+        elif len(words) == columns and not like and "" not in words:
+            first = first if named or mark == " " else min(first, between)
+            named = True
+        elif any(map(str.isalnum, lines[i])):
+            between = i
+    return top[0] if top[1] else first
+
+
+def _values(
+    lines: list[str],
+    first: int,
+    columns: int,
+    mark: str,
+    point: str,
+    where: str,
+    texts: Collection[int],
+) -> Array:
+    """Return the numbers of all rows, and NaN in columns of texts."""
+    rows = ["" if line.lstrip()[:1] == "#" else line for line in lines[first:]]
     if point == ",":
         rows = [line.replace(",", ".") for line in rows]
     try:
         # Nearly all files are in order.
         separator = None if mark == " " else mark
-        values = np.loadtxt(rows, delimiter=separator, comments="#", quotechar='"', ndmin=2)
+        values = np.loadtxt(rows, delimiter=separator, comments=None, quotechar='"', ndmin=2)
         if np.isfinite(values).all():
             return values
     except ValueError:
         pass
     found: list[list[float]] = []
     for number, line in enumerate(rows, first + 1):
-        if not line.strip() or line.lstrip().startswith("#"):
+        if not line.strip():
             continue
         words = _split(line, mark)
-        if found and len(words) != len(found[0]):
+        if len(words) != columns:
             raise InputError(
                 f"{where} line {number}: has {len(words)} value{'s' * (len(words) != 1)}, the rows "
-                f"before have {len(found[0])}; every row has one for each column"
+                f"{'before' if found else 'behind'} have {columns}; every row has one for each "
+                "column"
             )
-        found.append([_number(word, f"{where} line {number}, value {i}")
+        at = f"{where} line {number}, value "
+        found.append([np.nan if i - 1 in texts else _number(word, f"{at}{i}")
                       for i, word in enumerate(words, 1)])  # fmt: skip
     return np.array(found)
 
@@ -288,11 +419,11 @@ def _split(line: str, mark: str) -> list[str]:
     return words[:-1] if len(words) > 1 and not words[-1] else words
 
 
-def _width(words: Sequence[str], point: str) -> int:
-    """Return how many numbers a line has; 0 if it has something else."""
+def _kinds(words: Sequence[str], point: str) -> tuple[bool, ...]:
+    """Return which fields of a line are numbers."""
     if point == ",":
         words = [word.replace(",", ".") if "." not in word else "x" for word in words]
-    return len(words) if words and all(map(_NUMBER.match, words)) else 0
+    return tuple(bool(_NUMBER.match(word)) for word in words)
 
 
 def _is_count(lines: Sequence[str], at: int, mark: str) -> bool:
@@ -308,14 +439,28 @@ def _is_count(lines: Sequence[str], at: int, mark: str) -> bool:
 def _head(lines: Sequence[str], mark: str, columns: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return names and units from the lines above the numbers."""
     empty = ("",) * columns
-    rows = [_split(line.lstrip("#"), mark) for line in lines]
+    statement = lines and _STATEMENT.match(lines[-1]) and len(re.findall("[:=]", lines[-1])) == 1
+    rows = [] if statement else [_names(line, mark, columns) for line in lines[-2:]]
     if not rows or len(rows[-1]) != columns:
         return empty, empty
-    last = tuple(rows[-1])
+    last = rows[-1]
     if all(map(_is_unit, last)):
-        above = tuple(rows[-2]) if len(rows) > 1 and len(rows[-2]) == columns else empty
+        above = rows[0] if len(rows) > 1 and len(rows[0]) == columns else empty
         return above, tuple(word.strip("[]() ") for word in last)
     return last, tuple(map(_unit_in, last))
+
+
+def _names(line: str, mark: str, columns: int) -> tuple[str, ...]:
+    """Return the names in a line; between blanks, one of two words has two blanks behind it."""
+    words = _split(line.lstrip("#"), mark)
+    if mark == " ":
+        # A unit in brackets belongs to the name before it.
+        together = re.sub(r"\s+(?=[(\[])", " ", line.strip("# \t"))
+        joined = re.findall(r"[^\s(\[]\S*(?: [(\[][^)\]]*[)\]])?|[(\[]\S*", together)
+        if len(joined) != len(words) or len(words) != columns:
+            apart = re.split(r"\s{2,}|\t", line.strip("# \t"))
+            words = joined if len(joined) == columns else apart
+    return tuple(words)
 
 
 def _is_unit(word: str) -> bool:
@@ -329,5 +474,8 @@ def _unit_in(name: str) -> str:
     found = re.search(r"[(\[]\s*([^()\[\]]+?)\s*[)\]]$", name.strip())
     if found:
         return found[1]
+    if re.fullmatch(r"\W*[NSEWUD]-[NSEWUD]\W*", name):
+        return ""  # A direction
+    name = re.sub(r"\s+in\s+(?=\S+$)", " ", name)
     ends = (name[mark.end() :] for mark in re.finditer(r"[\s_/-]", name))
     return next((end for end in ends if end.strip("- ") and _is_unit(end)), "")

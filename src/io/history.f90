@@ -4,13 +4,17 @@
 module rbs_io_history
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: to_text
+   use rbs_base_text, only: lower, to_text
    use rbs_io_text_file, only: text_file, load_text, read_real, is_integer, number_ok, number_wrong, &
                                number_not_finite
    implicit none
    private
 
-   public :: history_type, read_history
+   public :: history_type, read_history, elsewhere
+
+   !> A remedy for a layout that is not the strict one.
+   character(len=*), parameter :: elsewhere = 'rbsdem.motions.read_motion and rbsdem.read_test of '// &
+                                  'Python take more layouts'
 
    !> Most fields of a line.
    integer, parameter :: most_columns = 64
@@ -37,6 +41,8 @@ module rbs_io_history
       integer :: columns = 0, rows = 0
       !> Names of the columns; empty where the file gives none
       character(len=64), allocatable :: labels(:)
+      !> A comment that states a unit, which is not read
+      character(len=:), allocatable :: stated
       !> Values (columns, rows)
       real(wp), allocatable :: values(:, :)
    end type history_type
@@ -87,8 +93,7 @@ contains
             if (i /= at2_head - 1) cycle
             if (index(file%text(first:last), 'ACCEL') == 0 .or. index(file%text(first:last), ' G') == 0) then
                call fatal_error(error, bad_input, path//" line 3: '"//snippet(file%text(first:last))// &
-                                "' of an AT2 file must say ACCELERATION ... IN UNITS OF G; convert other "// &
-                                'files to csv with the columns time_s, acceleration_g')
+                                "' of an AT2 file must say ACCELERATION ... IN UNITS OF G; "//elsewhere)
                return
             end if
          end do
@@ -108,7 +113,8 @@ contains
          if (count < 2) numbers = 0.0_wp
          if (.not. (numbers(1) > 1.0_wp .and. numbers(1) < 1.0e8_wp .and. numbers(2) > 0.0_wp)) then
             call fatal_error(error, bad_input, path//" line 4: '"//snippet(file%text(first:last))// &
-                             "' must give the number of values, NPTS, and the time step in s, DT")
+                             "' must give the number of values, NPTS, and the time step in s, DT ("// &
+                             elsewhere//')')
             return
          end if
          history%columns = 2
@@ -195,6 +201,8 @@ contains
             call file%next_line(first, last, found)
             if (.not. found) exit
             if (.not. is_blank(file%text(first:last))) exit
+            if (index(lower(file%text(first:last)), 'unit') == 0) cycle
+            history%stated = snippet(file%text(first:last))
          end do
          if (.not. found) then
             call fatal_error(error, bad_input, path//': has no rows of numbers')
@@ -227,7 +235,8 @@ contains
          if (allocated(error)) return
          if (size(history%labels) /= history%columns) then
             call fatal_error(error, bad_input, path//': has '//to_text(size(history%labels))// &
-                             ' names of columns for '//to_text(history%columns)//' columns; make them equal')
+                             ' names of columns for '//to_text(history%columns)//' columns; make them '// &
+                             'equal ('//elsewhere//')')
          end if
       end subroutine read_csv
 
@@ -355,11 +364,11 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: remedy
 
-      remedy = 'is not a number'
-      if (status == number_not_finite) remedy = 'is not a finite number'
-      if (word == '') remedy = 'is empty'
+      remedy = 'is not a number; correct the file ('//elsewhere//')'
+      if (status == number_not_finite) remedy = 'is not a finite number; correct the file'
+      if (word == '') remedy = 'is empty; correct the file'
       call fatal_error(error, bad_input, path//' line '//to_text(line)//', value '//to_text(column)// &
-                       ": '"//snippet(word)//"' "//remedy//'; correct the file')
+                       ": '"//snippet(word)//"' "//remedy)
    end subroutine report_number
 
    !> Cut a line into at most `most_columns` + 1 fields. If the separator is a blank, any run of blanks and

@@ -3,7 +3,7 @@ module rbs_io_loading_file
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: lower, list_of, suggestion, to_text
-   use rbs_io_history, only: history_type, read_history
+   use rbs_io_history, only: elsewhere, history_type, read_history
    use rbs_io_text_file, only: is_integer
    use rbs_base_check, only: is_given
    use rbs_loading_loading_record, only: loading_record, units_of
@@ -218,6 +218,12 @@ contains
 
       allocate (units, source=units_of(drive))
       name = unit
+      if (unit_of(history%labels(column)) == '' .and. allocated(history%stated)) then
+         call fatal_error(error, bad_input, path//": the unit that a comment states ('"//history%stated// &
+                          "') is not read; remove the comment and give the unit with unit, or in the "// &
+                          'name of the column')
+         return
+      end if
       if (name == '') name = unit_of(history%labels(column))
       if (name == '') return
       do i = 1, size(units)
@@ -229,7 +235,7 @@ contains
       names = units%name
       call fatal_error(error, bad_input, path//": the unit '"//trim(name)//"' of column "// &
                        trim(history%labels(column))//' is not one of '//list_of(names)// &
-                       '; give the right one with unit')
+                       '; give the right one with unit ('//elsewhere//')')
    end subroutine convert
 
    !> Values must be small enough that conversion, scale and squares do not overflow.

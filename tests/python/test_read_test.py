@@ -34,7 +34,8 @@ def write(
         separator.join([number(t), number(scale[0] * d), number(scale[1] * f), *more]) + end
         for t, d, f in zip(TIME, D, F, strict=True)
     ]
-    path.write_bytes((head + "\n".join(rows) + "\n").encode("latin-1"))
+    text = head + "\n".join(rows) + "\n"
+    path.write_bytes(text.encode("latin-1", "ignore") if "ğ" not in text else text.encode())
     return path
 
 
@@ -60,6 +61,11 @@ NAMED = {"pdelta_code": 2, "length": LENGTH}
         ("t,d,F,M,strain\n(s),(mm),(kN),(kN-m),(mm/mm)\n", ",", point, ",1,2", {}),
         ("Time Disp Force\nsec mm kN\n", " ", point, "", {}),
         ("time,disp_mm,axial load_kN\n", ",", point, "", {"columns": (2, 3)}),
+        ("Zeit;Weg [mm];Kraft [kN];Normalkraft [kN]\n", ";", comma, ";800", {}),
+        ("tiempo,desplazamiento_mm,fuerza_kN\n", ",", point, "", {}),
+        ("temps;déplacement (mm);effort (kN)\n", ";", point, "", {}),
+        ("tempo;spostamento (mm);forza (kN)\n", ";", point, "", {}),
+        ("zaman;yer değiştirme (mm);kuvvet (kN)\n".encode().decode(), ";", point, "", {}),
     ],
 )  # fmt: skip
 def test_layouts(tmp_path, head, separator, number, end, given):
@@ -69,7 +75,7 @@ def test_layouts(tmp_path, head, separator, number, end, given):
     np.testing.assert_allclose(test.displacement, D, rtol=1e-5, atol=1e-9)
     np.testing.assert_allclose(test.force, F, rtol=1e-5, atol=1e-3)
     assert test.name == "test 7"
-    as_text = read_test(path.read_text("latin-1"), **NAMED, **given)
+    as_text = read_test(path.read_text("utf-8" if "ğ" in head else "latin-1"), **NAMED, **given)
     assert np.array_equal(as_text.force, test.force)
     assert (test.height, test.pdelta_code) == (LENGTH, 2)
 
@@ -82,6 +88,11 @@ def test_layouts(tmp_path, head, separator, number, end, given):
         (("inches", "kips"), (1 / 0.0254, 1 / 4448.2216)),
         (("in", "lbf"), (1 / 0.0254, 1 / 4.4482216)),
         (("mm", "tonf"), (1e3, 1 / 9806.65)),
+        (("mm", "ton"), (1e3, 1 / 9806.65)),
+        (("mm", "T"), (1e3, 1 / 9806.65)),
+        (("mm", "kgf"), (1e3, 1 / 9.80665)),
+        (("in", "klb"), (1 / 0.0254, 1 / 4448.2216)),
+        (("%", "kN"), (100 / LENGTH, 1e-3)),
     ],
 )
 def test_units(tmp_path, units, scale):
@@ -89,6 +100,61 @@ def test_units(tmp_path, units, scale):
     test = read_test(path, units=units, **NAMED)
     np.testing.assert_allclose(test.displacement, D, rtol=1e-9, atol=1e-15)
     np.testing.assert_allclose(test.force, F, rtol=1e-7)
+
+
+def test_columns_of_texts_and_clocks_are_left_out_and_said(tmp_path):
+    rows = "".join(f"2020-01-02 12:00:{i % 60:02d};{1e3 * d:.6g};ok;{1e-3 * f:.6g}\n"
+                   for i, (d, f) in enumerate(zip(D, F, strict=True)))  # fmt: skip
+    (tmp_path / "t.txt").write_text("clock;top_mm;remark;ram_kN\n" + rows)
+    said = r"texts are left out: 'clock' has '2020-01-02 12:00:00'; 'remark' has 'ok'"
+    for columns in (("top", "ram"), (2, 4), None):
+        with pytest.warns(rbsdem.errors.RepairWarning, match=said) as caught:
+            test = read_test(tmp_path / "t.txt", columns=columns, **NAMED)
+        assert caught[0].filename == __file__
+        np.testing.assert_allclose(test.displacement, D, rtol=1e-5)
+        np.testing.assert_allclose(test.force, F, rtol=1e-5)
+    with (
+        pytest.raises(InputError, match="column 'remark' has texts, as 'ok', and no numbers"),
+        pytest.warns(rbsdem.errors.RepairWarning),
+    ):
+        read_test(tmp_path / "t.txt", columns=("top", "remark"), **NAMED)
+
+
+@pytest.mark.parametrize("separator", ["\n", " ", ","])
+def test_displacement_and_force_in_two_files(tmp_path, separator):
+    """One value a line, or all in a line."""
+    for name, head, values in (("d", "top_mm", 1e3 * D), ("f", "ram_kN", 1e-3 * F)):
+        text = separator.join(map(repr, map(float, values)))
+        (tmp_path / name).write_text(f"{head}\n{text}\n" if separator == "\n" else text)
+    paths = {"displacement": tmp_path / "d", "force": tmp_path / "f"}
+    units = {} if separator == "\n" else {"units": ("mm", "kN")}
+    test = read_test(**paths, **units, **NAMED)
+    np.testing.assert_allclose(test.displacement, D, rtol=1e-14)
+    np.testing.assert_allclose(test.force, F, rtol=1e-14)
+    (tmp_path / "f").write_text("1\n2\n")
+    with pytest.raises(InputError, match="90 displacements and 2 forces"):
+        read_test(**paths, units=("mm", "kN"), **NAMED)
+    with pytest.raises(InputError, match="both displacement= and force="):
+        read_test(displacement=tmp_path / "d", **NAMED)
+
+
+def test_a_test_of_a_frame_has_no_code(tmp_path):
+    path = write(tmp_path / "t.csv", "t,d_mm,f_kN\n", ",", lambda v: repr(float(v)))
+    test = read_test(path, structure="frame", length=7.0)
+    assert test.pdelta_code is None
+    np.testing.assert_allclose(test.force, F, rtol=1e-14)
+    assert test.drift.max() == pytest.approx(D.max() / 7.0)
+    with pytest.raises(InputError, match="pdelta_code = 2 is a notion of tests of columns"):
+        read_test(path, structure="frame", pdelta_code=2)
+    with pytest.raises(InputError, match="drifts in per cent need length"):
+        read_test(path, structure="frame", units=("%", "kN"))
+
+
+def test_forces_of_another_unit_are_noticed():
+    """kN for N is 1000 times; a model that is twice too strong is no slip."""
+    with pytest.warns(rbsdem.errors.AccuracyWarning, match=r"1000 times apart; both are in N"):
+        rbsdem.compare((D, F), (D, 1e-3 * F))
+    assert rbsdem.compare((D, 2 * F), (D, F)).peak_ratio == pytest.approx(2.0)
 
 
 def test_offset_of_the_first_row(tmp_path):

@@ -15,7 +15,7 @@ from rbsdem._types import Array, ArrayLike, DataFrame
 from rbsdem.curves.cycles import HalfCycles, half_cycles, tip_rows
 from rbsdem.curves.envelope import strength_loss
 from rbsdem.curves.metrics import Curve, Loop, PathPoints, columns, loop_of, pair, ratio, rms
-from rbsdem.errors import InputError
+from rbsdem.errors import InputError, warn
 
 _RATIOS = ("peak_ratio", "energy_ratio", "stiffness_ratio", "end_ratio")
 SCORES = ("nrmse", *_RATIOS, "rms_best", "path_fraction", "nrmse_reached")
@@ -26,6 +26,9 @@ _CYCLE_COLUMNS = {"peak_force": "_N", "energy": "_J", "stiffness": "_N/m", "damp
 
 # The displacement of a row is that of the test; with exact rotations it is solved for.
 _SAME = 1e-6
+
+# Forces so many times apart are in two units; a poor model is not.
+_UNLIKELY = 100.0
 
 # Ratios of less than this share of the path are not given.
 _ENOUGH = 0.5
@@ -257,6 +260,13 @@ def compare(result: Curve, test: Curve, *, height: float | None = None) -> Compa
         last = points.path >= 0.75 * points.path[-1]
         end = ratio(rms(m[last]), rms(t[last]))
     loops = loop_of(d[:rows], f[:rows]), loop_of(d[:rows], force[:rows])
+    of_model = float(np.max(np.abs(force[:rows]), initial=0.0))
+    if of_model > 0 and not 1 / _UNLIKELY < of_model / largest < _UNLIKELY:
+        warn(
+            f"compare: the largest force is {of_model:.4g} N in the model and {largest:.4g} N in "
+            f"the test, {max(of_model / largest, largest / of_model):.4g} times apart; both are in "
+            "N (1 kN is 1000)"
+        )
     scores = rms(error), float(np.mean(reached)), nrmse_reached, end, best
     name, height = str(getattr(test, "name", "test")), _height(height, test, result)
     return Comparison(name, d, f, force, height, rows, *loops, *scores)

@@ -11,20 +11,18 @@ from typing import Any, Literal
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._tables import FORCES, LENGTHS, NumberTable, bare, read_table, to_si
+from rbsdem._tables import FORCES, LENGTHS, NumberTable, read_table, to_si
 from rbsdem._types import Array
 from rbsdem.errors import InputError
 from rbsdem.measured.measured import PDELTA_CODES, MeasuredTest, measured_test
 
-_UNITS = {"displacement": LENGTHS, "force": FORCES}
+#: Drifts are parts of the length.
+_DRIFT = "%"
+_UNITS = {"displacement": {**LENGTHS, _DRIFT: 0.01}, "force": FORCES}
 _QUANTITIES = ("displacement", "force")
 
-# How columns are often called; the first that fits one column only is taken.
-_WORDS = {
-    "displacement": ("displacement", "disp", "deflection", "drift", "delta", "d", "u", "x"),
-    "force": ("force", "load", "shear", "f", "v", "p", "h"),
-}
-_NOT = {"displacement": ("time",), "force": ("time", "axial")}
+#: No names of what is looked for: the force is that along the displacement.
+_NOT = {"displacement": ("time",), "force": ("time", "axial", "normal")}
 
 # What the largest values of a test of a column may be, and where the doubt begins.
 _PLAUSIBLE = {"displacement": (5e-4, 1.5, "m"), "force": (500.0, 5e7, "N")}
@@ -37,8 +35,11 @@ _AREA = 0.02
 
 
 def read_test(
-    path: str | os.PathLike[str],
+    path: str | os.PathLike[str] | None = None,
     *,
+    displacement: str | os.PathLike[str] | None = None,
+    force: str | os.PathLike[str] | None = None,
+    structure: Literal["column", "frame"] = "column",
     columns: Sequence[str | int] | Mapping[str, str | int] | None = None,
     units: Sequence[str] | Mapping[str, str] | None = None,
     pdelta_code: Literal[1, 2, 3, 4] | None = None,
@@ -65,18 +66,25 @@ def read_test(
     ----------
     path : path
         File with a row of numbers a line, or its text. Above them there may be any lines; the last
-        may have the names of the columns, or their names and below them their units.
+        may have the names of the columns, or their names and below them their units. Columns of
+        texts, dates or clocks are left out.
+    displacement, force : path, optional
+        Two files in place of one, each with one value a line or all values in a line.
+    structure : {"column", "frame"}, optional
+        What was tested. The force of a frame is the sum of its actuators; it has no `pdelta_code`,
+        and `length` is the height at which the displacement was measured.
     columns : pair or mapping, optional
         Columns of displacement and force, by name or by number from 1: ``("LVDT 3", 5)`` or
         ``{"displacement": "LVDT 3", "force": 5}``. By default they are found by their names, or are
         the two columns of a file that has no more.
     units : pair or mapping, optional
-        Their units: "m", "mm", "cm", "in" and "N", "kN", "MN", "kip", "lbf", "tf" or "tonf"
-        (of 1000 kg). By default those that the file gives in the names (``d_mm``, ``Force [kN]``)
+        Their units: "m", "mm", "cm", "in", or "%" for drifts, which need `length`; and "N", "kN",
+        "MN", "kip", "klb", "lbf", "kgf", or the weight of 1000 kg, "tf", "tonf", "t", "ton". By
+        default those that the file gives in the names (``d_mm``, ``Force [kN]``)
         or below them.
     pdelta_code : {1, 2, 3, 4}
-        What the force column is; every test needs it, since P-Delta is in some forces and not in
-        others:
+        What the force column is; every test of a column needs it, since P-Delta is in some
+        forces and not in others:
 
         1. the base moment over the length ("effective force", P-Delta is part of it);
         2. the net horizontal force on the column, or P-Delta was already taken out;
@@ -119,6 +127,11 @@ def read_test(
         the columns are exchanged (their loop runs backward), or the first row is not near zero.
         The message names the value and the remedy.
 
+    Warns
+    -----
+    RepairWarning
+        If columns of texts are left out.
+
     See Also
     --------
     read_peer : for files in the format of the database.
@@ -130,10 +143,23 @@ def read_test(
     columns are exchanged it is negative; if the sign of one column is wrong, so is that of the
     correlation of the two.
     """
-    code = _code(pdelta_code, length, axial_load)
+    if structure == "frame":
+        if pdelta_code is not None:
+            raise InputError(
+                f"pdelta_code = {_arguments.shown(pdelta_code)} is a notion of tests of columns; "
+                "the force of a frame is the sum of its actuators, so leave it out"
+            )
+        code = None
+    else:
+        _arguments.choice(structure, "structure", ("column", "frame"))
+        code = _code(pdelta_code, length, axial_load)
     if force_sign not in (1, -1):
         raise InputError(f"force_sign = {force_sign!r} must be 1 or -1")
-    table = read_table(path, separator=separator, decimal=decimal, header=header)
+    layout: dict[str, Any] = {"separator": separator, "decimal": decimal, "header": header}
+    if path is None or displacement is not None or force is not None:
+        table = _two_files(path, displacement, force, layout)
+    else:
+        table = read_table(path, **layout)
     where = table.source
     chosen = _columns(columns, table)
     given = _units(units, chosen, table)
@@ -141,18 +167,22 @@ def read_test(
         to_si(table.values[:, i], _UNITS[quantity][unit])
         for i, quantity, unit in zip(chosen, _QUANTITIES, given, strict=True)
     )
+    if given[0] == _DRIFT:
+        if length is None:
+            raise InputError(f"{where}: drifts in per cent need length, the height they relate to")
+        d = d * length
     f = force_sign * f
     if zero:
         d, f = d - d[0], f - f[0]
     if checks:
         _check_units(length, axial_load)
-        _check_sizes(d, f, given, length, where)
+        _check_sizes(d, f, given, length, where, structure)
         _check_offset(d, f, zero, where)
         _check_order(d, f, where)
     known = {"length": length, "axial_load": axial_load}
     lengths: Any = {key: math.nan if value is None else value for key, value in known.items()}
     lengths |= {"measured_length": measured_length, "top_length": top_length}
-    name = name or Path(where).stem
+    name = name or Path(table.source.split(" and ")[0]).stem
     return measured_test(name, d, f, code, where, bottom_length=bottom_length, **lengths)
 
 
@@ -190,14 +220,19 @@ def _columns(given: object, table: NumberTable) -> tuple[int, int]:
     pair: tuple[object, object] = (None, None)
     if given is not None:
         pair = _pair(given, "columns", 'columns=("LVDT 3", "load") or columns=(1, 2)')
-    places = [_column(value, q, table) for value, q in zip(pair, _QUANTITIES, strict=True)]
-    if table.columns == 2 and table.find(("time", "t")) is None:
+    places = [
+        table.find(quantity, _NOT[quantity])
+        if value is None
+        else table.place(value, f"columns: {quantity}")
+        for value, quantity in zip(pair, _QUANTITIES, strict=True)
+    ]
+    numbers = [i for i in range(table.columns) if i not in table.texts]
+    if len(numbers) == 2 and table.find("time") is None:
         # Of two columns, what is not the one is the other.
-        first, second = places
-        if first is None:
-            places[0] = 0 if second is None else 1 - second
-        if second is None:
-            places[1] = 1 if first is None else 1 - first
+        for i, other in ((0, 1), (1, 0)):
+            if places[i] is None:
+                rest = [place for place in numbers if place != places[other]]
+                places[i] = rest[0] if i == 0 or len(rest) == 1 else rest[1]
     for place, quantity in zip(places, _QUANTITIES, strict=True):
         if place is None:
             raise InputError(
@@ -212,27 +247,32 @@ def _columns(given: object, table: NumberTable) -> tuple[int, int]:
     return displacement, force
 
 
-def _column(value: object, quantity: str, table: NumberTable) -> int | None:
-    if value is None:
-        return table.find(_WORDS[quantity], _NOT[quantity])
-    if isinstance(value, str):
-        names = [name.lower() for name in table.names]
-        word = value.strip().lower()
-        named = [i for i, name in enumerate(names) if word in (name, bare(name))]
-        if len(named) == 1:
-            return named[0]
-        several = "is the name of more than one column" if named else "is not there"
+def _two_files(
+    path: object, displacement: object, force: object, layout: dict[str, Any]
+) -> NumberTable:
+    """Return the table of two files with one column, or one row, each."""
+    if path is not None or displacement is None or force is None:
+        raise InputError("read_test: give path, or both displacement= and force=, each of a file")
+    values, names, units, sources = [], [], [], []
+    for source, quantity in ((displacement, "displacement"), (force, "force")):
+        table = read_table(source, least=1, **layout)  # type: ignore[arg-type]
+        numbers = [i for i in range(table.columns) if i not in table.texts]
+        if len(numbers) > 1 and len(table.values) > 1:
+            raise InputError(
+                f"{table.source}: has {table.describe()}; the file of the {quantity} has one value "
+                "a line, or all in a line; for a table give path and columns"
+            )
+        values.append(table.values[:, numbers].ravel())
+        names.append(quantity)
+        units.append(table.units[numbers[0]])
+        sources.append(table.source)
+    where = " and ".join(dict.fromkeys(sources))
+    if len(values[0]) != len(values[1]):
         raise InputError(
-            f"{table.source}: column {value!r} {several}; there are {table.describe()}; "
-            "a number from 1 is taken as well"
+            f"{where}: have {len(values[0])} displacements and {len(values[1])} forces; give as "
+            "many of both"
         )
-    number = _arguments.integer(value, f"columns: {quantity}")
-    if not 1 <= number <= table.columns:
-        raise InputError(
-            f"columns: {quantity} = {number}, but {table.source} has {table.describe()}, counted "
-            "from 1"
-        )
-    return number - 1
+    return NumberTable(where, tuple(names), tuple(units), np.column_stack(values))
 
 
 def _units(given: object, chosen: tuple[int, int], table: NumberTable) -> tuple[str, str]:
@@ -269,7 +309,7 @@ def _check_units(length: float | None, axial_load: float | None) -> None:
 
 
 def _check_sizes(
-    d: Array, f: Array, units: tuple[str, str], length: float | None, where: str
+    d: Array, f: Array, units: tuple[str, str], length: float | None, where: str, structure: str
 ) -> None:
     for values, unit, quantity in zip((d, f), units, _QUANTITIES, strict=True):
         largest = float(np.max(np.abs(values)))
@@ -279,7 +319,7 @@ def _check_sizes(
         if not low <= largest <= high:
             raise InputError(
                 f"{where}: the largest {quantity} is {largest:.4g} {si}, read in {unit}; a test of "
-                f"a column has {low:.3g} to {high:.3g} {si}. Check units=({units[0]!r}, "
+                f"a {structure} has {low:.3g} to {high:.3g} {si}. Check units=({units[0]!r}, "
                 f"{units[1]!r}), columns and length, or say checks=False"
             )
 

@@ -1,16 +1,19 @@
-"""Files of ground motions: AT2 of the PEER strong-motion databases, and csv.
+"""Files of ground motions: records with a head of statements, and columns.
 
-An AT2 file has four lines above the values: the database, the event with station and component, the
-quantity with its unit, and the number of values NPTS with the step DT. Files have gone through many
-hands, so what is found in them is read where its meaning is clear, and told where it is mended. A
-csv has a column of times and one of accelerations, or one with a step.
+A record of a database has lines above its values that state the quantity, its unit, the step and
+the number of values: AT2 of PEER, the ASCII files of ESM, of AFAD, of K-NET and KiK-net. A table
+has a column of times and one of accelerations, or one with a step. Files have gone through many
+hands, so what is found in them is read where its meaning is clear, and told where it is mended; a
+statement that is not understood is named.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +25,10 @@ from rbsdem.errors import InputError, RepairWarning, warn
 from rbsdem.motions.motion import GroundMotion
 
 #: Value of each unit in m/s2.
-UNITS = {"g": STANDARD_GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001}
+UNITS = {
+    "g": STANDARD_GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "in/s2": 0.0254,
+    "ft/s2": 0.3048,
+}  # fmt: skip
 
 _SPELLINGS = {"gal": "cm/s2", "gals": "cm/s2", "g's": "g", "gs": "g"}
 
@@ -35,8 +41,8 @@ def unit_named(word: str) -> str:
     word : str
         As in a file: "G", "cm/s/s", "cm/sec**2", "gal", "m/s^2".
     """
-    plain = word.strip().strip("()[].,").lower().replace(" ", "").replace("sec", "s")
-    for power in ("/s/s", "/s^2", "/s**2", "/s²", "s-2", "/s2"):
+    plain = word.strip().strip("()[].,:;").lower().replace(" ", "").replace("sec", "s")
+    for power in ("/s/s", "/s^2", "/s**2", "/s²", "s^-2", "s-2", "/s2"):
         if plain.endswith(power):
             plain = plain.removesuffix(power).rstrip(".*·") + "/s2"
             break
@@ -91,24 +97,142 @@ _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?")
 _BARE_EXPONENT = re.compile(r"(?<=[\d.])([+-]\d{3})(?![\d.eEdD])")
 #: A line that was broken inside a number: it ends with the letter, the sign or the point.
 _BROKEN = re.compile(r"(?:\d[eEdD][+-]?|[+-])$")
-_VALUE = r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?)"
-_COUNT = re.compile(r"NPTS\s*[=:]?\s*(\d+)", re.IGNORECASE)
-_STEP = re.compile(rf"\bDT\s*[=:]?\s*{_VALUE}", re.IGNORECASE)
-#: Older files: ``4000  0.0050  NPTS, DT``.
-_OLD = re.compile(rf"^\s*(\d+)\s+{_VALUE}\s+NPTS\s*,\s*DT", re.IGNORECASE)
-_UNIT = re.compile(r"UNITS?\s+(?:OF|:|=)?\s*([^\s,;]+)", re.IGNORECASE)
-_MOST_HEAD = 12
 #: Removes what a row may be made of.
 _MARKS = str.maketrans("", "", "0123456789+-.eE \t")
 
 
-def is_at2(lines: list[str]) -> bool:
-    """Return whether the first lines of a file are those of an AT2 file."""
-    return any(re.search("NPTS", line, re.IGNORECASE) for line in lines[:_MOST_HEAD])
+_VALUE = r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?)"
+_COUNT = re.compile(
+    r"(?:\bNPTS|\bNDATA|\b(?:NUMBER|NO\.?|NUM)[ _]*OF[ _]*(?:DATA|POINTS|SAMPLES|VALUES)\w*)"
+    r"\s*[=:]?\s*(\d+)",
+    re.IGNORECASE,
+)
+_STEP = re.compile(
+    r"(?:\bDT\b|\bDELTA[ _]*T\b|\bTIME[ _]*(?:STEP|INTERVAL|INCREMENT)"
+    rf"|\bSAMPL\w*?[ _]*(?:INTERVAL|PERIOD|STEP))([^\d.+-]*?){_VALUE}\s*(ms)?",
+    re.IGNORECASE,
+)
+_RATE = re.compile(
+    r"(?:\bSAMPL\w*?[ _]*(?:RATE|FREQ\w*)|\bSAMPLES\s*(?:/|PER)\s*S\w*)[^\d.+-]*?" + _VALUE,
+    re.IGNORECASE,
+)
+#: Numbers before their names, or alone below the unit: 4000 0.0050 NPTS, DT.
+_BEFORE = re.compile(
+    rf"^\s*{_VALUE}\s+{_VALUE}\s*(?:(NPTS|DT)\s*,?\s*(?:NPTS|DT)\W*(?:SEC\W*)?)?$", re.IGNORECASE
+)
+_UNIT_KEY = re.compile(
+    r"(?:\b|_)UNITS?(?:\b|_)\s*(?:OF\b|IS\b|ARE\b)?[\s:=(\[]*(.*)", re.IGNORECASE
+)
+_UNIT_TEXT = re.compile(
+    r"(?<![\w/])(?:(?:mm|cm|m|in|ft)\s*[/.*·]?\s*s(?:ec)?\s*(?:/\s*s(?:ec)?|(?:\^|\*\*)?-?2|²)|gals?)"
+    r"(?![\w/])|(?<=[(\[])\s*g\s*(?=[)\]])|(?<=,)\s*g\s*$",
+    re.IGNORECASE,
+)
+#: A unit of something else, as that of the times.
+_OTHER_UNIT = re.compile(r"(s|sec|seconds?|hz|deg\w*|°)\W*$", re.IGNORECASE)
+_QUANTITY = re.compile(r"ACC|PGA", re.IGNORECASE)
+_ABOUT = re.compile(
+    r"^\W*((?:STATION|COMP|DIR|STREAM|EVENT)\w*?(?:[ _](?:CODE|NAME))?)\.?\s*[:=]\s*(\S.*)$",
+    re.IGNORECASE,
+)
+_KEY_AND_VALUE = re.compile(r"\s*[A-Za-z][^:=]*[:=]")
+_MOST_HEAD = 100
 
 
-def read_at2(lines: list[str], path: str, name: str, units: str | None) -> GroundMotion:
-    """Return the motion of an AT2 file.
+def is_record(lines: Sequence[str]) -> bool:
+    """Whether the first lines of a file state the number of values, as those of an AT2 file."""
+    head = lines[:_MOST_HEAD]
+    named = any(_COUNT.search(line) or "NPTS" in line.upper() for line in head)
+    return named or any(
+        _UNIT_KEY.search(line) and (found := _BEFORE.match(below)) and found[1].isdigit()
+        for line, below in itertools.pairwise(head)
+    )
+
+
+def stated_unit(head: Sequence[str], path: str) -> str:
+    """Return the unit of the accelerations that lines above the values state, or an empty text.
+
+    Parameters
+    ----------
+    head : sequence of str
+        The lines.
+    path : str
+        Of the file, for messages.
+
+    Raises
+    ------
+    InputError
+        If a line states a unit that is not known, or two lines state two.
+    """
+    said: dict[str, str] = {}
+    for line in head:
+        key = _UNIT_KEY.search(line)
+        if not key or not key[1].strip(" )]"):
+            continue
+        rest = re.split(r"[,;]", key[1])[0]
+        found = _UNIT_TEXT.search(line)
+        unit = unit_named(rest) or unit_named(rest.split()[0] if rest.split() else "")
+        unit = unit or (unit_named(found[0]) if found else "")
+        if unit:
+            said.setdefault(unit, line.strip())
+        elif not _OTHER_UNIT.match(rest.strip()):
+            raise InputError(
+                f"{path}: the unit {rest.split()[0] if rest.split() else key[1]!r} of "
+                f"{line.strip()[:80]!r} is not one of {', '.join(UNITS)}; convert the file"
+            )
+    if not said:
+        for line in head:
+            if _QUANTITY.search(line):
+                said |= {unit_named(text[0]): line.strip() for text in _UNIT_TEXT.finditer(line)}
+    if len(said) > 1:
+        told = " and ".join(f"{unit} ({line[:60]!r})" for unit, line in said.items())
+        raise InputError(f"{path}: states the units {told}; keep the one that is meant")
+    return next(iter(said), "")
+
+
+def stated_step(head: Sequence[str]) -> float | None:
+    """Return the step [s] that lines above the values state, as a step or as a rate, or None."""
+    for line in head:
+        before = _BEFORE.match(line)
+        if before and before[3]:
+            return _float(before[1 if before[3].upper() == "DT" else 2])
+        step, rate = _STEP.search(line), _RATE.search(line)
+        if step:
+            thousand = step[3] or re.search(r"\bms\b|[_(]ms\b", step[1], re.IGNORECASE)
+            return _float(step[2]) / (1000 if thousand else 1)
+        if rate and _float(rate[1]) > 0:
+            return 1 / _float(rate[1])
+    return None
+
+
+def stated_count(head: Sequence[str]) -> int | None:
+    """Return the number of values that lines above them state, or None."""
+    for line in head:
+        before = _BEFORE.match(line)
+        if before and before[3]:
+            word = before[2 if before[3].upper() == "DT" else 1]
+            return int(word) if word.isdigit() else None
+        if found := _COUNT.search(line):
+            return int(found[1])
+    return None
+
+
+def agreed_step(found: float | None, given: float | None, path: str) -> float | None:
+    """Return the step of a file: the one that it states, or the one that the user gives."""
+    if found is None or given is None:
+        return found if given is None else given
+    if abs(found - given) > 1e-6 * found:
+        raise InputError(
+            f"{path}: the file says that its step is {found:g} s, and dt = {given:g} s was given; "
+            "leave dt out, or correct the file"
+        )
+    return found
+
+
+def read_record(
+    lines: list[str], path: str, name: str, units: str | None, dt: float | None
+) -> GroundMotion:
+    """Return the motion of a file that states the number of its values, line by line.
 
     Parameters
     ----------
@@ -120,6 +244,8 @@ def read_at2(lines: list[str], path: str, name: str, units: str | None) -> Groun
         Of the motion.
     units : str or None
         Unit of the accelerations, if the file names none.
+    dt : float or None
+        Step [s], if the file states none.
 
     Raises
     ------
@@ -131,76 +257,70 @@ def read_at2(lines: list[str], path: str, name: str, units: str | None) -> Groun
     RepairWarning
         If up to eight values are missing at the end.
     """
-    first = _first_row(lines)
-    head = "\n".join(lines[:first])
-    count, dt = _count_and_step(head, path)
-    quantity = next((line for line in lines[:first] if _UNIT.search(line)), "")
-    _refuse_other(lines[:first], path)
-    found = _UNIT.search(quantity)
-    unit = unit_named(found[1]) if found else ""
-    if found and not unit:
+    first = _first_value(lines)
+    head = lines[:first]
+    bare = _BEFORE.match(head[-1]) if head else None
+    count, step = stated_count(head), stated_step(head)
+    if bare and not bare[3] and bare[1].isdigit() and count is None:
+        count, step = int(bare[1]), _float(bare[2])
+    step = agreed_step(step, dt, path)
+    if count is None or step is None:
+        missing = [key for key, at in (("NPTS", count), ("DT", step)) if at is None]
         raise InputError(
-            f"{path}: the unit {found[1]!r} of {quantity.strip()!r} is not one of "
-            f"{', '.join(UNITS)}; convert the file"
+            f"{path}: the lines above the values give no {' and no '.join(missing)}; they end "
+            "with NPTS= 4000, DT= .0050 SEC"
         )
-    unit = agreed_unit(unit, units, f"{path}: ")
+    if not (1 < count < 10**8 and 0 < step <= 1):
+        raise InputError(
+            f"{path}: NPTS = {count} must be 2 or more and DT = {step:g} above 0 and at most 1 s; "
+            "correct the line above the values"
+        )
+    _refuse_other(head, path)
+    unit = agreed_unit(stated_unit(head, path), units, f"{path}: ")
     values = _values(lines, first, path)
-    missing = count - len(values)
-    if missing > MOST_MISSING:
+    missing_values = count - len(values)
+    if missing_values > MOST_MISSING:
         raise InputError(
             f"{path}: {len(values)} values, but NPTS = {count}; the file is truncated, download it "
             "again"
         )
-    if missing < 0:
+    if missing_values < 0:
         raise InputError(
             f"{path}: {len(values)} values, but NPTS = {count}; correct NPTS, or remove what does "
             "not belong to the record"
         )
-    if missing:
+    if missing_values:
         warn(
-            f"{path}: the last {missing} of NPTS = {count} values are missing; the record ends at "
-            f"{dt * (len(values) - 1):g} s",
+            f"{path}: the last {missing_values} of NPTS = {count} values are missing; the record "
+            f"ends at {step * (len(values) - 1):g} s",
             RepairWarning,
         )
-    about = lines[1].strip() if first > 1 and "NPTS" not in lines[1].upper() else ""
-    return GroundMotion(np.array(values) * UNITS[unit], dt, name, about)
+    second = lines[1].strip() if first > 1 and not _COUNT.search(lines[1]) else ""
+    return GroundMotion(np.array(values) * UNITS[unit], step, name, _about(head) or second)
 
 
-def _first_row(lines: list[str]) -> int:
-    """Return the number of lines above the values: up to the last that names NPTS or DT."""
+def _first_value(lines: list[str]) -> int:
+    """Return the number of lines above the values: up to the last that states something."""
     last = 0
     for number, line in enumerate(lines[:_MOST_HEAD], 1):
-        if _COUNT.search(line) or _STEP.search(line) or _OLD.search(line) or "NPTS" in line.upper():
+        named = _COUNT.search(line) or _STEP.search(line) or _RATE.search(line)
+        bare = last == number - 1 and (found := _BEFORE.match(line)) and found[1].isdigit()
+        behind = last == number - 1 and _KEY_AND_VALUE.match(line)
+        if named or bare or behind or "NPTS" in line.upper() or _UNIT_KEY.search(line):
             last = number
     return last
 
 
-def _count_and_step(head: str, path: str) -> tuple[int, float]:
-    lines = head.splitlines()
-    old = next((found for line in lines if (found := _OLD.search(line))), None)
-    if old:
-        count, step = old[1], old[2]
-    else:
-        several, one = _COUNT.search(head), _STEP.search(head)
-        if not (several and one):
-            missing = [key for key, at in (("NPTS", several), ("DT", one)) if not at]
-            raise InputError(
-                f"{path}: the lines above the values give no {' and no '.join(missing)}; they end "
-                "with NPTS= 4000, DT= .0050 SEC"
-            )
-        count, step = several[1], one[1]
-    if not (1 < int(count) < 10**8 and 0 < _float(step) <= 1):
-        raise InputError(
-            f"{path}: NPTS = {count} must be 2 or more and DT = {step} above 0 and at most 1 s; "
-            "correct the line above the values"
-        )
-    return int(count), _float(step)
+def _about(head: Sequence[str]) -> str:
+    """Return what lines of key and value say of station, component and event."""
+    found = [match for line in head if (match := _ABOUT.match(line))]
+    return ", ".join(dict.fromkeys(match[2].strip() for match in found))
 
 
-def _refuse_other(head: list[str], path: str) -> None:
+def _refuse_other(head: Sequence[str], path: str) -> None:
     """Refuse the velocities and displacements that come with an acceleration (VT2, DT2)."""
     text = " ".join(head).upper()
-    if "ACCEL" in text:
+    if "ACC" in text or "PGA" in text:
         return
     for word in ("VELOCITY", "DISPLACEMENT"):
         if word in text:
@@ -208,6 +328,46 @@ def _refuse_other(head: list[str], path: str) -> None:
                 f"{path}: it says that it holds a {word.lower()}; read the file of the "
                 "acceleration (.AT2)"
             )
+
+
+#: K-NET and KiK-net: lines of 18 letters for the key and a value, then integers.
+_KNET_HEAD = 17
+_SCALE = re.compile(rf"{_VALUE}\s*\(gal\)\s*/\s*{_VALUE}", re.IGNORECASE)
+
+
+def read_knet(lines: list[str], path: str, name: str) -> GroundMotion:
+    """Return the motion of a file of K-NET or KiK-net, its mean taken off.
+
+    The files are those of the National Research Institute for Earth Science and Disaster
+    Resilience: a scale factor n (gal) / m turns their integers into accelerations. They have an
+    offset, and the mean of the record is taken off, as its description says.
+
+    Parameters
+    ----------
+    lines : list of str
+        The file.
+    path : str
+        Of the file, for messages.
+    name : str
+        Of the motion.
+
+    Raises
+    ------
+    InputError
+        If the scale factor or the sampling frequency is missing, or the values cannot be read.
+    """
+    head = {line[:18].strip(): line[18:].strip() for line in lines[:_KNET_HEAD]}
+    scale, step = _SCALE.search(head.get("Scale Factor", "")), stated_step(lines[:_KNET_HEAD])
+    if scale is None or step is None:
+        raise InputError(
+            f"{path}: a file of K-NET or KiK-net has the lines Sampling Freq(Hz) and Scale Factor, "
+            "as 3920(gal)/6182761, above its values; download it again"
+        )
+    gal = np.array(_values(lines, _KNET_HEAD, path)) * (_float(scale[1]) / _float(scale[2]))
+    values = UNITS["cm/s2"] * (gal - gal.mean())
+    said = [head.get(key, "") for key in ("Station Code", "Dir.", "Record Time")]
+    about = f"{' '.join(filter(None, said))}; mean of {gal.mean():.4g} gal taken off"
+    return GroundMotion(values, step, name, about)
 
 
 def _values(lines: list[str], first: int, path: str) -> list[float]:
@@ -257,78 +417,123 @@ _UNEVEN = 0.02
 _SECONDS = ("", "s", "sec", "second", "seconds")
 
 
-def read_csv(
-    lines: list[str], path: str, name: str, units: str | None, dt: float | None
+def read_columns(
+    lines: list[str],
+    path: str,
+    name: str,
+    units: str | None,
+    dt: float | None,
+    column: str | int | None,
 ) -> GroundMotion:
-    """Return the motion of a csv file.
+    """Return the motion of a file with a row of numbers a line.
 
     Parameters
     ----------
     lines : list of str
-        The file: lines that start with # are comments, a first line without numbers names the
-        columns, which are separated by semicolons, commas, tabs or blanks.
+        The file: lines that start with # are comments, lines above the numbers may name the columns
+        and state unit and step; columns are separated by semicolons, commas, tabs or blanks.
     path : str
         Of the file, for messages.
     name : str
         Of the motion.
     units : str or None
-        Unit of the accelerations, if the name of their column ends with none.
+        Unit of the accelerations, if the file states none.
     dt : float or None
         Step [s], where there is no column of times; where there is one, the step to which values
         at uneven times are interpolated.
+    column : str, int or None
+        The accelerations, by the name of their column or by its number from 1.
 
     Raises
     ------
     InputError
         If the rows are not numbers, times do not ascend or are uneven, or the unit is not known.
     """
-    # What a comment says is no name of a column.
-    rows = ["" if line.startswith("#") else line for line in lines]
-    table = read_table((path, rows), least=1)
-    time_at, value_at = _columns(table)
-    unit = unit_named(table.units[value_at])
-    if table.units[value_at] and not unit:
+    # The words of a comment are no names of columns.
+    table = read_table((path, ["" if line.startswith("#") else line for line in lines]), least=1)
+    head = lines[: len(table.head)]
+    _refuse_other(head, path)
+    time_at, value_at = _columns(table, column)
+    own = table.units[value_at]
+    unit = unit_named(own)
+    if own and not unit:
         raise InputError(
-            f"{path}: the unit {table.units[value_at]!r} of column {table.names[value_at]} is not "
-            f"one of {', '.join(UNITS)}"
+            f"{path}: the unit {own!r} of column {table.names[value_at]} is not one of "
+            f"{', '.join(UNITS)}"
         )
-    values = table.values[:, value_at] * UNITS[agreed_unit(unit, units, f"{path}: ")]
-    about = next((line.lstrip("# ").strip() for line in lines if line.startswith("#")), "")
+    # The line of names is read; what the others state must not contradict it.
+    above = stated_unit(head, path)
+    if unit and above and unit != above:
+        raise InputError(
+            f"{path}: column {table.names[value_at]} is in {unit}, and a line above says {above}; "
+            "correct the file"
+        )
+    unit = agreed_unit(unit or above, units, f"{path}: ")
+    values = table.values[:, value_at] * UNITS[unit]
+    comment = next((line.lstrip("# ").strip() for line in lines if line.startswith("#")), "")
+    about = _about(head) or comment
+    step = stated_step(head)
+    count = stated_count(head)
+    if count is not None and count != len(values):
+        raise InputError(
+            f"{path}: {len(values)} rows, but {count} are stated; the file is truncated or mixed up"
+        )
     if time_at is None:
-        if dt is None:
+        step = agreed_step(step, dt, path)
+        if step is None:
             raise InputError(f"{path}: has no column with the time; give the step in s, dt=")
-        return GroundMotion(values, dt, name, about)
+        return GroundMotion(values, step, name, about)
     if len(values) < 2:
         raise InputError(f"{path}: has {len(values)} rows; a motion has two or more")
-    values, step = _even(table.values[:, time_at], values, dt, path)
-    return GroundMotion(values, step, name, about)
+    values, even = _even(table.values[:, time_at], values, dt, path)
+    if step is not None and dt is None and abs(step - even) > _UNEVEN * step:
+        raise InputError(
+            f"{path}: the times have a step of {even:g} s, and a line above says {step:g} s; "
+            "correct the file"
+        )
+    return GroundMotion(values, even, name, about)
 
 
-def _columns(table: NumberTable) -> tuple[int | None, int]:
-    """Return the column of the times, None if there is none, and that of the accelerations."""
+def _columns(table: NumberTable, column: str | int | None) -> tuple[int | None, int]:
+    """Return the place of the times, None if there are none, and that of the accelerations."""
     path = table.source
-    if not any(table.names):
+    time, found = table.find("time"), table.find("acceleration")
+    # ACCELERATION TIME SERIES is no time.
+    time = None if time == found else time
+    if column is not None:
+        value = table.place(column, "column")
+        if time is None and not any(table.names) and value > 0 and _ascends(table.values[:, 0]):
+            time = 0
+    elif not any(table.names):
         if table.columns > 2:
             raise InputError(
-                f"{path}: has {table.columns} columns without names; name them in a first line, as "
-                "time_s,acceleration_g"
+                f"{path}: has {table.columns} columns without names. If they are columns, say "
+                "column=, the number of the accelerations from 1; if they are one record, line by "
+                "line, state the number of its values and their step above them, as "
+                "NPTS= 4000, DT= .0050 SEC"
             )
         return (None, 0) if table.columns == 1 else (0, 1)
-    time = table.find(("time", "t"))
-    value = table.find(("acceleration", "acc", "ag", "a"))
-    if value is None and table.columns == (1 if time is None else 2):
-        value = 0 if time is None else 1 - time
-    if value is None:
-        raise InputError(
-            f"{path}: no column is named after the acceleration, or more than one ("
-            f"{table.describe()}); name them time_s and acceleration_g, or acceleration_m/s2"
-        )
+    else:
+        if found is None and table.columns == (1 if time is None else 2):
+            found = 0 if time is None else 1 - time
+        if found is None:
+            raise InputError(
+                f"{path}: no column is named after the acceleration, or more than one "
+                f"({table.describe()}); say column=, its name or its number from 1"
+            )
+        value = found
     if time is not None and table.units[time].lower() not in _SECONDS:
         raise InputError(
             f"{path}: the times of column {table.names[time]} are not in seconds; convert them "
             "and name the column time_s"
         )
-    return time, value
+    return (None if time == value else time), value
+
+
+def _ascends(values: Array) -> bool:
+    """Whether values are times: they ascend by even steps."""
+    steps = np.diff(values)
+    return bool(len(steps) and steps.min() > 0 and np.ptp(steps) <= 2 * _UNEVEN * steps.mean())
 
 
 def _even(time: Array, values: Array, dt: float | None, path: str) -> tuple[Array, float]:
@@ -364,27 +569,56 @@ def _rounded(step: float) -> float:
 
 
 #: Endings of the files that `read_motions` takes from a folder.
-ENDINGS = (".at2", ".csv", ".txt")
+ENDINGS = (
+    ".at2",
+    ".csv",
+    ".txt",
+    ".asc",
+    ".ns",
+    ".ew",
+    ".ud",
+    *(f".{direction}{place}" for direction in ("ns", "ew", "ud") for place in (1, 2)),
+)
 #: Formats with much in them besides the accelerations, which other programs read well.
-_OTHERS = (".smc", ".v1", ".v2", ".v1c", ".v2c", ".v3", ".cosmos", ".evt", ".mseed", ".sac")
+_OTHERS = (
+    ".smc", ".v1", ".v2", ".v1c", ".v2c", ".v3", ".v1a", ".v2a", ".cosmos", ".evt", ".mseed",
+    ".sac",
+)  # fmt: skip
+_VOLUME = re.compile(r"\bCOSMOS\b|\b(un)?corrected accelerogram", re.IGNORECASE)
+_AFAD = "STRONG GROUND MOTION RECORDS OF TURKIYE"
+
+#: No ground has moved with more than about 5 g [m/s2].
+_LARGEST = 5 * STANDARD_GRAVITY
 
 
 def read_motion(
-    path: str | os.PathLike[str], units: str | None = None, dt: float | None = None
+    path: str | os.PathLike[str],
+    units: str | None = None,
+    dt: float | None = None,
+    *,
+    column: str | int | None = None,
+    checks: bool = True,
 ) -> GroundMotion:
     """Read a record of a ground motion.
 
     Parameters
     ----------
     path : path
-        An AT2 file of the PEER databases, old or new; or a csv with columns of time and
-        acceleration, or with one column. A text of more than one line is taken as such a file.
-    units : {"g", "m/s2", "cm/s2", "mm/s2"}, optional
-        Unit of the accelerations, where the file does not name it: the third line of an AT2 file,
-        or the name of the column, ``acceleration_g``. It is never guessed.
+        An AT2 file of the PEER databases, old or new; an ASCII file of ESM, AFAD, K-NET or KiK-net;
+        or a file with columns of time and acceleration, or with one column. A text of more than
+        one line is taken as such a file.
+    units : {"g", "m/s2", "cm/s2", "mm/s2", "in/s2", "ft/s2"}, optional
+        Unit of the accelerations, where the file does not name it in the name of the column,
+        ``acceleration_g``, or in a line above the values. It is never guessed, and one that
+        contradicts the file is refused.
     dt : float, optional
-        For a csv: the step [s] if there is no column of times, or the step to which values at
-        uneven times are interpolated.
+        The step [s] if there is no column of times and the file states none, or the step to which
+        values at uneven times are interpolated.
+    column : str or int, optional
+        The accelerations in a file with several components, by the name of their column or by its
+        number from 1.
+    checks : bool, optional
+        False accepts a record of more than 5 g.
 
     Raises
     ------
@@ -394,39 +628,77 @@ def read_motion(
     Warns
     -----
     RepairWarning
-        If a few of the last values of an AT2 file are missing.
+        If a few of the last values of a record are missing, or columns of texts are left out.
     """
     ending = "" if "\n" in str(path) else _arguments.path(path).suffix.lower()
     if ending in _OTHERS:
-        raise InputError(
-            f"{path}: the format {ending} is not read here; gmprocess (USGS) or obspy reads it, "
-            "and GroundMotion(acceleration, dt) takes the values in m/s2"
-        )
+        _refuse_format(path, f"the format {ending}")
     name, lines = read_lines(path)
-    # The name of a file may have bytes that are no text.
-    stem = Path(name).stem.encode("utf-8", "replace").decode()
-    if is_at2(lines) or ending == ".at2":
-        if dt is not None:
-            raise InputError(f"{name}: dt = {dt} was given, and an AT2 file has its own; remove it")
-        return read_at2(lines, name, stem, units)
+    if any(map(_VOLUME.search, lines[:3])):
+        _refuse_format(name, "a volume of COSMOS, CSMIP or GeoNet")
     if dt is not None:
         dt = _arguments.number(dt, "dt")
-    return read_csv(lines, name, stem, units, dt)
+    # The name of a file may have bytes that are no text.
+    stem = Path(name).stem.encode("utf-8", "replace").decode()
+    if lines[0].startswith("Origin Time") and any("Scale Factor" in line for line in lines[:20]):
+        motion = read_knet(lines, name, stem)
+        agreed_unit("cm/s2", units, f"{name}: ")
+        agreed_step(motion.dt, dt, name)
+    elif ending == ".at2" or _is_one_record(lines, column):
+        motion = read_record(lines, name, stem, units, dt)
+    else:
+        if _AFAD in lines[0]:
+            agreed_unit("cm/s2", units, f"{name}: ")
+            units = "cm/s2"
+        motion = read_columns(lines, name, stem, units, dt, column)
+    if checks and motion.pga > _LARGEST:
+        raise InputError(
+            f"{name}: the largest acceleration is {motion.pga / STANDARD_GRAVITY:.4g} g; no ground "
+            "has moved with more than 5 g. Check the unit, or say checks=False"
+        )
+    return motion
+
+
+def _is_one_record(lines: list[str], column: str | int | None) -> bool:
+    """Whether the values of one record stand in the lines, as many as are stated."""
+    if column is not None or not is_record(lines):
+        return False
+    first = _first_value(lines)
+    count = stated_count(lines[:first])
+    # As many lines as values are rows of columns.
+    rows = [line for line in lines[first:] if re.match(r"\s*[-+.\d]", line)]
+    return count is None or len(rows) != count
+
+
+def _refuse_format(path: object, kind: str) -> None:
+    raise InputError(
+        f"{path}: {kind} is not read here; gmprocess (USGS) or obspy reads it, "
+        "and GroundMotion(acceleration, dt) takes the values in m/s2"
+    )
 
 
 def read_motions(
-    folder: str | os.PathLike[str], units: str | None = None, pattern: str = "*"
+    folder: str | os.PathLike[str],
+    units: str | None = None,
+    pattern: str = "*",
+    *,
+    column: str | int | None = None,
+    checks: bool = True,
 ) -> tuple[GroundMotion, ...]:
     """Read all records of a folder, in the order of their names.
 
     Parameters
     ----------
     folder : path
-        Folder with files that end with .AT2, .csv or .txt; other files are left out.
+        Folder with files that end with .AT2, .csv, .txt, .asc, or as those of K-NET; other files
+        are left out.
     units : str, optional
         As for `read_motion`, for files that do not name their unit.
     pattern : str, optional
         Files to read, as a shell understands it: ``"RSN*_H*.AT2"``.
+
+    column, checks : optional
+        As for `read_motion`.
 
     Raises
     ------
@@ -455,7 +727,7 @@ def read_motions(
     faults: list[str] = []
     for path in paths:
         with _arguments.collected(faults):
-            motions.append(read_motion(path, units))
+            motions.append(read_motion(path, units, column=column, checks=checks))
     if faults:
         raise InputError("\n".join(faults))
     return tuple(motions)
