@@ -309,7 +309,7 @@ def kind(part: Part, length: float, **values: float) -> FrameMember:
     def half(springs: tuple[tuple[float, rbsdem.springs.Spring], ...]) -> dict:
         return {abs(end - 2 * at): spring for at, spring in springs if at < 0.5}
 
-    return replace(whole, flexure=half(whole.flexure), shear=half(whole.shear))
+    return replace(whole, flexure=half(whole.flexure), shear=half(whole.shear), length=length)
 
 
 def model(drawing: Drawing, make: Callable[[Part, float], FrameMember] = kind) -> Frame:

@@ -439,7 +439,7 @@ def test_second_order_work_between_springs_is_that_of_the_chord(height, most):
 
 def test_a_frame_of_drawings():
     """Cracked beams lengthen and press the columns: paths balance, more points change no bit."""
-    column = rbsdem.section.member(drawn(0.4), 2.7, axial_load=400e3, panel=0.25)
+    column = rbsdem.section.member(drawn(0.4), 2.95, axial_load=400e3, panel=0.25)
     beam = rbsdem.section.member(drawn(0.5), 5.6, panel=0.2)
     frame = Frame.grid(
         [3.2], [6.0], columns=column, beams=beam, beam_load=20e3, floor_mass=40e3,
@@ -463,10 +463,22 @@ def test_a_frame_of_drawings():
     assert runs.measures["first_yield"][0] == pytest.approx(min(yields), abs=0.02)
 
 
+def test_a_kind_is_refused_for_another_length():
+    """Springs are made for a clear length; 1 % is what rounding of a drawing comes to."""
+    kind = rbsdem.section.member(drawn(0.4), 2.7, panel=0.25)
+    beam = FrameMember(E, A, INERTIA)
+    assert Frame.grid([2.97, 3.19], columns={(0, 1): kind, (0, 2): kind}).parts.members
+    told = "member C-1-1: its clear length is 2.95 m, and the springs of member_kind 'kind-1' were "
+    with pytest.raises(rbsdem.InputError, match=told + "made for 2.7 m; make a kind") as error:
+        Frame.grid([3.2] * 3, [6.0], columns=kind, beams=beam)
+    assert str(error.value).count("clear length") == 1
+
+
 def test_a_frame_of_drawings_comes_back(tmp_path):
     """Layers stand once in the text, by their kinds and places."""
-    column = rbsdem.section.member(drawn(0.4), 2.7, axial_load=400e3)
-    frame = Frame.grid([3.2], [6.0], columns=column, beams=column)
+    column = rbsdem.section.member(drawn(0.4), 3.2, axial_load=400e3)
+    beam = rbsdem.section.member(drawn(0.5), 6.0)
+    frame = Frame.grid([3.2], [6.0], columns=column, beams=beam)
     loading = "&loading drive = 'displacement', values = 0, 0.01 /\n"
     (tmp_path / "case.nml").write_text(frame.to_namelist() + loading)
     assert rbsdem.read_case(tmp_path / "case.nml").column == frame

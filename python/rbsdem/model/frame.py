@@ -66,6 +66,9 @@ class FrameMember:
         `shear_drift`, the member loses its axial load P at the drift failure_drift/(1 +
         P/failure_load) of its clear length, with P [N] of that moment. In time it carries nothing
         from the next step on; a static path ends there with a message.
+    length : float, optional
+        Clear length that the springs were made for [m], as by `rbsdem.section.member`; members
+        whose own differs by more than 1 % are refused.
     name : str, optional
         Name in case files; made up if it is not given.
     """
@@ -84,6 +87,7 @@ class FrameMember:
     failure_drift: float | None = None
     failure_load: float | None = None
     shear_drift: float | None = None
+    length: float | None = None
     name: str = field(default="", compare=False)
 
     def __post_init__(self) -> None:
@@ -113,6 +117,7 @@ class FrameMember:
                 "shear_rigidity": self.shear_rigidity or None,
                 "yield_moment": self.yield_moment,
                 "hardening": self.hardening or None,
+                "length": self.length,
                 "failure_drift": self.failure_drift,
                 "failure_load": self.failure_load,
                 "shear_drift": self.shear_drift,

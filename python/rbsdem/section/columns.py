@@ -242,7 +242,7 @@ def member(
     section : Section
         The section; y > 0 is on the left of the way from start to end, which is above in a beam.
     length : float
-        Clear length between its ends [m].
+        Clear length between its ends [m]; a frame refuses it for members of another one.
     axial_load : float, optional
         Compression under the dead load [N].
     model_parameters, restrained
@@ -282,6 +282,7 @@ def member(
         shear={0.0: fails, 0.5 * place: slips, 1 - 0.5 * place: slips, 1.0: fails.mirrored()},
         between="rigid",
         panel=panel,
+        length=length,
         name=name,
         failure_drift=drift,
         failure_load=load,

@@ -7,7 +7,7 @@ module rbs_structure_frame_frame_parts
    use rbs_base_text, only: to_text
    use rbs_structure_frame_frame_checks, only: check_values, check_reference, group_of
    use rbs_structure_frame_frame_kinds, only: put_kind, can_be_lost
-   use rbs_structure_frame_frame_record, only: frame_record, frame_spring, cell_record
+   use rbs_structure_frame_frame_record, only: frame_record, frame_spring, cell_record, kind_record
    use rbs_structure_frame_new_frame, only: frame_node, frame_member, is_beam
    implicit none
    private
@@ -16,6 +16,9 @@ module rbs_structure_frame_frame_parts
 
    !> Nodes nearer than this share of the size of the frame are at one place.
    real(wp), parameter :: one_place = 1.0e-9_wp
+
+   !> Share of its length that a member may differ by from what its kind was made for.
+   real(wp), parameter :: one_length = 0.01_wp
 
    !> The kind of a member of the grid that is not there.
    integer, parameter :: left_out = -1
@@ -483,8 +486,10 @@ contains
       type(frame_record), intent(in) :: record
       type(message_list), intent(inout) :: messages
       real(wp) :: clear, whole
+      logical :: told(size(record%kind))
       integer :: i
 
+      told = .false.
       do i = 1, size(self%member)
          associate (m => self%member(i))
             associate (a => self%node(m%node(1)), b => self%node(m%node(2)))
@@ -505,6 +510,8 @@ contains
                                     'along x does nothing on it; give load_y to its nodes')
                end if
             end associate
+            if (.not. told(m%kind_of)) call check_length(m, record%kind(m%kind_of), clear, messages, &
+                                                         told(m%kind_of))
             call put_kind(m, record%kind(m%kind_of), record%spring, clear)
             if (.not. (is_given(m%failure_drift) .or. is_given(m%lost_at))) cycle
             if (.not. can_be_lost(m)) then
@@ -514,6 +521,22 @@ contains
          end associate
       end do
    end subroutine put_kinds
+
+   !> Refuse a kind whose springs were made for members of another length, once each.
+   subroutine check_length(m, kind, clear, messages, told)
+      type(frame_member), intent(in) :: m
+      type(kind_record), intent(in) :: kind
+      real(wp), intent(in) :: clear
+      type(message_list), intent(inout) :: messages
+      logical, intent(out) :: told
+
+      told = .false.
+      if (is_given(kind%length)) told = abs(clear - kind%length) > one_length*kind%length
+      if (.not. told) return
+      call messages%add('member '//trim(m%name)//': its clear length is '//to_text(clear)//' m, and the '// &
+                        "springs of member_kind '"//trim(kind%name)//"' were made for "// &
+                        to_text(kind%length)//' m; make a kind for this length, or correct panel')
+   end subroutine check_length
 
    !> Nodes at one place, without a member, or all held; members between the same nodes.
    subroutine check_geometry(self, messages)

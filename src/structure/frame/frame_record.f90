@@ -37,7 +37,7 @@ module rbs_structure_frame_frame_record
    type, extends(visited_record), public :: kind_record
       character(len=name_length) :: name = ''
       real(wp) :: modulus = unset, area = unset, inertia = unset, shear_rigidity = 0.0_wp
-      real(wp) :: yield_moment = unset, hardening = 0.0_wp
+      real(wp) :: yield_moment = unset, hardening = 0.0_wp, length = unset
       real(wp) :: failure_drift = unset, failure_load = unset, shear_drift = unset
       character(len=8) :: between = 'elastic'
    contains
@@ -246,6 +246,8 @@ contains
                  'without it and without springs the member stays elastic', optional=.true.)
       call v%key('hardening', self%hardening, '', bound_type(-1.0_wp, 1.0_wp, .true., .true.), &
                  'stiffness after yielding over the one before')
+      call v%key('length', self%length, 'm', above_zero, 'clear length that its springs were made for; '// &
+                 'members of another one are refused', optional=.true.)
       call v%key('failure_drift', self%failure_drift, '', above_zero, 'drift at which the member loses '// &
                  'its axial load, if that is small, once a shear spring of it has yielded; without it: '// &
                  'never', optional=.true.)
