@@ -1,6 +1,6 @@
 !> Linear algebra, dense and banded: the only place that calls LAPACK.
 !>
-!> No analysis calls it for a dense system at each event or step: that is for `rbs_solve_static_few_bodies`.
+!> No analysis calls it for a dense system at each event or step: those are bands (`rbs_base_band_matrix`).
 !> `info` of LAPACK becomes a logical, as the caller can write a better message.
 module rbs_base_linalg
    use rbs_base_kinds, only: wp

@@ -72,6 +72,8 @@ module rbs_structure_structure
       real(wp), allocatable :: initial_stiffness(:), constant_axial(:)
       !> Displacement of the top per deformation, for small rotations: what static paths control (springs)
       real(wp), allocatable :: arm(:)
+      !> The same per unknown (unknowns)
+      real(wp), allocatable :: control(:)
       !> The spring whose force is the base shear; 0: `base_force` tells it
       integer :: base_spring = 0
       !> Axial load at the top that is there from the start, compression positive [N]; change of the axial
@@ -144,6 +146,8 @@ module rbs_structure_structure
       procedure :: damp
       procedure :: add_damping
       procedure :: size_of_parts
+      procedure :: drop_round_off
+      procedure :: work_of_dead_load
       procedure :: spring_of
       procedure :: create_springs
       procedure :: add_ground
@@ -544,6 +548,27 @@ contains
       work = 0.0_wp
       if (.false.) work = least*self%height*springs%count
    end subroutine size_of_parts
+
+   !> Take rates that are round-off of larger ones for zero, where deformations are condensed.
+   pure subroutine drop_round_off(self, tangent, dx, dd)
+      class(structure_type), intent(in) :: self
+      !> See `linearise`; rates of the unknowns (unknowns)
+      real(wp), intent(in), contiguous :: tangent(:), dx(:)
+      !> Of the springs (springs)
+      real(wp), intent(inout), contiguous :: dd(:)
+
+      if (size(tangent) + size(dx) < self%unknowns) dd = 0.0_wp
+   end subroutine drop_round_off
+
+   !> Work of a dead load that grows on a static path; there is none.
+   pure real(wp) function work_of_dead_load(self, d) result(work)
+      class(structure_type), intent(in) :: self
+      !> Deformations of the springs, or changes of them (springs)
+      real(wp), intent(in), contiguous :: d(:)
+
+      work = 0.0_wp
+      if (size(d) < self%base_spring) work = self%height
+   end function work_of_dead_load
 
    !> The spring of a kind that comes in a place among those of the kind; 0 if there are not so many.
    pure integer function spring_of(self, kind, number) result(i)

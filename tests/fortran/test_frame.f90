@@ -8,7 +8,7 @@ module test_frame
    use rbs_output_recorder, only: array_recorder
    use rbs_solve_end_state, only: end_state, standing_type
    use rbs_solve_static_dead_load, only: put_dead_load
-   use rbs_solve_static_frame_equilibrium, only: frame_equilibrium
+   use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_straight, only: trace_straight
    use rbs_solve_task, only: task_type
    use rbs_structure_frame_element, only: frame_element, find_tangent
@@ -208,7 +208,7 @@ contains
       type(task_type), intent(inout), target :: task
       real(wp), allocatable, intent(out) :: rows(:, :)
       type(frame_type), target :: frame
-      type(frame_equilibrium), target :: equilibrium
+      type(equilibrium_type), target :: equilibrium
       type(array_recorder), pointer :: recorder
       type(frame_node) :: node(5)
       type(frame_member) :: member(4)
@@ -313,7 +313,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       real(wp), parameter :: load = 1.0e6_wp
       type(frame_type), target :: frame
-      type(frame_equilibrium), target :: equilibrium
+      type(equilibrium_type), target :: equilibrium
       type(array_recorder), target :: recorder
       type(task_type), target :: task
       type(frame_node) :: node(2)

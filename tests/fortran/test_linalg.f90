@@ -5,7 +5,6 @@ module test_linalg
    use rbs_base_kinds, only: wp
    use rbs_base_band_matrix, only: band_matrix
    use rbs_base_linalg, only: solve_tridiagonal, solve_general_band, solve_dense
-   use rbs_solve_static_few_bodies, only: solve_rows, row_length
    implicit none
    private
 
@@ -16,33 +15,12 @@ contains
    subroutine collect_linalg(tests)
       type(unit_test), allocatable, intent(out) :: tests(:)
 
-      tests = [unit_test('elimination equation by equation', rows), &
-               unit_test('band: L D L'' solves and counts negative eigenvalues, narrow and wide', band), &
+      tests = [unit_test('band: L D L'' solves and counts negative eigenvalues, narrow and wide', band), &
                unit_test('band with a border, also where the band has no inverse', bordered), &
                unit_test('tridiagonal system, and one that is not positive', tridiagonal), &
                unit_test('general band needs pivots, two right-hand sides', general_band), &
                unit_test('dense system by LAPACK, and a singular one', dense_system)]
    end subroutine collect_linalg
-
-   !> The same system equation by equation, with three right-hand sides; and one without an inverse.
-   subroutine rows(error)
-      type(error_type), allocatable, intent(inout) :: error
-      real(wp) :: a(3, 3), x(3, 3), row(row_length, 3)
-      logical :: regular
-
-      a = reshape([0.0_wp, 1.0_wp, 2.0_wp, 1.0_wp, 0.0_wp, 1.0_wp, 3.0_wp, -1.0_wp, 0.0_wp], [3, 3])
-      x = reshape([1.0_wp, 2.0_wp, 3.0_wp, -1.0_wp, 0.0_wp, 0.5_wp, 4.0_wp, -5.0_wp, 6.0_wp], [3, 3])
-      row = 0.0_wp
-      row(:3, :) = transpose(a)
-      row(row_length - 2:, :) = transpose(matmul(a, x))
-      call solve_rows(3, row, regular)
-      call check_true(error, regular, 'regular')
-      call check_close(error, reshape(transpose(row(row_length - 2:, :)), [9]), reshape(x, [9]), 1.0e-14_wp, &
-                       1.0e-15_wp, 'solutions')
-      row(:3, :) = 1.0_wp
-      call solve_rows(3, row, regular)
-      call check_true(error, .not. regular, 'equal rows')
-   end subroutine rows
 
    !> T T of the second differences T, (1, -4, 6, -4, 1) with 5 in place of 6 at the ends, as a lower band
    !> of half-width 3; its eigenvalues are (2 - 2 cos(j pi/(n + 1)))^2.

@@ -5,12 +5,10 @@ module test_static
    use rbs_base_error, only: error_type, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column, only: column_type
-   use rbs_hysteresis_springs, only: spring_array
    use rbs_output_summary, only: summary_type
-   use rbs_solve_static_chain_equilibrium, only: chain_equilibrium
    use rbs_structure_column_column_record, only: column_record
    use runs, only: run_path
-   use samples, only: bilinear, chain, column_1, elastic, made, random_type, k_c, d_y, k_u, s_k, s_d, height_1
+   use samples, only: bilinear, chain, column_1, elastic, made, k_c, d_y, k_u, s_k, s_d, height_1
    use row_places, only: row_displacement, row_force, row_axial, row_joints, row_top
    implicit none
    private
@@ -24,7 +22,6 @@ contains
 
       tests = [unit_test('pdelta: elastic column below and beyond its critical load', pdelta_elastic), &
                unit_test('a mechanism of joints shares the motion by their stiffness', mechanism), &
-               unit_test('rates that are updated are those that are solved for', updated_rates), &
                unit_test('a mechanism in a band', band_mechanism), &
                unit_test('height of the top, largest rotation', height_of_top), &
                unit_test('a force that is that of yield but for its last digits', nearly_yield)]
@@ -83,58 +80,6 @@ contains
          call check_close(error, rows(row_force, :), [s_k*s_d, s_k*s_d], 1.0e-12_wp, 0.0_wp, 'force')
       end do
    end subroutine mechanism
-
-   !> Springs of a column on lines through zero.
-   subroutine put_on_lines(column, k, f0, springs)
-      class(column_type), intent(in) :: column
-      !> Stiffness, and forces without deformation
-      real(wp), intent(in) :: k(:), f0(:)
-      type(spring_array), intent(out) :: springs
-      integer :: heard(2, size(k))
-      real(wp) :: axial_load(size(k))
-
-      heard = 0
-      axial_load = 0.0_wp
-      call springs%create(column%rules, heard, axial_load)
-      springs%k = k
-      springs%f0 = f0
-      springs%d0 = 0.0_wp
-   end subroutine put_on_lines
-
-   !> One spring after the other changes its stiffness, most of them several times in a row.
-   subroutine updated_rates(error)
-      type(error_type), allocatable, intent(inout) :: error
-      type(chain_equilibrium) :: solved, updated
-      type(random_type) :: random
-      type(spring_array) :: springs
-      class(column_type), allocatable :: column
-      type(column_record) :: spec
-      real(wp), dimension(4) :: k, none, rate, rate_updated
-      integer :: change, spring, updates
-      logical :: regular
-
-      spec = chain(2, 'pdelta')
-      spec%axial_load = 2.0e6_wp
-      column = made(spec)
-      call updated%create(column)
-      call solved%create(column)
-      k = column%initial_stiffness
-      none = 0.0_wp
-      updates = 0
-      do change = 1, 400
-         spring = 1 + modulo(change/30, 4)
-         k(spring) = column%initial_stiffness(spring)*10.0_wp**random%uniform(-3.0_wp, 0.0_wp)
-         call put_on_lines(column, k, none, springs)
-         call solved%follow(springs, .false., .true., 0.0_wp, 0.0_wp, rate, regular)
-         call check_true(error, regular, 'the column has a line')
-         call updated%follow(springs, .false., .false., 0.0_wp, 0.0_wp, rate_updated, regular)
-         if (any(abs(rate_updated - rate) > 0.0_wp)) updates = updates + 1
-         call check_close(error, rate_updated, rate, 1.0e-11_wp, 1.0e-11_wp*maxval(abs(rate)), 'rates')
-         call check_close(error, updated%force_rate, solved%force_rate, 1.0e-11_wp, 0.0_wp, &
-                          'rate of the force')
-      end do
-      call check_true(error, updates > 100, 'many updates')
-   end subroutine updated_rates
 
    !> The spring stands on the end of its line, so that the joints move the top a little farther.
    subroutine nearly_yield(error)

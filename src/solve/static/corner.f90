@@ -193,7 +193,12 @@ contains
 
       remark = ''
       if (path%structure%axially_loaded) remark = ' above what the axial load takes away'
-      if (.not. path%by_force) then
+      if (path%lost_digits) then
+         call fatal_error(error, analysis_failed, 'the stiffnesses are too far apart for the arithmetic at '// &
+                          trim(state_of(path))//': '//trim(weakest_spring(path))//' has the least left. '// &
+                          'Take stiff springs less stiff, a million times the others is rigid enough, or '// &
+                          'fewer bodies')
+      else if (.not. path%by_force) then
          call fatal_error(error, analysis_failed, 'the equilibrium is not unique at the displacement '// &
                           to_text(target)//' m at '//trim(state_of(path))//': '// &
                           trim(weakest_spring(path))//' and the axial load leave it without stiffness. '// &

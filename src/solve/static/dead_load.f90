@@ -7,7 +7,7 @@ module rbs_solve_static_dead_load
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_recorder, only: array_recorder
    use rbs_solve_end_state, only: end_state, standing_type
-   use rbs_solve_static_frame_equilibrium, only: frame_equilibrium
+   use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_straight, only: trace_straight
    use rbs_solve_task, only: task_type
    use rbs_structure_frame_frame, only: frame_type
@@ -69,7 +69,7 @@ contains
       type(end_state), intent(out) :: state
       type(error_type), allocatable, intent(out) :: error
       type(frame_type), target :: unloaded
-      type(frame_equilibrium), target :: equilibrium
+      type(equilibrium_type), target :: equilibrium
       type(array_recorder), target :: nothing
       type(task_type), target :: task
       type(standing_type) :: standing

@@ -1,73 +1,444 @@
 !> Equilibrium of a structure on the present lines of its springs, and how it goes on.
 !>
 !> While every spring stays on its line, all is linear in what is driven: the number F that the pattern p of
-!> the lateral load is multiplied with, or the displacement of the top, a row c of the unknowns. This is
-!> found exactly, without increments:
+!> the load is multiplied with, or the displacement of the top, a row c of the unknowns. This is found
+!> exactly, without increments:
 !>
 !>     K x' = p F',   c x' = u'        K = B' diag(k) B + K_G
 !>
-!> with F' = 1 or u' = 1. How the system is solved is the affair of each kind of structure; a path knows no
-!> more of it than this.
+!> with F' = 1 or u' = 1. K is a band, bordered by p and c where the displacement is driven. The pattern is
+!> that of the lateral load, or the dead load of a frame, which grows from 0 to 1. Deformations that are small
+!> differences of unknowns lose digits; the residual is taken in the deformations and solved for once more.
+!> Joints of a chain that nothing couples have a diagonal K and need no factor.
 module rbs_solve_static_equilibrium
+   use rbs_base_band_matrix, only: band_matrix
+   use rbs_base_constants, only: no_stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_hysteresis_springs, only: spring_array
+   use rbs_structure_spring_place, only: flexure, axial
+   use rbs_structure_structure, only: structure_type, lateral, signals
    implicit none
    private
 
    public :: equilibrium_type
 
-   type, abstract :: equilibrium_type
+   !> A displacement or rotation per displacement of the top that no stable part of a structure has [-, 1/m].
+   real(wp), parameter :: without_end = 1.0e8_wp
+
+   !> A displacement, in shares of the height, or a rotation that no correction of round-off comes to unless a
+   !> part is free to move.
+   real(wp), parameter :: no_more = 1.0_wp
+
+   !> Hardening by which springs without stiffness share a motion, as a share of their initial stiffness.
+   real(wp), parameter :: shared = 1.0e-9_wp
+
+   !> Share of a change that a refinement may add for the next one to be needless, and most refinements.
+   real(wp), parameter :: few_digits = 1.0e-8_wp
+   integer, parameter :: refinements = 20
+
+   type :: equilibrium_type
       !> Whether the dead load of a frame grows with the force, from 0 to 1, in place of the lateral one
-      logical :: loads = .false.
+      logical :: of_dead_load = .false.
       !> Number of springs that can move; they are the first ones
       integer :: moving = 0
-      !> Rates of force and displacement, and of the way on which the force does its work as far as it is
-      !> not the displacement
+      !> An element that snaps back on the present lines; 0: none
+      integer :: unstable = 0
+      !> Whether the stiffnesses are too far apart for the arithmetic
+      logical :: lost_digits = .false.
+      !> Rates of force and displacement; work of the load per force and per unit of what is driven, less that
+      !> of the displacement
       real(wp) :: force_rate = 0.0_wp, displacement_rate = 0.0_wp, further_rate = 0.0_wp
-      !> What takes the structure to equilibrium: of the deformations (moving), and of the force [N]
+      !> Change that takes the structure to equilibrium: of the deformations (moving), and of the force [N]
       real(wp), allocatable :: correction(:)
       real(wp) :: force_correction = 0.0_wp
-      !> The largest force that was found out of equilibrium before the correction; 0 where rates
-      !> followed from the last ones [N]
+      !> The largest force that was out of equilibrium before the correction, moments over the height [N]
       real(wp) :: unbalance = 0.0_wp
+      class(structure_type), pointer, private :: structure => null()
+      !> Whether the unknowns are coupled; if not, K is diagonal in the deformations. Whether deformations
+      !> follow from the unknowns alone, so that lost digits can be recovered
+      logical, private :: coupled = .false., refines = .false.
+      type(band_matrix), private :: matrix
+      !> Pivots of the initial stiffness (unknowns)
+      real(wp), allocatable, private :: pivot(:)
+      !> Unknowns that supports or axial springs keep still (unknowns)
+      logical, allocatable, private :: still(:)
+      logical, private :: has_still = .false.
+      !> Axial forces that do second-order work, tangents of the elements
+      real(wp), allocatable, private :: axial(:), tangent(:)
+      !> Height for moments, 1 for forces (unknowns)
+      real(wp), allocatable, private :: reach(:)
+      !> Load per unit, residual, and an array for the loads that are solved for (unknowns)
+      real(wp), allocatable, private :: pattern(:), residual(:), load(:, :)
+      !> Changes of the unknowns and what was added for lost digits (unknowns, 2); changes of the deformations
+      !> with what is driven and by correction (springs, 2)
+      real(wp), allocatable, private :: change(:, :), moved(:, :)
+      !> Forces of the springs, flexibilities (springs); deformations that bring the inside of elements to
+      !> equilibrium, and those by the load per unit (springs, or none)
+      real(wp), allocatable, private :: f(:), flexible(:), inner(:), inner_load(:), more(:)
    contains
-      procedure(follow_lines), deferred :: follow
-      procedure(measure_unbalance), deferred :: find_unbalance
+      procedure :: create
+      procedure :: follow
+      procedure :: find_unbalance
       procedure :: serialize
    end type equilibrium_type
 
-   abstract interface
-      !> Find rates and corrections on the present lines.
-      subroutine follow_lines(self, springs, by_force, corrects, displacement, force, rate, found)
-         import :: equilibrium_type, spring_array, wp
-         implicit none
-         class(equilibrium_type), intent(inout) :: self
-         type(spring_array), intent(in) :: springs
-         !> Whether the force is driven, else the displacement; under the force the structure must be stable
-         logical, intent(in) :: by_force
-         !> Whether the corrections are needed; else rates may follow from the last ones, without any
-         logical, intent(in) :: corrects
-         !> Of the top [m], and lateral force [N]
-         real(wp), intent(in) :: displacement, force
-         !> Rates of the deformations (moving)
-         real(wp), intent(inout), contiguous :: rate(:)
-         logical, intent(out) :: found
-      end subroutine follow_lines
-
-      !> Find the largest force by which a joint is out of equilibrium.
-      subroutine measure_unbalance(self, springs, force)
-         import :: equilibrium_type, spring_array, wp
-         implicit none
-         class(equilibrium_type), intent(inout) :: self
-         type(spring_array), intent(in) :: springs
-         real(wp), intent(in) :: force
-      end subroutine measure_unbalance
-   end interface
-
 contains
 
-   !> Save or restore the rates, and what the next ones may follow from: here nothing.
+   subroutine create(self, structure, of_dead_load)
+      class(equilibrium_type), intent(out) :: self
+      class(structure_type), intent(in), target :: structure
+      !> Whether the dead load grows
+      logical, intent(in) :: of_dead_load
+      type(band_matrix) :: initial
+      real(wp) :: no_load(signals)
+      integer :: inside, springs, m, i
+
+      self%structure => structure
+      self%of_dead_load = of_dead_load
+      m = structure%unknowns
+      springs = size(structure%place)
+      self%moving = springs
+      self%refines = structure%tangent_numbers == 0
+      self%still = structure%is_held
+      if (self%refines) then
+         ! Axial springs of a chain keep still, and with them the last unknowns.
+         self%moving = count(structure%place%kind /= axial)
+         self%still(self%moving + 1:) = .true.
+      end if
+      self%has_still = any(self%still)
+      allocate (self%reach(m), source=1.0_wp)
+      do i = 1, size(structure%group)
+         associate (of => structure%group(i))
+            if (structure%place(of%first_spring)%kind /= flexure) cycle
+            self%reach(of%first:of%first + (of%count - 1)*of%step:of%step) = structure%total_height
+         end associate
+      end do
+      if (allocated(structure%reach)) self%reach(:) = structure%reach
+      self%coupled = structure%axially_loaded .or. structure%has_held .or. .not. self%refines
+      inside = merge(0, springs, self%refines)
+      allocate (self%tangent(structure%tangent_numbers), self%pattern(m), self%residual(m), self%load(m, 1), &
+                self%change(m, 2), self%moved(springs, 2), self%f(springs), self%flexible(springs), &
+                self%inner(inside), self%inner_load(inside), self%more(springs), &
+                self%correction(self%moving), source=0.0_wp)
+      allocate (self%axial(merge(structure%axial_count, 0, structure%axially_loaded)))
+      no_load = 0.0_wp
+      if (structure%axially_loaded) call structure%axial_forces(no_load, self%axial)
+      if (.not. of_dead_load) self%pattern = structure%pattern(lateral)%force
+      if (.not. self%coupled) return
+      call initial%create(m, structure%half_width)
+      call structure%add_stiffness(structure%initial_stiffness, structure%initial_tangent, initial%band)
+      call self%matrix%create(m, structure%half_width, initial%band(1, :))
+      self%matrix%band = initial%band
+      call hold_still(self)
+      call self%matrix%factor()
+      self%pivot = 1.0_wp/self%matrix%triangle(1, :)
+   end subroutine create
+
+   !> Hold the unknowns that do not move.
+   subroutine hold_still(self)
+      class(equilibrium_type), intent(inout) :: self
+      integer :: i
+
+      if (.not. self%has_still) return
+      do i = 1, size(self%still)
+         if (self%still(i)) call self%matrix%hold(i, self%matrix%stiffness(i))
+      end do
+   end subroutine hold_still
+
+   !> Rates and corrections on the present lines.
+   subroutine follow(self, springs, by_force, displacement, force, rate, found)
+      class(equilibrium_type), intent(inout) :: self
+      type(spring_array), intent(in) :: springs
+      !> Whether the force is driven, else the displacement; under the force the structure must be stable
+      logical, intent(in) :: by_force
+      !> Of the top [m], and lateral force [N]
+      real(wp), intent(in) :: displacement, force
+      !> Rates of the deformations (moving)
+      real(wp), intent(inout), contiguous :: rate(:)
+      logical, intent(out) :: found
+      real(wp) :: gap
+
+      self%lost_digits = .false.
+      gap = displacement - self%structure%top_displacement(springs%d)
+      if (self%coupled) then
+         call follow_band(self, springs, by_force, gap, force, rate, found)
+         return
+      end if
+      call self%find_unbalance(springs, force)
+      associate (arm => self%structure%arm(:self%moving), k => springs%k(:self%moving), &
+                 initial => self%structure%initial_stiffness(:self%moving), r => self%f(:self%moving))
+         if (.not. by_force) then
+            call follow_diagonal(self%moving, arm, initial, k, r, gap, rate, self%force_rate, &
+                                 self%correction, self%force_correction, self%flexible, found)
+            self%displacement_rate = 1.0_wp
+            return
+         end if
+         found = all(k > no_stiffness*initial)
+         if (.not. found) return
+         rate = arm/k
+         self%correction(:) = r/k
+         self%force_rate = 1.0_wp
+         self%force_correction = 0.0_wp
+         self%displacement_rate = sum(arm*rate)
+      end associate
+   end subroutine follow
+
+   !> The same with the band.
+   subroutine follow_band(self, springs, by_force, gap, force, rate, found)
+      class(equilibrium_type), intent(inout) :: self
+      type(spring_array), intent(in) :: springs
+      logical, intent(in) :: by_force
+      !> Of the displacement [m]
+      real(wp), intent(in) :: gap, force
+      real(wp), intent(inout), contiguous :: rate(:)
+      logical, intent(out) :: found
+      real(wp) :: y(2)
+      logical :: settled
+
+      associate (structure => self%structure, m => self%moving)
+         call structure%linearise(springs%k, self%tangent, self%unstable)
+         found = self%unstable == 0
+         if (.not. found) return
+         call find_residual(self, springs, force)
+         call factor(self, springs%k, by_force, found)
+         if (.not. found) return
+         ! A part that gives way beside the top moves without end while the top does not.
+         call solve(1, 1.0_wp, found)
+         if (.not. by_force) found = found .and. maxval(abs(self%change(:, 1))) < without_end
+         if (.not. found) return
+         rate = self%moved(:m, 1)
+         if (.not. self%refines) then
+            call structure%drop_round_off(self%tangent, self%change(:, 1), rate)
+            rate = rate + y(1)*self%inner_load
+         end if
+         self%force_rate = y(1)
+         self%displacement_rate = 1.0_wp
+         if (by_force) self%displacement_rate = structure%top_displacement(self%moved(:, 1))
+         self%further_rate = work_rate(self, rate) - self%displacement_rate
+         call solve(2, gap, settled)
+         ! Of a mechanism what corrects round-off is round-off itself; more than that is found by the row.
+         if (.not. settled .or. maxval(abs(self%change(:, 1))) > no_more*structure%total_height) then
+            self%moved(:, 2) = 0.0_wp
+            y(2) = 0.0_wp
+         end if
+         self%force_correction = y(2)
+         self%correction(:) = self%moved(:m, 2)
+         if (.not. self%refines) self%correction(:) = self%correction + (self%inner + y(2)*self%inner_load)
+      end associate
+
+   contains
+
+      !> Changes per unit of what is driven (1), or by what is missing (2), and the force that goes with them.
+      subroutine solve(j, displacement, regular)
+         integer, intent(in) :: j
+         !> Where it is driven [m]
+         real(wp), intent(in) :: displacement
+         logical, intent(out) :: regular
+         real(wp) :: signal(signals), more
+         integer :: again
+
+         y(j) = merge(1.0_wp, 0.0_wp, by_force .and. j == 1)
+         self%load(:, 1) = y(j)*self%pattern
+         if (j == 2) self%load(:, 1) = self%residual
+         call solve_once(1, displacement, more, regular)
+         if (.not. regular) return
+         y(j) = y(j) + more
+         call self%structure%spring_rates(self%tangent, self%change(:, 1), self%moved(:, j))
+         if (.not. self%refines) return
+         signal = 0.0_wp
+         do again = 1, refinements
+            signal(lateral) = y(j)
+            self%f = springs%k*self%moved(:, j)
+            call self%structure%forces(self%moved(:, j), signal, self%axial, self%tangent, self%f, &
+                                       self%load(:, 1), self%inner)
+            if (j == 2) self%load(:, 1) = self%load(:, 1) + self%residual
+            if (self%has_still) where (self%still) self%load(:, 1) = 0.0_wp
+            call solve_once(2, displacement - self%structure%top_displacement(self%moved(:, j)), more, regular)
+            if (.not. regular) return
+            y(j) = y(j) + more
+            call self%structure%spring_rates(self%tangent, self%change(:, 2), self%more)
+            self%moved(:, j) = self%moved(:, j) + self%more
+            self%change(:, 1) = self%change(:, 1) + self%change(:, 2)
+            ! What one more would add is about the square of this share.
+            if (maxval(abs(self%change(:, 2))) <= few_digits*maxval(abs(self%change(:, 1)))) return
+         end do
+         regular = .false.
+         if (j == 1) self%lost_digits = .true.
+      end subroutine solve
+
+      subroutine solve_once(i, displacement, more, regular)
+         !> Column of the changes
+         integer, intent(in) :: i
+         real(wp), intent(in) :: displacement
+         real(wp), intent(out) :: more
+         logical, intent(out) :: regular
+         real(wp) :: of_border(1)
+
+         more = 0.0_wp
+         if (by_force) then
+            self%change(:, i) = self%load(:, 1)
+            call self%matrix%solve(self%change(:, i:i), regular)
+         else
+            call self%matrix%solve_bordered(self%load, [displacement], self%change(:, i:i), of_border, regular)
+            more = of_border(1)
+         end if
+      end subroutine solve_once
+
+   end subroutine follow_band
+
+   !> The band on the present lines, with its border where the displacement is driven.
+   subroutine factor(self, k, by_force, found)
+      class(equilibrium_type), intent(inout) :: self
+      real(wp), intent(in), contiguous :: k(:)
+      logical, intent(in) :: by_force
+      logical, intent(out) :: found
+
+      associate (structure => self%structure, matrix => self%matrix)
+         matrix%band = 0.0_wp
+         self%f = k
+         ! Springs without stiffness share a motion as with a hardening in proportion to their initial
+         ! stiffness, which the refinement takes away.
+         if (self%refines .and. .not. by_force) then
+            where (abs(k) <= no_stiffness*structure%initial_stiffness) self%f = shared*structure%initial_stiffness
+         end if
+         call structure%add_stiffness(self%f, self%tangent, matrix%band)
+         if (structure%axially_loaded) call structure%add_geometric(self%axial, matrix%band)
+         call hold_still(self)
+         call matrix%factor()
+         ! The last pivots of a long chain are small by themselves; what is left of them counts.
+         matrix%positive = matrix%negative == 0 .and. &
+                           maxval(matrix%triangle(1, :)*self%pivot) < 1.0_wp/no_stiffness
+         if (by_force) then
+            found = matrix%positive
+         else
+            call matrix%set_border(self%pattern, structure%control, found)
+         end if
+      end associate
+   end subroutine factor
+
+   !> Work of the load per unit of it and of what is driven.
+   real(wp) function work_rate(self, rate) result(work)
+      class(equilibrium_type), intent(in) :: self
+      !> Of the deformations (springs)
+      real(wp), intent(in), contiguous :: rate(:)
+
+      if (self%of_dead_load) then
+         work = self%structure%work_of_dead_load(rate)
+      else
+         work = self%structure%work_of(lateral, self%change(:, 1))
+      end if
+   end function work_rate
+
+   !> The largest force out of equilibrium where the springs are.
+   subroutine find_unbalance(self, springs, force)
+      class(equilibrium_type), intent(inout) :: self
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(in) :: force
+      integer :: i
+
+      if (self%coupled) then
+         ! Where an element snaps back its last tangent serves.
+         call self%structure%linearise(springs%k, self%tangent, self%unstable)
+         call find_residual(self, springs, force)
+         return
+      end if
+      self%unbalance = 0.0_wp
+      associate (structure => self%structure)
+         do i = 1, self%moving
+            self%f(i) = structure%arm(i)*force - (springs%f0(i) + springs%k(i)*(springs%d(i) - springs%d0(i)))
+            self%unbalance = max(self%unbalance, abs(self%f(i))/merge(structure%total_height, 1.0_wp, &
+                                                                      structure%place(i)%kind == flexure))
+         end do
+      end associate
+   end subroutine find_unbalance
+
+   !> The residual of the coupled unknowns where the springs are, and the largest of it.
+   subroutine find_residual(self, springs, force)
+      class(equilibrium_type), intent(inout) :: self
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(in) :: force
+      real(wp) :: signal(signals)
+      integer :: i
+
+      signal = 0.0_wp
+      if (.not. self%of_dead_load) signal(lateral) = force
+      associate (structure => self%structure)
+         self%f = springs%f0 + springs%k*(springs%d - springs%d0)
+         call structure%forces(springs%d, signal, self%axial, self%tangent, self%f, self%residual, self%inner)
+         if (self%of_dead_load) then
+            ! Forces are those under all of it: the share that is not there yet is taken off.
+            self%moved = 0.0_wp
+            call structure%forces(self%moved(:, 1), signal, self%axial, self%tangent, self%moved(:, 2), &
+                                  self%pattern, self%inner_load)
+            self%residual = self%residual - (1.0_wp - force)*self%pattern
+            self%inner = self%inner - (1.0_wp - force)*self%inner_load
+         end if
+         if (self%has_still) where (self%still) self%residual = 0.0_wp
+         self%unbalance = 0.0_wp
+         do i = 1, structure%unknowns
+            self%unbalance = max(self%unbalance, abs(self%residual(i))/self%reach(i))
+         end do
+      end associate
+   end subroutine find_residual
+
+   !> Joints one above the other that nothing couples, small rotations without axial load, driven by the
+   !> displacement. They share the force, and their motions add up. The force is that of the most flexible
+   !> joint p and what takes the others to it, F' = -r_p/a_p + F'': with F' itself, its motion
+   !> (r_p + a_p F')/k_p would be a difference of round-off over next to nothing.
+   pure subroutine follow_diagonal(m, arm, initial, k, r, gap, rate, force_rate, correction, &
+                                   force_correction, flexible, regular)
+      integer, intent(in) :: m
+      !> Arms of the force and initial stiffness of the joints (m); stiffness of the springs, residual (m),
+      !> and what is missing from the displacement [m]
+      real(wp), intent(in) :: arm(m), initial(m), k(m), r(m), gap
+      !> Change of the deformations per metre, and what takes the residuals away (m); change of the force
+      !> [N/m], and of the force with the correction [N]
+      real(wp), intent(out) :: rate(m), correction(m), force_rate, force_correction
+      !> Flexibilities, 0 where there is no stiffness (m)
+      real(wp), intent(out) :: flexible(m)
+      !> Whether there is a unique solution
+      logical, intent(out) :: regular
+      real(wp) :: flexibility
+      integer :: i, p
+
+      regular = .true.
+      p = 1
+      do i = 1, m
+         flexible(i) = 0.0_wp
+         if (abs(k(i)) > no_stiffness*initial(i)) then
+            flexible(i) = arm(i)**2/k(i)
+            if (regular .and. abs(flexible(i)) > abs(flexible(p))) p = i
+         else
+            regular = .false.
+            p = i
+         end if
+      end do
+      if (regular) then
+         ! Softening joints have a negative flexibility; with that of the others it may vanish.
+         flexibility = sum(flexible)
+         regular = abs(flexibility) > no_stiffness*sum(abs(flexible))
+         if (.not. regular) return
+         force_rate = 1.0_wp/flexibility
+         rate = flexible/arm*force_rate
+      else
+         regular = .true.
+         force_rate = 0.0_wp
+         ! Joints without stiffness take all the motion. Several share it as they would with a hardening in
+         ! proportion to their initial stiffness, however small.
+         rate = 0.0_wp
+         where (.not. abs(flexible) > 0.0_wp) rate = arm/initial
+         rate = rate/sum(arm*rate)
+      end if
+      force_correction = -r(p)/arm(p)
+      correction = flexible/arm*(r/arm + force_correction)
+      associate (missing => gap - sum(arm*correction))
+         correction = correction + rate*missing
+         force_correction = force_correction + force_rate*missing
+      end associate
+   end subroutine follow_diagonal
+
+   !> Save or restore the rates.
    subroutine serialize(self, stream)
       class(equilibrium_type), intent(inout) :: self
       type(stream_type), intent(inout) :: stream

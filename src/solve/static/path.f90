@@ -80,6 +80,8 @@ module rbs_solve_static_path
       real(wp) :: axial_rate = 0.0_wp
       !> Whether the path consists of straight lines, and is looked at where they end
       logical :: is_straight = .false.
+      !> Whether rates were not found as the stiffnesses are too far apart for the arithmetic
+      logical :: lost_digits = .false.
       !> How often each spring has changed its line at the present corner (springs)
       integer, allocatable :: changed(:)
       !> Energy of springs and axial load at the start, work of the axial load as far as it varies [J], and

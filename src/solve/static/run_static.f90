@@ -6,9 +6,8 @@ module rbs_solve_static_run_static
    use rbs_structure_column_sturm, only: critical_factor
    use rbs_structure_column_column, only: column_type, small, finite
    use rbs_base_check, only: check_values
-   use rbs_solve_static_chain_equilibrium, only: chain_equilibrium
    use rbs_solve_static_curved, only: trace_curved
-   use rbs_solve_static_frame_equilibrium, only: frame_equilibrium
+   use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_straight, only: trace_straight
    use rbs_solve_task, only: task_type
    use rbs_structure_frame_frame, only: frame_type
@@ -51,7 +50,7 @@ contains
 
       subroutine trace_frame(frame)
          class(frame_type), intent(in), target :: frame
-         type(frame_equilibrium) :: equilibrium
+         type(equilibrium_type) :: equilibrium
 
          if (present(axial_load)) then
             if (size(axial_load) > 0) then
@@ -72,7 +71,7 @@ contains
          class(column_type), intent(in), target :: column
          class(column_type), allocatable, target :: other
          class(column_type), pointer :: loaded
-         type(chain_equilibrium) :: equilibrium
+         type(equilibrium_type) :: equilibrium
          real(wp) :: load(size(target)), factor
          logical :: varies, curved
 
@@ -95,7 +94,7 @@ contains
          if (curved) then
             call trace_curved(loaded, by_force, target, pack(load, varies), task, error)
          else
-            call equilibrium%create(loaded)
+            call equilibrium%create(loaded, .false.)
             call trace_straight(loaded, equilibrium, by_force, target, task, error)
          end if
          if (allocated(error) .and. by_force .and. .not. abs(task%summary%peak_displacement) > 0.0_wp) then

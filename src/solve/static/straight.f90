@@ -22,7 +22,7 @@ module rbs_solve_static_straight
 
    !> The state of a path and the line it is on.
    type, extends(static_path) :: straight_path
-      class(equilibrium_type), pointer :: equilibrium => null()
+      type(equilibrium_type), pointer :: equilibrium => null()
       !> The line: what is driven, deformations (moving), force and displacement where it begins
       real(wp) :: start = 0.0_wp
       real(wp), allocatable :: q(:)
@@ -44,7 +44,7 @@ contains
    subroutine trace_straight(structure, equilibrium, by_force, target, task, error)
       class(structure_type), intent(in), target :: structure
       !> That of the structure
-      class(equilibrium_type), intent(inout), target :: equilibrium
+      type(equilibrium_type), intent(inout), target :: equilibrium
       !> Whether the targets are lateral forces [N], else displacements of the top [m]
       logical, intent(in) :: by_force
       !> Targets (m)
@@ -57,7 +57,7 @@ contains
       path%steady => structure
       path%equilibrium => equilibrium
       path%is_straight = .true.
-      path%of_dead_load = equilibrium%loads
+      path%of_dead_load = equilibrium%of_dead_load
       allocate (path%q(equilibrium%moving), source=0.0_wp)
       call begin_path(path, by_force, equilibrium%moving, .false., task%before, error)
       if (allocated(error)) return
@@ -106,8 +106,9 @@ contains
       integer, intent(in) :: direction
       logical, intent(out) :: found
 
-      call self%equilibrium%follow(self%springs, self%by_force, .false., self%displacement, self%force, &
+      call self%equilibrium%follow(self%springs, self%by_force, self%displacement, self%force, &
                                    self%rate(:self%moving), found)
+      self%lost_digits = self%equilibrium%lost_digits
       if (direction < 0) self%rate = -self%rate
    end subroutine solve_line
 
@@ -189,7 +190,7 @@ contains
       real(wp), intent(out) :: correction(:), force
       logical, intent(out) :: found
 
-      call self%equilibrium%follow(self%springs, .false., .true., self%displacement, self%force, &
+      call self%equilibrium%follow(self%springs, .false., self%displacement, self%force, &
                                    self%rate(:self%moving), found)
       correction = 0.0_wp
       correction(:self%moving) = self%equilibrium%correction

@@ -226,6 +226,7 @@ contains
          end do
          column%pattern(lateral)%force(2*n - 1:2*n) = [1.0_wp, column%upper(n)]
          if (column%held) column%pattern(lateral)%force(2*n) = 0.0_wp
+         column%control = column%pattern(lateral)%force
          column%pattern(horizontal)%force(1:2*n:2) = -column%mass
          if (column%opens) then
             column%pattern(vertical)%force(2*n + 1:) = -column%mass

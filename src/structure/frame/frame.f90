@@ -93,7 +93,7 @@ module rbs_structure_frame_frame
       procedure :: damp
       procedure :: add_damping
       procedure :: unknown_forces
-      procedure :: way_of_load
+      procedure :: work_of_dead_load
       procedure :: is_loaded
       procedure :: take_load_off
       procedure :: set_compression
@@ -361,32 +361,26 @@ contains
                                           self%load_across(element), self%dead_rotation(:, element))
    end subroutine press
 
-   !> What the load does work on: of the lateral one, or of the dead one.
-   pure real(wp) function way_of_load(self, of_dead_load, d) result(way)
+   !> Work of the dead load.
+   pure real(wp) function work_of_dead_load(self, d) result(work)
       class(frame_type), intent(in) :: self
-      logical, intent(in) :: of_dead_load
-      !> Deformations of the springs, or changes of them (springs)
       real(wp), intent(in), contiguous :: d(:)
       real(wp) :: gap(3), turned(2)
       integer :: i
 
       associate (x => d(self%inside + 1:))
-         if (.not. of_dead_load) then
-            way = sum(self%pattern(lateral)%force*x)
-            return
-         end if
-         way = sum(self%dead*x) + sum(self%dead_force*d(:self%inside))
+         work = sum(self%dead*x) + sum(self%dead_force*d(:self%inside))
          do i = 1, size(self%element)
             associate (e => self%element(i))
                if (.not. allocated(e%rest)) cycle
                gap = gap_of(self, i, self%basic(i, x), d, 0.0_wp)
                turned = self%dead_rotation(:, i)
-               way = way + 0.25_wp*(e%rest(1)*sum(turned)*sum(gap(2:)) &
+               work = work + 0.25_wp*(e%rest(1)*sum(turned)*sum(gap(2:)) &
                                     + e%rest(2)*(turned(1) - turned(2))*(gap(2) - gap(3)))
             end associate
          end do
       end associate
-   end function way_of_load
+   end function work_of_dead_load
 
    !> Stiffness of the elements, from their tangents, and of the ground.
    subroutine add_stiffness(self, k, tangent, band)

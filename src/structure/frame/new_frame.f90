@@ -111,6 +111,7 @@ contains
       direction = 1
       if (present(vertical)) direction = merge(2, 1, vertical)
       frame%arm(frame%inside + frame%number(direction, top)) = 1.0_wp
+      frame%control = frame%arm(frame%inside + 1:)
       call set_ground(frame, node, spring)
       call set_elements(frame, node, member, spring)
       call set_panels(frame, node, spring)
