@@ -300,7 +300,9 @@ contains
          ! Springs without stiffness share a motion as with a hardening in proportion to their initial
          ! stiffness, which the refinement takes away.
          if (self%refines .and. .not. by_force) then
-            where (abs(k) <= no_stiffness*structure%initial_stiffness) self%f = shared*structure%initial_stiffness
+            where (abs(k) <= no_stiffness*structure%initial_stiffness)
+               self%f = shared*structure%initial_stiffness
+            end where
          end if
          call structure%add_stiffness(self%f, self%tangent, matrix%band)
          if (structure%axially_loaded) call structure%add_geometric(self%axial, matrix%band)
