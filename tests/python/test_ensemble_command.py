@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pandas
 import pytest
 from samples import read_rows
 from test_ensembles import column, motion
@@ -64,6 +65,13 @@ def test_records_and_scales(
     assert float(rows[4]["peak_drift"]) == pytest.approx(expected.measures["peak_drift"][0], 1e-5)
     assert command(monkeypatch, *given) == 0
     assert "6 runs, 6 of them from the store" in capsys.readouterr().out
+    assert command(monkeypatch, "--status", out) == 0
+    lines = capsys.readouterr().out.splitlines()
+    counts = pandas.read_csv(out / "runs.csv").status.value_counts()
+    assert lines[0] == "6 runs: " + ", ".join(f"{n} {status}" for status, n in counts.items())
+    assert lines[1].startswith("part 1 of 1: 6 runs, the last written ")
+    assert command(monkeypatch, "--status", case.parent) == 2
+    assert "is no store of runs" in capsys.readouterr().err
 
 
 def test_the_state_of_the_case(

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import signal
+
 import numpy as np
+import pandas
 import pytest
 
 import rbsdem
@@ -279,3 +283,54 @@ def test_cloud_counts_collapses(records):
     assert curve.intensity(curve.probability(x)) == pytest.approx(x, rel=1e-9)
     low, high = curve.band(x, n=100)
     assert (low <= high).all()
+
+
+def test_parts_of_a_search_come_together_in_a_store(column, records, hunted, tmp_path):
+    """Each part is the search of its records; without `shard` nothing is left to compute."""
+    pytest.importorskip("pyarrow")
+    given = {"collapse_drift": 0.05, "store": tmp_path / "store"} | SETTINGS
+    parts = [rbsdem.ida(column, records, shard=(i, 2), **given) for i in (1, 2)]
+    assert [len(part.runs.motions) for part in parts] == [3, 3]
+    shards = set((tmp_path / "store" / "shards").iterdir())
+    whole = rbsdem.ida(column, records, **given)
+    assert set((tmp_path / "store" / "shards").iterdir()) == shards
+    assert np.array_equal(whole.upper, hunted.upper)
+    pandas.testing.assert_frame_equal(whole.to_pandas(), hunted.to_pandas())
+    levels = {1.0: list(records[:2]), 2.0: list(records[2:])}
+    striped = rbsdem.fragility.stripes(column, levels, shard=(2, 2), **given)
+    assert striped.runs.intensity == pytest.approx([1.0, 2.0, 2.0])
+    clouds = rbsdem.fragility.cloud(column, records, scales=range(1, 7), shard=(3, 3), **given)
+    assert sorted(clouds.runs.scale) == pytest.approx([3.0, 6.0])
+    for shard, options, said in (
+        ((1, 7), given, "7 parts of 6 motions"),
+        ((3, 2), given, "1 <= i <= n"),
+        ((1, 2), SETTINGS, "give store="),
+    ):
+        with pytest.raises(InputError, match=said):
+            rbsdem.ida(column, records, shard=shard, **options)
+
+
+def test_a_search_that_is_interrupted_goes_on(column, records, hunted, tmp_path):
+    pytest.importorskip("pyarrow")
+    calls = []
+
+    def interrupting(result):
+        calls.append(1)
+        if len(calls) == 30:
+            os.kill(os.getpid(), signal.SIGINT)
+        return 0.0
+
+    given = {"collapse_drift": 0.05, "store": tmp_path / "store", "measures": [interrupting]}
+    with pytest.raises(rbsdem.errors.Interrupted, match=r"ida: interrupted after \d+ runs; they"):
+        rbsdem.ida(column, records, jobs=1, **given, **SETTINGS)
+    done = len(calls)
+    again = rbsdem.ida(column, records, jobs=1, **given, **SETTINGS)
+    assert 30 <= done < len(again.runs)
+    assert len(calls) == len(again.runs)
+    assert np.array_equal(again.upper, hunted.upper)
+    calls.clear()
+    calls.extend([1] * 25)
+    with pytest.raises(rbsdem.errors.Interrupted, match=r"with a store .* they would be kept"):
+        rbsdem.ida(
+            column, records, jobs=1, collapse_drift=0.05, measures=[interrupting], **SETTINGS
+        )

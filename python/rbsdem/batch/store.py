@@ -13,6 +13,7 @@ import json
 import os
 import re
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
@@ -288,6 +289,53 @@ class Store:
         with suppress(OSError):
             (self.folder / _LOCK).unlink()
             self.folder.rmdir()
+
+
+def store_status(folder: Path) -> list[str]:
+    """Return what a store of runs has, in lines: runs by status, parts, and the failures.
+
+    Parameters
+    ----------
+    folder : path
+        Of the store.
+
+    Raises
+    ------
+    InputError
+        If it is no store.
+    """
+    if not (folder / _MANIFEST).is_file():
+        raise InputError(f"{folder} is no store of runs: it has no {_MANIFEST}")
+    counts: Counter[str] = Counter()
+    parts: dict[str, tuple[int, float]] = {}
+    failures: list[str] = []
+    for path in sorted((folder / "shards").glob(f"*{PARQUET.ending}")):
+        with suppress(OSError, ValueError):
+            table = PARQUET.decode(path.read_bytes()).select(
+                ["status", "error", "column", "motion"]
+            )
+            rows = table.to_pylist()
+            counts.update(row["status"] for row in rows)
+            failures += [f"{row['column']}, {row['motion']}: {row['error']}"
+                         for row in rows if row["error"]]  # fmt: skip
+            part = " of ".join(path.name.split("-")[:3:2])
+            number, last = parts.get(part, (0, 0.0))
+            parts[part] = number + len(rows), max(last, path.stat().st_mtime)
+    now = time.time()
+    told = ", ".join(f"{number} {status}" for status, number in counts.most_common())
+    return [
+        f"{counts.total()} runs{told and ': '}{told}",
+        *(
+            f"part {part}: {number} runs, the last written {now - last:.0f} s ago"
+            for part, (number, last) in sorted(parts.items())
+        ),
+        *failures[:_MOST_FAILURES],
+        *([f"and {len(failures) - _MOST_FAILURES} more"] if len(failures) > _MOST_FAILURES else []),
+    ]
+
+
+#: Failures that are told one by one.
+_MOST_FAILURES = 10
 
 
 @contextmanager

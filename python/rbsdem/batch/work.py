@@ -11,6 +11,7 @@ import os
 import pickle
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -20,7 +21,7 @@ from multiprocessing import connection
 from typing import Any, TypeVar
 
 from rbsdem import _arguments
-from rbsdem.errors import InputError
+from rbsdem.errors import InputError, SolveError
 
 #: How often the display is renewed, and a signal seen [s].
 BEAT = 0.2
@@ -258,6 +259,8 @@ class Cluster(Executor):
     def __init__(self, client: Any) -> None:
         self._client = client
         self._remote: set[Any] = set()
+        self._question: _Question | None = None
+        self._answered = time.monotonic()
 
     @property
     def workers(self) -> int:
@@ -287,27 +290,77 @@ class Cluster(Executor):
         else:
             future.set_exception(error)
 
+    def waited_for(self) -> str:
+        """Ask the scheduler for its workers; return what is waited for, if they are long in coming.
+
+        Raises
+        ------
+        SolveError
+            If there was no scheduler, or no worker, for a minute.
+        """
+        question, now = self._question, time.monotonic()
+        if question is not None and question.done.is_set():
+            if question.answer:
+                self._answered = now
+            if now - question.asked > _QUESTIONS:
+                self._question = None
+        if self._question is None:
+            self._question = _Question(self._client.ncores)
+        silent = now - self._answered
+        if silent < _SILENT:
+            return ""
+        answers = question is not None and question.answer is not None
+        what = "workers" if answers and self._client.status == "running" else "scheduler"
+        if silent > _PATIENCE:
+            raise SolveError(
+                f"client: the cluster has had no {what} for {_PATIENCE:.0f} s; start it again. "
+                "With store= the next call computes what is missing"
+            )
+        return f"waiting for a {what.removesuffix('s')} of the cluster"
+
     def cancel(self) -> None:
-        """Take back the tasks that have not ended."""
-        with suppress(RuntimeError):  # The set may change while it is copied.
-            self._client.cancel([remote for remote in list(self._remote) if not remote.done()])
+        """Take back the tasks that have not ended; a cluster that is silent is not waited for."""
+        remotes = [remote for remote in self._remote.copy() if not remote.done()]
+        _Question(partial(self._client.cancel, remotes)).done.wait(_SILENT)
+
+
+#: How often a cluster is asked, when it counts as silent, and how long it may be [s].
+_QUESTIONS, _SILENT, _PATIENCE = 1.0, 5.0, 60.0
+
+
+class _Question:
+    """A call to the scheduler in a thread of its own, since it may never come back."""
+
+    def __init__(self, call: Callable[[], Any]) -> None:
+        self.asked = time.monotonic()
+        self.answer: Any = None
+        self.done = threading.Event()
+        threading.Thread(target=self._ask, args=(call,), daemon=True).start()
+
+    def _ask(self, call: Callable[[], Any]) -> None:
+        with suppress(Exception):  # Of a closed connection, of many kinds.
+            self.answer = call()
+        self.done.set()
 
 
 @contextmanager
 def progress_bar(
-    wanted: bool, total: int, unit: str = "runs", between: bool = False
+    wanted: Any, total: int, unit: str = "runs", between: bool = False
 ) -> Iterator[Callable[[int, str], None]]:
     """Show on stderr how much is done, how much a second, the time left, and a text.
 
     Where stderr is a pipe or a file (and no notebook), nothing is shown. With `between` no thread
-    draws between two
-    calls; seconds have no rate.
+    draws between two calls; seconds have no rate. A callable in place of `wanted` is the bar of a
+    longer work. More than the total that is done becomes the total.
 
     Yields
     ------
     callable
         Takes the number that is done and the text.
     """
+    if callable(wanted):
+        yield wanted
+        return
     console = None
     if wanted:
         from rich.console import Console  # noqa: PLC0415
@@ -329,6 +382,9 @@ def progress_bar(
             speed = bar.tasks[task].speed
             rate = "" if speed is None or unit == "s" else f"{speed:.3g} {unit}/s"
             parts = [part for part in (rate, text) if part]
-            bar.update(task, completed=done, description=", ".join(parts), refresh=between)
+            most = max(done, total)
+            bar.update(
+                task, completed=done, total=most, description=", ".join(parts), refresh=between
+            )
 
         yield show

@@ -18,6 +18,7 @@ from rbsdem._files import data_frame, save_frame, write_figure
 from rbsdem._package import extra, recorded
 from rbsdem._tables import read_table
 from rbsdem._types import DataFrame
+from rbsdem.batch.store import store_status
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
 from rbsdem.errors import InputError, RepairWarning
@@ -46,6 +47,7 @@ from rbsdem.web.server import ExploreServer
 from rbsdem.web.state import DEFAULT
 
 _units = click.option("--units", help="unit of records that name none: g, m/s2, cm/s2")
+_shard = click.option("--shard", metavar="I/N", help="do part I of N, from 1 to N")
 _jobs = click.option("--jobs", type=int, metavar="N", help="threads; default one per processor")
 _tests = click.option("--tests", type=FOLDER, metavar="DIR", help="show the nearest measured tests")
 
@@ -144,6 +146,22 @@ def _numbers(text: str, option: str, example: str) -> list[float]:
         raise InputError(f"{option} {text}: give {example}") from None
 
 
+def _tell_status(context: click.Context, option: click.Parameter, folder: Path | None) -> None:
+    """Print what a store has, and end."""
+    del option
+    if folder is None:
+        return
+    for line in store_status(folder if folder.name == "store" else folder / "store"):
+        click.echo(line)
+    context.exit()
+
+
+_status = click.option(
+    "--status", type=FOLDER, metavar="DIR", is_eager=True, expose_value=False,
+    callback=_tell_status, help="tell what is done in the folder of --out, and end",
+)  # fmt: skip
+
+
 # ---- ensembles ----------------------------------------------------------------------------------
 
 
@@ -154,7 +172,8 @@ def _numbers(text: str, option: str, example: str) -> list[float]:
 @_units
 @click.option("--out", type=FOLDER, required=True, metavar="DIR", help="folder for the files")
 @_jobs
-@click.option("--shard", metavar="I/N", help="do part I of N, from 1 to N")
+@_shard
+@_status
 @quiet
 def ensemble(
     case: Path,
@@ -256,7 +275,8 @@ def _part(text: str) -> tuple[int, int]:
 @click.option("--dt", type=float, metavar="S", help="step; default that of the case")
 @click.option("--hazard", type=FILE, metavar="FILE", help="csv of intensity, annual frequency")
 @_jobs
-@click.option("--out", type=FOLDER, metavar="DIR", help="folder for the files")
+@click.option("--out", type=FOLDER, metavar="DIR", help="folder for the files and the runs")
+@_shard
 @click.option("--parquet", is_flag=True, help="write the runs as Parquet too")
 @quiet
 def ida(
@@ -270,6 +290,7 @@ def ida(
     hazard: Path | None,
     jobs: int | None,
     out: Path | None,
+    shard: str | None,
     parquet: bool,
     quiet: bool,
     **method: Any,
@@ -281,9 +302,12 @@ def ida(
     --limit and --beta may be repeated.
 
     \b
-    Files (--out): ida.csv (one row per run), fractiles.csv, fragility.csv, ida.png,
-    fragility.png; with --parquet ida.parquet.
-    Exit codes: 0 success, 1 the analysis failed, 2 the input is wrong, 130 interrupted.
+    Files (--out): store/ (finished runs, from which a second start goes on), ida.csv (one row per
+    run), fractiles.csv, fragility.csv, ida.png, fragility.png; with --parquet ida.parquet.
+    In a job array, give every job the same command with --shard I/N; the command without it joins
+    the parts.
+    Exit codes: 0 success, 1 the analysis failed, 2 the input is wrong, 130 interrupted (finished
+    runs are kept).
     """
     # What is missing or wrong is reported before the work.
     if parquet:
@@ -296,8 +320,12 @@ def ida(
     site = None if hazard is None else _read_hazard(hazard)
     example = "intensities in m/s2 separated by commas, or hunt"
     motions = _records(list(map(str, records)), units)
+    part = None if shard is None else _part(shard)
+    store = None
     if out is not None:
+        extra("pyarrow.parquet")
         out.mkdir(parents=True, exist_ok=True)
+        store = out / "store"
     watched = [name for name in limits if name in WATCHED]
     analysis = run_ida(
         model.column,
@@ -306,9 +334,17 @@ def ida(
         intensity=intensity,
         levels=levels if levels == "hunt" else _numbers(levels, "--levels", example),
         jobs=jobs,
+        store=store,
+        shard=part,
         progress=not quiet and sys.stderr.isatty(),
         **_ida_settings(model, **method),
     )
+    if part is not None:
+        if not quiet:
+            print(
+                f"part {shard}: {len(analysis.runs)} runs are in {store}; {analysis.seconds:.3g} s"
+            )
+        return 0
     curves, notes = _curves(analysis, limits, spreads)
     frame, more = _fragilities(curves, site)
     written = [] if out is None else _write(analysis, curves, frame, out, parquet)

@@ -13,7 +13,7 @@ from rbsdem._types import Array, ArrayLike, NDArray, Unpack
 from rbsdem.errors import InputError
 from rbsdem.many.fragility import MAKER, Fragile, Fragility, Hazard, checked_probability
 from rbsdem.many.inputs import is_switch
-from rbsdem.many.runs import RunOptions, Runs, make_collector, motions_by_name
+from rbsdem.many.runs import RunOptions, Runs, make_collector, motions_by_name, own_records
 from rbsdem.model.frame import Structure
 from rbsdem.motions.motion import GroundMotion
 
@@ -347,6 +347,9 @@ def cloud(
             f"scales: {factors.size} factors for {len(found)} motions; give one, or one for each, "
             "above 0"
         )
+    names, found = list(found), own_records(found, options)
+    if factors.size > 1:
+        factors = factors[[name in found for name in names]]
     options.setdefault("measures", ("peak_drift", "residual_drift", "peak_base_shear"))
     work = make_collector("cloud", column, found, **options)
     levels = np.broadcast_to((factors * work.unit)[:, None], (*work.shape, 1))

@@ -6,7 +6,7 @@ import heapq
 import os
 import time
 from collections.abc import Mapping, Sequence
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -18,9 +18,19 @@ from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, ArrayLike, DataFrame, NDArray, Unpack
 from rbsdem.batch import work
-from rbsdem.errors import InputError, Interrupted
+from rbsdem.errors import InputError, Interrupted, SolveError
 from rbsdem.many import inputs
-from rbsdem.many.plan import Outcome, Piece, Plan, RunStore, compute, cut, expected, one_run
+from rbsdem.many.plan import (
+    Outcome,
+    Piece,
+    Plan,
+    RunStore,
+    Share,
+    compute,
+    cut,
+    expected,
+    one_run,
+)
 from rbsdem.model.frame import Structure
 from rbsdem.run.result import Result
 from rbsdem.run.solver import Solver, checked_solver
@@ -238,14 +248,15 @@ def ensemble(
     functions: dict[str, inputs.Measure] = {}
     with _arguments.collected(faults):
         names, functions = inputs.checked_measures(measures, column_items)
-    part = _checked_part(shard, store, faults)
+    part = checked_part(shard, store, faults)
     with _arguments.collected(faults):
         if jobs is not None:
             work.check_jobs(jobs)
     with _arguments.collected(faults):
         if client is not None:
             work.check_client(client)
-    for name, value in (("progress", progress), ("allow_partial", allow_partial)):
+    switches = {"progress": callable(progress) or progress, "allow_partial": allow_partial}
+    for name, value in switches.items():
         with _arguments.collected(faults):
             _arguments.boolean(value, name)
     _arguments.raise_faults(faults)
@@ -320,7 +331,7 @@ def _carried_out(
                 kept.add(runs, result)
 
         def beat() -> None:
-            show(workers.done(), "")
+            show(workers.done(), workers.waited_for())
             if kept is not None:
                 kept.write_if_due()
 
@@ -361,6 +372,8 @@ class _Workers:
         self._done += piece[1] - piece[0]
         try:
             return future.result()
+        except CancelledError:
+            raise SolveError("client: the cluster has lost its tasks; start it again") from None
         except BrokenProcessPool as error:
             text = f"{error} of this run; run it alone to see why"
             return Outcome.none(self._plan.task(*piece), "failed", text)
@@ -370,6 +383,10 @@ class _Workers:
         if self._cluster is not None:
             return self._done
         return sum(int(control[1]) for control in self._controls)
+
+    def waited_for(self) -> str:
+        """Return what the work waits for, or nothing; raise `SolveError` after a minute of it."""
+        return "" if self._cluster is None else self._cluster.waited_for()
 
     def stop(self) -> None:
         """Finish the runs under way, and start no others: every task ends with what it has."""
@@ -416,7 +433,7 @@ def _of_part(each: Array, lanes: NDArray[np.int32], part: tuple[int, int]) -> ND
     Blocks go in order of their length, each to the part that has least so far.
     """
     place, parts = part
-    if parts == 1:
+    if parts == 1 or isinstance(part, Share):
         return np.arange(each.size)
     longest = min(_LONGEST, _longest(each, lanes, parts))
     blocks = list(cut(each, lambda: longest))
@@ -450,11 +467,13 @@ def _plain(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
 
 
-def _checked_part(shard: Any, store: Any, faults: list[str]) -> tuple[int, int]:
+def checked_part(shard: Any, store: Any, faults: list[str]) -> tuple[int, int]:
     """Return which part of how many this process does; without parts the first of one."""
     with _arguments.collected(faults):
         if store is not None:
             _arguments.path(store, "store")
+    if isinstance(shard, Share):
+        return shard
     if shard is None:
         return 1, 1
     try:

@@ -8,6 +8,7 @@ multiple-stripe analysis has the same intensities for all records, or records fo
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
@@ -17,6 +18,7 @@ import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._types import Array, ArrayLike, NDArray, Unpack
+from rbsdem.batch.work import progress_bar
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import InputError
 from rbsdem.many.fragility import Capacities, Counts, Fragile, Fragility, fit_fragility
@@ -29,6 +31,7 @@ from rbsdem.many.runs import (
     checked_levels,
     make_collector,
     motions_by_name,
+    own_records,
 )
 from rbsdem.model.frame import Structure
 from rbsdem.motions.motion import GroundMotion
@@ -204,7 +207,9 @@ def _fill(work: Collector, hunt: Hunt, low: Array, high: Array) -> bool:
 
 
 #: Settings that change nothing in the answer.
-_OF_THE_RUN = ("initial", "jobs", "progress", "store")
+_OF_THE_RUN = ("initial", "jobs", "progress", "store", "shard", "client")
+#: Runs that a search is expected to need for a record, as the hunts of the documentation do.
+_EXPECTED = 16
 #: Percentages of the fractile curves.
 FRACTILES = (16.0, 50.0, 84.0)
 
@@ -379,8 +384,9 @@ def ida(
         if that is a measure; ``[]`` leaves all to the runs made for the collapse.
     **options
         See `rbsdem.many.runs.RunOptions`: intensity, period, damping, collapse_drift, measures,
-        initial, jobs, progress, store; and the settings of the method, see `rbsdem.Solver`. With
-        an initial state the curves begin at what the column does in it without motion.
+        initial, jobs, progress, store, shard, client; and the settings of the method, see
+        `rbsdem.Solver`. With an initial state the curves begin at what the column does in it
+        without motion.
 
     Returns
     -------
@@ -396,17 +402,21 @@ def ida(
     if "measures" in options:
         options["measures"] = _with_drift(options["measures"])
     hunt = _hunt(levels)
-    work = make_collector("ida", column, motions_by_name(motions), **options)
+    records = own_records(motions_by_name(motions), options)
+    work = make_collector("ida", column, records, **options)
     named = {name for name in work.names if isinstance(name, str)}
     refined = _refined(refine, named)
     work.names = [*work.names, *(name for name in refined if name not in named)]
     work.run_unshaken("ida")
-    if hunt is not None:
-        lower, upper = hunt_and_fill(work, hunt, refined)
-    else:
-        at = checked_levels(levels)
-        collapsed = work.run(np.broadcast_to(at, (*work.shape, at.size)).copy())
-        lower, upper = _first(at, collapsed)
+    at = np.empty(_EXPECTED) if hunt is not None else checked_levels(levels)
+    with progress_bar(work.settings["progress"], at.size * math.prod(work.shape)) as show:
+        if work.settings["progress"]:
+            work.settings["progress"] = show
+        if hunt is not None:
+            lower, upper = hunt_and_fill(work, hunt, refined)
+        else:
+            collapsed = work.run(np.broadcast_to(at, (*work.shape, at.size)).copy())
+            lower, upper = _first(at, collapsed)
     own = {n: v for n, v in work.settings.items() if n not in _OF_THE_RUN}
     about = {n: v for n, v in own.items() if v is not None and v is not False}
     about["levels"] = "hunt" if hunt is not None else "given"
@@ -579,8 +589,11 @@ def stripes(
     else:
         if levels is not None:
             raise InputError("stripes: the motions come by level; leave levels out")
-        found, wanted = _own_records(by_level)
+        found, wanted = _records_of_levels(by_level)
         at = checked_levels(list(by_level))
+    names, found = list(found), own_records(found, options)
+    if by_level is not None:
+        wanted = wanted[[name in found for name in names]]
     work = make_collector("stripes", column, found, **options)
     work.run(np.broadcast_to(wanted, (*work.shape, wanted.shape[-1])).copy())
     return Stripes(work.finish(), at, by_level is None, time.perf_counter() - begin)
@@ -596,7 +609,7 @@ def _by_level(motions: Any) -> dict[float, dict[str, GroundMotion]] | None:
     return dict(zip(levels, map(motions_by_name, motions.values()), strict=True))
 
 
-def _own_records(
+def _records_of_levels(
     by_level: dict[float, dict[str, GroundMotion]],
 ) -> tuple[dict[str, GroundMotion], Array]:
     """Return all motions, named after their levels, and the level of each, shape (motions, 1)."""

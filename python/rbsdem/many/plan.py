@@ -47,6 +47,10 @@ _FAILED = inputs.STATUSES.index("failed")
 FAULT_OF_MEASURE = "measure "
 
 
+class Share(tuple[int, int]):
+    """Part i of n of a work whose runs the caller has chosen: it only names the part of a store."""
+
+
 @dataclass(frozen=True, eq=False)
 class Plan:
     """Runs with all that they need: some can be taken out of it and sent to another process.

@@ -13,10 +13,10 @@ from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame, NDArray, Unpack
 from rbsdem.checks.criteria import WATCHED
-from rbsdem.errors import InputError, warn
+from rbsdem.errors import InputError, Interrupted, warn
 from rbsdem.many import inputs
-from rbsdem.many.ensemble import ensemble
-from rbsdem.many.plan import FAULT_OF_MEASURE
+from rbsdem.many.ensemble import checked_part, ensemble
+from rbsdem.many.plan import FAULT_OF_MEASURE, Share
 from rbsdem.model.column import Column
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.motions.motion import GroundMotion, checked_motion
@@ -143,6 +143,11 @@ class RunOptions(Solver, total=False):
     store : path
         Folder that keeps the runs, as for `rbsdem.ensemble`; a second start, with more records too,
         computes what is missing.
+    shard : (int, int)
+        Part i of n, as ``(3, 20)``: the i-th record and every n-th after it. Several processes with
+        one store do one part each; a call without `shard` then has all.
+    client : dask.distributed.Client
+        A cluster, as for `rbsdem.ensemble`.
     """
 
     intensity: Name
@@ -154,6 +159,8 @@ class RunOptions(Solver, total=False):
     jobs: int | None
     progress: bool
     store: str | os.PathLike[str] | None
+    shard: tuple[int, int] | None
+    client: Any
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -249,6 +256,8 @@ class Collector:
         Measures of the response.
     settings : dict
         Keywords of `rbsdem.ensemble`.
+    who : str
+        The analysis, for messages.
     """
 
     columns: Mapping[str | int, Structure]
@@ -256,6 +265,7 @@ class Collector:
     measure: Intensity
     names: Sequence[Any]
     settings: dict[str, Any]
+    who: str = "ida"
     parts: list[dict[str, Any]] = field(default_factory=list)
     unit: Array = field(init=False)
 
@@ -336,7 +346,21 @@ class Collector:
 
     def _ensemble(self, scales: Array, settings: dict[str, Any]) -> Any:
         given = settings | {"scales": scales, "measures": list(self.names)}
-        found = ensemble(dict(self.columns), dict(self.motions), **given)
+        before = sum(part["status"].size for part in self.parts)
+        bar = given["progress"]
+        if callable(bar):
+            given["progress"] = lambda done, text: bar(before + done, text)
+        try:
+            found = ensemble(dict(self.columns), dict(self.motions), **given)
+        except Interrupted as error:
+            done, store = before + int((error.ensemble.status != "").sum()), given["store"]
+            kept = (
+                "with a store (store=, or --out of the command) they would be kept"
+                if store is None
+                else f"they are in {store}, and the same call goes on from there"
+            )
+            text = f"{self.who}: interrupted after {done} runs; {kept}"
+            raise Interrupted(text, error.ensemble) from None
         for text in found.errors.values():
             # Else the runs would count as collapses.
             if text.startswith(FAULT_OF_MEASURE):
@@ -362,7 +386,7 @@ class Collector:
 
 
 #: Settings that a second attempt by another method keeps.
-_KEPT = ("collapse_drift", "initial", "jobs", "progress", "store")
+_KEPT = ("collapse_drift", "initial", "jobs", "progress", "store", "shard", "client")
 
 
 def make_collector(
@@ -379,6 +403,8 @@ def make_collector(
     jobs: int | None = None,
     progress: bool = False,
     store: str | os.PathLike[str] | None = None,
+    shard: tuple[int, int] | None = None,
+    client: Any = None,
     **solver: Unpack[Solver],
 ) -> Collector:
     """Return what makes the runs of an analysis; the keywords are those of `RunOptions`."""
@@ -391,11 +417,26 @@ def make_collector(
         "jobs": jobs,
         "progress": progress,
         "store": None if store is None else _arguments.path(store, "store"),
+        "shard": None if shard is None else Share(shard),
+        "client": client,
     }
     if measures is None:
         frames = any(isinstance(structure, Frame) for structure in named.values())
         measures = (*MEASURES, *(inputs.STOREY_MEASURES if frames else ()))
-    return Collector(named, motions, measure, inputs.measures_in_a_list(measures), settings)
+    return Collector(named, motions, measure, inputs.measures_in_a_list(measures), settings, who)
+
+
+def own_records(motions: dict[str, GroundMotion], options: RunOptions) -> dict[str, GroundMotion]:
+    """Return the records of the part that `shard` names: the i-th and every n-th after it."""
+    shard = options.get("shard")
+    if shard is None:
+        return motions
+    faults: list[str] = []
+    place, parts = checked_part(shard, options.get("store"), faults)
+    if not faults and parts > len(motions):
+        faults.append(f"shard: {parts} parts of {len(motions)} motions; a part has one or more")
+    _arguments.raise_faults(faults)
+    return dict(list(motions.items())[place - 1 :: parts])
 
 
 def columns_by_name(columns: Any) -> dict[str | int, Structure]:
