@@ -203,7 +203,7 @@ contains
          if (allocated(answer%error)) return
          answer%text = trim(matrices%unknown(1))
          do i = 2, size(matrices%unknown)
-            answer%text = answer%text//' '//trim(matrices%unknown(i))
+            answer%text = answer%text//new_line('a')//trim(matrices%unknown(i))
          end do
          answer%rows = reshape([transpose(matrices%mass), transpose(matrices%stiffness), &
                                 transpose(matrices%geometric), transpose(matrices%damping)], &

@@ -301,6 +301,19 @@ def test_a_frame_of_rigid_beams_is_the_shear_building():
     assert exact[0] ** 2 <= quotient * (1 + 1e-6)
 
 
+def test_unknowns_of_matrices_have_names_of_their_own():
+    """Beams behind a panel turn by themselves; long names and spaces count."""
+    panel = Elastic(k=1e8)
+    long = "the node on the left of the roof"
+    nodes = [FrameNode("foot", 0, 0, "fixed"), FrameNode(long, 0, 3, mass=1e3, panel=panel),
+             FrameNode(long[:-1] + "F", 4, 3, "roller")]  # fmt: skip
+    rows = [Member("C", "foot", long, ELASTIC), Member("B", long, long[:-1] + "F", ELASTIC)]
+    unknowns = rbsdem.matrices(Frame(nodes=nodes, members=rows)).unknowns
+    assert sorted(unknowns) == sorted(
+        [f"{of}_{long}" for of in "xytb"] + [f"{of}_{long[:-1]}F" for of in "xt"]
+    )
+
+
 @pytest.mark.parametrize("ends", [0.0, 0.3])
 def test_a_panel_between_columns_and_beams(ends):
     """A cruciform: the panel carries V H, and adds its rotation times H to the displacement.
@@ -472,6 +485,16 @@ def test_a_kind_is_refused_for_another_length():
     with pytest.raises(rbsdem.InputError, match=told + "made for 2.7 m; make a kind") as error:
         Frame.grid([3.2] * 3, [6.0], columns=kind, beams=beam)
     assert str(error.value).count("clear length") == 1
+
+
+def test_floors_that_are_alike_are_one_statement(tmp_path):
+    """Lists of equal values, of zeros too: the same frame, and the same from a file."""
+    frame = Frame.grid([3.2, 3.0], [6.0], columns=COLUMN, beams=BEAM, floor_mass=[1e4, 1e4],
+                       beam_load=[0.0, 0.0])  # fmt: skip
+    assert frame == replace(frame, floor_mass=1e4, beam_load=0.0)
+    push = rbsdem.pushover(frame, drift=0.01)
+    push.save(tmp_path / "push.npz")
+    assert rbsdem.read_result(tmp_path / "push.npz") == push
 
 
 def test_a_frame_of_drawings_comes_back(tmp_path):
@@ -778,6 +801,34 @@ def test_both_doors(seed, tmp_path, run_cli):
     nodes = len(frame.parts.nodes)
     at = names.index("x_1_m")
     assert (table[:, at : at + nodes] == own.x).all()
+
+
+def test_a_support_holds_all_nodes_that_move_alike():
+    """Whichever of them it is given to, and by way of any number of others."""
+    nodes = [FrameNode(name, x=4.0 * i, y=3.0, mass=1e4) for i, name in enumerate("abc")]
+    feet = [FrameNode(f"foot {name}", x=4.0 * i, y=0.0, support="fixed")
+            for i, name in enumerate("abc")]  # fmt: skip
+    rows = [Member(f"C{name}", f"foot {name}", name, ELASTIC) for name in "abc"]
+    rows += [Member("ab", "a", "b", ELASTIC), Member("bc", "b", "c", ELASTIC)]
+
+    def periods(*more) -> list[float]:
+        given = [replace(node, **dict(change)) for node, change in zip(nodes, more, strict=True)]
+        frame = Frame(nodes=feet + given, members=rows, control="y", control_node="a",
+                      pattern="nodes")  # fmt: skip
+        return rbsdem.modes(frame).period.tolist()
+
+    nodes[0] = replace(nodes[0], push_y=1.0)
+    chained = {"moves_with": "b"}, {"moves_with": "c"}, {}
+    free = periods(*chained)
+    assert free == pytest.approx(periods({"moves_with": "c"}, {"moves_with": "c"}, {}), rel=1e-12)
+    assert len(free) == 4
+    held = {"moves_with": "b"}, {"moves_with": "c", "support": "pinned"}, {}
+    alone = {"support": "pinned"}
+    one_by_one = periods({"shear": Elastic(k=1e15)}, alone, {"shear": Elastic(k=1e15)})
+    slow = [period for period in one_by_one if period > 1e-3]
+    assert periods(*held) == pytest.approx(slow, rel=1e-6)
+    with pytest.raises(rbsdem.InputError, match="moves with itself, by way of node 'b'"):
+        periods({"moves_with": "b"}, {"moves_with": "a"}, {})
 
 
 def test_springs_from_the_ground_and_members_by_name():

@@ -434,7 +434,8 @@ class Frame:
                     f"frame: {name} has {given.size} values for "
                     f"{len(self.storeys or ())} storeys; give one, or one for each"  # type: ignore[arg-type]
                 )
-            put(name, tuple(given.tolist()))
+            # Floors that are alike are stated once, as a case file has them.
+            put(name, tuple(given.tolist() if np.ptp(given) else given[:1].tolist()))
         for name in ("columns", "beams"):
             put(name, _cells(getattr(self, name), name))
         for name, kind in (("nodes", FrameNode), ("members", Member)):

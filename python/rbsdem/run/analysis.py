@@ -65,10 +65,12 @@ class Matrices:
     unknowns : tuple of str
         Order of the unknowns: slip_1, ..., rotation_1, ... (relative to the body below), and
         opening_1, ... where the joints open. In the paper's form theta_1, ... are absolute
-        rotations. The last rotation is no unknown where the top is fixed.
+        rotations. The last rotation is no unknown where the top is fixed. Of a frame x_, y_ and
+        t_ (rotation) with the names of the nodes, b_ for the rotation of beams behind a panel.
     mass, stiffness, geometric, damping : ndarray, shape (unknowns, unknowns)
         In N, m, kg, s and rad. `geometric` holds the second-order work of the axial forces, zero
-        with kinematics "small".
+        with kinematics "small"; of a frame that on chords, what elastic members bend off their
+        chords under these forces being part of their `stiffness`.
     """
 
     unknowns: tuple[str, ...]
@@ -109,7 +111,7 @@ def _frame_modes(frame: Frame, count: int | None) -> FrameModes:
     answer = _core.evaluate("modes", frame._statement, count=count)
     omega = answer.values[1:]
     x, y, turn, mass = np.split(answer.rows.T, np.arange(1, 4) * frame.n)
-    share = mass[0] / frame.parts.mass
+    share = mass[0] / (frame.parts.mass or 1.0)  # none moves along x
     return FrameModes(
         omega, omega / (2 * np.pi), 2 * np.pi / omega, x, y, turn, mass[0].copy(), share
     )
@@ -166,7 +168,7 @@ def matrices(column: Structure, form: Literal["symmetric", "paper"] = "symmetric
     """
     form = _arguments.choice(form, "form", ("symmetric", "paper"))
     answer = _core.evaluate("matrices", checked_structure(column)._statement, paper=form == "paper")
-    unknowns = tuple(answer.text.split())
+    unknowns = tuple(answer.text.splitlines())
     return Matrices(unknowns, *(matrix.copy() for matrix in np.split(answer.rows, 4)))
 
 

@@ -365,6 +365,7 @@ def _of_frame(result: FrameResult) -> Iterator[Sheet]:
     yield Sheet("Response", figures=tuple(drawn), table=_summary(result.summary))
     events = [event._asdict() for event in result.events]
     units = {"displacement": "displacement_m", "force": "force_N"}
+    units |= {"step": "time_s"} if result.dynamic else {}
     if events:
         yield Sheet("Limit states", table=data_frame(events).rename(columns=units))
     members = [result.member(name) for name in result.frame.parts.members]

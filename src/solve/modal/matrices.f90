@@ -22,7 +22,7 @@ module rbs_solve_modal_matrices
       !> Name of each unknown: slip_1, ..., rotation_1, ... [, opening_1, ...], rotations relative to the body
       !> below, or in the paper's form slip_1, ..., theta_1, ... with absolute rotations. The last rotation is
       !> no unknown where the top is held
-      character(len=16), allocatable :: unknown(:)
+      character(len=40), allocatable :: unknown(:)
       !> (unknowns, unknowns) [N, m, kg, s, rad]
       real(wp), allocatable :: mass(:, :), stiffness(:, :), geometric(:, :), damping(:, :)
    contains
@@ -70,6 +70,8 @@ contains
             matrices%mass(i, i) = structure%inertias(i)
             associate (place => structure%place(size(structure%place) - m + i))
                matrices%unknown(i) = along(place%kind)//trim(place%owner(6:))
+               ! The beams of a node behind a panel
+               if (place%owner(:5) == 'beam ') matrices%unknown(i) = 'b_'//trim(place%owner(6:))
             end associate
          end do
          band = 0.0_wp

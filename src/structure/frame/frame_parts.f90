@@ -331,7 +331,6 @@ contains
             number = findloc(self%node%name == given%name, .true., dim=1)
             n = findloc(self%node%name == given%moves_with, .true., dim=1)
             if (number == 0 .or. n == 0) cycle
-            if (self%node(n)%like > 0) n = self%node(n)%like
             if (n == number) then
                call messages%add("node '"//trim(given%name)//"' moves with itself; name another one")
                cycle
@@ -339,7 +338,33 @@ contains
             self%node(number)%like = n
          end associate
       end do
+      call find_leaders(self%node, messages)
    end subroutine put_nodes
+
+   !> The one node of each group whose displacement along x the others share; a support of any of them holds
+   !> all.
+   subroutine find_leaders(node, messages)
+      type(frame_node), intent(inout) :: node(:)
+      type(message_list), intent(inout) :: messages
+      integer :: i, steps, leader(size(node))
+
+      do i = 1, size(node)
+         leader(i) = i
+         do steps = 1, size(node)
+            if (node(leader(i))%like == 0) exit
+            leader(i) = node(leader(i))%like
+         end do
+         if (node(leader(i))%like == 0) cycle
+         call messages%add("node '"//trim(node(i)%name)//"' moves with itself, by way of node '"// &
+                           trim(node(node(i)%like)%name)//"'; remove one moves_with")
+         return
+      end do
+      do i = 1, size(node)
+         if (leader(i) /= i) node(i)%like = leader(i)
+         node(leader(i))%held(1) = node(leader(i))%held(1) .or. node(i)%held(1)
+      end do
+      node%held(1) = node(leader)%held(1)
+   end subroutine find_leaders
 
    subroutine put_members(self, record, messages)
       type(frame_parts), intent(inout) :: self

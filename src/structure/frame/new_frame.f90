@@ -248,7 +248,7 @@ contains
             if (at == 0) cycle
             frame%part(at) = i
             frame%reach(at) = frame%total_height
-            frame%place(frame%inside + at) = spring_place(flexure, 0, 0, index=i, owner='node '//node(i)%name)
+            frame%place(frame%inside + at) = spring_place(flexure, 0, 0, index=i, owner='beam '//node(i)%name)
             spring(frame%inside + at)%rule = 'elastic'
             spring(frame%inside + at)%value(1) = of_no_account
          end associate
