@@ -1,8 +1,10 @@
-"""Values of codes and of regressions for a column, from the same drawing as the model.
+"""Codes: values for a column from its drawing, target displacements and acceptance of frames.
 
-`code_values` collects them; the functions here are the formulas one by one.
+`code_values` collects the values of a column; `target` has the displacement that a spectrum asks of
+a frame.
 """
 
+from rbsdem.checks.capacity import Capacity as Capacity
 from rbsdem.checks.code_values import CodeComparison as CodeComparison
 from rbsdem.checks.code_values import CodeValue as CodeValue
 from rbsdem.checks.code_values import CodeValues as CodeValues
@@ -10,3 +12,7 @@ from rbsdem.checks.code_values import code_values as code_values
 from rbsdem.checks.code_values import compare as compare
 from rbsdem.checks.formulas import Quantities as Quantities
 from rbsdem.checks.formulas import quantities as quantities
+from rbsdem.many.target import Target as Target
+from rbsdem.many.target import TargetCheck as TargetCheck
+from rbsdem.many.target import target as target
+from rbsdem.motions.design import DesignSpectrum as DesignSpectrum
