@@ -19,10 +19,7 @@ from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, ArrayLike
 from rbsdem.curves.envelope import Envelope, Idealisation, envelope
 from rbsdem.errors import InputError
-from rbsdem.model.frame import Frame
-from rbsdem.model.frame_result import FrameResult
 from rbsdem.motions.design import DesignSpectrum, damping_factor
-from rbsdem.solve.analysis import modes
 
 #: Coefficient a of C_1 by the class of the site (ASCE 41-17, 7.4.1.3.1).
 SITES = {"A": 130.0, "B": 130.0, "C": 90.0, "D": 60.0, "E": 60.0, "F": 60.0}
@@ -138,63 +135,6 @@ class Capacity(Tabular):
         """Return the base shear at a displacement [N], NaN beyond the end."""
         beyond = displacement > self.largest * (1.0 + 1e-12)
         return math.nan if beyond else float(np.interp(displacement, self.displacement, self.force))
-
-
-def capacity(push: FrameResult) -> Capacity:
-    """Return the capacity curve of a push-over with the first mode of its frame.
-
-    Parameters
-    ----------
-    push : FrameResult
-        What `rbsdem.pushover` returned. Displacement and base shear count from its first row, in
-        which the frame stands under its dead load.
-
-    Raises
-    ------
-    InputError
-        If it is none, or the frame has no mass.
-    """
-    push = _arguments.instance(push, "target", FrameResult, "as of rbsdem.pushover")
-    if push.dynamic:
-        raise InputError("target: the result is a response in time; give a push-over")
-    frame: Frame = push.frame
-    if frame.control == "y" or not frame.parts.mass > 0:
-        raise InputError("target: the frame has no mass along x, or is not pushed along it")
-    first = modes(frame, 1)
-    phi = _control(frame, first.x[:, 0])
-    moved = math.sqrt(float(first.mass[0]))
-    gamma, modal_mass = moved * abs(phi), moved / abs(phi)
-    side = 1.0 if push.displacement[-1] >= push.displacement[0] else -1.0
-    u = side * (push.displacement - push.displacement[0])
-    v = side * (push.base_shear - push.base_shear[0])
-    storeys = len(frame.storeys or ())  # type: ignore[arg-type]
-    slope = _pdelta_slope(frame, first.x[:, 0] / phi, gamma)
-    made = Capacity(
-        u, v, gamma, modal_mass, frame.parts.mass, max(storeys, 1), float(first.period[0]),
-        pdelta_slope=slope,
-    )  # fmt: skip
-    return made
-
-
-def _control(frame: Frame, x: Array) -> float:
-    """Return the shape at the control node."""
-    parts = frame.parts
-    name = frame.control_node
-    at = parts.nodes.index(name) if name else int(parts.y.argmax())
-    return float(x[at])
-
-
-def _pdelta_slope(frame: Frame, shape: Array, gamma: float) -> float:
-    """Return what the axial forces of the columns take from the slope of the curve [N/m].
-
-    By virtual work on the shape phi of the mode: gamma times the sum of P (change of phi)^2/length.
-    """
-    if frame.kinematics != "pdelta":
-        return 0.0
-    parts = frame.parts
-    start, end = parts.ends.T
-    length = np.hypot(parts.x[end] - parts.x[start], parts.y[end] - parts.y[start])
-    return gamma * float(np.sum(parts.compression * (shape[end] - shape[start]) ** 2 / length))
 
 
 @dataclass(frozen=True, repr=False, eq=False)

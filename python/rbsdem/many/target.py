@@ -13,13 +13,15 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame, NDArray, Unpack
-from rbsdem.checks.capacity import Capacity, Estimate, asce_41, capacity, capacity_spectrum, en_1998
+from rbsdem.checks.capacity import Capacity, Estimate, asce_41, capacity_spectrum, en_1998
 from rbsdem.errors import InputError
 from rbsdem.many.ensemble import ensemble
+from rbsdem.model.frame import Frame
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.motions.design import DesignSpectrum
 from rbsdem.motions.motion import GroundMotion, checked_motion
-from rbsdem.solve.solver import Solver
+from rbsdem.run.analysis import modes
+from rbsdem.run.solver import Solver
 
 TargetMethod = Literal["asce_41", "en_1998", "capacity_spectrum"]
 
@@ -291,3 +293,60 @@ def target(
     found = run(curve, demand, **settings)
     pushed = None if isinstance(push, Capacity) else push
     return Target(**vars(found), curve=curve, spectrum=demand, push=pushed)
+
+
+def capacity(push: FrameResult) -> Capacity:
+    """Return the capacity curve of a push-over with the first mode of its frame.
+
+    Parameters
+    ----------
+    push : FrameResult
+        What `rbsdem.pushover` returned. Displacement and base shear count from its first row, in
+        which the frame stands under its dead load.
+
+    Raises
+    ------
+    InputError
+        If it is none, or the frame has no mass.
+    """
+    push = _arguments.instance(push, "target", FrameResult, "as of rbsdem.pushover")
+    if push.dynamic:
+        raise InputError("target: the result is a response in time; give a push-over")
+    frame: Frame = push.frame
+    if frame.control == "y" or not frame.parts.mass > 0:
+        raise InputError("target: the frame has no mass along x, or is not pushed along it")
+    first = modes(frame, 1)
+    phi = _control(frame, first.x[:, 0])
+    moved = math.sqrt(float(first.mass[0]))
+    gamma, modal_mass = moved * abs(phi), moved / abs(phi)
+    side = 1.0 if push.displacement[-1] >= push.displacement[0] else -1.0
+    u = side * (push.displacement - push.displacement[0])
+    v = side * (push.base_shear - push.base_shear[0])
+    storeys = len(frame.storeys or ())  # type: ignore[arg-type]
+    slope = _pdelta_slope(frame, first.x[:, 0] / phi, gamma)
+    made = Capacity(
+        u, v, gamma, modal_mass, frame.parts.mass, max(storeys, 1), float(first.period[0]),
+        pdelta_slope=slope,
+    )  # fmt: skip
+    return made
+
+
+def _control(frame: Frame, x: Array) -> float:
+    """Return the shape at the control node."""
+    parts = frame.parts
+    name = frame.control_node
+    at = parts.nodes.index(name) if name else int(parts.y.argmax())
+    return float(x[at])
+
+
+def _pdelta_slope(frame: Frame, shape: Array, gamma: float) -> float:
+    """Return what the axial forces of the columns take from the slope of the curve [N/m].
+
+    By virtual work on the shape phi of the mode: gamma times the sum of P (change of phi)^2/length.
+    """
+    if frame.kinematics != "pdelta":
+        return 0.0
+    parts = frame.parts
+    start, end = parts.ends.T
+    length = np.hypot(parts.x[end] - parts.x[start], parts.y[end] - parts.y[start])
+    return gamma * float(np.sum(parts.compression * (shape[end] - shape[start]) ** 2 / length))

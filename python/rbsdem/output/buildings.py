@@ -1,0 +1,82 @@
+"""Figures of buildings assessed: performance point, mode shapes, members by their levels."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rbsdem import _arguments
+from rbsdem._tables import STANDARD_GRAVITY
+from rbsdem.errors import InputError
+from rbsdem.many.target import Target
+from rbsdem.output.style import MODEL_LINE, TEST_LINE, ZERO_LINE, axes_or_new, line_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_NAMES = {"asce_41": "ASCE 41-17", "en_1998": "EN 1998-1, N2", "capacity_spectrum": "FEMA 440"}
+_POINT: dict[str, Any] = {"marker": "o", "markersize": 4.5, "color": "#c0392b", "zorder": 5}
+
+
+def target(found: Target, *, ax: Axes | None = None, **line: Any) -> Axes:
+    """Draw a target displacement: curve, its two lines and the spectrum as those of one mass.
+
+    Parameters
+    ----------
+    found : Target
+        What `rbsdem.codes.target` returned.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+    **line
+        Properties of the curve, as for ``Axes.plot``.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        Acceleration over displacement of the equivalent mass: base shear over the effective mass,
+        displacement over the participation of the first mode.
+    """
+    _arguments.instance(found, "plot.target", Target, "as of rbsdem.codes.target")
+    curve, lines, gamma = found.curve, found.lines, found.curve.gamma
+    per_g = 1.0 / (gamma * curve.modal_mass * STANDARD_GRAVITY)
+    at = found.displacement / gamma
+    periods = found.spectrum.period
+    periods = np.concatenate((np.linspace(0.0, periods[1], 20), periods[2:]))
+    inside = [one for one in periods if _inside(found, one)]
+    sa = np.array([found.spectrum.sa(one) for one in inside]) / STANDARD_GRAVITY
+    sd = np.array([found.spectrum.sd(one) for one in inside])
+    with axes_or_new(ax, (4.2, 3.2)) as drawn:
+        drawn.plot(1e3 * sd, sa, **{**TEST_LINE, "linestyle": "-"}, label=found.spectrum.name)
+        shown = line_of({**MODEL_LINE, "label": "push-over"}, line)
+        drawn.plot(1e3 * curve.displacement / gamma, curve.force * per_g, **shown)
+        corners = np.array([0.0, lines.yield_displacement, lines.end_displacement])
+        forces = np.array([0.0, lines.yield_force, lines.end_force])
+        look: dict[str, Any] = {"color": "#c0392b", "linewidth": 0.8, "zorder": 4}
+        drawn.plot(1e3 * corners / gamma, forces * per_g, **look, label="two lines")
+        top = 1.08 * max(float(sa.max()), float(curve.force.max()) * per_g)
+        slope = (2.0 * np.pi / found.period) ** 2 / STANDARD_GRAVITY
+        drawn.plot([0.0, 1e3 * top / slope], [0.0, top], **{**ZERO_LINE, "color": "0.6"})
+        name = _NAMES[found.method]
+        if found.reached:
+            height = found.base_shear * per_g
+            drawn.vlines(1e3 * at, 0.0, height, **{**look, "linestyle": ":"})
+            words = f"{name}: roof {1e3 * found.displacement:.0f} mm"
+            drawn.plot([1e3 * at], [height], **_POINT, linestyle="none", label=words)
+        else:
+            drawn.plot([], [], linestyle="none", label=f"{name}: beyond the end of the curve")
+        drawn.set_xlim(0.0, 1.25e3 * max(at, min(curve.largest / gamma, 1.5 * at)))
+        drawn.set_ylim(0.0, top)
+        drawn.set(xlabel="Spectral displacement (mm)", ylabel="Spectral acceleration (g)")
+        drawn.legend(loc="upper right", handlelength=1.6)
+        drawn.tick_params(right=True, top=True)
+    return drawn
+
+
+def _inside(found: Target, period: float) -> bool:
+    """Return whether a spectrum of points has a period."""
+    try:
+        found.spectrum.sa(period)
+    except InputError:
+        return False
+    return True
