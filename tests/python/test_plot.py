@@ -77,6 +77,9 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
     member = rbsdem.FrameMember(30e9, 0.16, 2.1e-3, yield_moment=2e5, hardening=0.01)
     bent = rbsdem.Frame.grid([3.2, 3.0], [6.0], columns=member, beams=member, beam_load=2e4)
     pushed = rbsdem.pushover(bent, drift=0.03, points=20)
+    single = codes.Capacity([0, 0.01, 0.1], [0, 1e4, 1e4], 1.25, 1e3, 2e3)
+    target = codes.target(single, codes.DesignSpectrum.en_1998(0.2, "C"), "en_1998")
+    corner, massive = target.lines, 1.25e3
     roof, shear_of = 1e3 * pushed.displacement[-1], 1e-3 * pushed.base_shear[-1]
     first_of = {of: 100 * of.runs.response("peak_drift")[0] for of in (stripes, cloud)}
     return {
@@ -129,6 +132,11 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
         "pushover": (plot.pushover, (pushed,), (roof, shear_of)),
         "storey_drift": (plot.storey_drift, (pushed,), (100 * pushed.storey_drift[-1, 0], 3.2)),
         "member_forces": (plot.member_forces, (pushed,), None),
+        "target": (
+            plot.target,
+            (target,),
+            (1e3 * corner.yield_displacement / 1.25, corner.yield_force / (massive * 9.80665)),
+        ),
     }
 
 
@@ -161,6 +169,7 @@ LABELS = {
     "pushover": ("Roof displacement (mm)", "Base shear (kN)"),
     "storey_drift": ("Storey drift (%)", "Height (m)"),
     "member_forces": ("Distance (m)", "Height (m)"),
+    "target": ("Spectral displacement (mm)", "Spectral acceleration (g)"),
 }
 
 

@@ -55,7 +55,9 @@ def target(found: Target, *, ax: Axes | None = None, **line: Any) -> Axes:
         look: dict[str, Any] = {"color": "#c0392b", "linewidth": 0.8, "zorder": 4}
         drawn.plot(1e3 * corners / gamma, forces * per_g, **look, label="two lines")
         top = 1.08 * max(float(sa.max()), float(curve.force.max()) * per_g)
-        slope = (2.0 * np.pi / found.period) ** 2 / STANDARD_GRAVITY
+        # The capacity spectrum has its point on the secant.
+        shown_period = found.factors.get("T_sec", found.period)
+        slope = (2.0 * np.pi / shown_period) ** 2 / STANDARD_GRAVITY
         drawn.plot([0.0, 1e3 * top / slope], [0.0, top], **{**ZERO_LINE, "color": "0.6"})
         name = _NAMES[found.method]
         if found.reached:
@@ -68,7 +70,8 @@ def target(found: Target, *, ax: Axes | None = None, **line: Any) -> Axes:
         drawn.set_xlim(0.0, 1.25e3 * max(at, min(curve.largest / gamma, 1.5 * at)))
         drawn.set_ylim(0.0, top)
         drawn.set(xlabel="Spectral displacement (mm)", ylabel="Spectral acceleration (g)")
-        drawn.legend(loc="upper right", handlelength=1.6)
+        look = {"frameon": True, "framealpha": 0.85, "edgecolor": "none"}
+        drawn.legend(loc="upper right", handlelength=1.6, **look)
         drawn.tick_params(right=True, top=True)
     return drawn
 
