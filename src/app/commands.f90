@@ -2,7 +2,7 @@
 module rbs_app_commands
    use, intrinsic :: iso_fortran_env, only: error_unit
    use rbs_app_progress, only: terminal_progress, say
-   use rbs_app_signals, only: remove_if_stopped
+   use rbs_app_signals, only: keep_if_stopped
    use rbs_base_constants, only: pi
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_kinds, only: wp
@@ -70,7 +70,7 @@ contains
       if (.not. allocated(error)) call check_output()
       if (allocated(error)) return
       call solve()
-      call remove_if_stopped('')
+      call keep_if_stopped('', '')
       call run%recorder%file%close(.not. allocated(error), run%recorder%count > 0, closing)
       if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
       if (allocated(error)) then
@@ -151,7 +151,11 @@ contains
                                              case%output%motion)
             call recorder%file%open(file, error)
             if (allocated(error)) return
-            call remove_if_stopped(recorder%file%own)
+            if (.not. (quiet .or. recorder%file%left == '')) then
+               write (error_unit, '(a)') 'rbsdem: note: '//recorder%file%left//' has rows of a run '// &
+                  'that was killed'
+            end if
+            call keep_if_stopped(recorder%file%own, recorder%file%partial_name())
             call recorder%write_head(header(case, plan%method), error)
             if (allocated(error)) return
             call progress%start(quiet)

@@ -1,15 +1,15 @@
 !> What the process does on signals.
 !>
-!> A handler gets nothing but the number of the signal, so the name of the unfinished file is a variable of
-!> this module, the only one in the house.
+!> A handler gets nothing but the number of the signal, so the names of the unfinished file are variables of
+!> this module, the only ones in the house.
 module rbs_app_signals
    use, intrinsic :: iso_c_binding, only: c_char, c_funloc, c_funptr, c_int, c_intptr_t, c_null_char, &
-                                          c_null_funptr
-   use rbs_io_posix, only: c_close, c_open, c_unlink, to_read
+                                          c_null_funptr, c_size_t
+   use rbs_io_posix, only: c_close, c_open, c_rename, c_write, to_read
    implicit none
    private
 
-   public :: prepare_process, remove_if_stopped
+   public :: prepare_process, keep_if_stopped
 
    !> Numbers of signals: hangup, interrupt, broken pipe, end, file too large.
    integer(c_int), parameter :: hangup = 1, interrupt = 2, broken_pipe = 13, termination = 15, too_large = 25
@@ -18,8 +18,11 @@ module rbs_app_signals
 
    integer, parameter :: longest = 4096
 
-   !> Path of the file that goes when the process is stopped; it starts with a zero byte if there is none.
-   character(kind=c_char), volatile :: doomed(longest) = c_null_char
+   !> Path of the file that is kept when the process is stopped, zero bytes if there is none, and the path
+   !> that it then gets; what is written of it, and its length.
+   character(kind=c_char), volatile :: own(longest) = c_null_char, partial(longest) = c_null_char
+   character(len=2*longest) :: told = ''
+   integer(c_size_t), volatile :: told_length = 0_c_size_t
 
    interface
       !> In C: set what is done on a signal; what was done before.
@@ -64,36 +67,44 @@ contains
       end do
    end subroutine prepare_process
 
-   !> Remove a file if the process is stopped from now on; no file if the path is empty.
-   subroutine remove_if_stopped(path)
+   !> Keep a file under another name if the process is stopped from now on; no file if the path is empty.
+   subroutine keep_if_stopped(path, name)
+      character(len=*), intent(in) :: path, name
+
+      own(1) = c_null_char
+      if (len(path) == 0 .or. len(path) >= longest .or. len(name) >= longest) return
+      call put(name, partial)
+      told = 'rbsdem: stopped by a signal; the rows up to there are in '//name//new_line('a')
+      told_length = int(len_trim(told), c_size_t)
+      call put(path, own)
+   end subroutine keep_if_stopped
+
+   !> Store a path such that its first letter comes last: until then there is no path.
+   subroutine put(path, into)
       character(len=*), intent(in) :: path
+      character(kind=c_char), volatile, intent(inout) :: into(:)
       integer :: i
 
-      doomed(1) = c_null_char
-      if (len(path) == 0 .or. len(path) >= longest) return
-      doomed(len(path) + 1) = c_null_char
+      into(len(path) + 1) = c_null_char
       do i = len(path), 1, -1
-         doomed(i) = path(i:i)
+         into(i) = path(i:i)
       end do
-   end subroutine remove_if_stopped
+   end subroutine put
 
-   !> Remove the unfinished file and end as the signal asks for.
+   !> Keep the unfinished file and end as the signal asks for.
    subroutine on_signal(number) bind(c)
       integer(c_int), value :: number
       type(c_funptr) :: before
       integer(c_int) :: status
+      integer(c_size_t) :: written
 
-      call remove_unfinished()
+      if (own(1) /= c_null_char) then
+         status = c_rename(own, partial)
+         written = c_write(2_c_int, told, told_length)
+      end if
       before = c_signal(number, action(by_default))
       status = c_raise(number)
    end subroutine on_signal
-
-   !> Remove the unfinished file, if there is one.
-   subroutine remove_unfinished()
-      integer(c_int) :: status
-
-      if (doomed(1) /= c_null_char) status = c_unlink(doomed)
-   end subroutine remove_unfinished
 
    type(c_funptr) function action(number) result(pointer)
       integer(c_intptr_t), intent(in) :: number

@@ -5,9 +5,10 @@
 !> can be renamed onto, are written directly.
 module rbs_io_output_file
    use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_null_char, c_null_ptr, c_ptr, c_size_t
+   use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_text, only: to_text
-   use rbs_io_posix, only: c_close, c_dup, c_fclose, c_fileno, c_fopen, c_getpid, c_open, c_poll, c_read, &
+   use rbs_io_posix, only: c_close, c_dup, c_fclose, c_fileno, c_flock, c_fopen, c_open, c_poll, c_read, &
                            c_rename, c_unlink, c_write, exists, is_folder, is_link, is_special, &
                            is_standard_output, is_taken, poll_out, poll_type, standard_output, &
                            to_read, to_write, without_waiting
@@ -30,6 +31,9 @@ module rbs_io_output_file
 
    integer, parameter :: buffer_size = 16384
 
+   !> How a file is locked: by one process, without waiting.
+   integer(c_int), parameter :: exclusive_at_once = 6_c_int
+
    type :: output_file
       !> Path of the whole file
       character(len=:), allocatable :: path
@@ -37,15 +41,19 @@ module rbs_io_output_file
       character(len=:), allocatable :: own
       !> Where an unfinished file was kept; empty if it was not
       character(len=:), allocatable :: kept
+      !> A file that a run with this output has left which was killed; empty if there is none
+      character(len=:), allocatable :: left
       integer(c_int), private :: descriptor = -1_c_int
       type(c_ptr), private :: stream = c_null_ptr
       logical, private :: broken = .false.
       integer, private :: used = 0
+      integer(int64), private :: flushed = 0_int64
       character(len=buffer_size), private :: buffer
    contains
       procedure :: open => open_file
       procedure :: put
       procedure :: close => close_file
+      procedure :: partial_name
       procedure, private :: flush => flush_buffer
       procedure, private :: open_own
    end type output_file
@@ -64,7 +72,9 @@ contains
       self%path = path
       self%own = ''
       self%kept = ''
+      self%left = ''
       self%used = 0
+      call system_clock(self%flushed)
       self%broken = .false.
       if (is_folder(path)) then
          call fatal_error(error, bad_input, 'output: '//path//' is a folder; give the path of a file')
@@ -99,30 +109,44 @@ contains
       class(output_file), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
       integer :: i, slash
+      integer(c_int) :: descriptor, status
 
       slash = index(self%path, '/', back=.true.)
       do i = 1, merge(most_tries, 0, len(self%path) - slash <= longest_name)
-         self%own = self%path(:min(len(self%path), slash + longest_start))//'.'// &
-                    to_text(int(c_getpid()))//'-'//to_text(i)//partial
+         self%own = self%path(:min(len(self%path), slash + longest_start))//'.'//to_text(i)//partial
          self%stream = c_fopen(self%own//c_null_char, 'wx'//c_null_char)
          if (c_associated(self%stream)) exit
          if (.not. is_taken(self%own)) exit
+         if (is_ours(self%own)) then
+            ! A run that is under way has the lock of its file.
+            descriptor = c_open(self%own//c_null_char, to_read + without_waiting)
+            if (c_flock(descriptor, exclusive_at_once) == 0_c_int) self%left = self%own
+            status = c_close(descriptor)
+         end if
       end do
       if (c_associated(self%stream)) then
          self%descriptor = c_fileno(self%stream)
+         status = c_flock(self%descriptor, exclusive_at_once)
       else
          call fatal_error(error, bad_input, 'output: cannot write '//self%path//'; check its folder, '// &
                           'name and permissions, or choose another file with --output')
       end if
    end subroutine open_own
 
-   !> Write a text.
+   !> Write a text. What is on the disk ends with a whole text, and lacks at most those of the last second.
    subroutine put(self, text, error)
       class(output_file), intent(inout) :: self
       character(len=*), intent(in) :: text
       type(error_type), allocatable, intent(inout) :: error
+      integer(int64) :: now, second
       integer :: at, length
 
+      call system_clock(now, second)
+      if (self%used + len(text) > buffer_size .or. now - self%flushed > second) then
+         call self%flush(error)
+         if (allocated(error)) return
+         self%flushed = now
+      end if
       at = 0
       do while (at < len(text))
          if (self%used == buffer_size) call self%flush(error)
@@ -176,7 +200,6 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer(c_int) :: status
       character(len=:), allocatable :: name
-      logical :: free
 
       if (self%descriptor < 0_c_int) return
       call self%flush(error)
@@ -208,13 +231,24 @@ contains
       else
          ! As PATH.partial if this name is free or has been left by an earlier run
          self%kept = self%own
-         name = self%path//partial
-         free = .not. is_taken(name)
-         if (.not. free) free = is_ours(name)
-         if (.not. free) return
+         name = self%partial_name()
+         if (name == self%own) return
          if (c_rename(self%own//c_null_char, name//c_null_char) == 0_c_int) self%kept = name
       end if
    end subroutine close_file
+
+   !> Name of the rows of a run that does not come to its end: PATH.partial if this is free or has been left
+   !> by an earlier run, else its own.
+   function partial_name(self) result(name)
+      class(output_file), intent(in) :: self
+      character(len=:), allocatable :: name
+      logical :: free
+
+      name = self%path//partial
+      free = .not. is_taken(name)
+      if (.not. free) free = is_ours(name)
+      if (self%own == '' .or. .not. free) name = self%own
+   end function partial_name
 
    !> Whether a path is an ordinary file that a run has left.
    logical function is_ours(path)

@@ -7,7 +7,7 @@ module rbs_io_posix
    implicit none
    private
 
-   public :: c_close, c_dup, c_fclose, c_fileno, c_fopen, c_fsync, c_getpid, c_open, c_poll, c_read, &
+   public :: c_close, c_dup, c_fclose, c_fileno, c_flock, c_fopen, c_fsync, c_open, c_poll, c_read, &
              c_rename, c_unlink, c_write, poll_type
    public :: exists, is_folder, is_link, is_special, is_standard_output, is_taken, same_file, &
              standard_input
@@ -108,6 +108,13 @@ module rbs_io_posix
          integer(c_int), value :: descriptor
       end function c_fsync
 
+      !> In C: lock a file until the process ends or closes it; 0 on success, -1 if another has the lock.
+      integer(c_int) function c_flock(descriptor, how) bind(c, name='flock') result(status)
+         import :: c_int
+         implicit none
+         integer(c_int), value :: descriptor, how
+      end function c_flock
+
       !> In C: remove a file; 0 on success.
       integer(c_int) function c_unlink(path) bind(c, name='unlink') result(status)
          import :: c_char, c_int
@@ -122,11 +129,6 @@ module rbs_io_posix
          character(kind=c_char), intent(in) :: from(*), to(*)
       end function c_rename
 
-      !> In C: number of the process.
-      integer(c_int) function c_getpid() bind(c, name='getpid') result(number)
-         import :: c_int
-         implicit none
-      end function c_getpid
 
       !> In C: 0 if a path leads to something.
       integer(c_int) function c_access(path, mode) bind(c, name='access') result(status)

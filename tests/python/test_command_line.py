@@ -684,7 +684,7 @@ def long_run(dynamic_text, tmp_path):
 
 def unfinished(process: subprocess.Popen, folder: Path, name: str = "case.csv") -> Path:
     """The name of the rows of a process until they are whole."""
-    return folder / f"{name}.{process.pid}-1.partial"
+    return folder / f"{name}.1.partial"
 
 
 def wait_for(path: Path, least: int) -> None:
@@ -771,16 +771,37 @@ def test_progress_stays_away_in_a_pipe_with_quiet_and_in_short_runs(
 @pytest.mark.parametrize(
     "number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL], ids=str
 )
-def test_stopped_run_leaves_the_old_output(executable, long_run, tmp_path, number):
-    """And nothing else, where it is asked to end."""
+def test_stopped_run_keeps_its_rows_and_the_old_output(executable, long_run, tmp_path, number):
+    """As a run that fails does; those of a run that is killed are named by the next one."""
     (tmp_path / "case.csv").write_text("old")
-    before = sorted(os.listdir(tmp_path))
-    process = subprocess.Popen([executable, "run", "case.nml", "-q"], cwd=tmp_path)
-    wait_for(unfinished(process, tmp_path), 5000)
+    process = subprocess.Popen(
+        [executable, "run", "case.nml"], cwd=tmp_path, stderr=subprocess.PIPE, text=True
+    )
+    own = unfinished(process, tmp_path)
+    wait_for(own, 50_000)
     process.send_signal(number)
-    assert process.wait(PATIENCE) == -number
-    assert number == signal.SIGKILL or sorted(os.listdir(tmp_path)) == before
+    _, told = process.communicate(timeout=PATIENCE)
+    assert process.returncode == -number
     assert (tmp_path / "case.csv").read_text() == "old"
+    kept = own if number == signal.SIGKILL else tmp_path / "case.csv.partial"
+    text = kept.read_text()
+    assert text.endswith("\n")
+    head, *rows = [line for line in text.splitlines() if not line.startswith("#")]
+    assert {row.count(",") for row in rows} == {head.count(",")}
+    if number == signal.SIGKILL:
+        again = subprocess.Popen(
+            [executable, "run", "case.nml"], cwd=tmp_path, stderr=subprocess.PIPE, text=True
+        )
+        wait_for(tmp_path / "case.csv.2.partial", 50_000)
+        again.terminate()
+        _, told = again.communicate(timeout=PATIENCE)
+        assert "note: case.csv.1.partial has rows of a run that was killed\n" in told
+    assert "stopped by a signal; the rows up to there are in case.csv.partial\n" in told
+    assert sorted(path.name for path in tmp_path.glob("*.partial")) == (
+        ["case.csv.1.partial", "case.csv.partial"]
+        if number == signal.SIGKILL
+        else ["case.csv.partial"]
+    )
 
 
 def test_two_processes_with_one_output_leave_whole_rows_of_one(executable, dynamic_text, tmp_path):
