@@ -1,6 +1,6 @@
 """How good blind prediction is: the tables of docs/peer.md.
 
-    python studies/blind_table.py FOLDER [--jobs 2]
+    python studies/blind_table.py FOLDER
 
 FOLDER holds the histories and the table of the tests. Scores are those of `rbsdem.compare`. The
 parameters of the model were fitted to the same tests (studies/fit_model.py): that script prints the
@@ -41,7 +41,7 @@ def line(name: str, rows: list[peer.Prediction]) -> str:
 
 
 def table(
-    title: str, found: peer.Predictions, groups: dict[str, Callable[[peer.Specimen], bool]]
+    title: str, found: list[peer.Prediction], groups: dict[str, Callable[[peer.Specimen], bool]]
 ) -> None:
     """Print a table of groups of tests."""
     print(f"\n| {title} | tests | nrmse (quartiles) | peak | energy | stiffness |")
@@ -50,7 +50,7 @@ def table(
         print(line(name, [row for row in found if belongs(row.specimen)]))
 
 
-def by_axial_load(found: peer.Predictions) -> None:
+def by_axial_load(found: list[peer.Prediction]) -> None:
     """Print the flexural tests by their axial load ratio."""
     groups = {}
     for low, high in pairwise(CLASSES):
@@ -61,7 +61,7 @@ def by_axial_load(found: peer.Predictions) -> None:
     table("flexure, axial load ratio", found, groups)
 
 
-def the_papers_four(tests: peer.Specimens, found: dict[str, peer.Predictions]) -> None:
+def the_papers_four(tests: peer.Specimens, found: dict[str, list[peer.Prediction]]) -> None:
     """Print the four columns of the paper."""
     print("\n| column of the paper | " + " | ".join(f"nrmse, {name}" for name in found) + " |")
     print("| --- |" + " ---: |" * len(found))
@@ -96,19 +96,18 @@ def main() -> None:
     """Predict, print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder")
-    parser.add_argument("--jobs", type=int, default=2)
     given = parser.parse_args()
 
     warnings.simplefilter("ignore", rbsdem.errors.AccuracyWarning)
     tests = peer.read_specimens(given.folder).with_history()
     found = {}
     for model in MODELS:
-        found[model] = peer.predict(tests, model, jobs=given.jobs)
+        found[model] = peer.predict(tests, model)
         ended = sum(row.status == "completed" for row in found[model])
-        each = [1e3 * (row.seconds_model + row.seconds_analysis) for row in found[model]]
+        each = [1e3 * row.seconds for row in found[model]]
         print(
-            f"\n{model}: {ended} of {len(tests)} tests to their end, {found[model].seconds:.1f} s "
-            f"in {given.jobs} processes; a test takes {statistics.median(each):.1f} ms (median)"
+            f"\n{model}: {ended} of {len(tests)} tests to their end; a test takes "
+            f"{statistics.median(each):.1f} ms (median)"
         )
         groups = {"rectangular, all": lambda s: s.section == "rectangular"}
         for section, members in (("rectangular", ("rectangular",)), ("round", None)):

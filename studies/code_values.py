@@ -1,6 +1,6 @@
 """Who predicts the drift at which a column has lost 20 % of its strength: table of docs/codes.md.
 
-    python studies/code_values.py FOLDER [--jobs 2]
+    python studies/code_values.py FOLDER
 
 FOLDER holds the histories and the table of the tests. For every test that loses 20 % of its
 strength, the measured drift is held against the layered model, codes and regressions, all from the
@@ -49,10 +49,9 @@ def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n", 1)[0])
     parser.add_argument("folder")
-    parser.add_argument("--jobs", type=int, default=2)
     options = parser.parse_args()
     warnings.simplefilter("ignore")
-    found = peer.predict(peer.read_specimens(options.folder), jobs=options.jobs)
+    found = peer.predict(peer.read_specimens(options.folder))
     tests = []
     for prediction in found:
         if prediction.comparison is None:

@@ -1,4 +1,4 @@
-"""The hinges that `Result.lumped_hinge` writes for OpenSees, run there beside the column.
+"""The hinges that `lumped_hinge` writes for OpenSees, run there beside the column.
 
     pip install openseespy==3.7.1.2
     python studies/export_opensees.py [FILE.png]
@@ -14,11 +14,14 @@ Nothing else needs OpenSees, and it is not a dependency.
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 
 import numpy as np
 
 import rbsdem
-from rbsdem.run.lumped import MATERIALS, LumpedHinge
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "examples/12-lumped-hinge"))
+from lumped import MATERIALS, LumpedHinge, draw, lumped_hinge
 
 try:
     import openseespy.opensees as ops
@@ -85,7 +88,7 @@ def hinge_of(axial_load: float) -> LumpedHinge:
     """Return the hinge of a column along the path."""
     path = HEIGHT * rbsdem.protocol(DRIFTS, cycles=2)
     run = rbsdem.cyclic(column(axial_load), displacement=path)
-    return run.lumped_hinge()
+    return lumped_hinge(run)
 
 
 def main() -> None:
@@ -106,7 +109,7 @@ def main() -> None:
                 f"  {rms(ours, hinge.moment):13.4f}  {rms(theirs, ours):15.1e}"
             )
             if axes is not None:
-                ax = rbsdem.plot.lumped_hinge(hinge, material, ax=axes[row, place])
+                ax = draw(hinge, material, ax=axes[row, place])
                 ax.plot(1e3 * hinge.rotation, 1e-3 * theirs, "r:", lw=0.8, label="OpenSees")
                 ax.legend(fontsize=7)
     if axes is not None:

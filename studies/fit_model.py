@@ -3,7 +3,7 @@
     python studies/fit_model.py FOLDER [--groups 8] [--steps 6] [--jobs 2] [--write]
 
 FOLDER holds the histories and the table of the tests (docs/peer.md). Doubtful labels are mended by
-the rules of `rbsdem.peer.check`, never by the error of the model. The free numbers are the rows of
+the rules of `studies/doubts.py`, never by the error of the model. The free numbers are the rows of
 `data/layered_parameters.csv` that have a prior; all others stand as they are there.
 
 **Prior.** Every free number has a value from the literature or from mechanics and a spread: the fit
@@ -34,6 +34,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import doubts
 import numpy as np
 
 from rbsdem import peer
@@ -117,7 +118,7 @@ def load(folder: str) -> list[Case]:
     if not _cases:
         warnings.simplefilter("ignore", AccuracyWarning)
         tests = peer.read_specimens(folder).with_history()
-        _cases[:] = [Case(specimen) for specimen in peer.check(tests).mended()]
+        _cases[:] = [Case(specimen) for specimen in doubts.check(tests).corrected()]
     return _cases
 
 

@@ -1,6 +1,6 @@
 """What the layered model is worth beside backbones of codes: the table of docs/codes.md.
 
-    python studies/worth_table.py FOLDER [--jobs 2]
+    python studies/worth_table.py FOLDER
 
 FOLDER holds the histories and the table of the tests; doubtful labels are mended. Every source
 makes a column from the same drawing, which goes through the same path with the same second-order
@@ -236,14 +236,13 @@ def main() -> None:
     """Predict, compare, print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder")
-    parser.add_argument("--jobs", type=int, default=2)
     given = parser.parse_args()
     warnings.simplefilter("ignore")
     _begin(given.folder)
     specimens = [case.specimen for case in fit_model.load(given.folder)]
     found = {}
     for name, model in SOURCES.items():
-        rows = peer.predict(specimens, model=model, jobs=given.jobs)
+        rows = peer.predict(specimens, model=model)
         # A source that does not cover a test is not counted there.
         found[name] = [row for row in rows if row.status in ("completed", "stopped")]
     by_class(found)

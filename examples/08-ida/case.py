@@ -8,6 +8,8 @@ Ten synthetic records; the same by the command: rbsdem ida case.nml synthetic:10
 import sys
 from pathlib import Path
 
+import numpy as np
+
 import rbsdem
 from rbsdem import fragility, motions, plot
 
@@ -26,6 +28,21 @@ print()
 for name, curve in curves.items():
     rate = curve.mean_annual_frequency(hazard)
     print(f"{name:10s} theta {curve.theta:5.2f} m/s2  beta {curve.beta:.2f}  {rate:.1e} a year")
+
+# A cloud of the same column: a straight line through ln(drift) over ln(Sa), without collapses.
+scales = [0.1, 0.2, 0.4, 0.8]
+rows = rbsdem.ensemble(
+    case.column, records, scales=scales, method="newmark", collapse_drift=0.1
+).to_pandas()
+period = 1 / rbsdem.modes(case.column).frequency[0]
+sa = rows["scale"] * [records[int(name[-2:]) - 1].sa(period) for name in rows["motion"]]
+standing = rows["status"] == "completed"
+x, y = np.log(sa[standing]), np.log(rows["peak_drift"][standing])
+slope, intercept = np.polyfit(x, y, 1)
+scatter = np.std(y - intercept - slope * x, ddof=2)
+print(f"\ncloud of {standing.sum()} runs: drift = {np.exp(intercept):.2g} Sa^{slope:.2f}")
+theta = np.exp((np.log(0.01) - intercept) / slope)
+print(f"1 % drift: theta {theta:.2f} m/s2, beta {scatter / slope:.2f}")
 
 if "--no-plot" not in sys.argv:
     plot.save(plot.ida(found), "ida.png")

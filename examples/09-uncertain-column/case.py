@@ -10,6 +10,7 @@ import sys
 from dataclasses import replace
 
 import numpy as np
+from scipy.stats import lognorm, qmc
 
 import rbsdem
 from rbsdem import (
@@ -42,31 +43,48 @@ def make(concrete: float, steel: float, mass: float) -> rbsdem.Column:
 
 median = make(46.5e6, 446e6, 75e3)
 period = 1 / rbsdem.modes(median).frequency[0]
-uncertain = fragility.Uncertain(
-    make,
-    {
-        "concrete": fragility.lognormal(46.5e6, 0.15),
-        "steel": fragility.lognormal(446e6, 0.07),
-        "mass": fragility.lognormal(75e3, 0.10),
-    },
+# Median and standard deviation of the logarithm; Sobol points fill the space evenly.
+VARIABLES = {"concrete": (46.5e6, 0.15), "steel": (446e6, 0.07), "mass": (75e3, 0.10)}
+points = qmc.Sobol(len(VARIABLES), rng=np.random.default_rng(1)).random(COLUMNS)
+values = np.column_stack(
+    [
+        lognorm(beta, scale=middle).ppf(share)
+        for (middle, beta), share in zip(VARIABLES.values(), points.T, strict=True)
+    ]
 )
-sample = uncertain.sample(COLUMNS, method="sobol", seed=1)
+columns = [make(*row) for row in values.tolist()]
+
+
+def variances(capacity: np.ndarray) -> dict[str, float]:
+    """Split the variance of ln(capacity), shape (columns, records): two crossed random factors."""
+    logs = np.log(capacity)
+    n, m = logs.shape
+    rows, cols = logs.mean(axis=1), logs.mean(axis=0)
+    rest = logs - rows[:, None] - cols + logs.mean()
+    residual = (rest**2).sum() / ((n - 1) * (m - 1))
+    parts = {
+        "record": max(cols.var(ddof=1) - residual / n, 0.0),
+        "model": max(rows.var(ddof=1) - residual / m, 0.0),
+        "residual": residual,
+    }
+    return parts | {"total": sum(parts.values())}
+
+
 records = motions.synthetic(RECORDS)
 settings = {"method": "newmark", "dt": 0.005, "period": period, "collapse_drift": 0.05}
 
 hunt = fragility.Hunt(points=1)
-found = rbsdem.ida(sample.columns, records, levels=hunt, refine=[], **settings)
+found = rbsdem.ida(columns, records, levels=hunt, refine=[], **settings)
 alone = rbsdem.ida(median, records, levels=hunt, refine=[], **settings)
-split = fragility.variance_split(found.collapse_intensity)
 print(f"{COLUMNS} columns, {RECORDS} records, {len(found.runs)} runs, Sa({period:.2f} s)")
-for name in ("record", "model", "residual", "total"):
-    print(f"beta of {name:9s} {split.beta[name]:.2f}")
+for name, variance in variances(found.collapse_intensity).items():
+    print(f"beta of {name:9s} {np.sqrt(variance):.2f}")
 print(f"median drift of 5 %: {np.median(alone.collapse_intensity):.1f} m/s2 for the median column,")
 print(f"{np.median(found.collapse_intensity):.1f} m/s2 for all")
 
 # Stripes: all columns and records at four intensities.
 levels = np.median(found.collapse_intensity) * np.array([0.4, 0.7, 1.0, 1.4])
-stripes = rbsdem.fragility.stripes(sample.columns, records, levels, **settings)
+stripes = rbsdem.fragility.stripes(columns, records, levels, **settings)
 curve = stripes.fragility()
 print(f"stripes: {curve.data.failures.tolist()} of {curve.data.number.tolist()} runs collapse")
 print(f"theta {curve.theta:.1f} m/s2, beta {curve.beta:.2f}")

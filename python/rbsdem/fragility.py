@@ -1,8 +1,5 @@
-"""Incremental dynamic analysis, stripes, clouds, fragility, hazard, uncertain columns."""
+"""Incremental dynamic analysis, stripes, fragility, hazard."""
 
-from rbsdem.many.cloud import Cloud as Cloud
-from rbsdem.many.cloud import CloudFragility as CloudFragility
-from rbsdem.many.cloud import cloud as cloud
 from rbsdem.many.ensemble import Ensemble as Ensemble
 from rbsdem.many.fragility import Capacities as Capacities
 from rbsdem.many.fragility import Counts as Counts
@@ -17,8 +14,3 @@ from rbsdem.many.inputs import LIMIT_STATES as LIMIT_STATES
 from rbsdem.many.inputs import MEASURES as MEASURES
 from rbsdem.many.inputs import STATUSES as STATUSES
 from rbsdem.many.inputs import STOREY_MEASURES as STOREY_MEASURES
-from rbsdem.many.uncertain import Sample as Sample
-from rbsdem.many.uncertain import Uncertain as Uncertain
-from rbsdem.many.uncertain import VarianceSplit as VarianceSplit
-from rbsdem.many.uncertain import lognormal as lognormal
-from rbsdem.many.uncertain import variance_split as variance_split

@@ -5,11 +5,6 @@ The histories belong to the database and are no part of rbsdem; a user gets them
 points come with rbsdem.
 """
 
-from rbsdem.measured.doubts import Checked as Checked
-from rbsdem.measured.doubts import Doubt as Doubt
-from rbsdem.measured.doubts import Indicators as Indicators
-from rbsdem.measured.doubts import check as check
-from rbsdem.measured.doubts import indicators as indicators
 from rbsdem.measured.drawing import DrawnSpecimen as DrawnSpecimen
 from rbsdem.measured.drawing import column as column
 from rbsdem.measured.drawing import draw as draw
@@ -25,12 +20,12 @@ from rbsdem.measured.measured import measured_loops as measured_loops
 from rbsdem.measured.measured import net_force as net_force
 from rbsdem.measured.measured import read_peer as read_peer
 from rbsdem.measured.measured import shipped_reversals as shipped_reversals
+from rbsdem.measured.predict import Neighbour as Neighbour
+from rbsdem.measured.predict import Prediction as Prediction
 from rbsdem.measured.predict import nearest as nearest
 from rbsdem.measured.predict import predict as predict
-from rbsdem.measured.predict import predict_one as predict_one
-from rbsdem.measured.predictions import Neighbour as Neighbour
-from rbsdem.measured.predictions import Prediction as Prediction
-from rbsdem.measured.predictions import Predictions as Predictions
+from rbsdem.measured.predict import score_summary as score_summary
+from rbsdem.measured.predict import scores as scores
 from rbsdem.measured.specimens import Observed as Observed
 from rbsdem.measured.specimens import Specimen as Specimen
 from rbsdem.measured.specimens import Specimens as Specimens
@@ -40,4 +35,3 @@ from rbsdem.run.bands import band as band
 from rbsdem.run.bands import likeness as likeness
 from rbsdem.section.paper import paper_columns as paper_columns
 from rbsdem.section.paper import paper_sections as paper_sections
-from rbsdem.web.pages import gallery as gallery

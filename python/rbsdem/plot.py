@@ -19,8 +19,6 @@ from rbsdem.output.loops import four_panels as four_panels
 from rbsdem.output.loops import limit_states as limit_states
 from rbsdem.output.loops import loop as loop
 from rbsdem.output.loops import loops_over_test as loops_over_test
-from rbsdem.output.loops import lumped_hinge as lumped_hinge
-from rbsdem.output.many import cloud as cloud
 from rbsdem.output.many import fragilities as fragilities
 from rbsdem.output.many import fragility as fragility
 from rbsdem.output.many import ida as ida
@@ -28,8 +26,6 @@ from rbsdem.output.many import motion as motion
 from rbsdem.output.many import spectrum as spectrum
 from rbsdem.output.many import stripes as stripes
 from rbsdem.output.measured import band as band
-from rbsdem.output.measured import band_sheet as band_sheet
-from rbsdem.output.measured import contact_sheet as contact_sheet
 from rbsdem.output.measured import prediction as prediction
 from rbsdem.output.methods import methods as methods
 from rbsdem.output.response import energy as energy

@@ -25,9 +25,10 @@ from rbsdem.codes import code_values
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.output import frames as figures_of_frames
 from rbsdem.springs import Elastic
+from rbsdem.web import answers as web_answers
 from rbsdem.web import exports, frames
-from rbsdem.web.answers import NearestTests, shown_rows
-from rbsdem.web.pages import FRAMES, GALLERY, MODULES, parts
+from rbsdem.web.answers import Answers, shown_rows
+from rbsdem.web.pages import FRAMES, MODULES, parts
 from rbsdem.web.report import report, report_data, write_report
 from rbsdem.web.server import MOST_STATE, ExploreServer
 from rbsdem.web.state import DEFAULT, Faults
@@ -627,9 +628,7 @@ def test_what_has_no_report_says_so(tmp_path):
         report(rbsdem.peer.paper_columns("pdelta")["zahn_7"], tmp_path / "x.html")
 
 
-@pytest.mark.parametrize(
-    ("page", "modules"), [("index", MODULES), ("frame", FRAMES), ("gallery", GALLERY)]
-)
+@pytest.mark.parametrize(("page", "modules"), [("index", MODULES), ("frame", FRAMES)])
 def test_modules_of_a_page_can_stand_in_one_file(page, modules):
     seen: dict[str, str] = {}
     files = parts(f"{page}.html", modules)
@@ -644,15 +643,18 @@ def test_modules_of_a_page_can_stand_in_one_file(page, modules):
 
 
 def test_nearest_tests(peer_folder):
-    near = NearestTests(peer_folder, number=2)
-    found = near.of(state())["columns"][0]["tests"]
+    answers = Answers(web_answers.tests_of(peer_folder))
+
+    def near(**changes):
+        return answers.nearest({"state": state(**changes)}, lambda: None)["columns"][0]
+
+    found = near()["tests"]
     # The column of the page is test No 1 of Soesianawati and others.
     assert "Soesianawati" in found[0]["name"]
     assert found[0]["distance"] < 0.3
     assert found[0]["scores"]["nrmse"] < 0.2
     assert max(map(abs, found[0]["test"])) == 1000
-    hollow = near.of(state(section_shape="hollow_rectangle", section_wall=0.12))
-    assert "none" in hollow["columns"][0]
+    assert "none" in near(section_shape="hollow_rectangle", section_wall=0.12)
 
 
 def test_texts_that_are_no_drawings():

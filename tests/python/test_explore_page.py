@@ -453,28 +453,6 @@ def test_a_report_asks_nothing(unopened, tmp_path):
     assert page.driver.execute_script(asked) == []
 
 
-def test_the_gallery_of_many_tests(unopened, tmp_path):
-    page = unopened
-    column = rbsdem.peer.paper_columns("pdelta")["zahn_7"]
-    result = rbsdem.cyclic(column, displacement=1.6 * rbsdem.protocol([0.01], points=8))
-    rows = []
-    for name, factor, mode in (("Good", 1.0, "Flexure"), ("Bad <i>", 2.0, "Shear")):
-        specimen = rbsdem.peer.Specimen(
-            name, "rectangular", 1.6, 0.4, 0.4, 3e7, 1e6, 8, failure_mode=mode
-        )
-        compared = rbsdem.compare(result, (result.displacement, factor * result.force))
-        rows.append(rbsdem.peer.Prediction(specimen, "m", "completed", comparison=compared))
-    path = rbsdem.peer.gallery(rbsdem.peer.Predictions(rows), tmp_path / "gallery.html")
-    page.driver.get(path.as_uri())
-    page.wait(lambda: [e.text for e in page.all("#cards b")] == ["Bad <i>", "Good"])
-    Select(page.one("#mode")).select_by_value("Flexure")
-    page.wait(lambda: page.text("#count") == "1 of 2")
-    Select(page.one("#mode")).select_by_value("")
-    page.one("#name").send_keys("bad")
-    page.wait(lambda: [e.text for e in page.all("#cards b")] == ["Bad <i>"])
-    assert page.all("#cards path.line.test")
-
-
 def test_a_server_that_has_ended(page):
     page.driver.execute_cdp_cmd("Network.enable", {})
     lost = {"offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0}

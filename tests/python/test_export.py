@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import json
 import pickle
+import sys
 
 import numpy as np
 import pytest
+from conftest import REPOSITORY
 
 import rbsdem
 from rbsdem import InputError
-from rbsdem.run.lumped import MATERIALS, _hysteretic
 from rbsdem.springs import Bilinear, Elastic, PeakOriented
+
+sys.path.insert(0, str(REPOSITORY / "examples" / "12-lumped-hinge"))
+import lumped
 
 TIME = np.arange(0.0, 1.0, 0.01)
 MOTION = 3.0 * np.sin(8 * TIME)
@@ -193,7 +197,8 @@ def test_lumped_hinge_of_a_capped_hinge(tmp_path):
     own = PeakOriented(d_y=0.005, f_y=2e5, d_cap=0.03, f_cap=2.4e5, d_pc=0.06, **lasting)
     column = rbsdem.Column(2.0, 1e3, Elastic(1e13), own, axial_load=3e5, kinematics="pdelta")
     drifts = rbsdem.protocol([0.003, 0.008, 0.015, 0.025, 0.045])
-    hinge = rbsdem.cyclic(column, displacement=2.0 * drifts, every=7).lumped_hinge()
+    hinge = rbsdem.cyclic(column, displacement=2.0 * drifts, every=7)
+    hinge = lumped.lumped_hinge(hinge)
     hinge.to_csv(tmp_path / "hinge.csv")
     lines = (tmp_path / "hinge.csv").read_text().splitlines()
     assert lines[0].endswith("K_e_N_m/rad,M_y_N_m,M_c/M_y,theta_y_rad,theta_p_rad,theta_pc_rad,"
@@ -205,7 +210,7 @@ def test_lumped_hinge_of_a_capped_hinge(tmp_path):
     assert hinge.endurance == pytest.approx(40.0 * 0.005, rel=1e-3)
     assert hinge.nrmse("IMKPeakOriented") < 1e-3
     assert hinge.nrmse("Hysteretic") < 0.1
-    for material in MATERIALS:
+    for material in lumped.MATERIALS:
         tcl, py = (hinge.opensees(material, language) for language in ("tcl", "py"))
         command = next(line for line in tcl.splitlines() if line.startswith("uniaxialMaterial"))
         called = next(line for line in py.splitlines() if line.startswith("ops.uniaxialMaterial"))
@@ -224,13 +229,13 @@ def test_hysteretic_is_that_of_opensees():
     theirs = [80.0, -42.5, 109.333333, -94.210526, 108.937969, -93.835333, 105.0, -106.842105,
               23.474742, -105.333333, 102.0, -14.200326, 82.5, -71.111111, 75.0, -40.0,
               37.11678]  # fmt: skip
-    ours = _hysteretic(points, (0.6, 0.3, 0.05, 0.4), np.array(turns))
+    ours = lumped._hysteretic(points, (0.6, 0.3, 0.05, 0.4), np.array(turns))
     assert ours == pytest.approx(theirs, abs=1e-6)
 
 
 def test_lumped_hinge_is_that_of_a_cantilever_on_a_static_path():
     with pytest.raises(InputError, match="static path"):
-        RESULTS["dynamic"].lumped_hinge()
+        lumped.lumped_hinge(RESULTS["dynamic"])
     both = rbsdem.Column(2.0, 1e3, Elastic(1e9), Bilinear(1e7, 0.01, 1e5), top="fixed")
     with pytest.raises(InputError, match="cantilever"):
-        rbsdem.cyclic(both, displacement=[0.01, -0.01]).lumped_hinge()
+        lumped.lumped_hinge(rbsdem.cyclic(both, displacement=[0.01, -0.01]))

@@ -6,13 +6,10 @@ import numpy as np
 import pytest
 from scipy import optimize, special, stats
 
-from rbsdem import Column, InputError
+from rbsdem import InputError
 from rbsdem.errors import AccuracyWarning
-from rbsdem.many.cloud import fit_line, fit_logistic
 from rbsdem.many.fragility import Capacities, Counts, Fragility, Hazard, fit_fragility
 from rbsdem.many.lognormal import bounds_of_counts, fit_bounds
-from rbsdem.many.uncertain import Uncertain, lognormal, variance_split
-from rbsdem.springs import Elastic
 
 
 def counts(level, number, failures, paired=False) -> Counts:
@@ -276,91 +273,3 @@ def test_a_hazard_that_ends_too_early_is_told():
     hazard = Hazard([0.1, 0.3, 1.0], [1.0, 0.1, 0.01])
     with pytest.warns(AccuracyWarning, match="come from intensities beyond its points"):
         FOUND.mean_annual_frequency(hazard)
-
-
-def test_line_of_a_cloud():
-    """Against scipy.stats.linregress: slope, intercept and their standard errors."""
-    random = np.random.default_rng(3)
-    x = random.uniform(-1, 2, 30)
-    y = 0.3 + 1.2 * x + 0.4 * random.standard_normal(30)
-    line, other = fit_line(x, y), stats.linregress(x, y)
-    assert [line.a, line.b] == pytest.approx([other.intercept, other.slope], rel=1e-12)
-    errors = np.sqrt(np.diag(line.covariance))
-    assert errors == pytest.approx([other.intercept_stderr, other.stderr], rel=1e-10)
-    rest = y - line.a - line.b * x
-    assert line.sigma == pytest.approx(np.sqrt((rest**2).sum() / 28), rel=1e-12)
-
-
-@pytest.mark.parametrize(("low", "high"), [((12, 3), (10, 7)), ((8, 0), (9, 9))])
-def test_logistic_curve_of_two_groups(low, high):
-    """Firth 1993: with two groups his penalty adds half a run to each of the four counts."""
-    x = np.repeat([0.5, 2.0], [low[0], high[0]])
-    happened = np.concatenate([np.arange(low[0]) < low[1], np.arange(high[0]) < high[1]])
-    found = fit_logistic(x, happened)
-    wanted = [(k + 0.5) / (n + 1) for n, k in (low, high)]
-    assert found.probability(np.array([0.5, 2.0])) == pytest.approx(wanted, rel=1e-8)
-
-
-def make(k: float, mass: float) -> Column:
-    return Column(2.0, mass, Elastic(k), Elastic(4e9))
-
-
-VARIABLES = {"k": lognormal(4e5, 0.3), "mass": stats.norm(1000.0, 100.0)}
-
-
-@pytest.mark.parametrize("method", ["sobol", "lhs", "random"])
-def test_samples_have_their_distributions(method):
-    """Means and correlation of 1024 points; Sobol and Latin points know a median exactly."""
-    uncertain = Uncertain(make, VARIABLES, {("k", "mass"): 0.6})
-    values = uncertain.values(1024, method)
-    logs = np.log(values[:, 0] / 4e5) / 0.3
-    normal = (values[:, 1] - 1000.0) / 100.0
-    rough = 0.1 if method == "random" else 0.03
-    assert logs.mean() == pytest.approx(0, abs=rough)
-    assert logs.std() == pytest.approx(1, abs=rough)
-    assert normal.mean() == pytest.approx(0, abs=rough)
-    assert np.corrcoef(logs, normal)[0, 1] == pytest.approx(0.6, abs=0.06)
-    assert np.array_equal(values, uncertain.values(1024, method))
-    if method == "lhs":
-        # One point in each of the 1024 equal shares of the first variable.
-        share = np.sort(special.ndtr(logs)) * 1024
-        assert np.array_equal(np.floor(share), np.arange(1024))
-
-
-def test_samples_make_columns():
-    sample = Uncertain(make, VARIABLES).sample(8, "sobol")
-    assert list(sample.columns) == [f"sample {i}" for i in range(1, 9)]
-    assert sample.columns["sample 3"].mass == sample.values[2, 1]
-    assert sample.columns["sample 3"].shear == Elastic(sample.values[2, 0])
-
-
-def test_all_bad_samples_are_told_at_once():
-    uncertain = Uncertain(make, VARIABLES | {"mass": stats.norm(0.0, 100.0)})
-    with pytest.raises(InputError) as caught:
-        uncertain.sample(10, "lhs")
-    lines = [line for line in str(caught.value).splitlines() if line.startswith("sample ")]
-    assert len(lines) == 5
-    assert "mass = -" in lines[0]
-
-
-def test_variance_of_two_sources_that_add():
-    """ln c = record + model: no residual, and each variance is that of its own values."""
-    records = np.array([0.1, -0.3, 0.4, 0.0, 0.2])
-    models = np.array([0.05, -0.05, 0.1])
-    found = variance_split(np.exp(models[:, None] + records))
-    assert found.record == pytest.approx(records.var(ddof=1), rel=1e-12)
-    assert found.model == pytest.approx(models.var(ddof=1), rel=1e-12)
-    assert found.residual == pytest.approx(0, abs=1e-15)
-    assert sum(found.share.values()) == pytest.approx(1)
-    assert found.beta["total"] == pytest.approx(np.sqrt(found.record + found.model))
-
-
-def test_variance_of_three_sources_is_found_without_bias():
-    """Mean of many experiments with known variances 0.16, 0.04 and 0.01."""
-    random = np.random.default_rng(5)
-    parts = []
-    for _ in range(400):
-        record, model = 0.4 * random.standard_normal(8), 0.2 * random.standard_normal((10, 1))
-        found = variance_split(np.exp(record + model + 0.1 * random.standard_normal((10, 8))))
-        parts.append([found.record, found.model, found.residual])
-    assert np.mean(parts, axis=0) == pytest.approx([0.16, 0.04, 0.01], rel=0.06)

@@ -112,14 +112,13 @@ USUAL: dict[str, Any] = {
     "result": RESULT, "run": 0, "section": SECTION, "shear": SPRING, "spacing": 0.08,
     "steel": STEEL, "strain": PATH, "test": SimpleNamespace(displacement=PATH, force=RESULT.force),
     "test_displacement": PATH, "time": 1.0,
-    "variables": {"k": fragility.lognormal(1.0, 0.2)}, "width": 0.4,
+    "width": 0.4,
 }  # fmt: skip
 #: Objects whose methods are called.
 OBJECTS = {
     "bilinear": COLUMN.flexure, "case": COLUMN, "damping": rbsdem.Damping, "result": RESULT,
     "concrete": SECTION.concrete, "steel": STEEL, "motion": MOTION, "hazard": USUAL["hazard"],
     "curve": RESULT.envelope(), "fragility": fragility.fit_fragility("a", COUNTS),
-    "uncertain": fragility.Uncertain(USUAL["make"], USUAL["variables"]),
     "ensemble": rbsdem.ensemble(COLUMN, MOTION, method="newmark"),
     "layered": rbsdem.cyclic(
         rbsdem.section.column(SECTION, 1.6, axial_load=5e5), displacement=[0.0, 0.01],
@@ -139,7 +138,6 @@ OWN: dict[str, dict[str, Any]] = {
     "rbsdem.section.interaction": {"points": 5},
     "rbsdem.time_history": {"ground_acceleration": MOTION, "dt": 0.02, "method": "newmark"},
     "fragility.stripes": {"levels": [0.1, 0.2]} | MANY,
-    "fragility.cloud": {"motions": dict.fromkeys("abc", MOTION), "scales": [0.1, 0.2, 0.3]} | MANY,
     "motions.sequence": {"motions": [MOTION, MOTION]},
     "objects.fragility.probability": {"intensity": 1.5},
     "objects.case.joints": {"name": "shear"},
@@ -157,8 +155,7 @@ rbsdem.section.moment_curvature rbsdem.section.shear_diagram rbsdem.section.shea
 rbsdem.section.springs rbsdem.section.strains calibration.free_names calibration.undetermined
 curves.displacement_metrics curves.energy curves.envelope curves.half_cycles curves.resample
 curves.secant_stiffness curves.strength_loss curves.summarise curves.turning_points
-fragility.Hazard fragility.Hunt fragility.Uncertain fragility.cloud fragility.fit_fragility
-fragility.lognormal fragility.stripes fragility.variance_split motions.corrected
+fragility.Hazard fragility.Hunt fragility.fit_fragility fragility.stripes motions.corrected
 motions.read_motion motions.read_motions motions.resampled motions.sequence motions.synthetic
 peer.net_force peer.paper_columns peer.read_peer peer.read_specimens objects.bilinear.response
 objects.bilinear.split objects.case.joints objects.case.place_of objects.case.double_curvature
@@ -169,7 +166,7 @@ objects.layered.layer_deformation objects.layered.strains objects.motion.duratio
 objects.motion.sa_avg objects.motion.scaled objects.motion.spectrum objects.motion.to_csv
 objects.result.at objects.result.envelope objects.result.hinge objects.result.idealise
 objects.result.save objects.result.save_state objects.result.strength_loss objects.result.to_csv
-objects.steel.stress objects.uncertain.sample objects.uncertain.values
+objects.steel.stress
 """
 ROOMS = SimpleNamespace(
     rbsdem=rbsdem, calibration=calibration, curves=curves, fragility=fragility, motions=motions,

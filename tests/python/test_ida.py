@@ -1,4 +1,4 @@
-"""Incremental dynamic analysis, stripes and clouds, on columns whose answers are known."""
+"""Incremental dynamic analysis and stripes, on columns whose answers are known."""
 
 from __future__ import annotations
 
@@ -11,9 +11,7 @@ import pytest
 
 import rbsdem
 from rbsdem import InputError, motions
-from rbsdem.many.fragility import Hazard
 from rbsdem.many.ida import Hunt
-from rbsdem.many.uncertain import variance_split
 from rbsdem.springs import Elastic, PeakOriented
 
 HEIGHT = 2.0
@@ -156,8 +154,6 @@ def test_several_columns_split_the_variance(records):
         ratio = [record.sa(period) / record.sa(2 * np.pi / own) for record in records]
         wanted = own**2 * 0.05 * HEIGHT * np.array(ratio)
         assert found.collapse_intensity[i] == pytest.approx(wanted, rel=0.02)
-    split = variance_split(found.collapse_intensity)
-    assert split.total > 0
 
 
 def test_limit_states_are_bracketed(records):
@@ -240,51 +236,6 @@ def test_stripes_and_ida_tell_the_same_of_a_softening_column(records):
     assert found.counts().failures.tolist() == below.tolist()
 
 
-def test_cloud_of_an_elastic_column(column, records, omega):
-    """ln drift = ln Sa - ln(w^2 h), slope 1, no scatter but the error of the method."""
-    found = rbsdem.fragility.cloud(column, records, scales=np.geomspace(0.2, 3, 6), **SETTINGS)
-    line = found.regression()
-    assert line.b == pytest.approx(1, abs=3e-3)
-    assert line.a == pytest.approx(-np.log(omega**2 * HEIGHT), abs=3e-3)
-    assert line.sigma < 2e-3
-
-
-def test_cloud_without_collapse_is_lognormal(records):
-    """theta = exp((ln d - a)/b), beta = sigma/b."""
-    found = rbsdem.fragility.cloud(
-        softening(), records, scales=np.geomspace(0.04, 0.4, 6), method="newmark"
-    )
-    assert not found.runs.collapsed.any()
-    line = found.regression()
-    curve = found.fragility("peak_drift", 0.01)
-    assert curve.theta == pytest.approx(np.exp((np.log(0.01) - line.a) / line.b), rel=1e-4)
-    assert curve.beta == pytest.approx(line.sigma / line.b, rel=1e-3)
-    x = np.geomspace(1e-3, 1e3, 40)
-    hazard = Hazard(x, 0.01 * x**-2.0)
-    wanted = 0.01 * curve.theta**-2 * np.exp(2 * curve.beta**2)
-    assert curve.mean_annual_frequency(hazard) == pytest.approx(wanted, rel=1e-3)
-
-
-def test_cloud_counts_collapses(records):
-    """Jalayer et al. 2017: P(C) + (1 - P(C)) P(D > d | no C), with both parts as fitted."""
-    scales = np.geomspace(0.1, 2.0, 6)
-    found = rbsdem.fragility.cloud(softening(), records, scales=scales, method="newmark")
-    lost = found.runs.collapsed
-    assert 0 < lost.sum() < 6
-    curve = found.fragility("peak_drift", 0.02)
-    line, logistic = found.regression(), found.collapse_regression()
-    x = np.array([0.5, 2.0, 8.0])
-    collapse = logistic.probability(np.log(x))
-    from scipy.stats import norm  # noqa: PLC0415
-
-    beyond = norm.cdf((line.a + line.b * np.log(x) - np.log(0.02)) / line.sigma)
-    assert curve.probability(x) == pytest.approx(collapse + (1 - collapse) * beyond, rel=1e-12)
-    assert found.fragility("collapse").probability(x) == pytest.approx(collapse, rel=1e-12)
-    assert curve.intensity(curve.probability(x)) == pytest.approx(x, rel=1e-9)
-    low, high = curve.band(x, n=100)
-    assert (low <= high).all()
-
-
 def test_parts_of_a_search_come_together_in_a_store(column, records, hunted, tmp_path):
     """Each part is the search of its records; without `shard` nothing is left to compute."""
     pytest.importorskip("pyarrow")
@@ -299,8 +250,6 @@ def test_parts_of_a_search_come_together_in_a_store(column, records, hunted, tmp
     levels = {1.0: list(records[:2]), 2.0: list(records[2:])}
     striped = rbsdem.fragility.stripes(column, levels, shard=(2, 2), **given)
     assert striped.runs.intensity == pytest.approx([1.0, 2.0, 2.0])
-    clouds = rbsdem.fragility.cloud(column, records, scales=range(1, 7), shard=(3, 3), **given)
-    assert sorted(clouds.runs.scale) == pytest.approx([3.0, 6.0])
     for shard, options, said in (
         ((1, 7), given, "7 parts of 6 motions"),
         ((3, 2), given, "1 <= i <= n"),

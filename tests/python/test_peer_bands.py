@@ -12,7 +12,6 @@ from samples import read_rows, write_history, write_table
 
 import rbsdem
 from rbsdem import peer, plot
-from rbsdem._files import save_frame
 from rbsdem.cli import main
 from rbsdem.errors import AccuracyWarning
 from rbsdem.output import measured
@@ -40,9 +39,9 @@ def table(folder: Path) -> peer.Specimens:
     return peer.read_specimens(folder)
 
 
-def test_one_test(table: peer.Specimens) -> None:
+def test_one_test(table: peer.Specimens, folder: Path) -> None:
     """Band, intervals and the tests of the folder of its table; the nearest in axial load first."""
-    row = peer.predict(table["T1"], samples=8)
+    row = peer.predict(table["T1"], bands=True, samples=8, near=folder)
     path = table["T1"].test().displacement
     band = rbsdem.peer.band(peer.column(table["T1"]), path, samples=8)
     for name in ("force", "median", "lower", "upper", "samples"):
@@ -60,7 +59,7 @@ def test_one_test(table: peer.Specimens) -> None:
 
 def test_a_column_that_nobody_tested(table: peer.Specimens, folder: Path) -> None:
     mine = replace(table["T5"], folder=None, file=None)
-    row = peer.predict(mine, displacement=PATH, near=folder)
+    row = peer.predict(mine, displacement=PATH, near=folder, bands=True)
     assert (row.status, row.comparison) == ("completed", None)
     assert math.isnan(row.points_within)
     assert row.nearest[0].specimen.name == "T4"
@@ -68,8 +67,8 @@ def test_a_column_that_nobody_tested(table: peer.Specimens, folder: Path) -> Non
     high = replace(mine, concrete_strength=140e6)
     with pytest.warns(AccuracyWarning, match="concrete strength = 140 MPa is outside"):
         assert peer.predict(high, displacement=PATH).remarks
-    # A folder says it in the rows, and warns of nothing.
-    (far,) = peer.predict([high], displacement=PATH, samples=8)
+    # Of several it is in the rows, and nothing is warned of.
+    (far,) = peer.predict([high], displacement=PATH, bands=True, samples=8)
     assert far.remarks == far.band.remarks
 
 
@@ -78,11 +77,14 @@ def test_what_cannot_be_read_or_drawn_is_no_neighbour(folder: Path, tmp_path: Pa
         (tmp_path / path.name).write_text(path.read_text())
     (tmp_path / "T2.csv").write_text("displacement_mm,force_kN\n1,what\n")
     table = peer.read_specimens(tmp_path)
-    row = peer.predict(table["T1"], samples=8)
+    row = peer.predict(table["T1"], near=table.with_history())
     assert [one.specimen.name for one in row.nearest] == ["T3", "T4"]
+    # Nothing that was not asked for: no band, no other test.
+    plain = peer.predict(table["T1"])
+    assert (plain.band, plain.nearest) == (None, ())
     found = peer.predict(tmp_path, bands=True, samples=8)
     assert [one.status for one in found] == ["completed", "no history", *2 * ["completed"]]
-    assert measured.bands_table(found).row_count == 3
+    assert peer.scores(found)["points_within"].count() == 3
     tests = [replace(table["T2"], longitudinal_number=0), table["T3"], table["T6"]]
     twice = replace(table["T4"], duplicate_of=3)
     first = table["T1"]
@@ -93,42 +95,17 @@ def test_what_cannot_be_read_or_drawn_is_no_neighbour(folder: Path, tmp_path: Pa
     assert peer.nearest(*column, tests, but=replace(first, section="circular")) == ()
 
 
-def test_folder_goes_on_with_the_same_bits(folder: Path, tmp_path: Path) -> None:
-    """One process or two, begun anew or not: bands, neighbours and files are the same."""
-    whole = peer.predict(folder, bands=True, samples=8)
-    store = tmp_path / "store"
-    tests = peer.read_specimens(folder).with_history()
-    peer.predict(tests[:2], bands=True, samples=8, store=store)
-    rest = peer.predict(folder, bands=True, samples=8, store=store, jobs=2)
-    assert (rest.resumed, len(rest)) == (2, 4)
-    # Another number of samples is another prediction.
-    assert peer.predict(tests[:1], bands=True, samples=9, store=store).resumed == 0
-    for number, found in enumerate((whole, rest)):
-        save_frame(found.bands(), tmp_path / f"{number}.csv")
-        found.paths_to_csv(tmp_path / f"bands{number}")
-    assert (tmp_path / "0.csv").read_text() == (tmp_path / "1.csv").read_text()
-    assert (tmp_path / "bands0/T3.csv").read_text() == (tmp_path / "bands1/T3.csv").read_text()
-    first = read_rows(tmp_path / "0.csv")[0]
-    assert first["nearest_1"] == "T2"
-    assert float(first["peak_force_N_lower"]) < float(first["peak_force_N_test"])
-
-
 def test_commands(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    out = tmp_path / "peer"
-    given = ["--only", "T1", "--bands", "--loops", "--jobs", "1", "--out", str(out)]
-    assert main(["peer", str(folder), *given]) == 0
+    assert main(["peer", str(folder), "--only", "T1", "--bands"]) == 0
     assert "Within" in capsys.readouterr().out
-    names = {path.name for path in out.iterdir()}
-    assert {"bands.csv", "bands.png", "bands", "loops"} <= names
-    assert "unfinished" not in names
     out = tmp_path / "mine"
     drifts = [str(drift) for drift in DRIFTS]
     given = ["--cycles", "1", "--near", str(folder), "--out", str(out)]
     assert main(["predict", str(folder), "T5", *given, "--drifts", *drifts]) == 0
     assert "Nearest tests" in capsys.readouterr().out
     (numbers,) = read_rows(out / "numbers.csv")
-    assert (numbers["nearest_1"], numbers["peak_force_N_test"]) == ("T4", "")
-    assert len(read_rows(out / "T5.csv")) == PATH.size
-    assert (out / "T5.png").stat().st_size > 1e4
+    assert float(numbers["peak_force_lower"]) < float(numbers["peak_force_upper"])
+    assert len(read_rows(out / "1_T5.csv")) == PATH.size
+    assert (out / "1_T5.png").stat().st_size > 1e4
     assert main(["predict", str(folder), "T5"]) == 2
     assert "--drifts" in capsys.readouterr().err

@@ -55,12 +55,10 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
     curve = fragility.fit_fragility("light", fragility.Capacities(*2 * [np.array([2.0, 3.0, 5.0])]))
     curves = {"light": curve, "heavy": curve}
     stripes = fragility.stripes(elastic, records, [2.0, 5.0], **MANY)
-    cloud = fragility.cloud(elastic, records, scales=[0.2, 1.0, 3.0], **MANY)
     diagram = rbsdem.section.diagram(PAPER.section, PAPER.axial_load)
     sheared = shear.shear_diagram(PAPER.section, 1.6, PAPER.axial_load, furthest=0.022)
     code = rbsdem.section.interaction(PAPER.section, "ec2")
     values = codes.code_values(SECTION, 1.6, 1.2e6)
-    hinge = RESULT.lumped_hinge()
     states, history, spectrum = BENT.limit_states(), shaken(), records[0].spectrum()
     line = Envelope(1, np.array([0.0, 0.02, 0.06]), np.array([0.0, 2e5, 2e5]))
     band = rbsdem.peer.band(LAYERED, BENT.displacement, samples=8)
@@ -81,7 +79,7 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
     target = codes.target(single, codes.DesignSpectrum.en_1998(0.2, "C"), "en_1998")
     corner, massive = target.lines, 1.25e3
     roof, shear_of = 1e3 * pushed.displacement[-1], 1e-3 * pushed.base_shear[-1]
-    first_of = {of: 100 * of.runs.response("peak_drift")[0] for of in (stripes, cloud)}
+    first_of = {of: 100 * of.runs.response("peak_drift")[0] for of in (stripes,)}
     return {
         "loop": (plot.loop, (RESULT,), (x, y)),
         "loops_over_test": (plot.loops_over_test, (RESULT, TEST), (x, 1.1 * y)),
@@ -92,11 +90,6 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
             plot.limit_states,
             (states,),
             (1e3 * first.displacement, first.force / 1e3),
-        ),
-        "lumped_hinge": (
-            plot.lumped_hinge,
-            (hinge,),
-            (1e3 * hinge.rotation[-1], hinge.moment[-1] / 1e3),
         ),
         "code_comparison": (plot.code_comparison, (codes.compare(values, BENT),), None),
         "moment_curvature": (
@@ -118,7 +111,6 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
         "methods": (plot.methods, (study,), None),
         "ida": (plot.ida, (ida,), (0.0, 0.0)),
         "stripes": (plot.stripes, (stripes,), (first_of[stripes], 2.0)),
-        "cloud": (plot.cloud, (cloud,), (first_of[cloud], cloud.runs.intensity[0])),
         "fragility": (plot.fragility, (curve,), (3.0, 0.5)),
         "fragilities": (plot.fragilities, (curves,), (3.0, 0.5)),
         "motion": (plot.motion, records[:1], (0.0, records[0].acceleration[0])),
@@ -142,7 +134,6 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
 
 #: Labels of the horizontal and the vertical axis.
 LABELS = {
-    "lumped_hinge": ("Chord rotation (mrad)", "Moment at the base (kN m)"),
     **dict.fromkeys(
         ("loop", "loops_over_test", "comparison", "calibration", "limit_states", "envelope"),
         ("Top displacement (mm)", "Lateral force (kN)"),
@@ -159,7 +150,6 @@ LABELS = {
     "methods": ("Wall time (s)", "Relative error"),
     "ida": ("Peak drift (%)", "Sa(0.314 s, 5 %) (m/s²)"),
     "stripes": ("Peak drift (%)", "Sa(0.314 s, 5 %) (m/s²)"),
-    "cloud": ("Peak drift (%)", "Sa(0.314 s, 5 %) (m/s²)"),
     "fragility": ("", "Probability"),
     "fragilities": ("", "Probability"),
     "motion": ("Time (s)", "Acceleration (m/s²)"),

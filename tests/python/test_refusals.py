@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from samples import SECTION, SPECIMEN, STEEL
-from scipy import stats
 
 import rbsdem
 from rbsdem import calibration, codes, curves, fragility, peer, plot
@@ -30,7 +29,6 @@ PATH = 1.6 * rbsdem.protocol([0.002, 0.005, 0.01], points=6)
 TIME = 0.02 * np.arange(50)
 MOTION = rbsdem.GroundMotion(np.sin(9 * TIME), 0.02, name="m")
 LAYERED = rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6)
-VARIABLES = {"k": fragility.lognormal(4e5, 0.3), "mass": stats.norm(1000.0, 100.0)}
 BOX = {
     "layout": rbsdem.Layout(40, 0.025, STEEL, face=9),
     "inner_layout": rbsdem.Layout(28, 0.02, STEEL, face=6),
@@ -126,9 +124,6 @@ NAMES = {name: getattr(rbsdem, name) for name in rbsdem.__all__} | {
     "section": rbsdem.section,
     "shear": shear,
     "strength": strength,
-    "uncertain": lambda variables=VARIABLES, make=rbsdem.Column, correlation=None: (
-        fragility.Uncertain(make, variables, correlation or {})
-    ),
 }
 TEXT = Path(__file__).with_name("refusals.txt").read_text("utf-8")
 LINES = [line for line in TEXT.splitlines() if line and not line.startswith("#")]

@@ -39,7 +39,7 @@ from rbsdem.output import methods as methods_output
 from rbsdem.output import tables
 from rbsdem.run.case import Case, read_case
 from rbsdem.run.solver import COLLAPSE_DRIFT, Solver
-from rbsdem.web.answers import NearestTests
+from rbsdem.web.answers import tests_of
 from rbsdem.web.exports import drawing_in, opened
 from rbsdem.web.report import report as report_record
 from rbsdem.web.report import write_report
@@ -500,7 +500,7 @@ def explore(case: Path | None, no_browser: bool, port: int, tests: Path | None) 
     Exit codes: 0 ended, 2 the input is wrong.
     """
     start = DEFAULT if case is None else start_of(case)
-    server = ExploreServer(port, start, None if tests is None else NearestTests(tests))
+    server = ExploreServer(port, start, None if tests is None else tests_of(tests))
     print(server.address, flush=True)
     if not no_browser:
         # Some browsers come back only when they are closed.
@@ -540,7 +540,7 @@ def report(
         _tell_files([report_record(found.run(), file, title=title, **head)])
         return 0
     start = start_of(case)
-    near = None if tests is None else NearestTests(tests)
+    near = None if tests is None else tests_of(tests)
     title = title or start["title"] or case.stem
     _tell_files([write_report(file, start, title, near, **head)])
     return 0

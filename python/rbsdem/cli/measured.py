@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import os
-import sys
+import re
 from collections.abc import Sequence
 from fnmatch import fnmatch
 from pathlib import Path
@@ -14,27 +13,18 @@ import numpy as np
 from rbsdem._files import save_frame, write_figure
 from rbsdem._package import unwarned
 from rbsdem._types import Array
-from rbsdem.cli import FILE, FOLDER, INTERRUPTED, Command, Values, quiet, tell
+from rbsdem.cli import FILE, FOLDER, Command, Values, quiet, tell
 from rbsdem.errors import InputError
-from rbsdem.measured.doubts import Checked
-from rbsdem.measured.doubts import check as check_tests
-from rbsdem.measured.predict import PredictionOptions
+from rbsdem.measured.predict import Prediction, score_summary, scores
 from rbsdem.measured.predict import predict as run_predictions
-from rbsdem.measured.predictions import Predictions, PredictionStore, loop_names
 from rbsdem.measured.specimens import Specimen, Specimens, read_specimens
-from rbsdem.output import measured, tables
-from rbsdem.output.measured import band_sheet, contact_sheet
+from rbsdem.output import measured
 from rbsdem.output.measured import prediction as draw_prediction
 from rbsdem.output.tables import console
 from rbsdem.run.protocol import protocol
-from rbsdem.section.columns import DEFAULT, MODELS, model_name
-from rbsdem.web.pages import gallery
-
-#: Name of the store in the folder of `--out`, as long as the batch is not finished.
-UNFINISHED = "unfinished"
+from rbsdem.section.columns import DEFAULT, MODELS
 
 _SECTIONS = click.Choice(["rectangular", "circular", "all"])
-_out = click.option("--out", type=FOLDER, metavar="DIR", help="write files into this folder")
 
 
 # ---- measured tests -----------------------------------------------------------------------------
@@ -46,14 +36,10 @@ _out = click.option("--out", type=FOLDER, metavar="DIR", help="write files into 
 @click.option("--section", type=_SECTIONS, default="all", help="circular: octagons and spirals too")
 @click.option("--failure", cls=Values, metavar="MODE ...", help="Flexure, Flexure-Shear, Shear")
 @click.option("--only", cls=Values, metavar="NAME ...", help="names, files, numbers; * is any text")
-@click.option("--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="processes")
 @click.option("--by", default="kind", help="groups: kind, failure_mode, section, series")
-@click.option("--check", is_flag=True, help="report doubtful tests; no column is predicted")
-@click.option("--mended", is_flag=True, help="correct or omit the tests that are surely doubtful")
-@_out
-@click.option("--loops", is_flag=True, help="with --out, write the loops of every test as csv")
-@click.option("--bands", is_flag=True, help="80 % bands and the nearest tests; 17 times the work")
-@click.option("--limit-states", is_flag=True, help="drifts of limit states in results.csv")
+@click.option("--out", type=FILE, metavar="FILE.csv", help="write a row for each test")
+@click.option("--bands", is_flag=True, help="80 % bands; 17 times the work")
+@click.option("--limit-states", is_flag=True, help="drifts of limit states, in the csv")
 @quiet
 def peer(
     folder: Path,
@@ -61,97 +47,40 @@ def peer(
     section: str,
     failure: tuple[str, ...],
     only: tuple[str, ...],
-    jobs: int,
     by: str,
-    check: bool,
-    mended: bool,
     out: Path | None,
-    loops: bool,
     bands: bool,
     limit_states: bool,
     quiet: bool,
 ) -> int:
     r"""Predict every test of a folder from its properties and compare with the measurement.
 
-    DIR holds specimens.csv and the histories of the PEER Structural Performance Database.
+    DIR holds specimens.csv and the histories of the PEER Structural Performance Database. Prints
+    medians and quartiles of groups; tests that are named by --only are printed one by one.
 
     \b
-    Files (--out): results.csv (one row per test), summary.csv (medians and quartiles of groups),
-    gallery.html (all loops, to sort and filter), loops.png; with --bands also bands.csv
-    (intervals, nearest tests) and bands.png, with --loops bands/ (the band along the path of each
-    test); with --check only check.csv (indicators and doubts).
-    An interrupted batch leaves its finished tests in the folder unfinished; the same command with
-    the same --out resumes there.
     Exit codes: 0 every test was analysed to its end, 1 some were not or have no history, 2 the
-    input is wrong, 130 interrupted by the keyboard (finished tests are reported).
+    input is wrong, 130 interrupted by the keyboard.
     """
     table = read_specimens(folder)
     tests = chosen(table, section, failure, only)
-    if check:
-        return _check(tests, out)
-    if mended:
-        # Rules by series and twins look at all tests, not at the chosen ones alone.
-        tests = _mended(tests, check_tests(table.with_history()))
     if not hasattr(tests[0], by):
         raise InputError(f"--by {by} is no property, as failure_mode, section, series")
-    model_name(model)
-    if loops and out is None:
-        raise InputError("--loops writes files; give their folder with --out DIR")
+    found = run_predictions(tests, model, bands=bands, limit_states=limit_states)
     if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
-    store = None if out is None else out / UNFINISHED
-    predictions = run_predictions(
-        tests,
-        model,
-        jobs=jobs,
-        bands=bands,
-        progress=not quiet and sys.stderr.isatty(),
-        store=store,
-        limit_states=limit_states,
-    )
-    # The files come first: whoever reads the report may stop reading.
-    lines = [] if out is None else written(predictions, out, by, loops)
-    if store is not None and not predictions.interrupted:
-        how = PredictionOptions(bands=bands, limit_states=limit_states)
-        PredictionStore(store, tests, predictions.model, how.given({})).forget()
-    _report(predictions, by, quiet)
+        save_frame(scores(found), out)
+    terminal = console(168)
+    if only and not quiet:
+        terminal.print(measured.tests_table(found))
+        terminal.print()
+    terminal.print(measured.summary_table(score_summary(found, by)))
+    print(f"\nModel {found[0].model}: {len(found)} tests")
     left = [] if only else [row.name for row in table if row.path is None]
-    left += [row.specimen.name for row in predictions if row.status == "no history"]
+    left += [row.specimen.name for row in found if row.status == "no history"]
     if left:
         names = ", ".join([*left[:3], *(["..."] if left[3:] else [])])
         print(f"{len(left)} of the table have no history in the folder, so no score: {names}")
-    for line in lines:
-        print(line)
-    if predictions.interrupted:
-        tell(f"interrupted after {len(predictions)} of {len(tests)} tests")
-        return INTERRUPTED
-    return 0 if predictions.all_completed else 1
-
-
-def _check(tests: Specimens, folder: Path | None) -> int:
-    """Print which tests are doubtful."""
-    checked = check_tests(tests)
-    console(168).print(tables.table(checked))
-    sure = {doubt.specimen.name for doubt in checked.doubts if doubt.sure}
-    hints = {doubt.specimen.name for doubt in checked.doubts} - sure
-    print(
-        f"\n{len(checked.indicators)} tests with a history: {len(sure)} surely doubtful, hints "
-        f"for {len(hints)} more"
-    )
-    if folder is not None:
-        folder.mkdir(parents=True, exist_ok=True)
-        save_frame(checked.by_test(), folder / "check.csv")
-        print(f"wrote {folder / 'check.csv'}")
-    return 0
-
-
-def _mended(tests: Specimens, checked: Checked) -> Specimens:
-    """Return the chosen tests as they are after mending."""
-    mended = {row.name: row for row in checked.mended()}
-    kept = Specimens(mended[row.name] for row in tests if row.name in mended)
-    if not kept:
-        raise InputError("--mended omits all of these tests; --check says why")
-    return kept
+    return 0 if all(row.status == "completed" for row in found) else 1
 
 
 def chosen(
@@ -192,43 +121,6 @@ def _is_meant(row: Specimen, name: str) -> bool:
     return row.is_called(name) or fnmatch(row.name, name) or fnmatch(row.file or "", name)
 
 
-def _report(found: Predictions, by: str, quiet: bool) -> None:
-    out = console(168)
-    if not quiet:
-        out.print(measured.tests_table(found))
-        out.print()
-        if any(row.band is not None for row in found):
-            out.print(measured.bands_table(found))
-            out.print("* outside its interval", style="dim")
-            out.print()
-    out.print(measured.summary_table(found, by))
-    print(f"\nModel {found.model}: {len(found)} tests in {found.seconds:.1f} s")
-    if found.resumed:
-        print(f"{found.resumed} of them are from an earlier run that was interrupted")
-
-
-def written(found: Predictions, folder: Path, by: str, loops: bool) -> list[str]:
-    """Write the files; return lines that say which."""
-    files = [folder / "results.csv", folder / "summary.csv", folder / "gallery.html"]
-    found.to_csv(files[0])
-    save_frame(found.summary(by).reset_index(), files[1])
-    gallery(found, files[2])
-    banded = any(row.band is not None for row in found)
-    if banded:
-        files.append(folder / "bands.csv")
-        save_frame(found.bands(), files[-1])
-    files.append(contact_sheet(found, folder / "loops.png"))
-    if banded:
-        files.append(band_sheet(found, folder / "bands.png"))
-    if loops:
-        found.loops_to_csv(folder / "loops")
-        files.append(folder / "loops")
-    if loops and banded:
-        found.paths_to_csv(folder / "bands")
-        files.append(folder / "bands")
-    return [f"wrote {file}" for file in files]
-
-
 # ---- columns of a table -------------------------------------------------------------------------
 
 
@@ -239,7 +131,7 @@ def written(found: Predictions, folder: Path, by: str, loops: bool) -> list[str]
 @click.option("--cycles", type=int, default=2, metavar="N", help="at each drift; 2")
 @click.option("--samples", type=int, default=16, metavar="N", help="of a band; 16")
 @click.option("--near", type=FILE, metavar="DIR", help="folder of tests, for the nearest ones")
-@_out
+@click.option("--out", type=FOLDER, metavar="DIR", help="write files into this folder")
 def predict(
     table: Path,
     only: tuple[str, ...],
@@ -256,7 +148,7 @@ def predict(
     needs the drift ratios of its cycles, as --drifts 0.01 0.02.
 
     \b
-    Files (--out): numbers.csv (intervals, nearest tests), and for each column the band along its
+    Files (--out): numbers.csv (scores, intervals), and for each column the band along its
     path as csv and a figure.
     Exit codes: 0 all were predicted, 1 some were not, 2 the input is wrong, 130 interrupted.
     """
@@ -265,7 +157,7 @@ def predict(
     if not tests:
         raise InputError(f"{table} has no rows; write one for each column")
     path = protocol(drifts, cycles=cycles) if drifts else None
-    others = None if near is None else read_specimens(near).with_history()
+    others = () if near is None else read_specimens(near).with_history()
     rows, errors = [], []
     for specimen in tests:
         try:
@@ -284,7 +176,7 @@ def predict(
             errors.append(str(error))
             continue
         rows.append(row)
-    lines = [] if out is None else _write_columns(Predictions(rows), out)
+    lines = [] if out is None else _write_columns(rows, out)
     terminal = console(120)
     for row in rows:
         terminal.print(measured.numbers_table(row))
@@ -308,13 +200,14 @@ def _path(specimen: Specimen, drifts: Array | None) -> Array | None:
     return None
 
 
-def _write_columns(rows: Predictions, folder: Path) -> list[str]:
+def _write_columns(rows: Sequence[Prediction], folder: Path) -> list[str]:
     """Write the files; return lines that say which."""
     folder.mkdir(parents=True, exist_ok=True)
     files = [folder / "numbers.csv"]
-    save_frame(rows.bands(), files[0])
-    for row, name in zip(rows, loop_names([row.specimen.name for row in rows]), strict=True):
-        target = folder / name.name
+    save_frame(scores(rows), files[0])
+    for number, row in enumerate(rows, 1):
+        name = re.sub(r"[^\w.-]+", "_", row.specimen.name)[:80]
+        target = folder / f"{number}_{name}.csv"
         if row.band is not None:
             row.band.to_csv(target)
             files.append(target)

@@ -372,7 +372,7 @@ def ida(
     Parameters
     ----------
     column : Column or Frame, or sequence or mapping of them
-        The column; several, as from `Uncertain`, are all run with every motion.
+        The column; several are all run with every motion.
     motions : GroundMotion, or sequence or mapping of GroundMotion
         The records, whose own scale does not matter.
     levels : array_like, "hunt" or Hunt, optional

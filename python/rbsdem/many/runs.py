@@ -116,7 +116,7 @@ _LEAST_UNIT = 1e-20
 
 
 class RunOptions(Solver, total=False):
-    """What `ida`, `stripes` and `cloud` take as keywords, with the settings of `rbsdem.Solver`.
+    """What `ida` and `stripes` take as keywords, with the settings of `rbsdem.Solver`.
 
     A run that fails is tried again with "rk45"; one that fails twice counts as a collapse, with a
     warning.

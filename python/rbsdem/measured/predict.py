@@ -1,4 +1,4 @@
-"""Prediction of tests from their properties: a loop and scores for each, and the nearest tests."""
+"""Prediction of tests from their properties: loop, scores, band, and the tests most like each."""
 
 from __future__ import annotations
 
@@ -6,73 +6,156 @@ import math
 import os
 import time
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import Future
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import ExitStack
-from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from dataclasses import astuple, dataclass, field, replace
+from functools import lru_cache
 from typing import Any, TypeAlias, overload
 
 import numpy as np
 
 from rbsdem import _arguments
+from rbsdem._files import data_frame
 from rbsdem._package import recorded, unwarned
-from rbsdem._types import Array, ArrayLike
-from rbsdem.batch.work import (
-    EndRequest,
-    Processes,
-    Serial,
-    check_jobs,
-    check_sent,
-    progress_bar,
-    work_through,
-)
-from rbsdem.curves.scores import compare
+from rbsdem._types import Array, ArrayLike, DataFrame
+from rbsdem.checks.criteria import WATCHED
+from rbsdem.curves.scores import SCORES, Comparison, compare
 from rbsdem.errors import InputError, RbsdemError, SolveError, warn
 from rbsdem.measured.drawing import check_options, checked_specimen, draw
 from rbsdem.measured.drawing import column as column_of
-from rbsdem.measured.predictions import Neighbour, Prediction, Predictions, PredictionStore
-from rbsdem.measured.specimens import TABLE, Specimen, read_specimens
+from rbsdem.measured.specimens import Specimen, read_specimens
 from rbsdem.model.column import Column
 from rbsdem.model.shape import CircularSection, Section
+from rbsdem.run.bands import Band, has_bands, numbers, place_of
 from rbsdem.run.bands import band as band_of
-from rbsdem.run.bands import has_bands, place_of
 from rbsdem.run.result import Result, cyclic
 from rbsdem.section.columns import DEFAULT, model_name
 from rbsdem.section.parameters import parameters
 
-#: Tests most like a column that stand beside its prediction.
-_NEIGHBOURS = 5
-
 Model: TypeAlias = str | Callable[[Specimen], Column]
-Near: TypeAlias = str | os.PathLike[str] | Iterable[Specimen | Prediction]
+Tests: TypeAlias = "str | os.PathLike[str] | Iterable[Specimen | Prediction]"
+
+#: Scores of which groups have quartiles.
+_SUMMARY = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio", "end_ratio", "rms_best")
+_LOSSES = ("test_drift_at_loss", "model_drift_at_loss")
+_OF_SPECIMEN = (
+    "peer_id", "series", "section", "failure_mode", "axial_load_ratio", "span_depth_ratio"
+)  # fmt: skip
+#: Quantities of a band that have an interval, and their names in `numbers`.
+_INTERVALS = {"peak_force": "peak", "energy": "energy", "drift_at_loss": "drift"}
+#: Limit states that have a column.
+_STATES = (*WATCHED, "strength_loss", "axial_failure")
+
+#: Differences that count as 1: of the axial load ratio, and of the logarithms of the shear span
+#: over the depth, the concrete strength, and the mechanical ratios of bars and ties.
+_SCALES = (0.15, 0.4, 0.35, 0.4, 0.6)
 
 
-@dataclass(frozen=True)
-class PredictionOptions:
-    """How tests are predicted, beside model and options of the column.
+@dataclass(frozen=True, slots=True)
+class Neighbour:
+    """A test that is like another.
 
     Attributes
     ----------
-    bands : bool
-        With bands.
-    samples : int
-        Samples of a band.
-    displacement : tuple of float or None
-        Path of the top [m]; None for that of each test.
-    limit_states : bool
-        With the drifts at which limit states are reached.
+    specimen : Specimen
+        The test.
+    distance : float
+        0 for the same column; 1 is a difference of 0.15 in the axial load ratio, or of 40 % in the
+        shear span or in the mechanical ratio of the bars.
+    prediction : Prediction or None
+        Its prediction, with its errors; None if it was not predicted.
     """
 
-    bands: bool = False
-    samples: int = 16
-    displacement: tuple[float, ...] | None = None
-    limit_states: bool = False
+    specimen: Specimen
+    distance: float
+    prediction: Prediction | None = None
 
-    def given(self, options: dict[str, Any]) -> dict[str, Any]:
-        """Return the options of a store: those of the model, and what differs from the usual."""
-        own = {name: v for name, v in vars(self).items() if v != getattr(type(self), name)}
-        return options | ({"how": own} if own else {})
+
+@dataclass(frozen=True, slots=True)
+class Prediction:
+    """One test with the scores of its prediction.
+
+    Attributes
+    ----------
+    specimen : Specimen
+        The test.
+    model : str
+        Name of the model with the version of its parameters, as "layered 2026.6".
+    status : str
+        "completed", "stopped" (the analysis ended before the test did), "failed" (there is no
+        analysis), or "no history" (there is nothing to compare with; not counted).
+    displacement, force : ndarray, shape (m,)
+        The path [m] and the lateral forces along it [N], NaN behind an early end.
+    error : str
+        Text of the exception.
+    note : str
+        Warnings.
+    seconds : float
+        Wall time for the column and its analysis [s].
+    comparison : Comparison or None
+        Scores; None without a history, and along another path than that of the test. A test that
+        failed has an nrmse of 1.
+    band : Band or None
+        The prediction with its 80 % band and intervals; None unless bands were asked for.
+    nearest : tuple of Neighbour
+        The tests that are most like it among those of `near`, with the errors of their predictions.
+    remarks : tuple of str
+        Where the column is outside the range of the tests that the model was fitted to.
+    limit_states : dict of str to float, or None
+        Drifts at which limit states are reached, in the order in which they are, by the names of
+        `rbsdem.checks.limit_states.LimitState`; None unless they were asked for.
+    """
+
+    specimen: Specimen
+    model: str
+    status: str
+    displacement: Array = field(default_factory=lambda: np.empty(0), compare=False)
+    force: Array = field(default_factory=lambda: np.empty(0), compare=False)
+    error: str = ""
+    note: str = ""
+    seconds: float = 0.0
+    comparison: Comparison | None = None
+    band: Band | None = None
+    nearest: tuple[Neighbour, ...] = ()
+    remarks: tuple[str, ...] = ()
+    limit_states: dict[str, float] | None = None
+
+    def score(self, name: str) -> float:
+        """Return a score of `Comparison` by name; NaN without a history.
+
+        Parameters
+        ----------
+        name : str
+            One of `rbsdem.curves.SCORES`, "test_drift_at_loss" or "model_drift_at_loss".
+        """
+        if self.comparison is not None:
+            return float(getattr(self.comparison, name))
+        return 1.0 if name == "nrmse" and self.status == "failed" else math.nan
+
+    @property
+    def points_within(self) -> float:
+        """Share of the test that lies within the band; NaN without a band or a test."""
+        if self.band is None or self.comparison is None:
+            return math.nan
+        return self.band.holds(self.comparison.test_force)
+
+    def intervals(self) -> DataFrame:
+        """Return largest force, work and drift at loss: predicted, 80 % interval, and measured.
+
+        Raises
+        ------
+        InputError
+            If there is no band.
+        """
+        if self.band is None:
+            raise InputError(f"{self.specimen.name} has no band; predict it with bands=True")
+        test, measured = self.comparison, {}
+        if test is not None:
+            measured = numbers(test.displacement, test.test_force, test.height)
+        found = [
+            (name, *astuple(getattr(self.band, name)), measured.get(key, math.nan))
+            for name, key in _INTERVALS.items()
+        ]
+        columns = ("quantity", "lower", "predicted", "upper", "test")
+        return data_frame(found, columns).set_index("quantity")
 
 
 @overload
@@ -80,21 +163,18 @@ def predict(specimens: Specimen, model: Model = DEFAULT, **options: Any) -> Pred
 @overload
 def predict(
     specimens: Iterable[Specimen] | str | os.PathLike[str], model: Model = DEFAULT, **options: Any
-) -> Predictions: ...
+) -> list[Prediction]: ...
 def predict(
     specimens: Specimen | Iterable[Specimen] | str | os.PathLike[str],
     model: Model = DEFAULT,
     *,
-    bands: bool | None = None,
+    bands: bool = False,
     samples: int = 16,
     displacement: ArrayLike | None = None,
-    near: Near | None = None,
-    jobs: int = 1,
-    progress: bool = False,
-    store: str | os.PathLike[str] | None = None,
+    near: Tests = (),
     limit_states: bool = False,
     **options: Any,
-) -> Prediction | Predictions:
+) -> Prediction | list[Prediction]:
     """Predict tests from their properties, and compare with what was measured.
 
     Each column is driven through the measured displacements; its lateral force is compared with the
@@ -106,30 +186,17 @@ def predict(
         One test or column; several, as from `rbsdem.peer.read_specimens`; or a folder, of which all
         tests with a history are predicted.
     model : str or callable, optional
-        A model of `rbsdem.peer.column`, or a function that makes a `Column` from a `Specimen`; with
-        `jobs` above 1 the function must be importable.
+        A model of `rbsdem.peer.column`, or a function that makes a `Column` from a `Specimen`.
     bands : bool, optional
-        With the 80 % band of each prediction, the intervals of its numbers, and the tests that are
-        most like it with their errors. By default for one specimen by the layered model. A band
-        takes the time of `samples` predictions more.
+        With the 80 % band of each prediction and the intervals of its numbers; for the layered
+        model. A band takes the time of `samples` predictions more.
     samples : int, optional
         Samples of a band, as for `rbsdem.peer.band`.
     displacement : array_like, shape (m,), optional
-        Path of the top [m], for columns that nobody tested; with bands. Without it, that of each
-        test.
-    near : path, iterable of Specimen or Prediction, optional
-        Where the tests that are most like a column are looked for; by default among those that are
-        predicted, and for one specimen in the folder of its table. Those that are not predicted yet
-        are predicted by the same model.
-    jobs : int, optional
-        Processes to use. Above 1 a script needs ``if __name__ == "__main__":``.
-    progress : bool, optional
-        Show a bar on stderr, if it is a terminal.
-    store : path, optional
-        A folder that keeps the predictions, written every few seconds. Predictions that are there
-        already, of the same tests by the same model, options and version of rbsdem, are not done
-        again, so that a batch that was ended in any way goes on from where it stopped. The model
-        must be given by name. The folder stays; remove it to predict everything anew.
+        Path of the top [m], for columns that nobody tested. Without it, that of each test.
+    near : path, or iterable of Specimen or Prediction, optional
+        Tests, or their folder, of which the five that are most like each column stand beside it.
+        Those that are not predicted yet are predicted by the same model.
     limit_states : bool, optional
         With the drifts at which limit states are reached, see `rbsdem.Result.limit_states`.
     **options
@@ -137,323 +204,230 @@ def predict(
 
     Returns
     -------
-    Prediction or Predictions
-        A row for each test, in their order; the row itself for one specimen. A test that goes wrong
-        has a row with the text of the error. After a keyboard interrupt the rows are those that
-        were finished. Bands of several tests are without their samples.
+    Prediction, or list of Prediction
+        A row for each test, in their order, of which `rbsdem.peer.scores` makes a DataFrame; the
+        row itself for one specimen. Of several, a test that goes wrong has a row with the text of
+        the error.
 
     Raises
     ------
     InputError
-        If the model or its version is not known or has no bands, if `jobs` is below 1, or if there
-        is a store for a model that is a function. A single specimen that cannot be predicted
-        raises the error itself.
+        If the model or its version is not known or has no bands. A single specimen that cannot be
+        predicted raises the error itself.
     """
-    check_jobs(jobs)
-    name = name_of(model, options)
-    single = isinstance(specimens, Specimen)
-    tests = _tests(specimens)
-    if not callable(model):
+    if callable(model):
+        name = str(getattr(model, "__name__", repr(model)))
+    else:
         check_options(options)
-    how = PredictionOptions(
-        bands=_bands(bands, single or displacement is not None, model, options),
-        samples=samples,
-        displacement=None if displacement is None else tuple(_path(displacement)),
-        limit_states=_arguments.boolean(limit_states, "limit_states"),
-    )
-    if displacement is not None and not how.bands:
-        raise InputError(
-            "displacement goes with bands of the layered model; for a loop alone take "
-            "rbsdem.cyclic(rbsdem.peer.column(specimen), displacement=...)"
-        )
-    if jobs > 1:
-        check_sent("model", (model, options), repr(model))
-    if isinstance(specimens, Specimen):
-        row = _alone(specimens, model, how, options)
-        return _with_nearest([row], model, options, _near(near, specimens))[0] if how.bands else row
-    begin = time.perf_counter()
-    kept = None
-    if store is not None:
-        if callable(model):
-            raise InputError(
-                f"store: the model {name} is a function, which may have changed; give a model by "
-                "name, or no store"
-            )
-        kept = PredictionStore(_arguments.path(store, "store"), tests, name, how.given(options))
-    rows: dict[int, Prediction] = {}
-    work = partial(_light, model=model, how=how, options=options)
-    with ExitStack() as stack:
-        if kept is not None:
-            stack.enter_context(kept.open())
-            rows = kept.read()
-        resumed = len(rows)
-        interrupted = _carried_out(tests, work, name_of(model, options), jobs, progress, rows, kept)
-    found = [rows[number] for number in sorted(rows)]
-    if how.bands:
-        found = _with_nearest(found, model, options, found if near is None else _near(near))
-    return Predictions(
-        found,
-        model=name,
-        seconds=time.perf_counter() - begin,
-        interrupted=interrupted,
-        resumed=resumed,
-    )
-
-
-def _carried_out(
-    tests: Sequence[Specimen],
-    work: Callable[[Specimen], Prediction],
-    name: str,
-    jobs: int,
-    progress: bool,
-    rows: dict[int, Prediction],
-    kept: PredictionStore | None,
-) -> bool:
-    """Predict the tests that have no row yet; return whether the user interrupted it."""
-    left = [number for number in range(len(tests)) if number not in rows]
-    lost: list[int] = []
-    last = ""
-
-    def put(number: int, row: Prediction, *, keep: bool = True) -> None:
-        nonlocal last
-        rows[number], last = row, row.specimen.name
-        if kept is not None and keep:
-            kept.add(number, row)
-
-    def take(number: int, future: Future[Prediction]) -> None:
-        try:
-            put(number, future.result())
-        except BrokenProcessPool:
-            lost.append(number)
-
-    def take_alone(number: int, future: Future[Prediction]) -> None:
-        try:
-            put(number, future.result())
-        except BrokenProcessPool:
-            error = "the process died; run this test alone (jobs = 1) to see why"
-            # It may live the next time.
-            put(number, Prediction(tests[number], name, "failed", error=error), keep=False)
-
-    end = EndRequest()
-    with ExitStack() as stack:
-        show = stack.enter_context(progress_bar(progress, len(tests), "tests"))
-
-        def beat() -> None:
-            show(len(rows), last)
-            if kept is not None:
-                kept.write_if_due()
-
-        def run(numbers: list[int], jobs: int, ahead: int, take: Callable[..., None]) -> None:
-            with Processes(jobs, __name__) if jobs else Serial() as executor:
-                how: Any = {"ahead": ahead, "end": end, "beat": beat, "stop": lambda: None}
-                work_through(lambda i: executor.submit(work, tests[i]), numbers, take, **how)
-
-        try:
-            if jobs == 1 or len(left) <= 1:
-                run(left, 0, 1, take)
-            else:
-                # Where one of them dies, its neighbours are done again, each by a process alone.
-                stack.enter_context(end.listening(also_terminated=False))
-                run(left, jobs, 2 * jobs, take)
-                run(sorted(lost), 1, 1, take_alone)
-        except KeyboardInterrupt:
-            return True
-    return bool(end)
-
-
-def _light(
-    specimen: Specimen, model: Model, how: PredictionOptions, options: dict[str, Any]
-) -> Prediction:
-    """Predict a test without the samples of its band, which are many times all else."""
-    row = predict_one(specimen, model, how=how, **options)
-    if row.band is None:
-        return row
-    return replace(row, band=replace(row.band, samples=row.band.samples[:0]))
-
-
-def _alone(
-    specimen: Specimen, model: Model, how: PredictionOptions, options: dict[str, Any]
-) -> Prediction:
-    """Predict one specimen; what cannot be predicted is an error, not a row."""
-    row = predict_one(specimen, model, how=how, **options)
-    if row.status == "no history":
-        raise InputError(f"{row.error}; or give its path as displacement=")
-    if row.status == "failed":
-        raise InputError(f"{specimen.name}: {row.error}")
-    if row.remarks:
-        warn(f"{specimen.name}: {'; '.join(row.remarks)}")
-    return row
-
-
-def _tests(specimens: Specimen | Iterable[Specimen] | str | os.PathLike[str]) -> Sequence[Specimen]:
-    """Return the tests that are asked for."""
-    if isinstance(specimens, Specimen):
-        return [specimens]
-    if isinstance(specimens, str | os.PathLike):
-        return read_specimens(specimens).with_history()
-    return [checked_specimen(specimen) for specimen in specimens]
-
-
-def _bands(given: bool | None, single: bool, model: Model, options: dict[str, Any]) -> bool:
-    """Return whether there are bands; raise `InputError` if they are asked for and not known."""
-    if callable(model) or model != "layered":
-        if given:
-            raise InputError("bands = True: there are bands for model = 'layered' alone")
-        return False
-    if given is None and not single:
-        return False
+        name = model_name(model, options.get("model_parameters"))
     version = (options.get("model_parameters") or parameters()).version
-    if given and not has_bands(version):
-        raise InputError(f"bands = True: there are no bands of version {version!r}")
-    return has_bands(version) if given is None else given
+    if bands and (model != "layered" or not has_bands(version)):
+        raise InputError(f"bands = True: there are bands of 'layered' alone, and none of {name!r}")
+    path = None if displacement is None else _path(displacement)
+    others: Sequence[Specimen | Prediction]
+    others = read_specimens(near).with_history() if isinstance(near, _PATH) else list(near)
+    known: dict[Specimen, Prediction] = {}
+
+    def one(specimen: Specimen) -> Prediction:
+        row = _row(checked_specimen(specimen), model, name, path, limit_states, options)
+        column = row[1]
+        if column is None or row[0].status == "failed":
+            return row[0]
+        changes: dict[str, Any] = {}
+        if bands:
+            with unwarned():
+                changes["band"] = band_of(column, row[0].displacement, samples=samples)
+        if others:
+            changes["nearest"] = _neighbours(specimen, others, known, model, options)
+        return replace(row[0], **changes)
+
+    if isinstance(specimens, Specimen):
+        row = one(specimens)
+        if row.status == "no history":
+            raise InputError(f"{row.error}; or give its path as displacement=")
+        if row.status == "failed":
+            raise InputError(f"{specimens.name}: {row.error}")
+        if row.remarks:
+            warn(f"{specimens.name}: {'; '.join(row.remarks)}")
+        return row
+    if isinstance(specimens, _PATH):
+        specimens = read_specimens(specimens).with_history()
+    return [one(specimen) for specimen in specimens]
 
 
-def _path(displacement: ArrayLike) -> list[float]:
+_PATH = (str, os.PathLike)
+
+
+def _path(displacement: ArrayLike) -> Array:
     path = _arguments.finite_vector(displacement, "displacement")
     if path.size < 2 or not np.any(np.diff(path)):
         raise InputError("displacement: the path does not change; give one that does")
-    return [float(value) for value in path]
+    return path
 
 
-def _near(near: Near | None, specimen: Specimen | None = None) -> Sequence[Specimen | Prediction]:
-    """Return the tests among which neighbours are looked for."""
-    if near is None:
-        folder = specimen.folder if specimen is not None else None
-        if folder is None or not (folder / TABLE).is_file():
-            return []
-        near = folder
-    if isinstance(near, str | os.PathLike):
-        return read_specimens(near).with_history()
-    return list(near)
-
-
-def _with_nearest(
-    rows: Sequence[Prediction],
-    model: Model,
-    options: dict[str, Any],
-    tests: Sequence[Specimen | Prediction],
-) -> list[Prediction]:
-    """Return predictions with the tests that are most like them, these predicted too."""
-    known: dict[int, Prediction] = {}
-    found = []
-    for row in rows:
-        if row.status in {"failed", "no history"}:
-            found.append(row)
-            continue
-        near: list[Neighbour] = []
-        s = row.specimen
-        with unwarned():
-            section = draw(s).section
-        number = max(len(tests), 1)
-        for one in nearest(section, s.length, s.axial_load, tests, number, but=s):
-            if one.prediction is None and id(one.specimen) not in known:
-                known[id(one.specimen)] = predict_one(one.specimen, model, **options)
-            own = one.prediction or known[id(one.specimen)]
-            if own.comparison is None:  # its history cannot be read
-                continue
-            near.append(replace(one, prediction=replace(own, band=None, nearest=())))
-            if len(near) == _NEIGHBOURS:
-                break
-        found.append(replace(row, nearest=tuple(near)))
-    return found
-
-
-def predict_one(
+def _row(
     specimen: Specimen,
-    model: Model = DEFAULT,
-    *,
-    how: PredictionOptions | None = None,
-    **options: Any,
-) -> Prediction:
-    """Predict one test; an error is reported in the row that is returned.
-
-    Parameters
-    ----------
-    specimen : Specimen
-        The test.
-    model : str or callable, optional
-        As for `predict`.
-    how : PredictionOptions, optional
-        Band and path.
-    **options
-        As for `predict`.
-
-    Returns
-    -------
-    Prediction
-        Its status, its scores and its times.
-    """
-    how = how or PredictionOptions()
-    name = name_of(model, options)
-    checked_specimen(specimen)
-    if not callable(model):
-        check_options(options)
-    test = None
+    model: Model,
+    name: str,
+    path: Array | None,
+    limit_states: bool,
+    options: dict[str, Any],
+) -> tuple[Prediction, Any]:
+    """Return the row of a test, and its column; an error is a row."""
+    row, column, test = Prediction(specimen, name, "completed"), None, None
     try:
-        if how.displacement is None:
+        if path is None:
             test = specimen.test()
             # A test without a usable history is found before the work.
             compare((test.displacement, test.force), test)
+            path = test.displacement
     except RbsdemError as error:
-        return Prediction(specimen, name, "no history", error=str(error))
-    path = np.array(how.displacement) if test is None else test.displacement
+        return replace(row, status="no history", error=str(error)), None
+    assert path is not None
+    force = np.full(path.size, np.nan)
+    found: dict[str, Any] = {}
+    begin = time.perf_counter()
     with recorded() as caught:
-        row, result = _analyse(Prediction(specimen, name, "completed"), path, model, how, options)
+        try:
+            column = model(specimen, **options) if callable(model) else None
+            if column is None:
+                column = column_of(specimen, model, **options)  # type: ignore[call-overload]
+            result = cyclic(column, displacement=path)
+        except SolveError as stop:
+            found = {"status": "failed" if stop.result is None else "stopped", "error": str(stop)}
+            result = stop.result
+        except Exception as fault:
+            # A fault in one model is a row of the table and does not end the others.
+            kind = "" if isinstance(fault, RbsdemError) else f"{type(fault).__name__}: "
+            found, result = {"status": "failed", "error": f"{kind}{fault}"}, None
+        if isinstance(result, Result):
+            force[: result.force.size] = result.force
+            if limit_states:
+                found["limit_states"] = {s.name: abs(s.drift) for s in result.limit_states()}
+    row = replace(row, displacement=path, force=force, seconds=time.perf_counter() - begin, **found)
     if test is not None:
-        comparison = compare(result, test)
+        comparison = compare((path, force) if result is None else result, test)
         row = replace(row, comparison=comparison)
         if row.status == "completed" and comparison.path_fraction < 1:
             row = replace(row, status="stopped", error=f"the forces end at row {comparison.rows}")
-    return replace(row, note="; ".join(dict.fromkeys(str(warning.message) for warning in caught)))
+    note = "; ".join(dict.fromkeys(str(warning.message) for warning in caught))
+    return replace(row, note=note, remarks=getattr(column, "outside", ())), column
 
 
-def _analyse(
-    row: Prediction, path: Array, model: Model, how: PredictionOptions, options: dict[str, Any]
-) -> tuple[Prediction, Any]:
-    """Return the row of a test with what came of its analysis, and the result; NaN without one."""
-    result: Any = path, np.full(path.size, np.nan)
-    status, error = "failed", ""
-    column: Any = None
-    begin = built = time.perf_counter()
-    try:
-        if callable(model):
-            column = model(row.specimen, **options)
-        else:
-            column = column_of(row.specimen, model, **options)  # type: ignore[call-overload]
-        built = time.perf_counter()
-        result = cyclic(column, displacement=path)
-        status = "completed"
-    except SolveError as stop:
-        error = str(stop)
-        if stop.result is not None:
-            status, result = "stopped", stop.result
-    except RbsdemError as fault:
-        error = str(fault)
-    except Exception as fault:
-        # A fault in one model is a row of the table and does not end the others.
-        error = f"{type(fault).__name__}: {fault}"
-    states = None
-    if how.limit_states and isinstance(result, Result):
-        states = {state.name: abs(state.drift) for state in result.limit_states()}
-    end = time.perf_counter()
-    band = None
-    if how.bands and status != "failed":
-        band = band_of(column, path, samples=how.samples)
-    found: Any = {"status": status, "error": error, "band": band, "limit_states": states}
-    times: Any = {"seconds_model": built - begin, "seconds_analysis": end - built}
-    return replace(row, remarks=getattr(column, "outside", ()), **found, **times), result
+# ---- tables -------------------------------------------------------------------------------------
 
 
-def name_of(model: Model, options: dict[str, Any]) -> str:
-    """Return the name of the model, with the version of its parameters."""
-    if callable(model):
-        return str(getattr(model, "__name__", repr(model)))
-    return model_name(model, options.get("model_parameters"))
+def scores(rows: Iterable[Prediction]) -> DataFrame:
+    """Return a row for each prediction: properties that group tests, scores, times.
+
+    Parameters
+    ----------
+    rows : iterable of Prediction
+        As `predict` returns them.
+
+    Returns
+    -------
+    DataFrame
+        If limit states were asked for, "drift_first_yield", "drift_spalling", ... are the drifts at
+        which they are reached, NaN where they are not. Bands have "points_within", "band_width" and
+        the ends of the intervals of `Prediction.intervals`.
+    """
+    return data_frame([_scores(row) for row in rows])
 
 
-#: Differences that count as 1: of the axial load ratio, and of the logarithms of the shear span
-#: over the depth, the concrete strength, and the mechanical ratios of bars and ties.
-_SCALES = (0.15, 0.4, 0.35, 0.4, 0.6)
+def _scores(row: Prediction) -> dict[str, Any]:
+    s = row.specimen
+    record = {
+        "name": s.name,
+        "file": s.file or "",
+        **{name: getattr(s, name) for name in (*_OF_SPECIMEN, "kind")},
+        "model": row.model,
+        "status": row.status,
+        **{name: row.score(name) for name in (*SCORES, *_LOSSES)},
+        "seconds": row.seconds,
+        "error": row.error,
+        "note": row.note,
+        "outside": "; ".join(row.remarks),
+    }
+    if row.limit_states is not None:
+        record |= {f"drift_{name}": row.limit_states.get(name, math.nan) for name in _STATES}
+    if row.band is not None:
+        record |= {"points_within": row.points_within, "band_width": row.band.width}
+        for name, interval in row.intervals().iterrows():
+            record |= {f"{name}_{end}": interval[end] for end in ("lower", "upper")}
+    return record
+
+
+def score_summary(rows: Iterable[Prediction], by: str = "failure_mode") -> DataFrame:
+    """Return medians and quartiles of groups, a row for each, the last one that of all tests.
+
+    Parameters
+    ----------
+    rows : iterable of Prediction
+        As `predict` returns them.
+    by : str, optional
+        A column of `scores` whose values make the groups, as "section" or "series".
+
+    Returns
+    -------
+    DataFrame
+        By the name of the group: ``tests`` with a history, of which ``stopped`` ended early and
+        ``failed`` could not be analysed; the quartiles of the scores, as ``nrmse_lower``,
+        ``nrmse_median``, ``nrmse_upper``, NaN if no test has it.
+
+    Raises
+    ------
+    InputError
+        If there is no such column.
+    """
+    table = scores(rows)
+    if by not in table:
+        raise InputError(
+            f"by = {by!r} is no property of the tests; it is one of {', '.join(table)}"
+        )
+    table = table[table["status"] != "no history"]
+    names = table[by].map(lambda value: "not known" if value is None else str(value))
+    groups = [(name, table[names == name]) for name in dict.fromkeys(names)]
+    groups.sort(key=lambda group: -len(group[1]))
+    found = []
+    for name, group in [*groups, ("all", table)]:
+        line: dict[str, Any] = {by: name, "tests": len(group)}
+        line |= {status: int((group["status"] == status).sum()) for status in ("stopped", "failed")}
+        for score in _SUMMARY:
+            quartiles = group[score].quantile([0.25, 0.5, 0.75])
+            ends = ("lower", "median", "upper")
+            line |= {f"{score}_{end}": q for end, q in zip(ends, quartiles, strict=True)}
+        found.append(line)
+    return data_frame(found).set_index(by)
+
+
+# ---- tests that are like a column ---------------------------------------------------------------
+
+
+def _neighbours(
+    specimen: Specimen,
+    tests: Sequence[Specimen | Prediction],
+    known: dict[Specimen, Prediction],
+    model: Model,
+    options: dict[str, Any],
+    number: int = 5,
+) -> tuple[Neighbour, ...]:
+    """Return the tests that are most like a specimen, predicted; `known` keeps predictions."""
+    with unwarned():
+        section = draw(specimen).section
+    place = section, specimen.length, specimen.axial_load
+    near: list[Neighbour] = []
+    for one in nearest(*place, tests, max(len(tests), 1), but=specimen):
+        own = one.prediction or known.get(one.specimen)
+        if own is None:
+            (own,) = predict([one.specimen], model, **options)
+            known[one.specimen] = own
+        # A test whose history cannot be read says nothing.
+        if own.comparison is not None:
+            near.append(replace(one, prediction=replace(own, band=None, nearest=())))
+        if len(near) == number:
+            break
+    return tuple(near)
 
 
 def nearest(
@@ -479,8 +453,8 @@ def nearest(
     axial_load : float
         Compression positive [N].
     tests : iterable of Prediction or Specimen
-        Predicted tests of a folder, as from `rbsdem.peer.predict`, or the tests alone. What has no
-        history, or a section that cannot be drawn, is passed over.
+        Predicted tests, as from `rbsdem.peer.predict`, or the tests alone. Those without a history,
+        or with a section that cannot be drawn, are passed over.
     n : int, optional
         How many.
     but : Specimen, optional
@@ -493,7 +467,7 @@ def nearest(
         If `n` is below 1.
     """
     _arguments.integer(n, "nearest: n", least=1)
-    place = place_of(section, height, axial_load)
+    features = place_of(section, height, axial_load)
     is_round = isinstance(section, CircularSection) if but is None else _is_round(but)
     found = []
     for one in tests:
@@ -507,11 +481,11 @@ def nearest(
         if is_round != _is_round(other):
             continue
         try:
-            there = _place(other)
+            there = _features(other)
         except InputError:
             continue
-        ways = [(a - b) / scale for a, b, scale in zip(place, there, _SCALES, strict=True)]
-        found.append(Neighbour(other, math.hypot(*ways), row))
+        apart = [(a - b) / scale for a, b, scale in zip(features, there, _SCALES, strict=True)]
+        found.append(Neighbour(other, math.hypot(*apart), row))
     return tuple(sorted(found, key=lambda one: one.distance)[:n])
 
 
@@ -529,7 +503,7 @@ def _is_round(specimen: Specimen) -> bool:
 
 
 @lru_cache(maxsize=4096)
-def _place(specimen: Specimen) -> tuple[float, ...]:
+def _features(specimen: Specimen) -> tuple[float, ...]:
     with unwarned():
         section = draw(specimen).section
     return place_of(section, specimen.length, specimen.axial_load)

@@ -6,17 +6,16 @@ import csv
 import math
 import os
 import re
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from difflib import get_close_matches
 from functools import cache, partial
 from pathlib import Path, PurePath
-from typing import Any, Generic, TypeVar, overload
+from typing import Any, overload
 
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
-from rbsdem._types import DataFrame, Self
+from rbsdem._types import DataFrame
 from rbsdem.errors import InputError
 from rbsdem.measured.measured import MeasuredTest, PeerTest, measured_test, read_peer
 from rbsdem.section.columns import CONCRETE_DENSITY
@@ -374,43 +373,7 @@ TABLE = "specimens.csv"
 """Name of the table in its folder."""
 
 
-Row = TypeVar("Row")
-
-
-class Rows(Tabular, Sequence[Row], ABC, Generic[Row]):
-    """Rows of tests by number, by slice, or by a text that a test is called."""
-
-    __slots__ = ("_rows",)
-
-    def __init__(self, rows: Iterable[Row]) -> None:
-        self._rows = tuple(rows)
-
-    def __len__(self) -> int:
-        return len(self._rows)
-
-    def __iter__(self) -> Iterator[Row]:
-        return iter(self._rows)
-
-    @overload
-    def __getitem__(self, key: int | str) -> Row: ...
-    @overload
-    def __getitem__(self, key: slice) -> Self: ...
-    def __getitem__(self, key: int | str | slice) -> Row | Self:
-        if isinstance(key, slice):
-            return self._some(self._rows[key])
-        if isinstance(key, (str, os.PathLike)):
-            return self._named(os.fspath(key))
-        return self._rows[key]
-
-    def _some(self, rows: Iterable[Row]) -> Self:
-        return type(self)(rows)
-
-    @abstractmethod
-    def _named(self, key: str) -> Row:
-        """Return the row of a test that is called so."""
-
-
-class Specimens(Rows[Specimen]):
+class Specimens(Tabular, Sequence[Specimen]):
     """Tested columns in the order of their table.
 
     A sequence of `Specimen`: ``table[0]``, ``for specimen in table``, ``table[:5]``. A text finds
@@ -423,7 +386,27 @@ class Specimens(Rows[Specimen]):
         The tests.
     """
 
-    __slots__ = ()
+    __slots__ = ("_rows",)
+
+    def __init__(self, rows: Iterable[Specimen]) -> None:
+        self._rows = tuple(rows)
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def __iter__(self) -> Iterator[Specimen]:
+        return iter(self._rows)
+
+    @overload
+    def __getitem__(self, key: int | str) -> Specimen: ...
+    @overload
+    def __getitem__(self, key: slice) -> Specimens: ...
+    def __getitem__(self, key: int | str | slice) -> Specimen | Specimens:
+        if isinstance(key, slice):
+            return Specimens(self._rows[key])
+        if isinstance(key, (str, os.PathLike)):
+            return self._named(os.fspath(key))
+        return self._rows[key]
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Specimens) and self._rows == other._rows

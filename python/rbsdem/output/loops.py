@@ -32,7 +32,6 @@ from rbsdem.output.style import (
     new_axes,
     style,
 )
-from rbsdem.run.lumped import LumpedHinge, Material
 
 FIGURE_SIZE = (6.9, 6.0)
 
@@ -265,38 +264,6 @@ def envelope(envelope: Envelope, *, method: Method | None = None, ax: Axes | Non
         drawn.set_xlim(left=0.0, auto=True)
         drawn.set_ylim(bottom=0.0, auto=True)
         drawn.set(xlabel="Top displacement (mm)", ylabel="Lateral force (kN)")
-    return drawn
-
-
-def lumped_hinge(
-    hinge: LumpedHinge, material: Material = "Hysteretic", *, ax: Axes | None = None
-) -> Axes:
-    """Draw the loop of a column, and dashed that of the hinge of OpenSees fitted to it.
-
-    Parameters
-    ----------
-    hinge : LumpedHinge
-        What `Result.lumped_hinge` returns.
-    material : {"Hysteretic", "IMKPeakOriented"}, optional
-        The material of the hinge.
-    ax : matplotlib Axes, optional
-        Where to draw; a new figure without it.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        The axes.
-    """
-    fitted = hinge.response(material)
-    with axes_or_new(ax) as drawn:
-        x = np.concatenate(([0.0], hinge.rotation)) * 1e3
-        for moment, line, label in (
-            (hinge.moment, MODEL_LINE, "column"),
-            (fitted, TEST_LINE, f"{material}, nrmse {hinge.nrmse(material):.3f}"),
-        ):
-            drawn.plot(x, np.concatenate(([0.0], moment)) * 1e-3, **line, label=label)
-        drawn.legend(loc="lower right")
-        drawn.set(xlabel="Chord rotation (mrad)", ylabel="Moment at the base (kN m)")
     return drawn
 
 

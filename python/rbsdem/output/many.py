@@ -1,4 +1,4 @@
-"""Figures of ground motions, and of analyses of many runs: IDA, stripes, clouds, fragility."""
+"""Figures of ground motions, and of analyses of many runs: IDA, stripes, fragility."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import numpy as np
 
 from rbsdem._types import Axes
 from rbsdem.errors import InputError
-from rbsdem.many.cloud import Cloud
 from rbsdem.many.fragility import Capacities, Counts, Fragility
 from rbsdem.many.ida import IDA, Stripes
 from rbsdem.many.runs import Runs
@@ -82,35 +81,6 @@ def stripes(
         _points(drawn, found.runs, edp, line)
         if ax is None:
             _label_response(drawn, edp, found.runs)
-    return drawn
-
-
-def cloud(found: Cloud, *, edp: str = "peak_drift", ax: Axes | None = None, **line: Any) -> Axes:
-    """Draw the runs in logarithmic scales, and the line through those without collapse.
-
-    Parameters
-    ----------
-    found : Cloud
-        The analysis.
-    edp : str, optional
-        Measure of the response.
-    ax : matplotlib Axes, optional
-        Axes to draw on; by default new ones.
-    **line
-        Keywords of the lines.
-    """
-    percent = 100.0 if edp.endswith("drift") else 1.0
-    with axes_or_new(ax, (4.2, 3.2)) as drawn:
-        _points(drawn, found.runs, edp, {})
-        fit = found.regression(edp)
-        x = np.geomspace(found.runs.intensity.min(), found.runs.intensity.max(), 50)
-        middle = fit.a + fit.b * np.log(x)
-        for shift, style in zip((-1, 0, 1), _STYLES, strict=True):
-            given = line_of(MODEL_LINE | {"linestyle": style}, line)
-            drawn.plot(percent * np.exp(middle + shift * fit.sigma), x, **given)
-        if ax is None:
-            _label_response(drawn, edp, found.runs)
-            drawn.set(xscale="log", yscale="log")
     return drawn
 
 

@@ -31,7 +31,6 @@ from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.response import Response
 from rbsdem.run import analysis
 from rbsdem.run.accuracy import Errors, refined_error
-from rbsdem.run.lumped import LumpedHinge, lumped_hinge
 from rbsdem.run.solver import METHODS
 
 P = ParamSpec("P")
@@ -151,20 +150,6 @@ class Result(Response):
             If there is no such joint, or the openings of a layered hinge were not kept in time.
         """
         return hinge_of(self, joint, length)
-
-    def lumped_hinge(self) -> LumpedHinge:
-        """Return the column as one hinge at its foot, for OpenSees and other programs.
-
-        Backbones of ASCE 41 (the envelope of this loop) and of Ibarra, Medina and Krawinkler (a
-        push to either side), and materials of OpenSees fitted to this loop.
-
-        Raises
-        ------
-        InputError
-            If the loop is not a static path of a cantilever under a constant axial load, or has no
-            such lines.
-        """
-        return lumped_hinge(self)
 
     def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each of the result, with units in the names.

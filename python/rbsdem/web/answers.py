@@ -14,6 +14,7 @@ import traceback
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, cast
 
@@ -24,9 +25,8 @@ from rbsdem._package import recorded, unwarned
 from rbsdem._types import Array, NDArray
 from rbsdem.checks.code_values import code_values
 from rbsdem.errors import InputError, RbsdemError, SolveError
-from rbsdem.measured.predict import nearest, predict_one
-from rbsdem.measured.predictions import Prediction, picture
-from rbsdem.measured.specimens import Specimen, read_specimens
+from rbsdem.measured.predict import Prediction, nearest, predict
+from rbsdem.measured.specimens import Specimen, Specimens, read_specimens
 from rbsdem.model.shape import Section
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.read import read_motion
@@ -38,7 +38,6 @@ from rbsdem.section.axial_moment import InteractionDiagram, interaction
 from rbsdem.section.curvature import diagram as diagram_of
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.web import exports, frames
-from rbsdem.web.pages import card
 from rbsdem.web.state import (
     MOST_VALUES,
     Drawn,
@@ -103,11 +102,11 @@ class Answers:
 
     Parameters
     ----------
-    near : NearestTests, optional
-        Tests to compare with.
+    near : Specimens, optional
+        Tests to compare with, which have histories.
     """
 
-    def __init__(self, near: NearestTests | None = None) -> None:
+    def __init__(self, near: Specimens | None = None) -> None:
         self.near = near
         self.records: dict[str, GroundMotion] = {}
         self._kept: OrderedDict[str, Answered] = OrderedDict()
@@ -261,7 +260,24 @@ class Answers:
         """Return the tests that are most like each column."""
         if self.near is None:
             return {"none": "rbsdem explore --tests FOLDER shows the tests that are most like it"}
-        return self.near.of(state_of(asked), pause)
+        columns: list[dict[str, Any]] = []
+        for given in state_of(asked)["columns"]:
+            drawn = None if "case" in given else column_of(given, Faults())[0]
+            if drawn is None or drawn.section.hollow:
+                columns.append({"none": "the folder has no tests of such columns"})
+                continue
+            try:
+                place = drawn.section, drawn.span, drawn.column.axial_load
+                near = nearest(*place, self.near, _TESTS)
+            except (RbsdemError, ValueError) as error:
+                columns.append({"none": str(error)})
+                continue
+            rows = []
+            for one in near:
+                pause()
+                rows.append(_card(_predicted(one.specimen)) | {"distance": round(one.distance, 3)})
+            columns.append({"tests": rows})
+        return {"columns": columns, "tests": len(self.near)}
 
     # ---- frames ---------------------------------------------------------------------------------
 
@@ -402,16 +418,16 @@ def _band(found: Answered) -> dict[str, Any]:
         return {"none": "no band: its scatter is that of columns with one hinge"}
     with unwarned(Warning):
         try:
-            spread = band_of(column, result.displacement)
+            band = band_of(column, result.displacement)
         except InputError as error:
             return {"none": str(error)}
     return {
-        "lower": numbers(spread.lower),
-        "upper": numbers(spread.upper),
-        "samples": len(spread.samples),
-        "peak_force": _interval(spread.peak_force),
-        "drift_at_loss": _interval(spread.drift_at_loss),
-        "energy": _interval(spread.energy, drawn.factor),
+        "lower": numbers(band.lower),
+        "upper": numbers(band.upper),
+        "samples": len(band.samples),
+        "peak_force": _interval(band.peak_force),
+        "drift_at_loss": _interval(band.drift_at_loss),
+        "energy": _interval(band.energy, drawn.factor),
     }
 
 
@@ -503,55 +519,53 @@ def _points(line: Array) -> list[list[float | None]]:
 # ---- measured tests ------------------------------------------------------------------------------
 
 
-class NearestTests:
-    """The tests of a folder; those that are shown are predicted, and kept.
+#: Scores of a test that is shown.
+_SCORES = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio", "end_ratio")
+#: Tests that stand beside a column, and the most points of their lines.
+_TESTS, _POINTS_OF_TEST = 4, 600
+#: How far a model is drawn beyond its test: of the largest force that is in the box.
+_BEYOND = 1.08
+#: Largest force in the box over that of the test: beyond, nothing would be seen of the test.
+_LARGEST = 2.0
 
-    Parameters
-    ----------
-    folder : path
-        With the table and the histories, as of `rbsdem peer`.
-    number : int, optional
-        How many tests an answer has.
 
-    Raises
-    ------
-    InputError
-        If the folder has no table, or no history.
-    """
+def tests_of(folder: Path) -> Specimens:
+    """Return the tests of a folder that have a history, for `Answers`."""
+    tests = read_specimens(folder).with_history()
+    if not tests:
+        raise InputError(f"{folder} has no history of any test of its table")
+    return tests
 
-    def __init__(self, folder: Path, number: int = 4) -> None:
-        self._tests = read_specimens(folder).with_history()
-        if not self._tests:
-            raise InputError(f"{folder} has no history of any test of its table")
-        self._number = number
-        self._found: dict[str, Prediction] = {}
 
-    def of(self, state: Mapping[str, Any], pause: Pause = lambda: None) -> dict[str, Any]:
-        """Return the nearest tests of each column; `pause` is called between predictions."""
-        columns: list[dict[str, Any]] = []
-        for given in state["columns"]:
-            drawn = None if "case" in given else column_of(given, Faults())[0]
-            if drawn is None or drawn.section.hollow:
-                columns.append({"none": "the folder has no tests of such columns"})
-                continue
-            try:
-                column = drawn.column
-                place = drawn.section, drawn.span, column.axial_load
-                near = nearest(*place, self._tests, self._number)
-            except (RbsdemError, ValueError) as error:
-                columns.append({"none": str(error)})
-                continue
-            rows = []
-            for one in near:
-                pause()
-                row = self._predicted(one.specimen)
-                lines = None if row.comparison is None else picture(row.comparison)
-                rows.append(card(row, lines) | {"distance": round(one.distance, 3)})
-            columns.append({"tests": rows})
-        return {"columns": columns, "tests": len(self._tests)}
+@lru_cache(maxsize=256)
+def _predicted(test: Specimen) -> Prediction:
+    with unwarned(Warning):
+        return predict([test])[0]
 
-    def _predicted(self, test: Specimen) -> Prediction:
-        if test.name not in self._found:
-            with unwarned(Warning):
-                self._found[test.name] = predict_one(test)
-        return self._found[test.name]
+
+def _card(row: Prediction) -> dict[str, Any]:
+    """Return a test for JSON; without a comparison it has no lines."""
+    specimen, c = row.specimen, row.comparison
+    found: dict[str, Any] = {
+        "name": specimen.name,
+        "failure": specimen.failure_mode or "not known",
+        "section": specimen.section,
+        "axial_load_ratio": number(specimen.axial_load_ratio),
+        "span_depth_ratio": number(specimen.span_depth_ratio),
+        "status": row.status,
+        "error": row.error,
+        "scores": {name: number(row.score(name)) for name in _SCORES},
+    }
+    if c is None:
+        return found
+    model = c.model_force[: c.rows]
+    displacement = float(np.max(np.abs(c.displacement))) or 1.0
+    test = float(np.max(np.abs(c.test_force))) or 1.0
+    force = min(max(test, float(np.max(np.abs(model), initial=0.0))), _LARGEST * test)
+    lines = {"test": c.test_force / force, "model": np.clip(model / force, -_BEYOND, _BEYOND)}
+    found |= {"displacement": displacement, "force": force, "height": c.height}
+    for name, values in lines.items():
+        rows = shown_rows(c.displacement[: values.size], values, _POINTS_OF_TEST)
+        line = np.column_stack((c.displacement[rows] / displacement, values[rows]))
+        found[name] = np.rint(1e3 * line).astype(np.int64).ravel().tolist()
+    return found

@@ -1,23 +1,14 @@
-"""The files of the pages, all of them as one file, and predicted tests on such a page."""
+"""The files of the pages, and all of them as one file."""
 
 from __future__ import annotations
 
 import base64
 import hashlib
 import json
-import math
-import os
 import re
 from collections.abc import Mapping, Sequence
 from importlib import resources
-from pathlib import Path
 from typing import Any
-
-import numpy as np
-
-from rbsdem._files import atomic_write
-from rbsdem._types import Array
-from rbsdem.measured.predictions import Picture, Prediction, Predictions
 
 #: Modules of the page, each after those that it imports.
 _DRAWN = ("units.js", "chart.js", "fields.js", "drawing.js", "panels.js", "history.js")
@@ -25,9 +16,6 @@ MODULES = (*_DRAWN, "answers.js", "main.js")
 
 #: Modules of the page of frames.
 FRAMES = ("units.js", "chart.js", "fields.js", "panels.js", "history.js", "answers.js", "frame.js")
-
-#: Modules of the page of all tests.
-GALLERY = ("units.js", "chart.js", "fields.js", "panels.js", "gallery.js")
 
 _KINDS = {"html": "html", "css": "css", "js": "javascript"}
 TYPES = {ending: f"text/{kind}; charset=utf-8" for ending, kind in _KINDS.items()}
@@ -59,11 +47,11 @@ def one_file(
     data : mapping or None
         What the page would have got from the server.
     modules : sequence of str, optional
-        `MODULES`, `GALLERY`, or none for a page of sheets.
+        `MODULES`, or none for a page of sheets.
     sheets : tuple of str, optional
         Html that stands before and behind what the modules draw.
     """
-    name = {MODULES: "index.html", GALLERY: "gallery.html"}.get(tuple(modules), "report.html")
+    name = "index.html" if modules else "report.html"
     files = {key: raw.decode("utf-8") for key, raw in parts(name, modules).items()}
     script = "\n".join(_EXPORT.sub("", _IMPORT.sub("", files[module])) for module in modules)
     style = files["page.css"]
@@ -103,98 +91,3 @@ def _digest(text: str) -> str:
 def plain(text: str) -> str:
     """Return a text for html."""
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
-
-
-#: Scores of a card, with their digits.
-SCORES = {"nrmse": 3, "peak_ratio": 2, "energy_ratio": 2, "stiffness_ratio": 2, "end_ratio": 2}
-
-
-_ENDS = ("median", "lower", "upper")
-
-
-def card(row: Prediction, drawn: Picture | None) -> dict[str, Any]:
-    """Return a test for JSON; without a comparison it has no lines.
-
-    Parameters
-    ----------
-    row : Prediction
-        The test.
-    drawn : Picture or None
-        Its lines, as of `rbsdem.measured.predictions.picture`.
-    """
-    specimen = row.specimen
-    found = {
-        "name": specimen.name,
-        "failure": specimen.failure_mode or "not known",
-        "section": specimen.section,
-        "axial_load_ratio": finite(specimen.axial_load_ratio, 4),
-        "span_depth_ratio": finite(specimen.span_depth_ratio, 3),
-        "status": row.status,
-        "error": row.error,
-        "scores": {name: finite(row.score(name), 6) for name in SCORES},
-    }
-    if drawn is None or row.comparison is None:
-        return found
-    return found | {
-        "test": _thousandths(drawn.test),
-        "model": _thousandths(drawn.model) if len(drawn.model) > 1 else [],
-        "displacement": drawn.displacement,
-        "force": drawn.force,
-        "height": row.comparison.height,
-    }
-
-
-def finite(value: float, digits: int) -> float | None:
-    """Return a number for JSON, None if it is not finite."""
-    return round(value, digits) if math.isfinite(value) else None
-
-
-def _thousandths(line: Array) -> list[int]:
-    """Return x, y, x, y, ... of a line in its box."""
-    found: list[int] = np.rint(1e3 * line).astype(np.int64).ravel().tolist()
-    return found
-
-
-def gallery(predictions: Predictions, path: str | os.PathLike[str]) -> Path:
-    """Write one page of html with all loops, to sort and to filter.
-
-    Parameters
-    ----------
-    predictions : Predictions
-        The tests.
-    path : path
-        File to write.
-
-    Returns
-    -------
-    Path
-        The file. It stands alone: styles, script and figures are in it.
-    """
-    path = Path(path)
-    title = f"Loops of {len(predictions)} tests, model {predictions.model}"
-    data = {
-        "title": title,
-        "digits": SCORES,
-        "groups": _groups(predictions),
-        "tests": list(map(card, predictions, predictions.pictures)),
-    }
-    page = one_file(title, data, GALLERY)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with atomic_write(path) as file:
-        file.write(page.encode("utf-8"))
-    return path
-
-
-def _groups(predictions: Predictions) -> list[dict[str, object]]:
-    summary = predictions.summary()
-    return [
-        {
-            "name": name,
-            **{count: int(row[count]) for count in ("tests", "stopped", "failed")},
-            "scores": {
-                score: [finite(float(row[f"{score}_{end}"]), digits) for end in _ENDS]
-                for score, digits in SCORES.items()
-            },
-        }
-        for name, row in summary.iterrows()
-    ]

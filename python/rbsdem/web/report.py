@@ -25,6 +25,7 @@ from rbsdem._types import DataFrame
 from rbsdem.checks.code_values import code_values
 from rbsdem.errors import InputError
 from rbsdem.many.ida import IDA
+from rbsdem.measured.specimens import Specimens
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.shape import Section
@@ -37,7 +38,7 @@ from rbsdem.run.result import Result
 from rbsdem.section.axial_moment import Code, interaction
 from rbsdem.section.curvature import diagram
 from rbsdem.section.layered import LayeredColumn
-from rbsdem.web.answers import Answered, Answers, NearestTests
+from rbsdem.web.answers import Answered, Answers
 from rbsdem.web.pages import MODULES, one_file, plain
 from rbsdem.web.state import Drawn
 
@@ -83,7 +84,7 @@ class Sheet:
 def report_data(
     state: Mapping[str, Any],
     title: str,
-    near: NearestTests | None = None,
+    near: Specimens | None = None,
     known: Answered | None = None,
 ) -> dict[str, Any]:
     """Return the answers to a state as a report holds them.
@@ -94,7 +95,7 @@ def report_data(
         Columns and loading.
     title : str
         Title of the report.
-    near : NearestTests, optional
+    near : Specimens, optional
         Tests to compare with.
     known : Answered, optional
         Column and result of the state, which then need not be computed.
@@ -124,7 +125,7 @@ def report_data(
         "bands": ask(answers.bands),
         "scales": ask(answers.scales) if any(loop.get("dynamic") for loop in found) else None,
         "own": ask(answers.own),
-        "near": None if near is None else near.of(state),
+        "near": None if near is None else answers.nearest(asked, lambda: None),
         "exports": {},
     }
     for form in ("namelist", "python"):
@@ -139,7 +140,7 @@ def write_report(
     path: str | os.PathLike[str],
     state: Mapping[str, Any],
     title: str,
-    near: NearestTests | None = None,
+    near: Specimens | None = None,
     *,
     author: str = "",
     project: str = "",

@@ -20,8 +20,9 @@ from typing import Any, ClassVar
 from urllib.parse import urlsplit
 
 from rbsdem.errors import InputError
+from rbsdem.measured.specimens import Specimens
 from rbsdem.web import frames
-from rbsdem.web.answers import LANES, ONCE, Answers, NearestTests, defect
+from rbsdem.web.answers import LANES, ONCE, Answers, defect
 from rbsdem.web.pages import FRAMES, TYPES, parts
 from rbsdem.web.state import RefusedError
 
@@ -51,7 +52,7 @@ class ExploreServer(ThreadingHTTPServer):
         0 takes a free one.
     start : mapping, optional
         The state that the page begins with, in place of its own.
-    near : NearestTests, optional
+    near : Specimens, optional
         Tests to compare with.
 
     Raises
@@ -67,7 +68,7 @@ class ExploreServer(ThreadingHTTPServer):
         self,
         port: int = 0,
         start: Mapping[str, Any] | None = None,
-        near: NearestTests | None = None,
+        near: Specimens | None = None,
     ) -> None:
         if not 0 <= port <= 65535:
             raise InputError(f"--port {port}: a port is a number from 1 to 65535")

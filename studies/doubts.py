@@ -1,11 +1,15 @@
 """Which measured tests are doubtful, by rules that know no model of the column.
 
+    python studies/doubts.py FOLDER [FILE.csv]
+
+FOLDER holds the table and the histories. Prints the doubts; the csv has the indicators too.
+
 The force column of a test is net, or it is the base moment over the length; a label says which. A
 loop whose base moment stays as it is has an envelope that falls by P/L if the force is net, and
 that stays level if it is not.
 
-A rule is sure or it is a hint. Sure doubts are mended, or the test is set aside, where scores are
-given a second time; hints are for a reader. The error of a model decides nothing.
+A rule is sure or it is a hint. Sure doubts are corrected, or the test is set aside, where scores
+are given a second time; hints are for a reader. The error of a model decides nothing.
 
 **What the force is** (sure; by series, because a laboratory treats its tests alike). Where the
 axial load weighs, its moment 0.3 of that of the force or more, the medians of these tests decide:
@@ -35,19 +39,21 @@ from __future__ import annotations
 
 import math
 import statistics
+import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 
-from rbsdem._files import Tabular, data_frame
+from rbsdem import plot
+from rbsdem._files import Tabular, data_frame, save_frame
 from rbsdem._package import unwarned
 from rbsdem._types import Array, DataFrame
 from rbsdem.errors import RbsdemError
 from rbsdem.measured.drawing import checked_specimen, draw
 from rbsdem.measured.measured import MeasuredTest
-from rbsdem.measured.specimens import Specimen, Specimens
+from rbsdem.measured.specimens import Specimen, Specimens, read_specimens
 from rbsdem.section.curvature import diagram
 
 #: Share of the largest drift beyond which the growth of the base moment is taken.
@@ -277,7 +283,7 @@ class Checked(Tabular):
         """
         return tuple(doubt for doubt in self.doubts if doubt.specimen is specimen)
 
-    def mended(self) -> Specimens:
+    def corrected(self) -> Specimens:
         """Return the tests with what is surely wrong mended, without those that nothing mends."""
         kept = []
         for one in self.indicators:
@@ -340,7 +346,7 @@ def check(specimens: Iterable[Specimen]) -> Checked:
     Returns
     -------
     Checked
-        Indicators and doubts. `Checked.mended` returns the tests for the second score.
+        Indicators and doubts. `Checked.corrected` returns the tests for the second score.
     """
     found = []
     for specimen in specimens:
@@ -464,3 +470,16 @@ def _alone(one: Indicators) -> list[Doubt]:
         why = f"one side {one.symmetry:.2f} times as strong as the other"
         doubts.append(Doubt(s, "symmetry", False, why))
     return doubts
+
+
+def main() -> None:
+    """Print which tests of a folder are doubtful."""
+    checked = check(read_specimens(sys.argv[1]).with_history())
+    print(plot.table(checked))
+    print(f"{len(checked.indicators)} tests with a history, {len(checked.doubts)} doubts")
+    if sys.argv[2:]:
+        save_frame(checked.by_test(), sys.argv[2])
+
+
+if __name__ == "__main__":
+    main()

@@ -16,15 +16,14 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from rbsdem import _arguments
+import rbsdem
+from rbsdem import _arguments, plot
 from rbsdem._files import Tabular, data_frame
 from rbsdem._package import unwarned
-from rbsdem._types import Array, DataFrame
+from rbsdem._types import Array, Axes, DataFrame
 from rbsdem.curves.envelope import Envelope, envelope
 from rbsdem.errors import InputError, SolveError
-from rbsdem.model.response import Response
-from rbsdem.model.springs import PeakOriented
-from rbsdem.run.analysis import cyclic
+from rbsdem.springs import PeakOriented
 
 Material = Literal["Hysteretic", "IMKPeakOriented"]
 Language = Literal["tcl", "py"]
@@ -271,7 +270,7 @@ class LumpedHinge(Tabular):
         )
 
 
-def lumped_hinge(result: Response) -> LumpedHinge:
+def lumped_hinge(result: rbsdem.Result) -> LumpedHinge:
     """Return the column of a static path as one hinge at its foot; see `Result.lumped_hinge`."""
     column = result.column
     if result.dynamic or "axial_load" in result.call:
@@ -306,7 +305,7 @@ def lumped_hinge(result: Response) -> LumpedHinge:
     return LumpedHinge(*loop, tuple(backbones), *own, tried[kind][0], kind)
 
 
-def _loop(result: Response) -> tuple[Array, Array]:
+def _loop(result: rbsdem.Result) -> tuple[Array, Array]:
     """Return rotation and moment in equal steps from corner to corner, whatever rows were kept."""
     theta = result.path.displacement / result.column.height
     moment = result.path.base_moment
@@ -318,18 +317,20 @@ def _loop(result: Response) -> tuple[Array, Array]:
     return np.interp(at, ends, theta), np.interp(at, ends, moment)
 
 
-def _push(column: Any, reach: float) -> Response:
+def _push(column: Any, reach: float) -> rbsdem.Result:
     """Return the push to one side, up to where it can be followed."""
     with unwarned():
         try:
-            run: Any = cyclic(column, displacement=np.linspace(0, reach, _PUSH_POINTS + 1)[1:])
+            run: Any = rbsdem.cyclic(
+                column, displacement=np.linspace(0, reach, _PUSH_POINTS + 1)[1:]
+            )
             # With its corners.
             run = run.path
         except SolveError as error:
             if error.result is None:
                 raise
             run = error.result
-    found: Response = run
+    found: rbsdem.Result = run
     return found
 
 
@@ -532,3 +533,33 @@ def _number(value: object) -> str:
 
 def _literal(value: object) -> str:
     return repr(float(_number(value))) if isinstance(value, float) else repr(value)
+
+
+def draw(hinge: LumpedHinge, material: Material = "Hysteretic", *, ax: Axes | None = None) -> Axes:
+    """Draw the loop of a column, and dashed that of the hinge of OpenSees fitted to it.
+
+    Parameters
+    ----------
+    hinge : LumpedHinge
+        What `lumped_hinge` returns.
+    material : {"Hysteretic", "IMKPeakOriented"}, optional
+        The material of the hinge.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes.
+    """
+    fitted = hinge.response(material)
+    with plot.axes_or_new(ax) as drawn:
+        x = np.concatenate(([0.0], hinge.rotation)) * 1e3
+        for moment, line, label in (
+            (hinge.moment, plot.MODEL_LINE, "column"),
+            (fitted, plot.TEST_LINE, f"{material}, nrmse {hinge.nrmse(material):.3f}"),
+        ):
+            drawn.plot(x, np.concatenate(([0.0], moment)) * 1e-3, **line, label=label)
+        drawn.legend(loc="lower right")
+        drawn.set(xlabel="Chord rotation (mrad)", ylabel="Moment at the base (kN m)")
+    return drawn
