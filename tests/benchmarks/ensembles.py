@@ -93,15 +93,14 @@ def lanes(program: Path | None, repeats: int, runs: int) -> list[Row]:
     return rows
 
 
-def other_lanes(repeats: int, runs: int) -> list[Row]:
-    """Time lanes of damped columns and of chains, over single runs."""
+def damped_lanes(repeats: int, runs: int) -> list[Row]:
+    """Time lanes of damped columns, over single runs."""
     time_, motion = record_20_s()
     place = np.zeros(runs, dtype=np.int32)
     rayleigh = rbsdem.Damping(mass=0.3, stiffness=1e-4)
     cases = {
         "one body, Rayleigh": dataclasses.replace(pier(), damping=rayleigh),
         "one body, modal": dataclasses.replace(pier(), damping=0.03),
-        "three bodies": dataclasses.replace(pier(), n=3),
     }
     rows = []
     for name, column in cases.items():
@@ -209,7 +208,7 @@ def main() -> None:
     show(
         {
             "Lanes, one thread": lanes(newest("yardstick_lanes", given.build), repeats, 320),
-            "Other lanes, one thread": other_lanes(repeats, 128),
+            "Damped lanes, one thread": damped_lanes(repeats, 128),
             "Layered columns": [layered(repeats), twenty_by_ten(1 if given.quick else 3)],
             "Many runs": threads(20_000 if given.quick else MANY, given.dask),
         }

@@ -260,21 +260,6 @@ def damped() -> list[rbsdem.Column]:
     return [column(30e3, damping=kind) for kind in kinds] + [column(30e3)]
 
 
-def chains() -> list[rbsdem.Column]:
-    """Return chains, with and without damping and axial load, and with other ends."""
-    plain = column()
-    elastic = Elastic(6e8), Elastic(2e8)
-    beneath = rbsdem.Footing(*elastic, mass=3e3, inertia=2e3, height=0.4)
-    return [
-        column(20e3, n=3),
-        rbsdem.Column(1.6, 30e3, plain.shear, plain.flexure, n=3),
-        column(20e3, n=3, damping=rbsdem.Damping(mass=0.3, stiffness=1e-4)),
-        column(20e3, n=2, damping=0.03),
-        column(20e3, top="fixed"),
-        column(20e3, footing=beneath),
-    ]
-
-
 @pytest.mark.parametrize(
     ("columns", "settings"),
     [
@@ -286,8 +271,6 @@ def chains() -> list[rbsdem.Column]:
         (damped, {"method": "newmark", "collapse_drift": 0.05}),
         (damped, {"method": "generalised_alpha", "dt": 5e-3}),
         (damped, {"method": "rk4", "collapse_drift": 0.05}),
-        (chains, {"method": "hht", "dt": 2e-3, "collapse_drift": 0.05}),
-        (chains, {"method": "rk4", "dt": 5e-4, "allow_unstable": True}),
     ],
 )
 def test_lanes_have_the_bits_of_a_run_alone(columns: Callable, settings: dict) -> None:

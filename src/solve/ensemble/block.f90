@@ -4,9 +4,8 @@ module rbs_solve_ensemble_block
    use rbs_base_kinds, only: wp
    use rbs_output_recorder, only: array_recorder
    use rbs_solve_end_state, only: end_state, standing_type
-   use rbs_solve_ensemble_lane_choice, only: takes_lanes, are_alike
-   use rbs_solve_ensemble_ensemble_input, only: column_of, ensemble_column, ensemble_motion, run_type, &
-                                                lane_task
+   use rbs_solve_ensemble_lane_choice, only: takes_lanes
+   use rbs_solve_ensemble_ensemble_input, only: ensemble_column, ensemble_motion, run_type, lane_task
    use rbs_solve_ensemble_run_result, only: run_result, collect
    use rbs_solve_ensemble_simd_batch, only: run_in_lanes
    use rbs_solve_task, only: task_type
@@ -126,14 +125,14 @@ contains
          end associate
          control(2) = control(2) + 1
       end do
-      ! The columns in lanes are of one kind, and go by one method.
+      ! The columns in lanes all have damping or none has, and go by one method.
       task = task(:tasks)
       do while (size(task) > 0)
          allocate (together(size(task)))
          do i = 1, size(task)
             together(i) = task(i)%plan%method == task(1)%plan%method .and. &
-                          are_alike(column_of(column(run(task(i)%run)%column)), &
-                                    column_of(column(run(task(1)%run)%column)))
+                          (column(run(task(i)%run)%column)%structure%damped .eqv. &
+                           column(run(task(1)%run)%column)%structure%damped)
          end do
          others = pack(task, .not. together)
          if (count(together) >= fewest) then

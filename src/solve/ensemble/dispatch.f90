@@ -1,9 +1,9 @@
 !> The kernels for the instructions that the processor has.
 module rbs_solve_ensemble_dispatch
    use, intrinsic :: iso_c_binding, only: c_int
-   use rbs_solve_ensemble_chain_kernel_avx2, only: avx2_kernels => kernels
-   use rbs_solve_ensemble_chain_kernel_avx512, only: avx512_kernels => kernels
-   use rbs_solve_ensemble_chain_kernel_baseline, only: baseline_kernels => kernels
+   use rbs_solve_ensemble_one_body_kernel_avx2, only: avx2_kernel => kernel
+   use rbs_solve_ensemble_one_body_kernel_avx512, only: avx512_kernel => kernel
+   use rbs_solve_ensemble_one_body_kernel_baseline, only: baseline_kernel => kernel
    use rbs_solve_ensemble_lane_arrays, only: kernel_type
    implicit none
    private
@@ -21,22 +21,20 @@ module rbs_solve_ensemble_dispatch
 contains
 
    !> The fastest kernel that the processor has, or a slower one.
-   type(kernel_type) function chosen_kernel(most, one_body)
+   type(kernel_type) function chosen_kernel(most)
       !> 0: the fastest; else the highest level that may be taken
       integer, intent(in) :: most
-      !> Whether the columns are one body without damping
-      logical, intent(in) :: one_body
       integer :: level
 
       level = processor_level()
       if (most > 0) level = min(level, most)
       select case (level)
       case (3:)
-         chosen_kernel = avx512_kernels(one_body)
+         chosen_kernel = avx512_kernel()
       case (2)
-         chosen_kernel = avx2_kernels(one_body)
+         chosen_kernel = avx2_kernel()
       case default
-         chosen_kernel = baseline_kernels(one_body)
+         chosen_kernel = baseline_kernel()
       end select
    end function chosen_kernel
 

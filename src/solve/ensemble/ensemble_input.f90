@@ -3,14 +3,13 @@ module rbs_solve_ensemble_ensemble_input
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_case_analysis_record, only: analysis_record
-   use rbs_structure_column_column, only: column_type
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_sight, only: watch_type
    use rbs_structure_structure, only: structure_type
    implicit none
    private
 
-   public :: ensemble_column, ensemble_motion, run_type, lane_task, column_of
+   public :: ensemble_column, ensemble_motion, run_type, lane_task
 
    !> A column, or a frame, and what is asked of it.
    type :: ensemble_column
@@ -45,19 +44,5 @@ module rbs_solve_ensemble_ensemble_input
       integer :: parts = 1
       real(wp) :: scale = 1.0_wp
    end type lane_task
-
-contains
-
-   !> The column, for lanes; null for a frame.
-   function column_of(given) result(column)
-      type(ensemble_column), intent(in), target :: given
-      class(column_type), pointer :: column
-
-      column => null()
-      select type (structure => given%structure)
-      class is (column_type)
-         column => structure
-      end select
-   end function column_of
 
 end module rbs_solve_ensemble_ensemble_input

@@ -6,13 +6,13 @@ module rbs_solve_ensemble_lane_arrays
    implicit none
    private
 
-   public :: lane_clock, lane_block, body_arrays, lane_method, kernel_type, allot, lanes, few, wp
+   public :: lane_clock, body_arrays, lane_method, kernel_type, lanes, wp
 
    integer, parameter :: wp = real64
 
-   !> Columns side by side: compile-time numbers, so that the loops have no remainders, and so few that their
-   !> numbers stay near the processor, with what their events need. Chains advance in blocks of fewer lanes.
-   integer, parameter :: lanes = 32, few = 16
+   !> Columns side by side: a compile-time number, so that the loops have no remainders, and so small that the
+   !> numbers of the lanes stay near the processor, with those that their events need.
+   integer, parameter :: lanes = 32
 
    !> Deformations beyond this [m, rad] have no meaning.
    real(wp), parameter, public :: out_of_bounds = 1.0e100_wp
@@ -25,8 +25,8 @@ module rbs_solve_ensemble_lane_arrays
                   acceptable = 1.0e-7_wp
    end type lane_method
 
-   !> What there is of every lane: the motion of the ground, the clock, what is measured, and of one body
-   !> without damping what its kernel needs; in SI units. Flags are 1 or 0.
+   !> What there is of every lane: the motion of the ground, the clock, what is measured, and the column; in
+   !> SI units. Flags are 1 or 0.
    type :: lane_clock
       !> Whether there is a run in the lane, and whether its next step may be taken on its lines
       real(wp) :: active(lanes) = 0.0_wp, ready(lanes) = 0.0_wp
@@ -55,77 +55,55 @@ module rbs_solve_ensemble_lane_arrays
       real(wp) :: ended(lanes) = 0.0_wp, left(lanes) = 0.0_wp
       !> Place of the next point of the motion but one
       integer(int32) :: at(lanes) = 1
-      !> One body: what an implicit step leaves for lanes whose springs leave their lines, which is what the
+      !> What an implicit step leaves for lanes whose springs leave their lines, which is what the
       !> body moves on its lines, the work of the residual on that, and the acceleration of the ground
       real(wp) :: trial(lanes, 4) = 0.0_wp
       !> Inverse of the tangent of an implicit step (11, 12, 21, 22), and 1/(beta h**2); of RK4 see
       !> `resistance_per_velocity`
       real(wp) :: inverse(lanes, 4) = 0.0_wp, per_h(lanes) = 0.0_wp, g(lanes, 4) = 0.0_wp
+      !> Damping on the present lines (11, 12, 22), see `body_damping`; for RK4 see `decay_of`
+      real(wp) :: c(lanes, 3) = 0.0_wp, d(lanes, 4) = 0.0_wp
       !> Inverse of the mass in slip and rotation; moment of the axial force per rotation
       real(wp) :: flexible(lanes) = 0.0_wp, coupling(lanes) = 0.0_wp, turning(lanes) = 0.0_wp, &
                   softening(lanes) = 0.0_wp
       !> Mass and rotary inertia, distances of the centroid from bottom and top, length
       real(wp) :: mass(lanes, 2) = 1.0_wp, lower(lanes) = 0.0_wp, upper(lanes) = 0.0_wp, &
                   length(lanes) = 0.0_wp
+      !> Whether the columns are damped
+      logical :: damped = .false.
    end type lane_clock
 
-   !> Some lanes of columns of n bodies: their joints (width, n), and unknowns (width, 2 n) in the order of
-   !> the joints, slips before rotations, or of the bodies, displacement and rotation of each. All lanes of
-   !> one body without damping are one block, other columns are in blocks of `few`.
-   type :: lane_block
-      !> Number of lanes, lanes before the block, and bodies
-      integer :: width = 0, base = 0, n = 0
-      !> Whether there is any damping, and modal damping
-      logical :: damped = .false., modal = .false.
-      type(lane_method) :: method
-      !> Deformations and velocities of the joints, deformations before the step, and those between which no
-      !> limit state is reached for the first time
-      real(wp), pointer, contiguous :: q(:, :) => null(), v(:, :) => null(), from(:, :) => null(), &
-                                       lowest(:, :) => null(), highest(:, :) => null()
-      !> Branches of the springs, as in `spring_array`; the way is +1 or -1 for those that unload on reversal
-      real(wp), pointer, contiguous :: d0(:, :) => null(), f0(:, :) => null(), k(:, :) => null(), &
-                                       first(:, :) => null(), last(:, :) => null(), way(:, :) => null(), &
-                                       work(:, :) => null()
-      !> Of implicit methods: velocities, accelerations and forces of the bodies at the start, the largest
-      !> forces so far (width, 2)
-      real(wp), pointer, contiguous :: v0(:, :) => null(), a0(:, :) => null(), g0(:, :) => null(), &
-                                       largest(:, :) => null()
-      !> Not of one body without damping: damping of the joints per velocity; what of it stands under the sum
-      !> of its power, and the factor before that sum; damping of the bodies per momentum; modal damping
-      !> (width, 2 n, 2 n)
-      real(wp), allocatable :: damping(:, :), summed(:, :), matrix(:, :, :)
-      real(wp) :: factor(few) = 1.0_wp, of_mass(few) = 0.0_wp
-      !> The column, see `column_type`; mass and inertia in the order of the bodies; factor of the tangent
-      !> (width, 4, 2 n)
-      real(wp), allocatable :: lower(:, :), upper(:, :), inverse_mass(:, :), inverse_inertia(:, :), &
-                               along(:, :), across(:, :), arm(:, :), ground_arm(:, :), mass(:, :), &
-                               tangent(:, :, :)
-      real(wp) :: mass_above(few) = 0.0_wp
-   end type lane_block
-
-   !> The arrays of a block of one body without damping as its kernel sees them, with sizes that the compiler
-   !> knows: in the order in which they stand in the room.
+   !> How the columns move and the lines of their springs (lanes, slip and rotation).
    type :: body_arrays
-      real(wp), dimension(lanes, 2) :: q, v, from, lowest, highest, d0, f0, k, first, last, way, work, v0, &
-                                       a0, g0, largest
+      !> Deformations and velocities, deformations before the step, and those between which no limit state is
+      !> reached for the first time
+      real(wp), dimension(lanes, 2) :: q = 0.0_wp, v = 0.0_wp, from = 0.0_wp, lowest = -huge(1.0_wp), &
+                                       highest = huge(1.0_wp)
+      !> Lines of the springs, as in `spring_array`; the way is +1 or -1 for those that unload on reversal
+      real(wp), dimension(lanes, 2) :: d0 = 0.0_wp, f0 = 0.0_wp, k = 0.0_wp, first = 0.0_wp, last = 0.0_wp, &
+                                       way = 0.0_wp, work = 0.0_wp
+      !> Of implicit methods: velocities, accelerations and forces of the bodies at the start, the largest
+      !> forces so far
+      real(wp), dimension(lanes, 2) :: v0 = 0.0_wp, a0 = 0.0_wp, g0 = 0.0_wp, largest = 0.0_wp
    end type body_arrays
 
    abstract interface
       !> A step of all lanes. Those that have a run and could not take it, or not wholly, are listed.
-      subroutine advance_interface(x, block, count, list)
-         import :: lane_clock, lane_block, lanes
+      subroutine advance_interface(x, y, method, count, list)
+         import :: lane_clock, body_arrays, lane_method, lanes
          implicit none
          type(lane_clock), intent(inout) :: x
-         type(lane_block), intent(inout) :: block(:)
+         type(body_arrays), intent(inout) :: y
+         type(lane_method), intent(in) :: method
          integer, intent(out) :: count, list(lanes)
       end subroutine advance_interface
 
       !> After a step of all lanes: the clock and what is measured. Lanes whose runs have ended are listed.
-      subroutine finish_interface(x, block, m, time, acceleration, count, list)
-         import :: lane_clock, lane_block, lanes, wp
+      subroutine finish_interface(x, y, m, time, acceleration, count, list)
+         import :: lane_clock, body_arrays, lanes, wp
          implicit none
          type(lane_clock), intent(inout) :: x
-         type(lane_block), intent(inout) :: block(:)
+         type(body_arrays), intent(inout) :: y
          !> All motions, see `lane_clock%at` [s, m/s2]
          integer, intent(in) :: m
          real(wp), intent(in) :: time(m), acceleration(m)
@@ -138,19 +116,5 @@ module rbs_solve_ensemble_lane_arrays
       procedure(advance_interface), pointer, nopass :: advance => null()
       procedure(finish_interface), pointer, nopass :: finish => null()
    end type kernel_type
-
-contains
-
-   !> Take an array from a room.
-   subroutine allot(room, taken, width, m, array)
-      real(wp), intent(inout), target, contiguous :: room(:)
-      !> Numbers of the room that are taken
-      integer, intent(inout) :: taken
-      integer, intent(in) :: width, m
-      real(wp), pointer, contiguous, intent(out) :: array(:, :)
-
-      array(1:width, 1:m) => room(taken + 1:taken + width*m)
-      taken = taken + width*m
-   end subroutine allot
 
 end module rbs_solve_ensemble_lane_arrays

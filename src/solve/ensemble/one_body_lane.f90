@@ -1,4 +1,4 @@
-!> Lanes of one body without damping whose springs leave their lines: they follow what the kernel has found,
+!> Lanes whose springs leave their lines: they follow what the kernel has found,
 !> with all numbers in one record, without the state of a run alone. The record is the same for all lanes, so
 !> that it stays near the processor; a lane keeps its lines.
 module rbs_solve_ensemble_one_body_lane
@@ -8,6 +8,7 @@ module rbs_solve_ensemble_one_body_lane
    use rbs_solve_ensemble_lane_arrays, only: lane_clock, body_arrays, lane_method
    use rbs_solve_one_body_implicit_one_body, only: one_body_step, body_spring, side_of, move_spring, &
                                                    advance_on_branch
+   use rbs_solve_one_body_body_damping, only: body_damping, decay_of
    use rbs_solve_one_body_rk4_one_body, only: rk4_body, resistance_per_velocity
    use rbs_solve_time_state, only: state_type
    implicit none
@@ -50,9 +51,10 @@ contains
    end subroutine method_to_body
 
    !> The column of a lane and its step.
-   pure subroutine lane_to_body(x, l, body)
+   pure subroutine lane_to_body(x, l, damping, body)
       type(lane_clock), intent(in) :: x
       integer, intent(in) :: l
+      type(body_damping), intent(in) :: damping
       type(one_body_step), intent(inout) :: body
 
       body%h = x%h(l)
@@ -62,14 +64,16 @@ contains
       body%lower = x%lower(l)
       body%upper = x%upper(l)
       body%softening = x%softening(l)
+      if (x%damped) body%damping = damping
       body%fits = .false.
    end subroutine lane_to_body
 
    !> The step of RK4 has ended, and only the springs have still to follow.
-   subroutine follow_springs(x, y, l, line, springs)
+   subroutine follow_springs(x, y, l, damping, line, springs)
       type(lane_clock), intent(inout) :: x
       type(body_arrays), intent(inout) :: y
       integer, intent(in) :: l
+      type(body_damping), intent(in) :: damping
       type(segment), intent(inout) :: line(2)
       type(spring_array), intent(inout) :: springs
       type(body_spring) :: spring
@@ -92,21 +96,22 @@ contains
          end if
          call spring_to_lane(y, l, i, spring)
       end do
-      call fit_resistance(x, y, l)
+      call fit_resistance(x, y, l, damping)
    end subroutine follow_springs
 
    !> Follow the trial of an implicit step along the lines of the springs.
-   subroutine follow_trial(x, y, l, body, line, springs, taken)
+   subroutine follow_trial(x, y, l, damping, body, line, springs, taken)
       type(lane_clock), intent(inout) :: x
       type(body_arrays), intent(inout) :: y
       integer, intent(in) :: l
+      type(body_damping), intent(in) :: damping
       type(one_body_step), intent(inout) :: body
       type(segment), intent(inout) :: line(2)
       type(spring_array), intent(inout) :: springs
       logical, intent(out) :: taken
       integer :: i
 
-      call lane_to_body(x, l, body)
+      call lane_to_body(x, l, damping, body)
       body%ground = x%trial(l, 4)
       body%work = x%trial(l, 3)
       do i = 1, 2
@@ -125,6 +130,10 @@ contains
       x%steps(l) = x%steps(l) + 1.0_wp
       springs%events = springs%events + body%events
       x%of_loads(l) = x%of_loads(l) - 0.5_wp*(x%ground(l) + body%ground)*body%mass(1)*body%moved(1)
+      if (x%damped) then
+         x%of_damping(l) = x%of_damping(l) + body%work_of_damping(body%v0)
+         x%c(l, :) = body%c
+      end if
       x%ground(l) = body%ground
       y%v(l, 1) = body%v1(1) - body%lower*body%v1(2)
       y%v(l, 2) = body%v1(2)
@@ -189,11 +198,12 @@ contains
       if (implicit) then
          call body%set_step(x%h(l))
          x%per_h(l) = body%per_h
-         call lane_to_body(x, l, body)
+         call lane_to_body(x, l, state%motion%damping, body)
          call body%fit_to(state%springs)
          x%inverse(l, :) = body%inverse
+         x%c(l, :) = body%c
       else
-         call fit_resistance(x, y, l)
+         call fit_resistance(x, y, l, state%motion%damping)
       end if
    end subroutine lines_to_lane
 
@@ -211,10 +221,11 @@ contains
    end subroutine lines_from_lane
 
    !> What a step of RK4 needs of the present lines.
-   pure subroutine fit_resistance(x, y, l)
+   pure subroutine fit_resistance(x, y, l, damping)
       type(lane_clock), intent(inout) :: x
       type(body_arrays), intent(in) :: y
       integer, intent(in) :: l
+      type(body_damping), intent(in) :: damping
       real(wp) :: g(4)
       integer :: i
 
@@ -223,6 +234,9 @@ contains
       do i = 1, 4
          x%g(l, i) = g(i)
       end do
+      if (.not. x%damped) return
+      x%c(l, :) = damping%on_lines(y%k(l, 1), y%k(l, 2))
+      x%d(l, :) = decay_of(x%flexible(l), x%coupling(l), x%turning(l), x%c(l, :))
    end subroutine fit_resistance
 
 end module rbs_solve_ensemble_one_body_lane

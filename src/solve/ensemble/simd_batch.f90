@@ -8,17 +8,12 @@ module rbs_solve_ensemble_simd_batch
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_segment, only: segment
-   use rbs_structure_column_column, only: column_type
    use rbs_loading_loads, only: loads_type, horizontal
    use rbs_output_summary, only: summary_type
    use rbs_solve_ensemble_dispatch, only: chosen_kernel
-   use rbs_solve_ensemble_ensemble_input, only: column_of, ensemble_column, ensemble_motion, run_type, &
-                                                lane_task
-   use rbs_solve_ensemble_lane_arrays, only: lane_clock, lane_block, body_arrays, lane_method, kernel_type, &
-                                             lanes, few
-   use rbs_solve_ensemble_lane_choice, only: is_plain_body
-   use rbs_solve_ensemble_lane_state, only: fit_block, column_to_lane, springs_to_lane, motion_to_lane, &
-                                            bounds_to_lane, step_to_lane, springs_from_lane, &
+   use rbs_solve_ensemble_ensemble_input, only: ensemble_column, ensemble_motion, run_type, lane_task
+   use rbs_solve_ensemble_lane_arrays, only: lane_clock, body_arrays, lane_method, kernel_type, lanes
+   use rbs_solve_ensemble_lane_state, only: springs_to_lane, motion_to_lane, bounds_to_lane, step_to_lane, &
                                             motion_from_lane, step_from_lane, ground_from_lane
    use rbs_solve_ensemble_one_body_lane, only: body_to_lane, method_to_body, follow_springs, follow_trial, &
                                                lines_to_lane, lines_from_lane
@@ -43,22 +38,19 @@ module rbs_solve_ensemble_simd_batch
       !> The run alone, which knows the rules of its springs
       type(state_type) :: state
       class(stepper_type), allocatable :: stepper
-      !> Lines of one body without damping
+      !> Lines of its springs
       type(segment) :: line(2)
    end type lane_type
 
    type :: batch_type
       type(kernel_type) :: kernel
-      !> Whether the columns are one body without damping
-      logical :: one_body = .false.
+      type(lane_method) :: method
       !> The lanes, in a room that begins where a line of the cache does: an access to several lanes that
       !> crosses the border of two lines takes twice the time
       real(wp), allocatable :: room(:)
       type(lane_clock), pointer :: x => null()
-      type(lane_block), allocatable :: block(:)
-      !> The only block of columns of one body without damping, and their steps on which springs leave their
-      !> lines
       type(body_arrays), pointer :: y => null()
+      !> Steps on which springs leave their lines
       type(one_body_step) :: body
       type(lane_type), allocatable :: lane(:)
       !> All motions one after the other, each followed by two more points [s, m/s2], and the place of the
@@ -84,7 +76,7 @@ contains
       integer :: next, busy, l
 
       if (size(task) == 0) return
-      call create_batch(batch, column_of(column(run(task(1)%run)%column)), motion, level)
+      call create_batch(batch, column(run(task(1)%run)%column)%structure%damped, motion, level)
       next = 0
       busy = 0
       do l = 1, lanes
@@ -101,7 +93,7 @@ contains
          integer :: count, list(lanes), failed, fails(lanes), j
          type(error_type), allocatable :: error
 
-         call batch%kernel%advance(batch%x, batch%block, count, list)
+         call batch%kernel%advance(batch%x, batch%y, batch%method, count, list)
          failed = 0
          do j = 1, count
             call finish_step_scalar(batch, list(j), error)
@@ -110,8 +102,8 @@ contains
             fails(failed) = list(j)
             call unload(batch, list(j), task, result, error)
          end do
-         call batch%kernel%finish(batch%x, batch%block, size(batch%time), batch%time, batch%acceleration, &
-                                  count, list)
+         call batch%kernel%finish(batch%x, batch%y, size(batch%time), batch%time, batch%acceleration, count, &
+                                  list)
          if (batch%x%any_beyond > 0.5_wp) call look_closely(batch)
          do j = 1, count
             call unload(batch, list(j), task, result, error)
@@ -154,32 +146,28 @@ contains
 
    end subroutine run_in_lanes
 
-   !> Lanes for columns of the size and the kind of damping of one, without runs, and the motions.
-   subroutine create_batch(batch, column, motion, level)
+   !> Lanes without runs, and the motions.
+   subroutine create_batch(batch, damped, motion, level)
       type(batch_type), intent(inout), target :: batch
-      type(column_type), intent(in) :: column
+      !> Whether the columns are
+      logical, intent(in) :: damped
       type(ensemble_motion), intent(in) :: motion(:)
       integer, intent(in) :: level
-      !> Numbers in a line of the cache, and arrays of a block
-      integer, parameter :: line = 8, arrays = 16
+      !> Numbers in a line of the cache
+      integer, parameter :: line = 8
       integer(c_intptr_t) :: address
-      integer :: width, clock, taken, j, m, at
+      integer :: first, clock, bodies, j, m, at
 
-      batch%one_body = is_plain_body(column)
-      batch%kernel = chosen_kernel(level, batch%one_body)
-      width = merge(lanes, few, batch%one_body)
+      batch%kernel = chosen_kernel(level)
       clock = line*ceiling(storage_size(batch%x)/real(line*storage_size(1.0_wp), wp))
-      allocate (batch%room(line + clock + arrays*lanes*2*column%n), source=0.0_wp)
+      bodies = storage_size(batch%y)/storage_size(1.0_wp)
+      allocate (batch%room(line + clock + bodies), batch%lane(lanes))
       address = transfer(c_loc(batch%room), address)/(storage_size(1.0_wp)/8)
-      taken = int(modulo(-address, int(line, c_intptr_t)))
-      call c_f_pointer(c_loc(batch%room(taken + 1)), batch%x)
-      batch%x = lane_clock()
-      taken = taken + clock
-      allocate (batch%block(lanes/width), batch%lane(lanes))
-      do j = 1, size(batch%block)
-         call fit_block(batch%block(j), batch%room, taken, (j - 1)*width, width, column)
-      end do
-      if (batch%one_body) call c_f_pointer(c_loc(batch%block(1)%q), batch%y)
+      first = int(modulo(-address, int(line, c_intptr_t))) + 1
+      call c_f_pointer(c_loc(batch%room(first)), batch%x)
+      call c_f_pointer(c_loc(batch%room(first + clock)), batch%y)
+      batch%x = lane_clock(damped=damped)
+      batch%y = body_arrays()
       at = 0
       do j = 1, size(motion)
          at = at + size(motion(j)%time) + 2
@@ -210,11 +198,9 @@ contains
       integer, intent(in) :: first
       type(lane_task), intent(in) :: task
       type(error_type), allocatable, intent(out) :: error
-      integer :: i
 
       call load_motion(motion, first, task, batch%x, l)
-      associate (x => batch%x, b => batch%block((l - 1)/batch%block(1)%width + 1), lane => batch%lane(l))
-         i = l - b%base
+      associate (x => batch%x, y => batch%y, lane => batch%lane(l))
          if (lane%column == place .and. .not. abs(lane%dt - x%h(l)) > 0.0_wp) then
             call ground_from_lane(x, l, lane%state)
             call restart_state(lane%state)
@@ -228,11 +214,9 @@ contains
          call lane%state%sight%watch_for(column%watch, column%states)
          call lane%state%begin_sight(column%analysis%collapse_drift, .false.)
          x%furthest(l) = lane%state%sight%furthest
-         call motion_to_lane(x, b, i, lane%state)
-         call springs_to_lane(b, i, lane%state)
-         if (batch%one_body) then
-            call lines_to_lane(x, batch%y, l, lane%state, batch%body, b%method%implicit, lane%line)
-         end if
+         call motion_to_lane(x, y, l, lane%state)
+         call springs_to_lane(y, l, lane%state)
+         call lines_to_lane(x, y, l, lane%state, batch%body, batch%method%implicit, lane%line)
          x%seen(l) = 0.0_wp
          x%t(l) = 0.0_wp
          x%steps(l) = 0.0_wp
@@ -256,7 +240,7 @@ contains
       type(loads_type) :: loads
       type(initial_state) :: at_rest
 
-      associate (x => batch%x, b => batch%block((l - 1)/batch%block(1)%width + 1), lane => batch%lane(l))
+      associate (x => batch%x, y => batch%y, lane => batch%lane(l))
          lane%column = 0
          loads%signal(horizontal)%time = [x%begin(l), x%finish(l), x%next_finish(l)]
          loads%signal(horizontal)%value = [x%value(l), x%next_value(l), x%after_value(l)]
@@ -265,15 +249,12 @@ contains
          call new_stepper(lane%stepper, column%structure, column%analysis, task%plan)
          select type (stepper => lane%stepper)
          type is (implicit_stepper)
-            b%method = lane_method(.true., stepper%step%alpha_m, stepper%step%alpha_f, stepper%step%beta, &
-                                   stepper%step%gamma, stepper%wanted, stepper%acceptable)
+            batch%method = lane_method(.true., stepper%step%alpha_m, stepper%step%alpha_f, &
+                                       stepper%step%beta, stepper%step%gamma, stepper%wanted, &
+                                       stepper%acceptable)
          end select
-         if (batch%one_body) then
-            call body_to_lane(x, l, lane%state)
-            call method_to_body(b%method, batch%body)
-         else
-            call column_to_lane(b, l - b%base, column_of(column), lane%state%motion)
-         end if
+         call body_to_lane(x, l, lane%state)
+         call method_to_body(batch%method, batch%body)
       end associate
    end subroutine create_run
 
@@ -317,89 +298,67 @@ contains
       type(error_type), allocatable, intent(out) :: error
       logical :: taken
 
-      associate (x => batch%x, b => batch%block((l - 1)/batch%block(1)%width + 1), lane => batch%lane(l), &
+      associate (x => batch%x, y => batch%y, lane => batch%lane(l), &
                  state => batch%lane(l)%state)
          taken = .false.
          if (x%tried(l) > 0.5_wp) then
             ! Of RK4 the step has ended, and only the springs have still to follow.
-            if (b%method%implicit) then
-               call follow_trial(x, batch%y, l, batch%body, lane%line, state%springs, taken)
-            else if (batch%one_body) then
-               call follow_springs(x, batch%y, l, lane%line, state%springs)
-               taken = .true.
+            if (batch%method%implicit) then
+               call follow_trial(x, y, l, state%motion%damping, batch%body, lane%line, state%springs, taken)
             else
-               call springs_from_lane(b, l - b%base, b%from, state)
-               state%q(:) = b%q(l - b%base, :)
-               call state%springs%move_all(state%q)
-               call springs_to_lane(b, l - b%base, state)
+               call follow_springs(x, y, l, state%motion%damping, lane%line, state%springs)
                taken = .true.
             end if
             if (taken) state%time = x%t(l) + x%h(l)
          end if
-         if (.not. taken) call step_alone(batch, x, b, lane, l, error)
+         if (.not. taken) call step_alone(batch, x, y, lane, l, error)
          if (allocated(error)) return
          if (state%lost .or. state%springs%stuck) call report_state(state, error)
       end associate
    end subroutine finish_step_scalar
 
    !> A whole step by the method of the run itself.
-   subroutine step_alone(batch, x, b, lane, l, error)
+   subroutine step_alone(batch, x, y, lane, l, error)
       type(batch_type), intent(inout) :: batch
       type(lane_clock), intent(inout) :: x
-      type(lane_block), intent(inout) :: b
+      type(body_arrays), intent(inout) :: y
       type(lane_type), intent(inout) :: lane
       integer, intent(in) :: l
       type(error_type), allocatable, intent(out) :: error
-      integer :: i
 
-      i = l - b%base
-      if (batch%one_body) then
-         call lines_from_lane(batch%y, l, lane%line, lane%state%springs)
-      else
-         call springs_from_lane(b, i, b%q, lane%state)
-      end if
-      call motion_from_lane(x, b, i, lane%state)
+      call lines_from_lane(y, l, lane%line, lane%state%springs)
+      call motion_from_lane(x, y, l, lane%state)
       select type (stepper => lane%stepper)
       type is (implicit_stepper)
          ! Before its first step the method has nothing to start from.
-         if (x%steps(l) + stepper%steps > 0.5_wp) call step_from_lane(b, i, stepper)
+         if (x%steps(l) + stepper%steps > 0.5_wp) call step_from_lane(y, l, stepper)
       end select
       call lane%stepper%advance(lane%state, x%h(l), error)
       if (allocated(error) .or. lane%state%lost .or. lane%state%springs%stuck) return
       x%ready(l) = 1.0_wp
-      call motion_to_lane(x, b, i, lane%state)
-      call springs_to_lane(b, i, lane%state)
+      call motion_to_lane(x, y, l, lane%state)
+      call springs_to_lane(y, l, lane%state)
       select type (stepper => lane%stepper)
       type is (implicit_stepper)
-         call step_to_lane(b, i, stepper)
-         if (.not. batch%one_body) then
-            call stepper%tangent%fit(stepper%step, lane%state, x%h(l))
-            ! Lanes cannot solve with a tangent that is not positive definite.
-            x%ready(l) = merge(1.0_wp, 0.0_wp, stepper%tangent%matrix%positive)
-            b%tangent(i, :, :) = stepper%tangent%matrix%triangle
-         end if
+         call step_to_lane(y, l, stepper)
       end select
-      if (batch%one_body) then
-         call lines_to_lane(x, batch%y, l, lane%state, batch%body, b%method%implicit, lane%line)
-      end if
+      call lines_to_lane(x, y, l, lane%state, batch%body, batch%method%implicit, lane%line)
    end subroutine step_alone
 
    !> Lanes in which a limit state may have been reached.
    subroutine look_closely(batch)
       type(batch_type), intent(inout) :: batch
-      integer :: l, i
+      integer :: l
 
       do l = 1, lanes
          if (batch%x%beyond(l) < 0.5_wp) cycle
-         associate (x => batch%x, b => batch%block((l - 1)/batch%block(1)%width + 1), &
-                    state => batch%lane(l)%state)
-            i = l - b%base
-            state%sight%q(:) = b%from(i, :)
+         associate (x => batch%x, y => batch%y, state => batch%lane(l)%state)
+            state%sight%q(:) = y%from(l, :)
             ! A step that was cut has been seen within.
             state%sight%clock = max(state%sight%clock, x%seen(l))
-            state%q(:) = b%q(i, :)
+            state%q(:) = y%q(l, :)
             call state%sight%look(state%springs, state%q, x%displacement(l), x%t(l))
-            call bounds_to_lane(b, i, state)
+            call bounds_to_lane(y, l, state)
          end associate
       end do
    end subroutine look_closely
@@ -413,7 +372,7 @@ contains
       type(error_type), allocatable, intent(in) :: error
       type(summary_type) :: summary
 
-      associate (x => batch%x, b => batch%block((l - 1)/batch%block(1)%width + 1), lane => batch%lane(l), &
+      associate (x => batch%x, y => batch%y, lane => batch%lane(l), &
                  this => task(batch%lane(l)%task))
          summary%last_displacement = x%displacement(l)
          summary%last_time = x%t(l)
@@ -423,7 +382,7 @@ contains
          summary%peak_rotation = x%rotation(l)
          summary%collapsed = abs(x%peak(l)) >= x%furthest(l)
          summary%energy%input = x%of_loads(l)
-         summary%energy%spring = sum(b%work(l - b%base, :))
+         summary%energy%spring = sum(y%work(l, :))
          summary%energy%damping = x%of_damping(l)
          summary%residual = x%residual(l)
          summary%largest = x%most(l)

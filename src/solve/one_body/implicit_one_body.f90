@@ -1,4 +1,4 @@
-!> Implicit steps of one body without damping, with small rotations: the equations of
+!> Implicit steps of one body with small rotations: the equations of
 !> `rbs_solve_time_implicit_balance` with all numbers in one record of fixed size, for a run alone and for a
 !> lane of an ensemble. On the present lines the tangent of two by two is inverted once for all steps; a step
 !> on which springs leave their lines is found by Newton's method. Where a step is not found here, nothing has
@@ -13,6 +13,7 @@ module rbs_solve_one_body_implicit_one_body
    use rbs_hysteresis_rule, only: spring_slot
    use rbs_hysteresis_segment, only: segment, first_on, last_on
    use rbs_hysteresis_springs, only: spring_array, most_lines
+   use rbs_solve_one_body_body_damping, only: body_damping
    implicit none
    private
 
@@ -46,6 +47,9 @@ module rbs_solve_one_body_implicit_one_body
       !> The column: mass and rotary inertia, distances of the centroid from bottom and top, and the moment of
       !> the axial force per rotation
       real(wp) :: mass(2) = 1.0_wp, lower = 0.0_wp, upper = 0.0_wp, softening = 0.0_wp
+      !> Its damping, and C on the lines that the tangent is for
+      type(body_damping) :: damping
+      real(wp) :: c(3) = 0.0_wp
       !> Deformations, velocities, accelerations and forces at the start; the largest forces so far
       real(wp) :: q0(2) = 0.0_wp, v0(2) = 0.0_wp, a0(2) = 0.0_wp, g0(2) = 0.0_wp, largest(2) = 0.0_wp
       !> The springs at the start, and now, which is the same at first; branches left
@@ -74,6 +78,7 @@ module rbs_solve_one_body_implicit_one_body
       procedure :: take_step
       procedure :: fit_to
       procedure :: solve
+      procedure :: work_of_damping
    end type one_body_step
 
 contains
@@ -101,6 +106,7 @@ contains
       logical, intent(out) :: taken
       real(wp) :: before_1, before_2, shear, moment, moved_1, moved_2, to_1, to_2
       real(wp) :: v1_1, v1_2, a1_1, a1_2, g1_1, g1_2, start_1, start_2, rest_1, rest_2, scale_1, scale_2
+      real(wp) :: x12, x22
 
       taken = .false.
       call self%fit_to(springs)
@@ -109,6 +115,7 @@ contains
                  lower => self%lower, upper => self%upper, softening => self%softening, &
                  inverse_11 => self%inverse(1), inverse_12 => self%inverse(2), &
                  inverse_21 => self%inverse(3), inverse_22 => self%inverse(4), &
+                 damped => self%damping%acts, c11 => self%c(1), c12 => self%c(2), c22 => self%c(3), &
                  d0_1 => springs%d0(1), f0_1 => springs%f0(1), k_1 => springs%k(1), &
                  d0_2 => springs%d0(2), f0_2 => springs%f0(2), k_2 => springs%k(2), &
                  q_1 => q(1), q_2 => q(2), v0_1 => v0(1), v0_2 => v0(2), a0_1 => a0(1), a0_2 => a0(2), &
@@ -221,17 +228,24 @@ contains
    !> Find the inverse of the tangent on the present lines.
    pure subroutine fit(self)
       type(one_body_step), intent(inout) :: self
-      real(wp) :: of_mass, shear, along, across, about, share
+      real(wp) :: of_mass, per_velocity, shear, both, along, across, about, share
 
       if (self%fits .and. .not. (abs(self%spring(1)%line%k - self%stiffness(1)) > 0.0_wp .or. &
                                  abs(self%spring(2)%line%k - self%stiffness(2)) > 0.0_wp)) return
       self%stiffness(1) = self%spring(1)%line%k
       self%stiffness(2) = self%spring(2)%line%k
       of_mass = (1.0_wp - self%alpha_m)*self%per_h
-      shear = (1.0_wp - self%alpha_f)*self%stiffness(1)
+      per_velocity = 0.0_wp
+      if (self%damping%acts) then
+         self%c = self%damping%on_lines(self%stiffness(1), self%stiffness(2))
+         per_velocity = (self%h*self%gamma)*self%per_h
+      end if
+      shear = (1.0_wp - self%alpha_f)*(self%stiffness(1) + per_velocity*self%c(1))
+      both = (1.0_wp - self%alpha_f)*(per_velocity*self%c(2))
       along = shear + of_mass*self%mass(1)
-      across = -shear*self%lower
-      about = shear*self%lower**2 + (1.0_wp - self%alpha_f)*self%stiffness(2) + of_mass*self%mass(2) &
+      across = both - shear*self%lower
+      about = shear*self%lower**2 - 2.0_wp*self%lower*both &
+              + (1.0_wp - self%alpha_f)*(self%stiffness(2) + per_velocity*self%c(3)) + of_mass*self%mass(2) &
               - (1.0_wp - self%alpha_f)*self%softening
       ! Where the column softens more than its inertia holds, the pivot is negative. One that is nearly zero
       ! gives a step that does not converge.
@@ -349,7 +363,7 @@ contains
    !> What is left of the balance where the body has moved so far.
    pure subroutine find_residual(self)
       type(one_body_step), intent(inout) :: self
-      real(wp) :: shear, moment, inertia_1, inertia_2
+      real(wp) :: shear, moment, inertia_1, inertia_2, v(2), c(3), damping(2)
 
       self%a1(1) = (self%moved(1) - self%before(1))*self%per_h
       self%a1(2) = (self%moved(2) - self%before(2))*self%per_h
@@ -361,11 +375,31 @@ contains
       end associate
       self%g(1) = (self%push - shear) - self%mass(1)*self%ground
       self%g(2) = ((self%lower*shear + self%upper*self%push) - moment) + self%softening*self%q(2)
+      if (self%damping%acts) then
+         v = self%v0 + (self%h*(1.0_wp - self%gamma))*self%a0 + (self%h*self%gamma)*self%a1
+         v(1) = v(1) - self%lower*v(2)
+         c = self%damping%on_lines(self%spring(1)%line%k, self%spring(2)%line%k)
+         damping = [c(1)*v(1) + c(2)*v(2), c(2)*v(1) + c(3)*v(2)]
+         self%g(1) = self%g(1) - damping(1)
+         self%g(2) = self%g(2) + (self%lower*damping(1) - damping(2))
+      end if
       self%r(1) = (1.0_wp - self%alpha_f)*self%g(1) + (self%carried(1) - (1.0_wp - self%alpha_m)*inertia_1)
       self%r(2) = (1.0_wp - self%alpha_f)*self%g(2) + (self%carried(2) - (1.0_wp - self%alpha_m)*inertia_2)
       self%scale(1) = max(self%largest(1), abs(shear), abs(self%push), abs(inertia_1))
       self%scale(2) = max(self%largest(2), abs(moment), abs(self%push)*self%upper, abs(inertia_2))
    end subroutine find_residual
+
+   !> Work of the damping in the step that has been found [J].
+   pure real(wp) function work_of_damping(self, v0) result(work)
+      class(one_body_step), intent(in) :: self
+      !> Velocities of the body at its start
+      real(wp), intent(in) :: v0(2)
+      real(wp) :: v(2)
+
+      v = 0.5_wp*(v0 + self%v1)
+      v(1) = v(1) - self%lower*v(2)
+      work = self%h*(self%c(1)*v(1)**2 + 2.0_wp*self%c(2)*v(1)*v(2) + self%c(3)*v(2)**2)
+   end function work_of_damping
 
    !> By which end of the line a deformation lies: +1, -1, or 0 if it lies on the line.
    pure integer function side_of(spring, d) result(side)

@@ -1,10 +1,11 @@
-!> The classical Runge-Kutta step for the paper's column: one body, small rotations, no damping, lateral force
-!> and horizontal ground motion. The two unknowns stay in registers, while the loops of a chain and their
+!> The classical Runge-Kutta step for the paper's column: one body, small rotations, lateral force and
+!> horizontal ground motion. The two unknowns stay in registers, while the loops of a chain and their
 !> calls would take nearly all of the time. The equations are those of the chain.
 module rbs_solve_one_body_rk4_one_body
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column, only: column_type, small
    use rbs_hysteresis_springs, only: spring_array
+   use rbs_solve_one_body_body_damping, only: body_damping, decay_of
    implicit none
    private
 
@@ -16,8 +17,9 @@ module rbs_solve_one_body_rk4_one_body
       real(wp) :: flexible = 0.0_wp, coupling = 0.0_wp, turning = 0.0_wp, softening = 0.0_wp
       !> Distance of the centroid from the joint, length [m], and mass; accelerations by a lateral force
       real(wp), private :: lower = 0.0_wp, height = 0.0_wp, mass = 0.0_wp, push(2) = 0.0_wp
-      !> See `resistance_per_velocity`; the step and the lines that it belongs to
-      real(wp), private :: g(4) = 0.0_wp, h = -1.0_wp
+      !> See `resistance_per_velocity`, `decay_of` and `body_damping`; the step and the lines that they belong
+      !> to
+      real(wp), private :: g(4) = 0.0_wp, d(4) = 0.0_wp, c(3) = 0.0_wp, h = -1.0_wp
       integer, private :: version = -1
    contains
       procedure :: create
@@ -53,16 +55,17 @@ contains
       end if
    end function softening_of
 
-   !> The step on the present lines of both springs, and the work of the loads in it [J]. Acceleration needs
-   !> no velocity here, so stages 1 and 2, and 3 and 4, do not wait for each other.
-   subroutine take_step(self, springs, h, load_force, load_ground, q, v, of_loads)
+   !> The step on the present lines of both springs, and the works of loads and damping in it [J]. Without
+   !> damping acceleration needs no velocity, so stages 1 and 2, and 3 and 4, do not wait for each other.
+   subroutine take_step(self, springs, damping, h, load_force, load_ground, q, v, of_loads, of_damping)
       class(rk4_body), intent(inout) :: self
       type(spring_array), intent(in) :: springs
+      type(body_damping), intent(in) :: damping
       !> Step [s]; lateral force [N] and acceleration of the ground [m/s2] at its start, middle and end
       real(wp), intent(in) :: h, load_force(3), load_ground(3)
       !> Deformations and velocities
       real(wp), intent(inout) :: q(2), v(2)
-      real(wp), intent(out) :: of_loads
+      real(wp), intent(out) :: of_loads, of_damping
       real(wp) :: half, sixth, q_1, q_2, v_1, v_2, shear, flexure, back_1, back_2, mid_1, mid_2, of_ground
       real(wp) :: along_1, along_2, along_3, about_1, about_2, about_3, of_force
       real(wp) :: u1, u2, u3, u4, r1, r2, r3, r4, a1, a2, a3, a4, b1, b2, b3, b4
@@ -74,9 +77,15 @@ contains
                  d0_1 => springs%d0(1), f0_1 => springs%f0(1), k_1 => springs%k(1), &
                  d0_2 => springs%d0(2), f0_2 => springs%f0(2), k_2 => springs%k(2), &
                  g11 => self%g(1), g12 => self%g(2), g21 => self%g(3), g22 => self%g(4), &
+                 damped => damping%acts, c11 => self%c(1), c12 => self%c(2), c22 => self%c(3), &
+                 d11 => self%d(1), d12 => self%d(2), d21 => self%d(3), d22 => self%d(4), &
                  ground_1 => load_ground(1), ground_2 => load_ground(2), ground_3 => load_ground(3))
          if (self%version /= springs%version .or. abs(h - self%h) > 0.0_wp) then
             self%g = resistance_per_velocity(flexible, coupling, turning, softening, k_1, k_2, half)
+            if (damping%acts) then
+               self%c = damping%on_lines(k_1, k_2)
+               self%d = decay_of(flexible, coupling, turning, self%c)
+            end if
             self%version = springs%version
             self%h = h
          end if

@@ -14,9 +14,9 @@ module rbs_solve_time_implicit
    use rbs_solve_time_implicit_finite, only: finite_stepper
    use rbs_solve_time_implicit_balance, only: step_balance, step_tangent
    use rbs_loading_loads, only: lateral, horizontal
+   use rbs_solve_time_motion, only: motion_type
    use rbs_solve_time_newton, only: newton_stepper
    use rbs_solve_time_state, only: state_type
-   use rbs_structure_column_column, only: column_type
    implicit none
    private
 
@@ -104,14 +104,14 @@ contains
 
    contains
 
-      !> Take a step of one body without damping. If it is not found so, nothing has happened.
+      !> Take a step of one body. If it is not found so, nothing has happened.
       subroutine take_step_of_one_body()
          real(wp) :: mean(2)
 
          associate (step => self%step, body => self%one_body, motion => state%motion, h => self%h, &
                     load => self%load)
             body%wanted = self%wanted
-            if (abs(h - body%h) > 0.0_wp) call fit_one_body(body, step, motion%one_body, h)
+            if (abs(h - body%h) > 0.0_wp) call fit_one_body(body, step, motion, h)
             call body%take_step(state%springs, state%q, step%v0, step%a0, step%g0, step%largest, &
                                 load(lateral), load(horizontal), self%converged)
             if (.not. self%converged) return
@@ -123,6 +123,7 @@ contains
             if (motion%acts(horizontal)) then
                state%of_loads = state%of_loads - mean(horizontal)*body%mass(1)*body%moved(1)
             end if
+            if (motion%damped) state%of_damping = state%of_damping + body%work_of_damping(step%v0)
             ! Both elements one by one: the compiler does not know that there are no more.
             state%v(1) = body%v1(1) - body%lower*body%v1(2)
             state%v(2) = body%v1(2)
@@ -271,20 +272,23 @@ contains
    end subroutine take_step
 
    !> Column, method and length of the step of one body.
-   pure subroutine fit_one_body(body, step, column, h)
+   pure subroutine fit_one_body(body, step, motion, h)
       type(one_body_step), intent(inout) :: body
       type(step_balance), intent(in) :: step
-      type(column_type), intent(in) :: column
+      type(motion_type), intent(in) :: motion
       real(wp), intent(in) :: h
 
       body%alpha_m = step%alpha_m
       body%alpha_f = step%alpha_f
       body%beta = step%beta
       body%gamma = step%gamma
-      body%mass = column%inertias(:2)
-      body%lower = column%lower(1)
-      body%upper = column%upper(1)
-      body%softening = softening_of(column)
+      body%damping = motion%damping
+      associate (column => motion%one_body)
+         body%mass = column%inertias(:2)
+         body%lower = column%lower(1)
+         body%upper = column%upper(1)
+         body%softening = softening_of(column)
+      end associate
       call body%set_step(h)
    end subroutine fit_one_body
 

@@ -11,6 +11,7 @@ module rbs_solve_time_motion
    use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_modal_matrices, only: modal_damping
+   use rbs_solve_one_body_body_damping, only: body_damping, damping_of_body
    use rbs_loading_loads, only: lateral, horizontal, vertical, top_axial
    use rbs_structure_structure, only: structure_type, motion_result, signals, pdelta, finite
    implicit none
@@ -20,9 +21,10 @@ module rbs_solve_time_motion
 
    type :: motion_type
       class(structure_type), pointer :: structure => null()
-      !> The structure where it is a column of one body without damping under lateral force and horizontal
-      !> ground motion, its rotations small: such runs have forms of their own
+      !> The structure where it is a column of one body under lateral force and horizontal ground motion, its
+      !> rotations small: such runs have forms of their own; its damping there
       type(column_type), pointer :: one_body => null()
+      type(body_damping) :: damping
       !> Which of the loads act (see `rbs_loading_loads`), and whether axial forces vary
       logical :: acts(4) = .false., varies = .false.
       !> Damping of the springs, beta k0 (springs) [N s/m, N m s]; modal damping (springs, springs); allocated
@@ -67,10 +69,11 @@ contains
       end if
       self%second_order = structure%kinematics == pdelta .and. (structure%axially_loaded .or. self%varies)
       self%plain = structure%kinematics /= finite .and. .not. (self%damped .or. self%varies)
-      if (.not. self%plain .or. structure%unknowns /= 2) return
+      if (structure%kinematics == finite .or. self%varies .or. structure%unknowns /= 2) return
       select type (structure)
       type is (column_type)
          self%one_body => structure
+         self%damping = damping_of_body(structure, self%joint_damping, self%modal)
       end select
    end subroutine create
 
@@ -171,7 +174,7 @@ contains
       f = f0 + k*(q - d0)
    end subroutine on_lines
 
-   !> Forces of the modal damping, summed in the order that lanes of ensembles have too.
+   !> Forces of the modal damping.
    pure function modal_forces(m, modal, v) result(f)
       integer, intent(in) :: m
       real(wp), intent(in) :: modal(m, m), v(m)
@@ -228,8 +231,14 @@ contains
       class(motion_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in) :: q(springs%count), v(springs%count)
+      real(wp) :: c(3)
       integer :: i
 
+      if (associated(self%one_body)) then
+         c = self%damping%on_lines(springs%k(1), springs%k(2))
+         force = springs%f0(1) + springs%k(1)*(q(1) - springs%d0(1)) + (c(1)*v(1) + c(2)*v(2))
+         return
+      end if
       associate (structure => self%structure)
          i = structure%base_spring
          if (i == 0) then

@@ -67,12 +67,12 @@ contains
       call state%loads%at_time(state%time + h, load(:, 3))
       self%load = load(:, 3)
       if (associated(state%motion%one_body)) then
-         self%of_damping = 0.0_wp
          push = load(lateral, :)
          ground = load(horizontal, :)
          self%q(:) = state%q
          self%v(:) = state%v
-         call self%body%take_step(state%springs, h, push, ground, self%q, self%v, self%of_loads)
+         call self%body%take_step(state%springs, state%motion%damping, h, push, ground, self%q, self%v, &
+                                  self%of_loads, self%of_damping)
       else
          call step_of_chain(self, state, h, load)
       end if
@@ -168,7 +168,7 @@ contains
       type(rk4_body), intent(inout) :: body
       type(state_type), intent(inout) :: state
       real(wp), intent(in) :: h
-      real(wp) :: force(3), ground(3), of_loads
+      real(wp) :: force(3), ground(3), of_loads, of_damping
 
       force = 0.0_wp
       ground = 0.0_wp
@@ -182,11 +182,13 @@ contains
          ground(2) = state%loads%signal(horizontal)%at_time(state%time + 0.5_wp*h)
          ground(3) = state%loads%signal(horizontal)%at_time(state%time + h)
       end if
-      call body%take_step(state%springs, h, force, ground, state%q, state%v, of_loads)
+      call body%take_step(state%springs, state%motion%damping, h, force, ground, state%q, state%v, of_loads, &
+                          of_damping)
       state%time = state%time + h
       state%load(lateral) = force(3)
       state%load(horizontal) = ground(3)
       state%of_loads = state%of_loads + of_loads
+      state%of_damping = state%of_damping + of_damping
       state%lost = .not. (abs(state%q(1)) < out_of_bounds .and. abs(state%q(2)) < out_of_bounds)
       if (.not. state%lost) call state%springs%move_all(state%q)
    end subroutine advance_one_body
