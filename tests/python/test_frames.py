@@ -450,6 +450,95 @@ def test_second_order_work_between_springs_is_that_of_the_chord(height, most):
     assert (without / whole - 1 > 3 * most).all()
 
 
+def fixed_and_propped(divided: float, load: float, kind: FrameMember) -> Frame:
+    """Return a beam of 6 m, fixed at its start and on a roller, of one member or of two."""
+    nodes = [FrameNode("a", 0, 0, "fixed"), FrameNode("b", 6, 0, "roller")]
+    places = ["a", "b"]
+    if divided:
+        nodes.append(FrameNode("m", 6 * divided, 0))
+        places.insert(1, "m")
+    members = [
+        Member(f"B{i}", *pair, kind, load=load) for i, pair in enumerate(itertools.pairwise(places))
+    ]
+    return Frame(nodes=nodes, members=members, control_node="b", pattern="uniform")
+
+
+def test_the_span_of_a_beam_yields_where_its_moment_is_largest():
+    """Limit analysis: (6 + 4 sqrt(2)) M_p/L^2 of a propped beam, with its hinge at 0.586 L.
+
+    Members have a point at their middle, which gives 12 M_p/L^2: what is beyond M_p between their
+    points is told with its place, and a node there makes the limit load exact.
+    """
+    plastic, exact, place = 1e5, 6 + 4 * np.sqrt(2), 2 - np.sqrt(2)
+    kind = FrameMember(E, A, INERTIA, yield_moment=plastic)
+
+    def still(divided: float, factor: float) -> rbsdem.frames.FrameResult:
+        beam = fixed_and_propped(divided, factor * plastic / 36, kind)
+        return rbsdem.cyclic(beam, displacement=[0.0])
+
+    for divided, factor in ((0.0, 12.0), (place, exact)):
+        stands = still(divided, factor - 1e-6)
+        assert stands.moment_from[0, 0] == pytest.approx(-plastic, rel=1e-6)
+        with pytest.raises(rbsdem.SolveError, match="dead load"):
+            still(divided, factor + 1e-6)
+    told = r"member B0: at 0.58 of its clear length the moment in its span reaches 1.03e\+05 N m"
+    with pytest.warns(rbsdem.errors.AccuracyWarning, match=told):
+        still(0.0, 11.9)
+
+
+@pytest.mark.parametrize(("load", "tells"), [(6e3, False), (20 * 6666.7, True)])
+def test_a_span_without_a_section_is_told(load, tells):
+    """Springs at the ends alone: w L^2/8 in the span of a simple beam, which never yields."""
+    ends = Bilinear(k=1e9, d_y=30e3 / 1e9, k_post=0.0)
+    kind = FrameMember(E, A, INERTIA, flexure=[ends, ends])
+    nodes = [FrameNode("a", 0, 0, "pinned"), FrameNode("b", 6, 0, "roller")]
+    beam = Frame(nodes=nodes, members=[Member("B", "a", "b", kind, load=load)], control_node="b",
+                 pattern="uniform")  # fmt: skip
+    with warnings.catch_warnings(record=True) as notes:
+        warnings.simplefilter("always")
+        rbsdem.cyclic(beam, displacement=[0.0])
+    ours = [str(note.message) for note in notes if "in its span" in str(note.message)]
+    assert len(ours) == tells
+    if tells:
+        assert ours[0].startswith("member B: at 0.50 of its clear length")
+        assert "6e+05 N m, 20.00 times" in ours[0]
+
+
+def test_a_drawn_beam_under_load_yields_in_its_span():
+    """A joint in the middle: moments near those of elastic ends, and 8 times two moments over L^2.
+
+    Without it the beam carries more than its section does, which is told.
+    """
+    length, ties = 8.0, Ties(0.01, 0.06, Steel(364e6, 521e6), legs=4)
+    bars = Layout(8, 0.018, Steel(446e6, 702e6))
+    section = RectangularSection(0.3, 0.5, Concrete(30e6), layout=bars, ties=ties, cover=0.03)
+    section_moment = rbsdem.section.diagram(section, 0.0).moment.max()
+    nodes = [FrameNode("a", 0, 0, "fixed"), FrameNode("c", 0, 3, push_x=1.0)]
+    nodes += [FrameNode("b", length, 0, "roller", flexure=Elastic(k=1e13))]
+
+    def bent(kind, load) -> tuple[float, float, rbsdem.frames.FrameResult]:
+        rows = [Member("B", "a", "b", kind, load=load), Member("post", "a", "c", ELASTIC)]
+        frame = Frame(nodes=nodes, members=rows, pattern="nodes", control_node="c")
+        still = rbsdem.cyclic(frame, displacement=[1e-5])
+        start, end = still.member("B").moment[0]
+        return -start, load * length**2 / 8 + (start - end) / 2, still
+
+    kind = rbsdem.section.member(section, length, under_load=True)
+    plain = rbsdem.section.member(section, length)
+    for one, share in ((kind, 0.90), (plain, 0.85)):  # hinges begin cracked, and their bars slip
+        ends, _, _ = bent(one, 15e3)
+        assert ends == pytest.approx(share * 15e3 * length**2 / 12, rel=0.02)
+    limit = 16 * section_moment / length**2
+    ends, span, still = bent(kind, 0.75 * limit)
+    assert {("start", "yield"), ("0.5", "yield")} <= {(one.end, one.what) for one in still.events}
+    assert max(ends, span) < section_moment
+    with pytest.raises(rbsdem.SolveError, match="dead load"):
+        bent(kind, limit)
+    with pytest.warns(rbsdem.errors.AccuracyWarning, match="in its span reaches"):
+        _, span, _ = bent(plain, 0.9 * limit)
+    assert span > section_moment
+
+
 def test_a_frame_of_drawings():
     """Cracked beams lengthen and press the columns: paths balance, more points change no bit."""
     column = rbsdem.section.member(drawn(0.4), 2.95, axial_load=400e3, panel=0.25)

@@ -28,6 +28,10 @@ _CHANNELS = {
     "axial_spring": ("opening", "axial_force"),
 }
 
+#: Moment in a span over what springs know, from which on it is told: where they say at which moment
+#: they yield, and where that is the largest that joints of layers have had.
+_OVER_YIELD, _OVER_LAYERS = 1.005, 1.05
+
 #: A threshold counts as reached within round-off: a path stands on it exactly.
 _REACHED = 1.0 - 1e-9
 
@@ -476,6 +480,74 @@ def landmarks_of(frame: Frame, spring: FrameSpring) -> list[Landmark]:
         ]
     own = None if spring.rule == "layered" else kind.at(spring.group, spring.place)
     return [] if own is None else list(own.landmarks())
+
+
+def span_note(result: FrameResult) -> str:
+    """Return a note on members that are bent most between their springs, beyond what these know.
+
+    The moment between the ends is a parabola, as the load on a member is uniform. Where no spring
+    stands it neither cracks nor yields: it is compared with the moment at which the flexural
+    springs of the member yield, and with the largest that they have.
+    """
+    frame, parts = result.frame, result.frame.parts
+    bent: dict[str, list[tuple[FrameSpring, float]]] = {}
+    for spring, _, force in result._springs():
+        if spring.group == "flexure":
+            largest = float(np.abs(force).max(initial=0.0))
+            bent.setdefault(spring.member, []).append((spring, largest))
+    found: list[tuple[float, str, float, float]] = []
+    for name, all_springs in bent.items():
+        load, at = frame.load_of(name), parts.members.index(name)
+        if not load:
+            continue
+        # Beside joints of layers stand springs that never yield.
+        layered = [own for own in all_springs if own[0].rule == "layered"]
+        springs, over = (layered, _OVER_LAYERS) if layered else (all_springs, _OVER_YIELD)
+        start, end = parts.ends[at]
+        axis = np.array([parts.x[end] - parts.x[start], parts.y[end] - parts.y[start]])
+        clear = float(np.linalg.norm(axis)) - sum(rigid_lengths(frame, name))
+        cosine = axis[0] / np.linalg.norm(axis)
+        across = load * abs(cosine) * cosine * clear**2
+        first, last = result.moment_from[:, at], result.moment_to[:, at]
+        place = 0.5 - (first + last) / across
+        moment = np.where(
+            (place > 0) & (place < 1), first - (first + last) * place
+            + 0.5 * across * place * (1 - place), 0.0,
+        )  # fmt: skip
+        row = int(np.abs(moment).argmax()) if moment.size else 0
+        known = max(largest for _, largest in springs)
+        if moment.size and abs(moment[row]) > over * known:
+            known = max(known, *(_yield_moment(frame, spring) for spring, _ in springs))
+        if moment.size and abs(moment[row]) > over * known:
+            ratio = float(abs(moment[row]) / known) if known else np.inf
+            found.append((ratio, name, float(abs(moment[row])), float(place[row])))
+    if not found:
+        return ""
+    ratio, name, largest, place = max(found)
+    more = f", and so in {len(found) - 1} more members" if len(found) > 1 else ""
+    return (
+        f"member {name}: at {place:.2f} of its clear length the moment in its span reaches "
+        f"{largest:.4g} N m, {ratio:.2f} times what its flexural springs yield at or carry{more}; "
+        "no spring stands there, so that nothing cracks or yields. Put a node there, or a spring "
+        "(flexure at a place, section.member with under_load=True)"
+    )
+
+
+def _yield_moment(frame: Frame, spring: FrameSpring) -> float:
+    """Return the moment at which a spring yields, infinite if it never does; 0 if not known."""
+    if spring.rule == "layered":
+        return 0.0
+    turned = [
+        point.side * point.deformation
+        for point in landmarks_of(frame, spring)
+        if point.name == "yield"
+    ]
+    own = frame.kind_of(spring.member).at(spring.group, spring.place)
+    if not turned:
+        return np.inf
+    if own is None:
+        return spring.stiffness * max(turned)
+    return max(float(abs(own.response([turn])[-1])) for turn in turned)
 
 
 def rigid_lengths(frame: Frame, member: str) -> tuple[float, float]:

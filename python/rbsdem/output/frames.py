@@ -293,7 +293,8 @@ def member_forces(
     result : FrameResult
         Response of a frame.
     force : {"moment", "axial"}, optional
-        Moments stand on the side in tension; compression is filled, tension is not.
+        Moments stand on the side in tension: those of the ends, and between them the parabola of
+        a load on the member. Compression is filled, tension is not.
     row : int, optional
         Row of the result, the last one by default.
     ax : matplotlib Axes, optional

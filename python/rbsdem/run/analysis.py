@@ -15,7 +15,7 @@ from rbsdem._types import Array, ArrayLike, Unpack
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError, warn
 from rbsdem.model.column import TELLING, Column
 from rbsdem.model.frame import Frame, Structure, checked_structure
-from rbsdem.model.frame_result import FrameResult, frame_result_of
+from rbsdem.model.frame_result import FrameResult, frame_result_of, span_note
 from rbsdem.model.response import Ended, Response, response_of, settings_of, state_of
 from rbsdem.motions.motion import GroundMotion, acting
 from rbsdem.run.solver import Solver, checked_solver
@@ -459,6 +459,8 @@ def _return(
     if error is not None:
         error.result = result
         raise error
-    if note:
-        _tell(note)
+    told = span_note(result) if isinstance(result, FrameResult) else ""
+    for text in (note, told):
+        if text:
+            _tell(text)
     return result

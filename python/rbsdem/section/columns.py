@@ -224,6 +224,7 @@ def member(
     model_parameters: ModelParameters | None = None,
     restrained: int | None = None,
     panel: float = 0.0,
+    under_load: bool = False,
     name: str = "",
 ) -> FrameMember:
     """Return the kind of members of a frame with this section: each half is a layered column.
@@ -248,6 +249,9 @@ def member(
     model_parameters, restrained
         As for `column`; by default bars of members without axial load neither grow stronger nor
         wear with their range of strain, as those of columns do.
+    under_load : bool, optional
+        Whether a load acts in its span, as on a beam under a floor: a joint of layers, without
+        slip of bars, then stands in the middle too, and the span cracks and yields there.
     panel, name
         As for `FrameMember`.
 
@@ -266,6 +270,12 @@ def member(
         restrained=restrained,
     )
     hinge, above = half.joints("flexure")
+    joints = {0.0: hinge, 1.0: hinge}
+    if under_load:
+        dry = _known(model_parameters).with_values(slip_length=0.0)
+        joints[0.5] = LayeredModel(
+            section, 0.5 * length, axial_load, 2, dry, restrained
+        ).joint.spring
     place = bodies(half)[0][0] / length
     fails, slips = half.joints("shear")
     drift = load = shear_drift = None
@@ -273,12 +283,15 @@ def member(
         drift, load, shear_drift = _failure(section, length, axial_load, fails)
     modulus, area = section.concrete_law["ec"], section.gross_area
     # The hinges shorten by their layers, the rest by this.
-    hinges = 2 * modulus * area / sum(layer.k for _, layer in hinge.layers)  # type: ignore[attr-defined]
+    hinges = sum(
+        modulus * area / sum(layer.k for _, layer in joint.layers)  # type: ignore[attr-defined]
+        for joint in joints.values()
+    )
     return FrameMember(
         modulus=modulus,
         area=area * length / max(length - hinges, 0.1 * length),
         inertia=area * section.depth**2 / 12,
-        flexure={0.0: hinge, place: above, 1 - place: above.mirrored(), 1.0: hinge},
+        flexure={**joints, place: above, 1 - place: above.mirrored()},
         shear={0.0: fails, 0.5 * place: slips, 1 - 0.5 * place: slips, 1.0: fails.mirrored()},
         between="rigid",
         panel=panel,
