@@ -1,6 +1,8 @@
 """Incremental dynamic analysis, stripes, fragility, hazard."""
 
 from rbsdem.many.ensemble import Ensemble as Ensemble
+from rbsdem.many.exports import write_nrml as write_nrml
+from rbsdem.many.exports import write_pelicun as write_pelicun
 from rbsdem.many.fragility import Capacities as Capacities
 from rbsdem.many.fragility import Counts as Counts
 from rbsdem.many.fragility import Fragility as Fragility
