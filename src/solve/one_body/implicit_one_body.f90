@@ -13,6 +13,7 @@ module rbs_solve_one_body_implicit_one_body
    use rbs_hysteresis_rule, only: spring_slot
    use rbs_hysteresis_segment, only: segment, first_on, last_on
    use rbs_hysteresis_springs, only: spring_array, most_lines
+   use rbs_solve_line_search, only: false_position
    use rbs_solve_one_body_body_damping, only: body_damping
    implicit none
    private
@@ -265,29 +266,19 @@ contains
       type(spring_slot), intent(inout) :: slot(2)
       !> Work of the residual on the correction at its end
       real(wp), intent(inout) :: slope
-      real(wp) :: low, high, at_low, at_high, share, now
+      type(false_position) :: bracket
+      real(wp) :: share, now
       integer :: trial
 
-      low = 0.0_wp
-      high = 1.0_wp
-      at_low = self%work
-      at_high = slope
+      bracket = false_position(0.0_wp, 1.0_wp, self%work, slope)
       now = 1.0_wp
       do trial = 1, most_trials
-         share = low + (high - low)*at_low/(at_low - at_high)
+         share = bracket%next()
          self%moved = self%moved + (share - now)*self%dx
          now = share
          call look(self, slot, slope)
          if (abs(slope) <= too_far/3.0_wp*self%work .or. self%stuck) return
-         if (slope > 0.0_wp) then
-            low = share
-            at_low = slope
-            at_high = 0.5_wp*at_high
-         else
-            high = share
-            at_high = slope
-            at_low = 0.5_wp*at_low
-         end if
+         call bracket%narrow(share, slope)
       end do
    end subroutine cut_correction
 
