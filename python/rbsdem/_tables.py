@@ -251,15 +251,15 @@ def read_table(
     RepairWarning
         If columns of texts, dates or clocks are left out.
     """
-    if separator is not None and separator not in _SEPARATORS:
+    if separator is not None and not _arguments.is_one_of(separator, _SEPARATORS):
         raise InputError(f'separator = {separator!r} must be ",", ";", "\\t" or " "')
-    if decimal not in (None, ".", ","):
+    if decimal is not None and not _arguments.is_one_of(decimal, (".", ",")):
         raise InputError(f'decimal = {decimal!r} must be "." or ","')
     if separator == decimal == ",":
         raise InputError("separator and decimal are both a comma; one of them must be another")
     where, lines = source if isinstance(source, tuple) else read_lines(source)
     lines = [_COMMENT.sub("", line) if "#" in line else line for line in lines]
-    if header is not None and not 0 <= header < len(lines):
+    if header is not None and not 0 <= (header := _arguments.integer(header, "header")) < len(lines):
         raise InputError(f"header = {header}: {where} has {len(lines)} lines")
     stated: dict[str, Any] = {"separator": separator, "decimal": decimal, "header": header}
     first, mark, point, texts = _layout(lines, where, stated, least)

@@ -135,6 +135,7 @@ OWN: dict[str, dict[str, Any]] = {
     "rbsdem.ensemble": MANY,
     "rbsdem.ida": {"levels": [0.1, 0.2]} | MANY,
     "rbsdem.calibrate": {"evaluations": 3},
+    "rbsdem.read_test": {"path": "d_mm,F_kN\n0,0\n10,90\n-10,-90\n", "pdelta_code": 2},
     "rbsdem.section.interaction": {"points": 5},
     "rbsdem.time_history": {"ground_acceleration": MOTION, "dt": 0.02, "method": "newmark"},
     "fragility.stripes": {"levels": [0.1, 0.2]} | MANY,

@@ -143,6 +143,23 @@ def read_test(
     columns are exchanged it is negative; if the sign of one column is wrong, so is that of the
     correlation of the two.
     """
+    _arguments.choice(structure, "structure", ("column", "frame"))
+    for value, what, bounds in (
+        (length, "length", {"above": 0, "unit": "m"}),
+        (axial_load, "axial_load", {}),
+        (measured_length, "measured_length", {}),
+        (top_length, "top_length", {}),
+        (bottom_length, "bottom_length", {}),
+    ):
+        if value is not None:
+            _arguments.number(value, what, **bounds)
+    for flag, what in ((zero, "zero"), (checks, "checks")):
+        if flag is not None:
+            _arguments.boolean(flag, what)
+    if name is not None:
+        _arguments.text(name, "name")
+    if _arguments.integer(force_sign, "force_sign") not in (1, -1):
+        raise InputError(f"force_sign = {_arguments.shown(force_sign)} must be 1 or -1")
     if structure == "frame":
         if pdelta_code is not None:
             raise InputError(
@@ -151,10 +168,7 @@ def read_test(
             )
         code = None
     else:
-        _arguments.choice(structure, "structure", ("column", "frame"))
         code = _code(pdelta_code, length, axial_load)
-    if force_sign not in (1, -1):
-        raise InputError(f"force_sign = {force_sign!r} must be 1 or -1")
     layout: dict[str, Any] = {"separator": separator, "decimal": decimal, "header": header}
     if path is None or displacement is not None or force is not None:
         table = _two_files(path, displacement, force, layout)
@@ -198,8 +212,6 @@ def _code(code: int | None, length: float | None, axial_load: float | None) -> i
     ):
         if value is None and code in needed:
             raise InputError(f"pdelta_code = {code} ({PDELTA_CODES[code]}) needs {what}")
-    if length is not None:
-        _arguments.number(length, "length", above=0, unit="m")
     return code
 
 
