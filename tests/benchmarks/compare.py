@@ -19,17 +19,15 @@ from rows import Row, newest, number
 # Both programs do the same sums in another order.
 AGREEMENT = 1e-9
 
-# Explicit and implicit: bodies and steps of a run; at 0.2 of a bound of the stability limit, and at
-# 0.1 ms. The last two lengths are what the exponent needs, not what a user would run.
+# Bodies and steps of a run, at 0.2 of a bound of the stability limit. The last two lengths are what
+# the exponent needs, not what a user would run.
 STEPS = {
     "rk4": {1: 400_000, 10: 100_000, 50: 40_000, 200: 10_000, 1000: 4_000, 5000: 800},
-    "newmark": {1: 400_000, 10: 40_000, 50: 8_000, 200: 4_000, 1000: 2_000, 5000: 1_000},
 }
 GOALS = {
     "rk4": {1: 2.0, 10: 2.5, 50: 2.5, 200: 2.5},
-    "newmark": {1: 3.0, 10: 2.5, 50: 2.5, 200: 2.5},
 }
-NAMES = {"rk4": "RK4", "newmark": "Newmark"}
+NAMES = {"rk4": "RK4"}
 POINTS = 20_000
 TABLE = 20
 
@@ -87,16 +85,13 @@ def explicit_step(n: int) -> float:
 
 
 def dynamic_case(method: str, n: int, divisor: int, strength: int = 1) -> Case:
-    """Return the chain of n bodies under a sine of 800 explicit, or 2000 implicit steps.
+    """Return the chain of n bodies under a sine of 800 steps.
 
     The strength is that of the shear springs, 1 as in the paper.
     """
     steps = max(STEPS[method][n] // divisor // TABLE, 10) * TABLE
-    dt = 1e-4
-    if method == "rk4":
-        dt = 2e-4 if n == 1 else explicit_step(n)
-    period = 800 if method == "rk4" else 2000
-    return Case([method, str(n), repr(dt), str(steps), str(period), str(strength)])
+    dt = 2e-4 if n == 1 else explicit_step(n)
+    return Case([method, str(n), repr(dt), str(steps), "800", str(strength)])
 
 
 def yardstick_rows(build: Path | None, repeats: int, divisor: int) -> list[Row]:
@@ -109,15 +104,9 @@ def yardstick_rows(build: Path | None, repeats: int, divisor: int) -> list[Row]:
     cases = {
         (method, n): dynamic_case(method, n, divisor) for method in STEPS for n in STEPS[method]
     }
-    # Ten times the step: in a cycle all the shear springs yield at once, and the chain rings.
-    sudden = Case(["newmark", "50", "1e-3", "400", "200", "1"])
-    # Where shear does not yield, the steps of all chains have as many iterations: cost alone grows.
-    growing = {
-        "rk4": {n: cases["rk4", n] for n in STEPS["rk4"] if n > 1},
-        "newmark": {n: dynamic_case("newmark", n, divisor, 2) for n in STEPS["newmark"] if n > 1},
-    }
+    growing = {n: cases["rk4", n] for n in STEPS["rk4"] if n > 1}
     for _ in range(repeats):
-        for case in [static, *cases.values(), *growing["newmark"].values(), sudden]:
+        for case in [static, *cases.values()]:
             for name, program in programs.items():
                 case.run(name, program)
     inside = Row("static, N = 1, both springs bilinear", "ns/increment", 150)
@@ -126,8 +115,7 @@ def yardstick_rows(build: Path | None, repeats: int, divisor: int) -> list[Row]:
     for (method, n), case in cases.items():
         rows.append(case.row(f"{NAMES[method]}, N = {n}", GOALS[method].get(n)))
         if n == max(STEPS[method]):
-            rows.append(exponent(method, growing[method]))
-    rows.append(sudden.row("Newmark, N = 50, all yield at once", None))
+            rows.append(exponent(method, growing))
     rows.append(memory({n: cases["rk4", n] for n in STEPS["rk4"]}))
     return rows
 

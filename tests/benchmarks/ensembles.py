@@ -1,11 +1,9 @@
 """Times of ensembles on this machine, goal and measured side by side. Nothing is asserted.
 
-    python tests/benchmarks/ensembles.py [--quick] [--dask] [--build DIR]
+    python tests/benchmarks/ensembles.py [--quick] [--dask]
 
 Processor time of one thread where nothing else is said, so that another load of the machine
-disturbs little; what takes two threads is wall time, on a machine that does nothing else. The
-yardstick is C by hand, of 64 such columns without any event: meson setup build/fortran, then
-meson compile -C build/fortran yardstick_lanes.
+disturbs little; what takes two threads is wall time, on a machine that does nothing else.
 """
 
 from __future__ import annotations
@@ -13,15 +11,13 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import resource
-import subprocess
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from benchmark import record_20_s
-from rows import Row, newest, show
+from rows import Row, show
 
 import rbsdem
 from rbsdem.many.inputs import Motion, core_measures
@@ -54,26 +50,13 @@ def processor(action: Callable[[], Any], repeats: int) -> tuple[list[float], Any
     return times, answer
 
 
-def yardstick(program: Path | None, method: str, repeats: int) -> list[float]:
-    """Return nanoseconds per column and step of the loop in C."""
-    if program is None:
-        return []
-    command = [program, method, "200000"]
-    return [
-        float(subprocess.run(command, check=True, capture_output=True).stdout.split()[0])
-        for _ in range(repeats)
-    ]
-
-
-def lanes(program: Path | None, repeats: int, runs: int) -> list[Row]:
+def lanes(repeats: int, runs: int) -> list[Row]:
     """Time lanes with and without events, and one run after the other."""
     time_, motion = record_20_s()
     place = np.zeros(runs, dtype=np.int32)
     rows = []
     for method, settings in (("rk4", {}), ("newmark", {"dt": 0.005})):
-        by_hand = yardstick(program, method, repeats)
-        rows.append(Row(f"{method}, 64 columns in C, no events", "ns/column-step", None, by_hand))
-        goal = 15.0 if method == "newmark" else 2 * float(np.median(by_hand)) if by_hand else None
+        goal = 15.0 if method == "newmark" else None
         for scale in (0.01, 0.25, 1.0):
             scales = scale * np.linspace(0.95, 1.05, runs)
             motions = [Motion("made up", time_, motion)]
@@ -202,12 +185,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="fewer repeats, fewer runs")
     parser.add_argument("--dask", action="store_true", help="a Dask cluster too")
-    parser.add_argument("--build", type=Path, metavar="DIR", help="build folder of the yardstick")
     given = parser.parse_args()
     repeats = 2 if given.quick else 5
     show(
         {
-            "Lanes, one thread": lanes(newest("yardstick_lanes", given.build), repeats, 320),
+            "Lanes, one thread": lanes(repeats, 320),
             "Damped lanes, one thread": damped_lanes(repeats, 128),
             "Layered columns": [layered(repeats), twenty_by_ten(1 if given.quick else 3)],
             "Many runs": threads(20_000 if given.quick else MANY, given.dask),

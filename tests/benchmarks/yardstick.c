@@ -1,6 +1,6 @@
 /* Run one case:
  *
- *     yardstick rk4|newmark N DT STEPS PERIOD STRENGTH      PERIOD: steps in a cycle of the load
+ *     yardstick rk4 N DT STEPS PERIOD STRENGTH      PERIOD: steps in a cycle of the load
  *     yardstick static POINTS
  *
  * prints nanoseconds of the processor per step (static: per increment) and the peak: displacement of
@@ -83,18 +83,18 @@ int main(int count, char **argument)
       begin = seconds();
       peak = static_one(1.0, steps, target);
    } else if (count == 7) {
-      const int n = atoi(argument[2]), explicit = strcmp(argument[1], "rk4") == 0;
+      const int n = atoi(argument[2]);
       const double dt = atof(argument[3]), strength = atof(argument[6]);
       steps = atoi(argument[4]);
       table t = new_table(dt, steps, atof(argument[5]));
       begin = seconds();
       if (n == 1) {
-         peak = explicit ? rk4_one(strength, dt, steps, &t) : newmark_one(strength, dt, steps, &t);
+         peak = rk4_one(strength, dt, steps, &t);
       } else {
-         peak = explicit ? rk4_chain(strength, n, dt, steps, &t) : newmark_chain(strength, n, dt, steps, &t);
+         peak = rk4_chain(strength, n, dt, steps, &t);
       }
    } else {
-      fputs("usage: yardstick rk4|newmark N DT STEPS PERIOD STRENGTH, or yardstick static POINTS\n", stderr);
+      fputs("usage: yardstick rk4 N DT STEPS PERIOD STRENGTH, or yardstick static POINTS\n", stderr);
       return 1;
    }
    printf("%.4f %.17g\n", 1e9 * (seconds() - begin) / steps, peak);

@@ -149,7 +149,5 @@ static inline void deform(int n, double h, const double *restrict x, const doubl
 
 double rk4_one(double strength, double dt, int steps, table *t);
 double rk4_chain(double strength, int n, double dt, int steps, table *t);
-double newmark_one(double strength, double dt, int steps, table *t);
-double newmark_chain(double strength, int n, double dt, int steps, table *t);
 
 #endif

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -31,6 +32,15 @@ DYNAMIC = {
     "loading": "drive = 'ground_acceleration', amplitudes = 3.0, period = 0.1, points = 4",
     "analysis": "method = 'rk4'",
 }
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _default_signals() -> None:
+    """Give tests the signals of a terminal: what runs in the background inherits ignored ones."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    if hasattr(signal, "SIGHUP"):
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
 
 Run = Callable[..., subprocess.CompletedProcess[str]]
 Groups = str | Sequence[str] | None

@@ -63,9 +63,8 @@ RESULTS = results()
 
 
 @pytest.mark.parametrize("name", RESULTS)
-@pytest.mark.parametrize("ending", [".npz", ".nc"])
-def test_saved_result_comes_back_bit_for_bit(tmp_path, name, ending):
-    path = tmp_path / f"{name}{ending}"
+def test_saved_result_comes_back_bit_for_bit(tmp_path, name):
+    path = tmp_path / f"{name}.npz"
     RESULTS[name].save(path)
     back = rbsdem.read_result(path)
     assert back == RESULTS[name]
@@ -105,28 +104,16 @@ def test_frame_has_the_columns_of_the_csv(tmp_path, name):
     assert np.array_equal(frame[f"moment_{last}_Nm"], result.moment[:, -1])
 
 
-def test_dataset_has_units_and_joints():
-    dataset = RESULTS["dynamic"].to_xarray()
-    assert dataset["moment"].attrs["units"] == "N m"
-    assert dataset["moment"].dims == ("time", "joint")
-    assert dataset["joint"].values.tolist() == [1, 2, 3]
-    assert (
-        float(dataset["displacement"].sel(time=0.3, method="nearest"))
-        == (RESULTS["dynamic"].displacement[np.abs(RESULTS["dynamic"].time - 0.3).argmin()])
-    )
-
-
-@pytest.mark.parametrize("ending", [".txt", "", ".csv"])
+@pytest.mark.parametrize("ending", [".txt", "", ".nc"])
 def test_other_endings_are_refused(tmp_path, ending):
-    with pytest.raises(InputError, match=r"\.npz .* or \.nc"):
+    with pytest.raises(InputError, match=r"ends in \.npz"):
         RESULTS["static"].save(tmp_path / f"a{ending}")
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("ending", [".npz", ".nc"])
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04 nonsense", b"CDF\x01nonsense"])
-def test_foreign_file_is_told(tmp_path, ending, content):
-    path = tmp_path / f"a{ending}"
+def test_foreign_file_is_told(tmp_path, content):
+    path = tmp_path / "a.npz"
     path.write_bytes(content)
     with pytest.raises(InputError, match="no saved result"):
         rbsdem.read_result(path)

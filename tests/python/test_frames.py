@@ -964,15 +964,14 @@ def test_a_result_in_a_file(tmp_path):
     path = frame.height * np.array([0.01, -0.02, 0.03, 0.0])
     whole = rbsdem.cyclic(frame, displacement=path)
     first = rbsdem.cyclic(frame, displacement=path[:2])
-    for name in ("first.npz", "first.nc"):
-        first.save(tmp_path / name)
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            back = rbsdem.read_result(tmp_path / name)
-        assert back == first
-        assert back != whole
-        rest = rbsdem.cyclic(frame, displacement=path[2:], initial=back)
-        assert (np.append(back.force, rest.force) == whole.force).all()
+    first.save(tmp_path / "first.npz")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        back = rbsdem.read_result(tmp_path / "first.npz")
+    assert back == first
+    assert back != whole
+    rest = rbsdem.cyclic(frame, displacement=path[2:], initial=back)
+    assert (np.append(back.force, rest.force) == whole.force).all()
     first.save_state(tmp_path / "first.state")
     rest = rbsdem.cyclic(frame, displacement=path[2:], initial=tmp_path / "first.state")
     assert (rest.force == whole.force[2:]).all()
@@ -983,14 +982,6 @@ def test_a_result_in_a_file(tmp_path):
     back = rbsdem.read_result(tmp_path / "quake.npz")
     assert back == quake
     assert (back.floor_acceleration == quake.floor_acceleration).all()
-    table = back.to_xarray()
-    assert dict(table.sizes) == {
-        "time": quake.time.size, "node": 16, "member": 21, "flexure": 63, "storey": 3,
-    }  # fmt: skip
-    moment = table.moment.sel(flexure="C-2-1 0")
-    assert (moment == quake.member("C-2-1").force[:, 0]).all()
-    assert moment.units == "N m"
-    assert (table.storey_drift == quake.storey_drift).all()
 
 
 #: Three floors on three lines of columns, whose middle one goes; beams yield at their ends.

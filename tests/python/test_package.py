@@ -111,7 +111,6 @@ def test_package_works_from_a_folder_with_files_of_its_name(tmp_path):
     ("package", "extra", "what"),
     [
         ("pyarrow", "ensembles", "rbsdem.ensemble(column, ([0, 1], [0, 1]), store='nowhere')"),
-        ("xarray", "netcdf", "rbsdem.cyclic(column, displacement=[0.001]).to_xarray()"),
     ],
 )
 def test_extra_that_is_missing_is_named(package, extra, what):

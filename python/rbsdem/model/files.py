@@ -12,7 +12,6 @@ import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem._files import atomic_write
-from rbsdem._package import extra
 from rbsdem._types import Array, DataFrame
 from rbsdem.errors import InputError
 from rbsdem.model.response import STATE_HEAD, Ended, Response, last_state
@@ -53,22 +52,6 @@ def to_pandas(result: Response) -> DataFrame:
     return frame
 
 
-def to_xarray(result: Response) -> Any:
-    """Return a Dataset: rows along time (or step), joints from 1 at the ground."""
-    units = {name: {"units": unit} if unit else {} for name, unit in _core.units().items()}
-    arrays = quantities(result)
-    along = result.channels[0]
-    time = arrays.pop(along)
-    axes = along, "joint"
-    variables = {name: (axes[: v.ndim], v, units[name]) for name, v in arrays.items()}
-    return extra("xarray").Dataset(
-        variables,
-        {along: (along, time, units[along]), "joint": np.array(result.column.joint_numbers)},
-        {"program": "rbsdem", "version": _core.version(), "column": result.column.to_namelist()}
-        | {name: value for name, value in result.summary.items() if not isinstance(value, dict)},
-    )
-
-
 def to_csv(result: Response, path: str | os.PathLike[str]) -> None:
     """Write the columns with all digits, and the head of the executable's csv."""
     table = columns(result)
@@ -101,36 +84,17 @@ def _text(number: float) -> str:
 
 
 def save(result: Any, path: str | os.PathLike[str]) -> None:
-    """Write a result as npz or netCDF, whole or not at all."""
-    kind = ending_of(path)
+    """Write a result as npz, whole or not at all."""
+    check_ending(path)
     about, arrays = _parts(result)
-    if kind == ".npz":
-        with atomic_write(path) as file:
-            np.savez_compressed(file, about=np.array(json.dumps(about)), **arrays)
-        return
-    xarray = extra("xarray")
-    variables = {
-        # Slashes part groups in netCDF.
-        name.replace("/", ":"): ([f"{name}_{axis}" for axis in range(values.ndim)], values)
-        for name, values in arrays.items()
-    }
-    texts = {"about": json.dumps(about), "units": json.dumps(_core.units())}
-    dataset = xarray.Dataset(variables, attrs=texts)
-    for name, variable in dataset.variables.items():
-        if name in _core.units():
-            variable.attrs["units"] = _core.units()[name]
     with atomic_write(path) as file:
-        file.write(bytes(dataset.to_netcdf(engine="scipy")))
+        np.savez_compressed(file, about=np.array(json.dumps(about)), **arrays)
 
 
-def ending_of(path: str | os.PathLike[str]) -> str:
-    """Return the ending of the name of a saved result, checked."""
-    kind = _arguments.path(path).suffix.lower()
-    if kind not in (".npz", ".nc"):
-        raise InputError(
-            f"{os.fspath(path)}: the name of a saved result ends in .npz (numpy) or .nc (netCDF)"
-        )
-    return kind
+def check_ending(path: str | os.PathLike[str]) -> None:
+    """Raise `InputError` if the name is not that of a saved result."""
+    if _arguments.path(path).suffix.lower() != ".npz":
+        raise InputError(f"{os.fspath(path)}: the name of a saved result ends in .npz")
 
 
 def _parts(result: Any) -> tuple[dict[str, Any], dict[str, Any]]:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 
 from rbsdem import _core
-from rbsdem._package import extra
 from rbsdem._types import Array
 from rbsdem.errors import InputError
 from rbsdem.model import files
@@ -399,47 +398,10 @@ class FrameResult:
         with atomic_write(path) as file:
             file.write(f"# rbsdem {_core.version()}\n# {self.honesty}\n{text}".encode())
 
-    def to_xarray(self) -> Any:
-        """Return a Dataset: rows along time (or step), nodes, members and springs by their names.
-
-        The springs of a group stand along its name, as "C-1-1 0": member and place. Needs xarray.
-        """
-        parts, along = self.frame.parts, "time" if self.dynamic else "step"
-        arrays: dict[str, tuple[Any, Array]] = {
-            name: ((along,), getattr(self, name)) for name in ("displacement", "force")
-        }
-        arrays |= {name: ((along,), values) for name, values in self.energy.items()}
-        arrays["base_shear"] = (along,), self.base_shear
-        owners: dict[str, Any] = {"node": list(parts.nodes), "member": list(parts.members)}
-        arrays |= {name: ((along, "node"), getattr(self, name)) for name in ("x", "y", "turn")}
-        for name in ("member_axial", "moment_from", "moment_to"):
-            arrays[name] = (along, "member"), getattr(self, name)
-        if self.lost is not None:
-            arrays["lost"] = (along, "member"), self.lost
-        for group, channels in _CHANNELS.items():
-            springs = parts.springs_of(group)
-            if springs:
-                owners[group] = [f"{spring.member} {spring.place:g}" for spring in springs]
-                arrays |= {name: ((along, group), self.springs[name]) for name in channels}
-        if self.frame.storeys:
-            owners["storey"] = np.arange(1, len(self._storeys()) + 1)
-            arrays["storey_drift"] = (along, "storey"), self.storey_drift
-        units = _core.units()
-        return extra("xarray").Dataset(
-            {
-                name: (axes, values, {"units": units[name]} if units.get(name) else {})
-                for name, (axes, values) in arrays.items()
-            },
-            {along: (along, self.time, {"units": units[along]} if units[along] else {}), **owners},
-            {"program": "rbsdem", "version": _core.version(), "honesty": self.honesty}
-            | {"frame": self.frame.to_namelist()}
-            | {name: value for name, value in self.summary.items() if not isinstance(value, dict)},
-        )
-
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the whole result into one file, which `rbsdem.read_result` reads bit for bit.
 
-        As `Result.save`: ``.npz``, or ``.nc`` with the extra "netcdf".
+        As `Result.save`.
         """
         files.save(self, path)
 

@@ -13,12 +13,11 @@ from typing import Any, cast
 import numpy as np
 
 from rbsdem import _core
-from rbsdem._package import extra
 from rbsdem._types import Array
 from rbsdem.errors import InputError, SolveError
 from rbsdem.model.column import Column, Footing, without_notes
 from rbsdem.model.damping import Damping
-from rbsdem.model.files import FORMAT, FORMAT_VERSION, ending_of
+from rbsdem.model.files import FORMAT, FORMAT_VERSION, check_ending
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.run.groups import (
@@ -267,7 +266,7 @@ def read_result(path: str | os.PathLike[str]) -> Result | FrameResult:
     Parameters
     ----------
     path : path
-        The file, ``.npz`` or ``.nc``.
+        The file.
 
     Returns
     -------
@@ -279,11 +278,11 @@ def read_result(path: str | os.PathLike[str]) -> Result | FrameResult:
     InputError
         If the file is not there, is none of these, is damaged, or was written by a later version.
     """
-    kind = ending_of(path)
+    check_ending(path)
     if not Path(path).is_file():
         raise InputError(f"{os.fspath(path)}: there is no such file; check the path")
     try:
-        about, arrays = _read_npz(path) if kind == ".npz" else _read_netcdf(path)
+        about, arrays = _read_npz(path)
         known = about["format"] == FORMAT
     except (OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile, EOFError) as error:
         raise InputError(
@@ -316,16 +315,6 @@ def _read_npz(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, A
     with open(path, "rb") as opened, np.load(opened, allow_pickle=False) as file:
         arrays = {name: file[name] for name in file.files}
     about: dict[str, Any] = json.loads(str(arrays.pop("about")))
-    return about, arrays
-
-
-def _read_netcdf(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, Any]]:
-    with extra("xarray").open_dataset(path, engine="scipy", mask_and_scale=False) as dataset:
-        arrays = {
-            str(name).replace(":", "/"): np.array(variable.values, dtype=np.float64)
-            for name, variable in dataset.variables.items()
-        }
-        about: dict[str, Any] = json.loads(dataset.attrs["about"])
     return about, arrays
 
 

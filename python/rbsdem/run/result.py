@@ -168,10 +168,6 @@ class Result(Response):
         """
         files.to_csv(self, path)
 
-    def to_xarray(self) -> Any:
-        """Return a Dataset of xarray with units and joints as coordinates; needs xarray."""
-        return files.to_xarray(self)
-
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the whole result into one file, which `rbsdem.read_result` reads back bit for bit.
 
@@ -182,7 +178,7 @@ class Result(Response):
         Parameters
         ----------
         path : path
-            File to write: ``.npz`` (numpy), or ``.nc`` (netCDF; needs the extra "netcdf").
+            File to write, ``.npz``.
 
         Raises
         ------

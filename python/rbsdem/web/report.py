@@ -460,17 +460,27 @@ def _drawn(drawing: Section, values: _core.Statement) -> Sheet:
     return Sheet("Inputs", str(drawing), drawn, inputs(values + drawing.drawing()))
 
 
+#: Units of figures of a summary that are not called like a channel of the rows.
+_UNITS = {"displacement_at_peak_force": "m", "time_step": "s", "stable_step": "s"}
+
+
+def _unit(name: str) -> str:
+    """Return the unit of a figure of a summary: that of the channel which its name ends with."""
+    if name in _UNITS or name.startswith("relative"):
+        return _UNITS.get(name, "")
+    if "energy" in name:
+        return "J"
+    units = _core.units()
+    return next((unit for channel, unit in units.items() if f"_{name}".endswith(f"_{channel}")), "")
+
+
 def _summary(summary: Mapping[str, Any]) -> DataFrame:
-    """Return the figures of an analysis, a row for each."""
-    units = {
-        "displacement": "m", "force": "N", "shear": "N", "energy": "J", "rotation": "rad",
-        "_step": "s",
-    }  # fmt: skip
+    """Return the figures of an analysis, a row for each; what does not apply is left out."""
     rows = []
     for name, value in summary.items():
-        unit = "" if "relative" in name else next((u for w, u in units.items() if w in name), "")
-        factor, unit = PAPER.get(unit, (1.0, unit))
+        unit = _unit(name)
+        factor, unit = (1.0, unit) if unit == "rad" else PAPER.get(unit, (1.0, unit))
         text = f"{factor * value:.4g}" if isinstance(value, int | float) else str(value)
-        if value:
+        if text:
             rows.append((name.replace("_", " "), text, unit))
     return data_frame(rows, ["figure", "value", "in"])
