@@ -259,7 +259,8 @@ def read_table(
         raise InputError("separator and decimal are both a comma; one of them must be another")
     where, lines = source if isinstance(source, tuple) else read_lines(source)
     lines = [_COMMENT.sub("", line) if "#" in line else line for line in lines]
-    if header is not None and not 0 <= (header := _arguments.integer(header, "header")) < len(lines):
+    header = None if header is None else _arguments.integer(header, "header")
+    if header is not None and not 0 <= header < len(lines):
         raise InputError(f"header = {header}: {where} has {len(lines)} lines")
     stated: dict[str, Any] = {"separator": separator, "decimal": decimal, "header": header}
     first, mark, point, texts = _layout(lines, where, stated, least)

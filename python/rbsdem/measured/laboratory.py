@@ -143,23 +143,17 @@ def read_test(
     columns are exchanged it is negative; if the sign of one column is wrong, so is that of the
     correlation of the two.
     """
-    _arguments.choice(structure, "structure", ("column", "frame"))
-    for value, what, bounds in (
-        (length, "length", {"above": 0, "unit": "m"}),
-        (axial_load, "axial_load", {}),
-        (measured_length, "measured_length", {}),
-        (top_length, "top_length", {}),
-        (bottom_length, "bottom_length", {}),
-    ):
+    lengths: Any = {
+        "axial_load": axial_load,
+        "length": length,
+        "measured_length": measured_length,
+        "top_length": top_length,
+        "bottom_length": bottom_length,
+    }
+    for key, value in lengths.items():
         if value is not None:
-            _arguments.number(value, what, **bounds)
-    for flag, what in ((zero, "zero"), (checks, "checks")):
-        if flag is not None:
-            _arguments.boolean(flag, what)
-    if name is not None:
-        _arguments.text(name, "name")
-    if _arguments.integer(force_sign, "force_sign") not in (1, -1):
-        raise InputError(f"force_sign = {_arguments.shown(force_sign)} must be 1 or -1")
+            _arguments.number(value, key, **({"above": 0, "unit": "m"} if key == "length" else {}))
+    _check_words(structure, force_sign, zero, checks, name)
     if structure == "frame":
         if pdelta_code is not None:
             raise InputError(
@@ -193,11 +187,24 @@ def read_test(
         _check_sizes(d, f, given, length, where, structure)
         _check_offset(d, f, zero, where)
         _check_order(d, f, where)
-    known = {"length": length, "axial_load": axial_load}
-    lengths: Any = {key: math.nan if value is None else value for key, value in known.items()}
-    lengths |= {"measured_length": measured_length, "top_length": top_length}
+    for key in ("length", "axial_load"):
+        lengths[key] = math.nan if lengths[key] is None else lengths[key]
     name = name or Path(table.source.split(" and ")[0]).stem
-    return measured_test(name, d, f, code, where, bottom_length=bottom_length, **lengths)
+    return measured_test(name, d, f, code, where, **lengths)
+
+
+def _check_words(
+    structure: object, force_sign: object, zero: object, checks: object, name: object
+) -> None:
+    """Refuse arguments that are not of the kind that they have to be."""
+    _arguments.choice(structure, "structure", ("column", "frame"))
+    if _arguments.integer(force_sign, "force_sign") not in (1, -1):
+        raise InputError(f"force_sign = {_arguments.shown(force_sign)} must be 1 or -1")
+    if zero is not None:
+        _arguments.boolean(zero, "zero")
+    _arguments.boolean(checks, "checks")
+    if name is not None:
+        _arguments.text(name, "name")
 
 
 def _code(code: int | None, length: float | None, axial_load: float | None) -> int:
