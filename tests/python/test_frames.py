@@ -1207,6 +1207,21 @@ def test_units_that_are_none_of_a_building(more, told):
         Frame.grid(**{"storeys": [3.2] * 3, "bays": [6.0] * 3} | given | more)
 
 
+def test_members_too_stiff_for_the_digits_are_refused():
+    """Beams 1e5 times as stiff are rigid to 1e-5; 1e9 times leave too few digits, and say so."""
+    columns = FrameMember(E, A, INERTIA)
+
+    def period(ratio: float) -> float:
+        beams = FrameMember(ratio * E, A, INERTIA)
+        frame = Frame.grid([3.2] * 3, [6.0] * 2, columns=columns, beams=beams, floor_mass=8e4)
+        return rbsdem.modes(frame, 1).period[0]
+
+    assert period(1e5) == pytest.approx(period(1e7), rel=2e-5)
+    for ratio in (1e9, 1e12, 1e15):
+        with pytest.raises(rbsdem.InputError, match="member B-1-1: it is so much stiffer"):
+            period(ratio)
+
+
 def test_a_frame_that_cannot_carry_its_load_or_goes_nowhere():
     """The share of the dead load and the spring are told; a push-over needs a way."""
     with pytest.raises(

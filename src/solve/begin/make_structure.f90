@@ -22,6 +22,10 @@ module rbs_solve_begin_make_structure
    !> Lowest modes among which that of the lateral load is sought: the one that moves most mass along x.
    integer, parameter :: modes_along = 10
 
+   !> Stiffness of an unknown over what is left of it where others are free, beyond which too few digits stay;
+   !> share of the softest member that others are taken down to where a mechanism is told from round-off.
+   real(wp), parameter :: most_lost = 1.0e10_wp, like_stiffness = 1.0e3_wp
+
 contains
 
    !> Validate the structure of a case and make it.
@@ -87,14 +91,16 @@ contains
       end associate
    end subroutine make_frame
 
-   !> A frame that can move without force, or whose member has springs that leave its inside undetermined.
+   !> Refuse a frame that can move without force, one whose member has springs that leave its inside
+   !> undetermined, and one whose members are so unlike that round-off decides how it moves.
    subroutine check_stable(frame, error)
       type(frame_type), intent(in) :: frame
       type(error_type), allocatable, intent(out) :: error
       type(band_matrix) :: matrix
       character(len=12), parameter :: motion(3) = [character(len=12) :: 'move along x', 'move up', 'turn']
       real(wp) :: tangent(frame%tangent_numbers), band(frame%half_width + 1, frame%unknowns)
-      integer :: at(2), unstable
+      real(wp) :: stiffness(frame%members), softest
+      integer :: at(2), unstable, i
 
       tangent = 0.0_wp
       call frame%linearise(frame%initial_stiffness, tangent, unstable)
@@ -103,12 +109,29 @@ contains
                           'have no stiffness at the start that determines how it bends; give them some')
          return
       end if
-      band = 0.0_wp
-      call frame%add_stiffness(frame%initial_stiffness, tangent, band)
-      call matrix%create(frame%unknowns, frame%half_width, band(1, :))
-      matrix%band(:frame%half_width + 1, :) = band
-      call matrix%factor()
-      if (matrix%positive) return
+      call factor_stiffness()
+      if (matrix%positive .and. maxval(matrix%triangle(1, :)) < most_lost) return
+      ! Members of like stiffness tell a mechanism from round-off.
+      do i = 1, frame%members
+         associate (at_element => frame%element(i)%at, length => frame%lengths(3, i))
+            stiffness(i) = max(tangent(at_element), tangent(at_element + 4)/length**2, &
+                               tangent(at_element + 8)/length**2)
+         end associate
+      end do
+      softest = minval(stiffness, mask=stiffness > 0.0_wp)
+      do i = 1, frame%members
+         associate (of => tangent(frame%element(i)%at:frame%element(i)%at + 8))
+            if (stiffness(i) > like_stiffness*softest) of = of*(like_stiffness*softest/stiffness(i))
+         end associate
+      end do
+      call factor_stiffness()
+      if (matrix%positive) then
+         i = maxloc(stiffness, dim=1)
+         call fatal_error(error, bad_input, 'member '//trim(frame%member_name(i))//': it is so much '// &
+                          'stiffer than what holds it that the frame loses 10 of its 16 digits or more; '// &
+                          'take it less stiff: 1e5 times as stiff as the other members it is rigid')
+         return
+      end if
       associate (free => maxloc(abs(matrix%triangle(1, :)), dim=1))
          at = findloc(frame%number, free)
          ! The beams of a node behind a panel
@@ -118,6 +141,17 @@ contains
                        'node '//trim(frame%node_name(at(2)))// &
                        ' can '//trim(motion(at(1)))//' without any force; give it a support, a spring or '// &
                        'a stiffer member')
+
+   contains
+
+      subroutine factor_stiffness()
+
+         band = 0.0_wp
+         call frame%add_stiffness(frame%initial_stiffness, tangent, band)
+         call matrix%create(frame%unknowns, frame%half_width, band(1, :))
+         matrix%band(:frame%half_width + 1, :) = band
+         call matrix%factor()
+      end subroutine factor_stiffness
    end subroutine check_stable
 
 end module rbs_solve_begin_make_structure
