@@ -74,9 +74,11 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
         with os.fdopen(descriptor, "wb") as file:
             yield file
         own.replace(target)
-    except BaseException:
+    except BaseException as error:
         with suppress(OSError):
             own.unlink()
+        if isinstance(error, OSError) and error.errno and error.filename is None:
+            raise type(error)(error.errno, error.strerror, os.fspath(target)) from error
         raise
 
 

@@ -72,8 +72,8 @@ contains
       !> The command; empty for all of them
       character(len=*), intent(in) :: topic
       type(error_type), allocatable, intent(inout) :: error
-      character(len=*), parameter :: text(38) = [character(len=84) :: &
-         'rbsdem '//version//': reinforced-concrete columns as rigid bodies and springs', &
+      character(len=*), parameter :: text(40) = [character(len=84) :: &
+         'rbsdem '//version//': reinforced-concrete columns and planar frames', &
          '', &
          'usage:', &
          '  rbsdem run CASE.nml [--output FILE] [--quiet]   solve a case, write a csv', &
@@ -84,7 +84,7 @@ contains
          '  rbsdem --help | --version', &
          '', &
          'with the Python package also:', &
-         '  rbsdem explore                                  draw a column, in the browser', &
+         '  rbsdem explore                                  draw a column or a frame, in the browser', &
          '  rbsdem report CASE.nml                          a page on a case', &
          '  rbsdem trade CASE.nml                           error and time of the methods', &
          '  rbsdem ensemble CASE.nml RECORD ... --out DIR   many records', &
@@ -107,9 +107,11 @@ contains
          '  2  the input is wrong; all its errors are listed', &
          '  3  the column collapsed: collapse_drift was reached; all rows are written', &
          '', &
-         'A case has the groups &case, &units, &column, &damping, &shear, &flexure,', &
-         '&axial_spring, &layer_spring, &layers, &loading, &analysis and &output. The input', &
-         'reference is docs/input.md, examples are in examples/.', &
+         'A case of a column has the groups &case, &units, &column, &damping, &shear,', &
+         '&flexure, &axial_spring, &layer_spring, &layers, &loading, &analysis and &output,', &
+         'one of a frame &frame, &floor, &member_kind, &column_of, &beam_of and others in', &
+         'place of &column and its springs. The input reference is docs/input.md, examples', &
+         'are in examples/.', &
          '']
       integer :: i
 

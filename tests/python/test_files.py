@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import errno
 import math
 import os
 import subprocess
@@ -10,8 +11,10 @@ import sys
 import threading
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+import rbsdem
 from rbsdem._files import atomic_write, escape_formula, write_csv
 from rbsdem.errors import InputError
 
@@ -66,6 +69,34 @@ def test_error_leaves_the_old_file(tmp_path):
         broken_off()
     assert target.read_text() == "old"
     assert names(tmp_path) == ["table.csv"]
+
+
+def test_a_full_disk_is_told_with_the_name_of_the_file(tmp_path):
+    target = tmp_path / "table.csv"
+    with pytest.raises(OSError, match=r"table\.csv'$") as caught, atomic_write(target):
+        raise OSError(errno.ENOSPC, "No space left on device")
+    assert caught.value.filename == str(target)
+    assert names(tmp_path) == []
+
+
+def test_damaged_results_are_told(tmp_path):
+    """Whatever byte of the archive is wrong: a result, or InputError with the name of the file."""
+    elastic = rbsdem.springs.Elastic(1e8)
+    column = rbsdem.Column(2.0, 9.0, elastic, elastic)
+    path = tmp_path / "r.npz"
+    rbsdem.cyclic(column, displacement=[0.0, 0.01, 0.0]).save(path)
+    data, random = path.read_bytes(), np.random.default_rng(3)
+    refused = 0
+    for cut in range(200):
+        changed = bytearray(data[: random.integers(1, len(data))] if cut % 4 == 0 else data)
+        changed[random.integers(len(changed))] ^= 1 << random.integers(8)
+        path.write_bytes(changed)
+        try:
+            rbsdem.read_result(path)
+        except InputError as error:
+            assert "r.npz" in str(error)
+            refused += 1
+    assert refused > 100
 
 
 def test_temporary_name_follows_no_link_and_replaces_nothing(tmp_path):

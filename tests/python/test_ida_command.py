@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pandas
@@ -117,3 +118,18 @@ def test_mended_records_are_told(folder, tmp_path, capsys):
     # Quiet in a pipe: nothing but what was asked for.
     assert main(["ida", str(CASE), "synthetic:2", *FEW, "--quiet"]) == 0
     assert capsys.readouterr() == ("", "")
+
+
+def test_warnings_are_notes_and_helps_keep_their_lines(folder, capsys):
+    """No line of a program that the user has not written; no mark of the help."""
+    told = main(
+        ["ida", str(CASE), str(folder), "--method", "newmark", "--levels", "2", "--dt", "2"]
+    )
+    said = capsys.readouterr().err
+    assert told in (0, 1)
+    assert all(line.startswith("rbsdem: ida: ") for line in said.splitlines())
+    for name in ("trade", "ensemble", "ida", "peer", "predict", "explore", "report"):
+        assert main([name, "--help"]) == 0
+        text = capsys.readouterr().out
+        assert "\\b" not in text
+        assert re.search(r"^  (Files|Exit codes)", text, re.MULTILINE)

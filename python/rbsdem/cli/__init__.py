@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 import threading
+import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from importlib import import_module
@@ -41,7 +42,11 @@ class Values(click.Option):
 
 
 class Command(click.Command):
-    """A command whose `Values` take several words."""
+    """A command whose `Values` take several words; its help keeps its lines behind a \\b."""
+
+    def __init__(self, *args: Any, **settings: Any) -> None:
+        super().__init__(*args, **settings)
+        self.help = (self.help or "").replace("\\b\n", "\b\n")
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Repeat the name of such an option before each of its values."""
@@ -69,6 +74,8 @@ class _Commands(click.Group):
         if name not in COMMANDS:
             return self.commands.get(name)
         command: click.Command = getattr(import_module(COMMANDS[name]), name)
+        # Where click keeps the lines of a help as they are.
+        command.help = (command.help or "").replace("\\b\n", "\b\n")
         return command
 
 
@@ -95,7 +102,11 @@ def main(words: Sequence[str]) -> int:
         app.main(prog_name="rbsdem")
     text = ""
     try:
-        with _termination_as_exception(), app.make_context("rbsdem", list(words)) as context:
+        with (
+            _termination_as_exception(),
+            _plain_warnings(words[0]),
+            app.make_context("rbsdem", list(words)) as context,
+        ):
             code = int(app.invoke(context))
         _flush()
     except click.exceptions.Exit as end:
@@ -123,6 +134,20 @@ def tell(line: str, command: str = "") -> None:
     """Write a line to standard error, with the name of the command in front of it."""
     command = command or str(click.get_current_context().info_name)
     sys.stderr.write(f"rbsdem: {command}: {line}\n")
+
+
+@contextmanager
+def _plain_warnings(command: str) -> Iterator[None]:
+    """Write warnings as notes, without the line of a program that the user has not written."""
+
+    def show(message: Warning | str, *rest: Any, **more: Any) -> None:
+        del rest, more
+        for line in str(message).splitlines():
+            tell(f"note: {line}", command)
+
+    with warnings.catch_warnings():
+        warnings.showwarning = show
+        yield
 
 
 @contextmanager

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import zipfile
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Protocol, TypeVar, runtime_checkable
@@ -516,6 +517,11 @@ def last_state(response: Ended) -> Array:
 def _read_state(path: str) -> Array:
     if not Path(path).is_file():
         raise InputError(f"initial: {path}: there is no such file; check the path")
+    if zipfile.is_zipfile(path):
+        raise InputError(
+            f"initial: {path} is a saved result and no state; give "
+            f"initial=rbsdem.read_result({path!r})"
+        )
     try:
         lines = Path(path).read_text(encoding="ascii").splitlines()
         if lines[0] != STATE_HEAD:

@@ -6,6 +6,7 @@ import json
 import os
 import tempfile
 import zipfile
+import zlib
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, cast
@@ -260,6 +261,13 @@ def case_of(result: Result | FrameResult) -> Case:
 _LOADING = "&loading drive = 'force', values = 0, 0 /\n"
 
 
+#: What readers of damaged archives raise.
+_DAMAGED = (
+    OSError, ValueError, KeyError, TypeError, EOFError, NotImplementedError, zipfile.BadZipFile,
+    zlib.error,
+)  # fmt: skip
+
+
 def read_result(path: str | os.PathLike[str]) -> Result | FrameResult:
     """Read a result that `Result.save` or `FrameResult.save` wrote.
 
@@ -284,7 +292,7 @@ def read_result(path: str | os.PathLike[str]) -> Result | FrameResult:
     try:
         about, arrays = _read_npz(path)
         known = about["format"] == FORMAT
-    except (OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile, EOFError) as error:
+    except _DAMAGED as error:
         raise InputError(
             f"{os.fspath(path)}: this is no saved result, or it is damaged ({error}); "
             "Result.save writes one"

@@ -383,8 +383,12 @@ def _of_frame(result: FrameResult) -> Iterator[Sheet]:
 
 @sheets_of.register
 def _of_section(
-    drawing: Section, axial_load: float, length: float | None = None
+    drawing: Section, axial_load: float | None = None, length: float | None = None
 ) -> Iterator[Sheet]:
+    if axial_load is None:
+        raise InputError(
+            "report: axial_load is missing; give it in N, as report(section, path, axial_load=1e6)"
+        )
     load = _core.group("column", {"axial_load": axial_load, "height": length})
     yield _drawn(drawing, load)
     found = diagram(drawing, axial_load)
