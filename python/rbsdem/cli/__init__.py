@@ -42,11 +42,7 @@ class Values(click.Option):
 
 
 class Command(click.Command):
-    """A command whose `Values` take several words; its help keeps its lines behind a \\b."""
-
-    def __init__(self, *args: Any, **settings: Any) -> None:
-        super().__init__(*args, **settings)
-        self.help = (self.help or "").replace("\\b\n", "\b\n")
+    """A command whose `Values` take several words."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Repeat the name of such an option before each of its values."""
