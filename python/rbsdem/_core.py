@@ -30,7 +30,10 @@ _ANALYSIS_FAILED = 1
 _LONG_RUN = 3
 
 #: Summary values that are whole numbers.
-_COUNTS = ("steps", "rows", "events", "cut_steps", "lost_joint")
+_COUNTS = (
+    *("steps", "rows", "events", "cut_steps", "lost_joint"),
+    *("snaps", "snap_member", "fallen_member"),
+)
 
 
 def word(value: Any) -> str:

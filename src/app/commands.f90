@@ -15,7 +15,7 @@ module rbs_app_commands
    use rbs_io_output_file, only: partial
    use rbs_io_state_file, only: read_state, write_state
    use rbs_io_posix, only: is_standard_output, same_file, standard_input
-   use rbs_output_notes, only: drift_note, rotation_note, structure_notes
+   use rbs_output_notes, only: drift_note, run_notes, structure_notes
    use rbs_output_channels, only: new_channels
    use rbs_output_summary, only: figure_type
    use rbs_solve_begin_make_structure, only: make_structure
@@ -86,7 +86,7 @@ contains
       if (.not. (quiet .or. is_standard_output(file))) then
          call print_summary()
          call structure_notes(run%case, notes)
-         call rotation_note(run%structure, run%task%summary, notes)
+         call run_notes(run%structure, run%task%summary, notes)
          call print_notes(notes, error)
       end if
       if (.not. allocated(error)) call report_end()
@@ -112,6 +112,8 @@ contains
                else
                   text = text//'fall without end. The'
                end if
+            else if (summary%remark /= '') then
+               text = 'collapsed: '//trim(summary%remark)//'; the'
             else
                text = 'collapsed at '//text//': the top is at '//to_text(summary%peak_displacement)// &
                       ' m, beyond collapse_drift = '//to_text(run%case%analysis%collapse_drift)// &

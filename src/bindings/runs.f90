@@ -12,7 +12,7 @@ module rbs_bindings_runs
    use rbs_loading_loads, only: loads_type, lateral, horizontal, vertical, signals, signal_names
    use rbs_loading_signal, only: signal_type
    use rbs_output_channels, only: new_channels
-   use rbs_output_notes, only: rotation_note
+   use rbs_output_notes, only: run_notes
    use rbs_output_recorder, only: array_recorder
    use rbs_output_summary, only: figure_type
    use rbs_solve_end_state, only: end_state
@@ -87,7 +87,7 @@ contains
       end if
       note = ''
       if (.not. allocated(answer%error)) then
-         call rotation_note(run%structure, run%task%summary, notes)
+         call run_notes(run%structure, run%task%summary, notes)
          if (notes%count > 0) note = notes%text
       else if (answer%error%code /= analysis_failed) then
          return

@@ -17,7 +17,7 @@ module rbs_output_notes
    implicit none
    private
 
-   public :: drift_note, rotation_note, structure_notes
+   public :: drift_note, run_notes, structure_notes
 
    !> Least and largest height of a column [m]: one in millimetres is outside.
    real(wp), parameter :: shortest = 0.05_wp, longest = 100.0_wp
@@ -46,10 +46,30 @@ module rbs_output_notes
    !> Rotations larger than this are not small [rad].
    real(wp), parameter :: largest_small = 0.1_wp
 
+   !> Share of the energies that the balance may miss.
+   real(wp), parameter :: much = 0.05_wp
+
    !> Displacements beyond this share of the height are hardly meant.
    real(wp), parameter :: far = 0.5_wp
 
 contains
+
+   !> Notes on a run that has ended.
+   subroutine run_notes(structure, summary, notes)
+      class(structure_type), intent(in) :: structure
+      type(summary_type), intent(in) :: summary
+      type(message_list), intent(inout) :: notes
+
+      call rotation_note(structure, summary, notes)
+      if (summary%remark /= '') call notes%add(trim(summary%remark))
+      ! Explicit steps near their limit lose energy as they must; those of frames are implicit.
+      if (structure%tangent_numbers == 0 .or. .not. summary%time_step > 0.0_wp) return
+      if (.not. summary%residual > much*summary%largest) return
+      call notes%add('the balance of energy misses '// &
+                     to_text(anint(100.0_wp*summary%residual/summary%largest))// &
+                     ' per cent of the largest energy: the step does not resolve the response; take a '// &
+                     'shorter dt')
+   end subroutine run_notes
 
    !> Rotations that are taken as small but have grown large. What is left out of sin(th) is th^2/6 of it, and
    !> what is left out of cos(th), which lever arms contain, th^2/2: together 2 th^2/3.
@@ -62,7 +82,7 @@ contains
 
       ! A run to its collapse was asked for, and its rotations are known to be large.
       if (summary%collapsed) return
-      if (structure%kinematics == finite) return
+      if (structure%kinematics == finite .or. structure%tangent_numbers > 0) return
       ! A path is given; a response in time goes where it goes.
       if (.not. summary%time_step > 0.0_wp) then
          before = notes%count

@@ -60,6 +60,12 @@ module rbs_output_summary
       !> Method that was used and, if the program chose it, why
       character(len=20) :: method = ''
       character(len=200) :: reason = ''
+      !> Members that snapped or fell
+      character(len=400) :: remark = ''
+      !> Steps in which members snapped, the member that lost most in one and when [s]; a member that fell; 0:
+      !> none
+      integer :: snaps = 0, snap_member = 0, fallen_member = 0
+      real(wp) :: snap_time = 0.0_wp
       !> Largest residual of the balance, in size, and the largest energy [J]: over all points (static) or
       !> times of the loading (in time)
       real(wp) :: residual = 0.0_wp, largest = 0.0_wp
@@ -148,6 +154,11 @@ contains
               figure_type('peak_rotation', 'rad', self%peak_rotation), &
               figure_type('peak_floor_acceleration', 'm/s2', self%peak_floor_acceleration), &
               figure_type('cut_steps', '', real(self%cut_steps, wp)), &
+              figure_type('snaps', '', real(self%snaps, wp)), &
+              figure_type('snap_energy', 'J', self%energy%snaps), &
+              figure_type('snap_member', '', real(self%snap_member, wp)), &
+              figure_type('snap_time', 's', self%snap_time), &
+              figure_type('fallen_member', '', real(self%fallen_member, wp)), &
               figure_type('lost_joint', '', real(self%lost_joint, wp)), &
               figure_type('lost_axial_load', 'N', self%fall%axial_load), &
               figure_type('axial_capacity', 'N', self%fall%capacity), &
@@ -157,6 +168,10 @@ contains
          select case (list(i)%name)
          case ('lost_joint', 'lost_axial_load', 'axial_capacity', 'fall', 'fall_energy')
             applies(i) = self%lost_joint > 0
+         case ('fallen_member')
+            applies(i) = self%fallen_member > 0
+         case ('snaps', 'snap_energy', 'snap_member', 'snap_time')
+            applies(i) = self%snaps > 0
          case ('peak_floor_acceleration')
             applies(i) = self%peak_floor_acceleration >= 0.0_wp
          case default

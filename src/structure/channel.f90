@@ -22,10 +22,10 @@ module rbs_structure_channel
    end type row_contents
 
    !> Energies of a moment [J]: work of lateral force and ground motion; motion; springs; damping; potential
-   !> of the axial forces; what is left of the balance.
+   !> of the axial forces; lost where members snapped; what is left of the balance.
    type :: energy_type
       real(wp) :: input = 0.0_wp, kinetic = 0.0_wp, spring = 0.0_wp, damping = 0.0_wp, axial = 0.0_wp, &
-                  residual = 0.0_wp
+                  snaps = 0.0_wp, residual = 0.0_wp
    end type energy_type
 
    !> The response of a structure at a time, or at a point of a path, without its springs.

@@ -176,6 +176,11 @@ module rbs_structure_structure
       !> What depends on the stiffness of the springs (tangent_numbers), and deformations that bring what lies
       !> between the unknowns to equilibrium (springs, or none)
       real(wp), allocatable :: tangent(:), correction(:)
+      !> Resistance of the springs against deformation from `anchor`, as a share of their initial stiffness,
+      !> in the search for the state that an element snaps to; 0 in equilibrium. Springs where it begins
+      !> (springs, or none)
+      real(wp) :: resistance = 0.0_wp
+      real(wp), allocatable :: anchor(:)
    contains
       procedure :: create
    end type motion_result
@@ -316,7 +321,8 @@ contains
       m = size(structure%place)
       allocate (self%a(m), self%f(m), self%force(structure%unknowns), self%work(structure%work_size), &
                 self%axial(structure%axial_count), self%tangent(structure%tangent_numbers), &
-                self%correction(merge(m, 0, structure%tangent_numbers > 0)), source=0.0_wp)
+                self%correction(merge(m, 0, structure%tangent_numbers > 0)), &
+                self%anchor(merge(m, 0, structure%tangent_numbers > 0)), source=0.0_wp)
       at_rest = 0.0_wp
       call structure%axial_forces(at_rest, self%axial)
    end subroutine create

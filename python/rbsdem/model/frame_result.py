@@ -48,9 +48,10 @@ class FrameEvent(NamedTuple):
     end : str
         "start", "end", or the place between them in shares of the clear length; "" in a panel.
     what : str
-        "cracking", "yield" or "cap", or "lost".
+        "cracking", "yield" or "cap"; of a member "lost", "snap" where its inside jumps to another
+        equilibrium (the jump that loses most energy), or "fall" where it has none any more.
     side : int
-        1 or -1; 0 of a loss.
+        1 or -1; 0 of a member as a whole.
     displacement : float
         Of the top [m].
     drift : float
@@ -341,10 +342,17 @@ class FrameResult:
                         float(forces[row]),
                     )
                 )
-        for name, row in self._lost_at().items():
+        wholes = [(name, "lost", float(self.time[row])) for name, row in self._lost_at().items()]
+        for what in ("snap", "fall"):
+            member = self.summary.get("snap_member" if what == "snap" else "fallen_member")
+            if member:
+                at = self.summary["snap_time"] if what == "snap" else float(self.time[-1])
+                wholes.append((self.frame.parts.members[member - 1], what, at))
+        for name, what, at in wholes:
+            row = min(int(np.searchsorted(self.time, at * (1 - 1e-12))), self.time.size - 1)
             top, force = float(self.displacement[row]), float(forces[row])
-            at, drift = float(self.time[row]), top / self.frame.height
-            found.append(FrameEvent(at, name, "member", "", "lost", 0, top, drift, force))
+            drift = top / self.frame.height
+            found.append(FrameEvent(at, name, "member", "", what, 0, top, drift, force))
         return tuple(sorted(found, key=lambda event: event.step))
 
     def _lost_at(self) -> dict[str, int]:

@@ -88,7 +88,10 @@ class Response:
         the force has the sign of the displacement; in time of a lateral force, if there is one),
         peak_base_shear [N], peak_rotation (largest absolute rotation of a body [rad]), energies at
         the end [J], energy_residual [J] and relative_energy_residual (the largest), cut_steps
-        (steps cut at an event, for accuracy, or because they did not converge). Whatever rows are
+        (steps cut at an event, for accuracy, or because they did not converge); where members of a
+        frame jumped to another equilibrium, snaps (in how many steps), snap_energy (lost in them
+        [J]), snap_member and snap_time [s] (number of the one that lost most, and when); where a
+        member carries its load no more, fallen_member. Whatever rows are
         kept, they are those of all points or steps, the residual that of all points or times of the
         loading; "rk45" and located events resolve peaks within a step.
     opening : ndarray, shape (steps, n)

@@ -20,6 +20,18 @@ module rbs_solve_time_implicit
    implicit none
    private
 
+   !> How often a spring may leave its lines at one place.
+   integer, parameter :: most_returns = 10
+
+   !> Rounds in which a member snaps, the residuals that they leave, that of a state at rest, and the least
+   !> and the largest resistance as shares of the initial stiffness.
+   integer, parameter :: most_rounds = 100
+   real(wp), parameter :: loose = 1.0e-6_wp, at_rest = 1.0e-8_wp, least_resistance = 1.0e-6_wp, &
+                          most_resistance = 1.0e4_wp
+
+   !> Share of the energy that a step may lose without a jump.
+   real(wp), parameter :: far = 0.01_wp
+
    public :: implicit_stepper, new_newmark, new_generalised_alpha, new_hht, with_finite_rotations
 
    type, extends(newton_stepper) :: implicit_stepper
@@ -30,6 +42,13 @@ module rbs_solve_time_implicit
       type(one_body_step) :: one_body
       !> Correction of the bodies and of the joints, and mean velocities of the joints (unknowns)
       real(wp), allocatable, private :: dx(:), dq(:), mean(:)
+      !> Works of loads and damping in the step, and whether they are known [J]
+      real(wp), private :: of_loads = 0.0_wp, of_damping = 0.0_wp
+      logical, private :: weighed = .false.
+      !> How far the unknowns had moved where the last round of `snap` began (unknowns); how often each spring
+      !> has left its lines at one place (springs)
+      real(wp), allocatable, private :: anchor(:)
+      integer, allocatable, private :: returns(:)
    contains
       procedure :: prepare
       procedure :: take_step
@@ -86,6 +105,7 @@ contains
       call self%step%start(state)
       if (allocated(self%dx)) return
       call self%tangent%create(state%motion%structure)
+      allocate (self%anchor(state%motion%structure%unknowns), self%returns(size(state%q)))
       allocate (self%dx(state%motion%structure%unknowns), &
                 self%dq(size(state%q)), self%mean(size(state%q)), source=0.0_wp)
    end subroutine prepare
@@ -95,6 +115,7 @@ contains
       type(state_type), intent(inout) :: state
 
       self%busiest = 0
+      self%runaway = 0
       if (associated(state%motion%one_body)) then
          call take_step_of_one_body()
          if (self%converged) return
@@ -144,22 +165,47 @@ contains
 
       !> Find the end of the step. If it is not found, the springs are as before.
       subroutine solve_step()
+         real(wp) :: loss
+         logical :: jumps
 
          self%marked = .false.
+         self%weighed = .false.
          call state%motion%press(state%springs, self%load)
          call begin()
          call self%iterate(state)
+         if (self%converged) call find_runaway()
          if (.not. self%marked) return
-         if (.not. self%converged) then
-            call state%springs%restore()
-            ! Joints under an axial load that varies have no lines that the deformations alone could follow.
-            if (.not. state%springs%pressed) then
-               call go_by_events()
-               if (.not. self%converged) call state%springs%restore()
+         associate (condensed => state%motion%structure%tangent_numbers > 0)
+            if (.not. self%converged .and. self%runaway == 0) then
+               call state%springs%restore()
+               ! Joints under an axial load that varies have no lines that deformations alone could follow.
+               if (.not. state%springs%pressed) call go_by_events()
+               if (self%converged) call find_runaway()
             end if
-         end if
+            jumps = condensed .and. .not. self%converged
+            if (condensed .and. self%converged) call find_loss(loss, jumps)
+            if (jumps) then
+               ! What has no mass goes to the next state at which it rests, not to any.
+               call state%springs%restore()
+               self%runaway = 0
+               call snap()
+               if (self%converged) then
+                  call find_loss(loss, jumps)
+                  call count_snap(loss)
+               end if
+            end if
+            self%weighed = condensed
+         end associate
+         if (.not. self%converged) call state%springs%restore()
          call state%springs%forget_mark()
       end subroutine solve_step
+
+      !> A step in which a member slides or turns away is none.
+      subroutine find_runaway()
+
+         self%runaway = state%motion%structure%find_runaway(self%step%q1)
+         self%converged = self%runaway == 0
+      end subroutine find_runaway
 
       !> The trial at the start of the step.
       subroutine begin()
@@ -170,21 +216,25 @@ contains
       end subroutine begin
 
       !> The step from end to end of the springs' lines, where `iterate` has failed. On the present lines the
-      !> tangent step is exact, so the residual decreases in proportion to the way, and no line is taken
-      !> twice.
+      !> tangent step is exact, so the residual decreases in proportion to the way. A spring that leaves its
+      !> lines again and again at one place shows that no line leads on from there.
       subroutine go_by_events()
          real(wp) :: share, before
-         integer :: iteration, i, way
+         integer :: i, way
 
          before = huge(1.0_wp)
+         self%returns = 0
          call begin()
-         do iteration = 1, 100 + 20*state%springs%count
+         do
             call self%correct(state)
             call first_end(self%step%q1, self%dq, share, i, way)
             self%step%q1 = self%step%q1 + share*self%dq
             self%step%moved = self%step%moved + share*self%dx
             if (i > 0) then
+               if (share > 0.0_wp) self%returns = 0
+               self%returns(i) = self%returns(i) + 1
                self%busiest = i
+               if (self%returns(i) > most_returns) return
                call state%springs%carry_to(self%step%q1)
                call state%springs%leave(i, way)
                self%step%q1(i) = state%springs%d(i)
@@ -198,6 +248,79 @@ contains
             before = self%residual
          end do
       end subroutine go_by_events
+
+      !> The step where the inside of a member, or nodes without mass, snap from one equilibrium to another.
+      !> Springs that resist their deformation, as if in a very viscous liquid, follow the way from the start
+      !> of the step down to the next state at which they rest, in equilibrium without resistance. It is as
+      !> small as the softening springs allow.
+      subroutine snap()
+         real(wp) :: resistance, wanted, tried, way, way_before, at_last
+         integer :: round
+
+         wanted = self%wanted
+         resistance = 1.0_wp
+         at_last = resistance
+         tried = huge(1.0_wp)
+         way_before = huge(1.0_wp)
+         call begin()
+         do round = 1, most_rounds
+            self%step%now%anchor(:) = self%step%q1
+            self%anchor(:) = self%step%moved
+            self%step%now%resistance = 0.0_wp
+            call self%step%find_residual(state, self%h, self%load, self%residual)
+            if (resistance <= 0.1_wp .and. self%residual < 0.3_wp*tried) then
+               tried = self%residual
+               call self%iterate(state)
+               if (self%converged) exit
+               call go_back()
+               if (tried <= at_rest) call rest(at_last)
+               if (self%converged) exit
+            end if
+            self%step%now%resistance = resistance
+            self%wanted = loose
+            call self%step%find_residual(state, self%h, self%load, self%residual)
+            call self%iterate(state)
+            self%wanted = wanted
+            way = 0.0_wp
+            if (self%converged) way = sqrt(sum(state%motion%structure%initial_stiffness &
+                                               *(self%step%q1 - self%step%now%anchor)**2))
+            if (.not. self%converged .or. way > 5.0_wp*max(1.0_wp, at_last/resistance)*way_before) then
+               call go_back()
+               self%converged = .false.
+               resistance = 3.0_wp*resistance
+               if (resistance > most_resistance) exit
+               cycle
+            end if
+            self%converged = .false.
+            way_before = way
+            at_last = resistance
+            resistance = max(0.3_wp*resistance, least_resistance)
+            self%runaway = state%motion%structure%find_runaway(self%step%q1)
+            if (self%runaway > 0) exit
+         end do
+         self%step%now%resistance = 0.0_wp
+      end subroutine snap
+
+      !> A state in which the tangent is not definite is an equilibrium too. Its tangent for what follows is
+      !> that with resistance.
+      subroutine rest(resistance)
+         real(wp), intent(in) :: resistance
+
+         self%step%now%resistance = resistance
+         call self%tangent%fit(self%step, state, self%h)
+         self%step%now%resistance = 0.0_wp
+         call self%step%find_residual(state, self%h, self%load, self%residual)
+         self%converged = self%residual <= at_rest
+      end subroutine rest
+
+      !> Return to where the last round of `snap` began.
+      subroutine go_back()
+
+         self%step%q1(:) = self%step%now%anchor
+         self%step%moved(:) = self%anchor
+         call state%springs%restore()
+         call state%springs%move_all(self%step%q1)
+      end subroutine go_back
 
       !> The share of a correction up to the first end of a line that a spring reaches.
       subroutine first_end(q, dq, share, first, way)
@@ -229,38 +352,65 @@ contains
          end do
       end subroutine first_end
 
-      !> The end of the step becomes the state. Works by the trapezoidal rule along the way, which balances
-      !> exactly for average acceleration on straight lines.
-      subroutine commit()
+      !> Works of the step by the trapezoidal rule along the way, which balances exactly for average
+      !> acceleration on straight lines; velocities of the springs at its end.
+      subroutine find_works()
          real(wp) :: before, after
          integer :: i
 
+         self%of_loads = 0.0_wp
+         self%of_damping = 0.0_wp
          associate (motion => state%motion, h => self%h, load => self%load, &
                     mean => 0.5_wp*(state%load + self%load))
             do i = lateral, horizontal
                if (motion%acts(i)) then
-                  state%of_loads = state%of_loads + mean(i)*motion%structure%work_of(i, self%step%moved)
+                  self%of_loads = self%of_loads + mean(i)*motion%structure%work_of(i, self%step%moved)
                end if
             end do
             call motion%structure%spring_rates(self%step%now%tangent, self%step%v1, self%step%w1)
             if (motion%varies) then
                before = motion%structure%power_of_loads(state%q, state%v, lifts(state%load))
                after = motion%structure%power_of_loads(self%step%q1, self%step%w1, lifts(load))
-               state%of_loads = state%of_loads + 0.5_wp*h*(before + after)
+               self%of_loads = self%of_loads + 0.5_wp*h*(before + after)
             end if
             if (motion%damped) then
                self%mean(:) = 0.5_wp*(state%v + self%step%w1)
-               state%of_damping = state%of_damping &
-                                  + h*motion%damping_power(state%springs, self%step%q1, self%mean)
+               self%of_damping = h*motion%damping_power(state%springs, self%step%q1, self%mean)
                if (motion%structure%tangent_numbers > 0) then
                   ! Elements damp as wholes; the residual is not needed any more.
                   call motion%structure%unknown_rates(self%mean, self%dx)
                   self%step%r = 0.0_wp
                   call motion%structure%damp(self%dx, self%step%now%tangent, self%step%r)
-                  state%of_damping = state%of_damping - h*inner_product(size(self%dx), self%dx, self%step%r)
+                  self%of_damping = self%of_damping - h*inner_product(size(self%dx), self%dx, self%step%r)
                end if
             end if
          end associate
+      end subroutine find_works
+
+      !> Energy that is lost in a step, and whether it is more than what steps leave of the balance.
+      subroutine find_loss(loss, jumps)
+         real(wp), intent(out) :: loss
+         logical, intent(out) :: jumps
+         real(wp) :: kinetic
+
+         call find_works()
+         call state%springs%carry_to(self%step%q1)
+         associate (structure => state%motion%structure, work => state%springs%work, &
+                    work_before => state%springs%journal%work)
+            kinetic = structure%kinetic_energy(state%q, state%v)
+            loss = self%of_loads - self%of_damping - (sum(work) - sum(work_before)) &
+                   - (structure%kinetic_energy(self%step%q1, self%step%w1) - kinetic) &
+                   - (structure%potential_energy(self%step%q1) - structure%potential_energy(state%q))
+            jumps = abs(loss) > far*(abs(sum(work)) + kinetic)
+         end associate
+      end subroutine find_loss
+
+      !> The end of the step becomes the state.
+      subroutine commit()
+
+         if (.not. self%weighed) call find_works()
+         state%of_loads = state%of_loads + self%of_loads
+         state%of_damping = state%of_damping + self%of_damping
          call state%springs%carry_to(self%step%q1)
          call swap(state%q, self%step%q1)
          call swap(state%v, self%step%w1)
@@ -268,6 +418,20 @@ contains
          state%load = self%load
          call self%step%go_on()
       end subroutine commit
+
+      !> A member has snapped: the energy that the jump sets free is lost.
+      subroutine count_snap(loss)
+         real(wp), intent(in) :: loss
+
+         state%in_snaps = state%in_snaps + loss
+         state%snaps = state%snaps + 1
+         if (loss < state%largest_snap) return
+         state%largest_snap = loss
+         state%snap_time = state%begin + state%time + self%h
+         ! The spring that has gone farthest, by its energy on the first line.
+         state%snap_spring = maxloc(state%motion%structure%initial_stiffness &
+                                    *(self%step%q1 - state%q)**2, dim=1)
+      end subroutine count_snap
 
    end subroutine take_step
 

@@ -74,7 +74,7 @@ module rbs_solve_time_implicit_balance
       !> What each spring adds (springs)
       real(wp), allocatable, private :: k(:)
       !> Step and lines that the factor belongs to
-      real(wp), private :: factor_step = -1.0_wp
+      real(wp), private :: factor_step = -1.0_wp, factor_resistance = 0.0_wp
       integer, private :: factor_version = -1
    contains
       procedure :: create
@@ -343,6 +343,13 @@ contains
          call structure%size_of_parts(state%springs, 0.0_wp, force, terms, work)
          is_round_off = all(abs(self%r) <= round_off*(sqrt(max(stiffness, 0.0_wp))*reach(structure%part) &
                                                       + max(force, terms)/unit))
+         ! What lies between the unknowns is in equilibrium too.
+         if (size(self%now%correction) > 0) then
+            is_round_off = is_round_off .and. &
+                           all(structure%initial_stiffness*abs(self%now%correction) &
+                               <= round_off*(structure%initial_stiffness*abs(self%q1) &
+                                             + max(force, terms)/self%spring_unit))
+         end if
       end associate
    end function is_round_off
 
@@ -383,6 +390,7 @@ contains
       real(wp) :: relative, load(signals)
 
       if (state%springs%version == self%factor_version .and. abs(h - self%factor_step) <= 1.0e-14_wp*h .and. &
+          .not. abs(step%now%resistance - self%factor_resistance) > 0.0_wp .and. &
           .not. (state%motion%second_order .and. state%motion%varies)) return
       call set_tangent()
       ! What lies between the unknowns is condensed by the new tangent.
@@ -404,6 +412,8 @@ contains
             self%k = springs%k
             if (structure%tangent_numbers > 0) then
                ! The inside of an element has no mass: it is in equilibrium at the end of the step.
+               if (step%now%resistance > 0.0_wp) self%k = self%k &
+                  + step%now%resistance*structure%initial_stiffness
                call structure%linearise(self%k, step%now%tangent, unstable)
             else if (structure%tangent_damping) then
                self%k = self%k + (of_damping*structure%stiffness_damping)*max(springs%k, 0.0_wp)
@@ -428,6 +438,7 @@ contains
             if (allocated(self%initial)) call hold_free()
          end associate
          self%factor_step = h
+         self%factor_resistance = step%now%resistance
          self%factor_version = state%springs%version
       end subroutine set_tangent
 

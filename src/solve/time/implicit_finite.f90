@@ -94,7 +94,7 @@ contains
       class is (finite_chain_type)
          self%column => column
       end select
-      self%most_iterations = 30
+      self%most_trials = 30
       self%searches_uphill = .false.
       n = self%column%n
       m = self%column%unknowns

@@ -66,6 +66,7 @@ contains
       task%summary%events = state%springs%events
       task%summary%steps = stepper%steps
       task%summary%cut_steps = stepper%cut_steps
+      if (state%snaps > 0) call report_snaps(state, task%summary)
       if (stepper%longest_step > 0.0_wp) task%summary%time_step = stepper%longest_step
       if (allocated(error) .or. .not. task%keeps_end .or. task%summary%lost_joint > 0) return
       call keep_state(state, stepper, plan, step, response%energy%residual, task%after)
@@ -103,8 +104,8 @@ contains
                   call report_state(state, error)
                   return
                end if
-               if (state%motion%structure%find_runaway(state%q) > 0) then
-                  call report_runaway()
+               if (state%runaway > 0) then
+                  call end_with_fall(now)
                   return
                end if
                state%clock = begin + part*h
@@ -138,17 +139,18 @@ contains
          end do
       end subroutine take_steps
 
-      !> A member has failed inside, where nothing has mass.
-      subroutine report_runaway()
+      !> A member has failed inside, where nothing has mass: the run ends in the last state that it has.
+      subroutine end_with_fall(now)
+         type(motion_result), intent(inout) :: now
 
-         associate (structure => state%motion%structure)
-            call fatal_error(error, analysis_failed, 'at time '//to_text(state%begin + state%time)//' s '// &
-                             trim(spring_name(structure%place(structure%find_runaway(state%q))))// &
-                             ' slides or turns away: its strength is below what the dead load of its '// &
-                             'member, or the hinges beside it, ask of it. Rows up to there are kept; '// &
-                             'make the member stronger, or leave it out from then on (losses)')
-         end associate
-      end subroutine report_runaway
+         task%summary%remark = 'at time '//to_text(state%begin + state%time)//' s '// &
+                               trim(spring_name(state%motion%structure%place(state%runaway)))// &
+                               ' slides or turns away: its member no longer carries its dead load, or '// &
+                               'the moments of its ends'
+         task%summary%fallen_member = state%motion%structure%place(state%runaway)%member
+         state%sight%collapsed = .true.
+         call keep_last(now)
+      end subroutine end_with_fall
 
       !> Members that are lost carry nothing from the next step on, which begins with other accelerations.
       subroutine let_go()
@@ -216,6 +218,24 @@ contains
 
    end subroutine march
 
+   !> Where, when and how often members snapped.
+   subroutine report_snaps(state, summary)
+      type(state_type), intent(in) :: state
+      type(summary_type), intent(inout) :: summary
+
+      summary%snaps = state%snaps
+      summary%snap_member = state%motion%structure%place(state%snap_spring)%member
+      summary%snap_time = state%snap_time
+      associate (before => summary%remark, structure => state%motion%structure)
+         if (before /= '') before = '; '//before
+         summary%remark = 'members snapped from one equilibrium to another in '//to_text(state%snaps)// &
+                          ' step(s), which lost '//to_text(state%in_snaps)//' J; the most, '// &
+                          to_text(state%largest_snap)//' J, was lost at time '//to_text(state%snap_time)// &
+                          ' s, where '//trim(spring_name(structure%place(state%snap_spring)))// &
+                          ' moved farthest'//trim(before)
+      end associate
+   end subroutine report_snaps
+
    !> Times that are multiples of one step differ by it up to round-off; the steps are then equal to the last
    !> bit, and what a method has found for a step holds for all of them.
    pure real(wp) function step_of(plan, h)
@@ -256,8 +276,9 @@ contains
       energy%spring = sum(state%springs%work)
       energy%damping = state%of_damping
       energy%axial = state%motion%structure%potential_energy(state%q)
+      energy%snaps = state%in_snaps
       energy%residual = state%of_loads + state%at_begin - energy%kinetic - energy%spring - energy%damping &
-                        - energy%axial
+                        - energy%axial - energy%snaps
       if (present(summary)) call summary%see_energies(energy)
    end subroutine balance
 

@@ -111,6 +111,9 @@ contains
       if (self%damped .or. self%second_order .or. springs%pressed) then
          call find_others(self, springs, v, load, result, m)
       end if
+      if (result%resistance > 0.0_wp) then
+         result%f = result%f + result%resistance*self%structure%initial_stiffness*(q - result%anchor)
+      end if
       call self%structure%forces(q, load, result%axial(:m), result%tangent, result%f, g, result%correction)
    end subroutine forces_on_bodies
 

@@ -10,17 +10,24 @@ module rbs_solve_time_newton
    use rbs_solve_line_search, only: false_position
    use rbs_solve_time_state, only: state_type, stepper_type, in_bounds, out_of_bounds
    use rbs_structure_spring_place, only: spring_name
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
    public :: newton_stepper
 
-   !> Number of trials in which Newton's method may overshoot, and most cuts of a step in halves.
-   integer, parameter :: most_free = 8, most_cuts = 24
+   !> Number of trials in which Newton's method may overshoot, most trials in turn that do not bring the
+   !> residual below the least one before, most cuts of a step in halves, and most tries of a step and its
+   !> parts that fail.
+   integer, parameter :: most_free = 8, most_idle = 16, most_cuts = 24, most_failed = 60
+
+   !> Share of the least residual so far that a trial must come below, or it is idle.
+   real(wp), parameter :: progress = 0.95_wp
 
    type, abstract, extends(stepper_type) :: newton_stepper
-      !> Most iterations; mostly two or three are needed
-      integer :: most_iterations = 40
+      !> Most trials; mostly two or three are needed. Modal damping is not in the tangent: a trial leaves of
+      !> its share as much as the damping ratio
+      integer :: most_trials = 400
       !> The residual has vanished below this share of the forces; where round-off does not let it, below the
       !> second
       real(wp) :: wanted = 1.0e-12_wp, acceptable = 1.0e-7_wp
@@ -35,6 +42,10 @@ module rbs_solve_time_newton
       logical :: converged = .false., marked = .false., regular = .true.
       !> The spring that changed its line last, 0 for none
       integer :: busiest = 0
+      !> A spring in a member without equilibrium between its ends, 0 for none
+      integer :: runaway = 0
+      !> Tries of the present step that have failed
+      integer, private :: failed = 0
    contains
       procedure :: advance
       procedure :: resume
@@ -109,6 +120,7 @@ contains
       finish = state%time + h
       ! Most steps converge.
       self%h = h
+      self%failed = 0
       call state%loads%at_time(finish, self%load)
       call self%take_step(state)
       if (self%converged) then
@@ -116,7 +128,7 @@ contains
       else
          call halve(self, state, h, 0, error)
       end if
-      if (.not. allocated(error)) state%time = finish
+      if (.not. allocated(error) .and. state%runaway == 0) state%time = finish
    end subroutine advance
 
    !> Accelerations and forces at the start of a step are those that the step before ended with.
@@ -140,15 +152,18 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer :: half
 
+      ! A member that has lost its equilibrium does so in a shorter step too.
+      state%runaway = self%runaway
+      if (self%runaway > 0) return
       self%cut_steps = self%cut_steps + 1
-      if (cuts == most_cuts) then
+      self%failed = self%failed + 1
+      if (cuts == most_cuts .or. self%failed > most_failed) then
          call fatal_error(error, analysis_failed, 'the step of '//to_text(h)//' s at time '// &
                           to_text(state%begin + state%time)//' s does not converge although it was cut '// &
-                          to_text(most_cuts)//' times; '// &
+                          to_text(cuts)//' times; '// &
                           trim(spring_name(state%motion%structure%place(max(self%busiest, 1))))// &
                           ' is the busiest. Rows up to there are kept, the last good state is that of '// &
-                          "this time. Try a shorter dt or method = 'rk45', and look at the springs "// &
-                          'that soften')
+                          'this time. '//trim(remedy(state%motion%structure)))
          return
       end if
       do half = 1, 2
@@ -160,23 +175,34 @@ contains
             if (.not. (state%lost .or. state%springs%stuck)) call state%see(state%begin + state%time)
          else
             call halve(self, state, 0.5_wp*h, cuts + 1, error)
-            if (allocated(error)) return
+            if (allocated(error) .or. state%runaway > 0) return
          end if
       end do
    end subroutine halve
+
+   !> What may help where no step converges.
+   pure character(len=160) function remedy(structure)
+      class(structure_type), intent(in) :: structure
+
+      if (structure%tangent_numbers > 0) then
+         remedy = 'Damping in proportion to the stiffness holds members that soften; look at the '// &
+                  'member that is named'
+      else
+         remedy = "Try a shorter dt or method = 'rk45', and look at the springs that soften"
+      end if
+   end function remedy
 
    !> Iterate from a trial whose residual has been found.
    subroutine iterate(self, state)
       class(newton_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      real(wp) :: before, slope_before, slope, too_far
-      integer :: iteration, most
+      real(wp) :: before, slope_before, slope, too_far, least
+      integer :: iteration, idle
 
       self%converged = .false.
-      most = self%most_iterations
-      ! Modal damping is not in the tangent: an iteration leaves of its share as much as the damping ratio.
-      if (allocated(state%motion%structure%modal_damping)) most = 10*most
-      do iteration = 1, most
+      least = self%residual
+      idle = 0
+      do iteration = 1, self%most_trials
          before = self%residual
          call self%correct(state)
          if (.not. self%regular) return
@@ -185,6 +211,10 @@ contains
          if (.not. self%residual < out_of_bounds .or. state%springs%stuck) return
          self%converged = self%has_converged(state, before)
          if (self%converged) return
+         idle = idle + 1
+         if (self%residual < progress*least) idle = 0
+         least = min(least, self%residual)
+         if (idle > most_idle) return
          slope = self%work_of_residual()
          ! An overshoot mostly does no harm. Where Newton's method goes back and forth, it is bounded.
          too_far = merge(0.9_wp, 0.05_wp, iteration <= most_free)

@@ -29,6 +29,12 @@ module rbs_solve_time_state
       real(wp) :: along_joints = 0.0_wp
       !> Whether a deformation is out of bounds; the run cannot be continued from there
       logical :: lost = .false.
+      !> A spring in a member without equilibrium between its ends, 0 for none; the state is the one before
+      integer :: runaway = 0
+      !> Number of steps in which members snapped, the energy lost in them, and the largest loss [J]; its
+      !> spring, and its time [s]
+      integer :: snaps = 0, snap_spring = 0
+      real(wp) :: in_snaps = 0.0_wp, largest_snap = -huge(1.0_wp), snap_time = 0.0_wp
       !> What has been seen of the run
       type(sight_type) :: sight
    contains
