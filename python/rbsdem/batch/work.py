@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from functools import partial
 from multiprocessing import connection
 from typing import Any, TypeVar
@@ -343,22 +344,32 @@ class _Question:
         self.done.set()
 
 
+@dataclass(frozen=True)
+class Bar:
+    """A bar that is shown: its call takes the number that is done, and a text."""
+
+    show: Callable[[int, str], None]
+
+    def __call__(self, done: int, text: str) -> None:
+        """Show how much is done."""
+        self.show(done, text)
+
+
 @contextmanager
 def progress_bar(
-    wanted: Any, total: int, unit: str = "runs", between: bool = False
-) -> Iterator[Callable[[int, str], None]]:
+    wanted: bool | Bar, total: int, unit: str = "runs", between: bool = False
+) -> Iterator[Bar]:
     """Show on stderr how much is done, how much a second, the time left, and a text.
 
     Where stderr is a pipe or a file (and no notebook), nothing is shown. With `between` no thread
-    draws between two calls; seconds have no rate. A callable in place of `wanted` is the bar of a
-    longer work. More than the total that is done becomes the total.
+    draws between two calls; seconds have no rate. A bar in place of `wanted` is that of a longer
+    work. More than the total that is done becomes the total.
 
     Yields
     ------
-    callable
-        Takes the number that is done and the text.
+    Bar
     """
-    if callable(wanted):
+    if isinstance(wanted, Bar):
         yield wanted
         return
     console = None
@@ -367,7 +378,7 @@ def progress_bar(
 
         console = Console(stderr=True)
     if console is None or not (console.is_terminal or console.is_jupyter):
-        yield lambda done, text: None
+        yield Bar(lambda done, text: None)
         return
     from rich import progress  # noqa: PLC0415
 
@@ -387,4 +398,4 @@ def progress_bar(
                 task, completed=done, total=most, description=", ".join(parts), refresh=between
             )
 
-        yield show
+        yield Bar(show)

@@ -255,7 +255,10 @@ def ensemble(
     with _arguments.collected(faults):
         if client is not None:
             work.check_client(client)
-    switches = {"progress": callable(progress) or progress, "allow_partial": allow_partial}
+    switches = {
+        "progress": isinstance(progress, work.Bar) or progress,
+        "allow_partial": allow_partial,
+    }
     for name, value in switches.items():
         with _arguments.collected(faults):
             _arguments.boolean(value, name)

@@ -409,8 +409,9 @@ def ida(
     work.names = [*work.names, *(name for name in refined if name not in named)]
     work.run_unshaken("ida")
     at = np.empty(_EXPECTED) if hunt is not None else checked_levels(levels)
-    with progress_bar(work.settings["progress"], at.size * math.prod(work.shape)) as show:
-        if work.settings["progress"]:
+    wanted = _arguments.boolean(work.settings["progress"], "progress")
+    with progress_bar(wanted, at.size * math.prod(work.shape)) as show:
+        if wanted:
             work.settings["progress"] = show
         if hunt is not None:
             lower, upper = hunt_and_fill(work, hunt, refined)
