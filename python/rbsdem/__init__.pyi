@@ -21,7 +21,6 @@ from rbsdem.methods.verification import verify as verify
 from rbsdem.model.column import Column as Column
 from rbsdem.model.column import Footing as Footing
 from rbsdem.model.damping import Damping as Damping
-from rbsdem.model.frame import Frame as Frame
 from rbsdem.model.frame import FrameMember as FrameMember
 from rbsdem.model.materials import Concrete as Concrete
 from rbsdem.model.materials import Layout as Layout
@@ -42,6 +41,7 @@ from rbsdem.run.result import cyclic as cyclic
 from rbsdem.run.result import pushover as pushover
 from rbsdem.run.result import time_history as time_history
 from rbsdem.run.solver import Solver as Solver
+from rbsdem.section.building import Frame as Frame
 from rbsdem.web.report import report as report
 
 __version__: str

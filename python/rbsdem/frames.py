@@ -1,6 +1,5 @@
 """Planar frames: what they are made of, and what their analyses return."""
 
-from rbsdem.model.frame import Frame as Frame
 from rbsdem.model.frame import FrameMember as FrameMember
 from rbsdem.model.frame import FrameNode as FrameNode
 from rbsdem.model.frame import FrameParts as FrameParts
@@ -11,5 +10,6 @@ from rbsdem.model.frame_result import FrameResult as FrameResult
 from rbsdem.model.frame_result import MemberHistory as MemberHistory
 from rbsdem.model.shape import TeeSection as TeeSection
 from rbsdem.run.analysis import FrameModes as FrameModes
+from rbsdem.section.building import Frame as Frame
 from rbsdem.section.panel import Panel as Panel
 from rbsdem.section.panel import panel_strength as panel_strength

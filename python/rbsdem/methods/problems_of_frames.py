@@ -7,9 +7,10 @@ from collections.abc import Callable
 import numpy as np
 
 from rbsdem._types import Array, ArrayLike
-from rbsdem.model.frame import Frame, FrameMember, FrameNode, Member
+from rbsdem.model.frame import FrameMember, FrameNode, Member
 from rbsdem.run.analysis import modes
 from rbsdem.run.result import cyclic, pushover
+from rbsdem.section.building import Frame
 
 INCH, FOOT = 0.0254, 0.3048
 KIP = 1000 * 0.45359237 * 9.80665

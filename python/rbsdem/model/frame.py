@@ -15,6 +15,7 @@ from rbsdem._types import Array
 from rbsdem.errors import InputError, warn
 from rbsdem.model.column import TELLING, Column, checked_column
 from rbsdem.model.damping import Damping
+from rbsdem.model.shape import Section
 from rbsdem.model.springs import Layered, Spring, layer_springs
 
 if TYPE_CHECKING:
@@ -58,9 +59,9 @@ class FrameMember:
     between : {"elastic", "rigid"}, optional
         What is between the springs: the elastic beam, or nothing that bends, where the springs
         hold all of the flexibility.
-    panel : float, optional
+    panel : float or pair of float, optional
         Rigid length in each node of a grid that the member ends in, half the depth of the other
-        member [m]; not at the base.
+        member [m]; not at the base. Two of them are those at its start and at its end.
     failure_drift, failure_load, shear_drift : float, optional
         Once a shear spring of it has yielded (`PeakOriented` or `Pinching`), or its drift is
         `shear_drift`, the member loses its axial load P at the drift failure_drift/(1 +
@@ -71,6 +72,8 @@ class FrameMember:
         whose own differs by more than 1 % are refused.
     name : str, optional
         Name in case files; made up if it is not given.
+    sections : pair of Section, optional
+        What its two halves were drawn from, y > 0 on the left of the way from start to end.
     """
 
     modulus: float
@@ -83,15 +86,24 @@ class FrameMember:
     shear: Spring | Mapping[float, Spring] | None = None
     axial_spring: Spring | None = None
     between: Literal["elastic", "rigid"] = "elastic"
-    panel: float = 0.0
+    panel: float | tuple[float, float] = 0.0
     failure_drift: float | None = None
     failure_load: float | None = None
     shear_drift: float | None = None
     length: float | None = None
     name: str = field(default="", compare=False)
+    sections: tuple[Section, Section] | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "FrameMember")
+        rigid: Any = self.panel
+        if isinstance(rigid, (tuple, list)):
+            rigid = tuple(_arguments.number(one, "FrameMember: panel") for one in rigid)
+            if len(rigid) != 2:
+                raise InputError(f"FrameMember: panel has {len(rigid)} values; give one, or two")
+        else:
+            rigid = _arguments.number(rigid, "FrameMember: panel")
+        object.__setattr__(self, "panel", rigid)
         for name, usual in (("flexure", (0.0, 1.0)), ("shear", (0.5,))):
             object.__setattr__(self, name, _placed(getattr(self, name), name, usual))
 
@@ -458,19 +470,6 @@ class Frame:
         for note in notes if TELLING.get() else ():
             warn(note)
 
-    @classmethod
-    def grid(
-        cls,
-        storeys: ArrayLike,
-        bays: ArrayLike | None = None,
-        *,
-        columns: FrameMember | Mapping[tuple[int, int], FrameMember | None],
-        beams: FrameMember | Mapping[tuple[int, int], FrameMember | None] | None = None,
-        **more: Any,
-    ) -> Self:
-        """Return a frame of storeys and bays; further keywords are those of `Frame`."""
-        return cls(storeys, bays, columns, beams, **more)
-
     def __repr__(self) -> str:
         grid = f"{len(self.storeys or ())} storeys, {len(self.bays or ())} bays"  # type: ignore[arg-type]
         parts = self.parts
@@ -634,8 +633,7 @@ class Frame:
                     key: at or None,
                     "storey": storey or None,
                     "kind": _core.Text(names[with_panel(cell, 0.0)] if cell else "none"),
-                    "panel": (cell and cell.panel) or None,
-                }
+                } | (_rigid(cell.panel) if cell else {})
                 parts.append(_core.group(group, values))
         for node in self.nodes:
             parts += node._groups()
@@ -705,7 +703,13 @@ def place_of(name: str, names: tuple[str, ...], what: str) -> int:
     return names.index(name)
 
 
-def with_panel(kind: FrameMember, panel: float) -> FrameMember:
+def _rigid(panel: float | tuple[float, float]) -> dict[str, float | None]:
+    if isinstance(panel, tuple):
+        return {"panel_from": panel[0], "panel_to": panel[1]}
+    return {"panel": panel or None}
+
+
+def with_panel(kind: FrameMember, panel: float | tuple[float, float]) -> FrameMember:
     """Return a kind of members with other rigid lengths in its nodes."""
     if kind.panel == panel:
         return kind

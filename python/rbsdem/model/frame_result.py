@@ -526,6 +526,8 @@ def rigid_lengths(frame: Frame, member: str) -> tuple[float, float]:
         if own.name == member:
             return own.panel
     panel = frame.kind_of(member).panel
+    if isinstance(panel, tuple):
+        return panel
     at_base = member.startswith("C") and member.endswith("-1")
     return 0.0 if at_base else panel, panel
 

@@ -10,10 +10,11 @@ from rbsdem import _core
 from rbsdem.errors import InputError, warn
 from rbsdem.model.column import Column
 from rbsdem.model.damping import Damping
-from rbsdem.model.frame import Frame, FrameMember, FrameNode, Member, with_panel
+from rbsdem.model.frame import FrameMember, FrameNode, Member, with_panel
 from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
 from rbsdem.model.springs import SPRINGS, Layered, Spring
+from rbsdem.section.building import Frame
 from rbsdem.section.layered import LayeredColumn, LayeredModel
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
 
@@ -246,7 +247,10 @@ def _cells(
         # The last that fits counts.
         found.pop(pair, None)
         none = given["kind"] == "none"
-        found[pair] = None if none else with_panel(kinds[given["kind"]], given.get("panel", 0.0))
+        panel = given.get("panel", 0.0)
+        if "panel_from" in given or "panel_to" in given:
+            panel = given.get("panel_from", panel), given.get("panel_to", panel)
+        found[pair] = None if none else with_panel(kinds[given["kind"]], panel)
     return found or None
 
 

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Literal
+
+import numpy as np
 
 from rbsdem import _arguments
 from rbsdem.errors import InputError
@@ -64,7 +67,7 @@ def rigid_ends(
     columns: Section | Sequence[Section],
     beams: Section | Sequence[Section],
     *,
-    axial_load: float = 0.0,
+    axial_load: float | Sequence[float] = 0.0,
     share: float | Literal["asce"] = "asce",
 ) -> tuple[float, float]:
     """Return the rigid lengths of columns and beams in a node, the `panel` of their members [m].
@@ -73,8 +76,8 @@ def rigid_ends(
     ----------
     columns, beams : Section or sequence of Section
         All columns that meet in the node, and all beams.
-    axial_load : float, optional
-        Compression of the columns [N].
+    axial_load : float or sequence of float, optional
+        Compression of the columns, of all or of each [N].
     share : float or "asce", optional
         Which part of the node is rigid in both, from 0 (members reach to the axes) to 1 (to the
         faces); by default as strength has it, by the rule of ASCE 41-17, 10.4.2.2.1: where the
@@ -105,11 +108,9 @@ def rigid_ends(
     if not all(sections):
         raise InputError("rigid_ends: a node has one column and one beam at least; give them")
     if share == "asce":
-        loads = axial_load, 0.0
-        column, beam = (
-            sum(_strength(one, load) for one in several)
-            for several, load in zip(sections, loads, strict=True)
-        )
+        loads = np.broadcast_to(axial_load, len(sections[0])).tolist()
+        column = sum(map(_strength, sections[0], loads))
+        beam = sum(_strength(one, 0.0) for one in sections[1])
         parts = (1.0, 0.0) if column > 1.2 * beam else (0.0, 1.0)
         if 0.8 * beam <= column <= 1.2 * beam:
             parts = (0.5, 0.5)
@@ -120,6 +121,7 @@ def rigid_ends(
     return parts[0] * half[1], parts[1] * half[0]
 
 
+@lru_cache(maxsize=1024)
 def _strength(section: Section, axial_load: float) -> float:
     """Return the mean of the nominal moments to both sides [N m]."""
     moments = [

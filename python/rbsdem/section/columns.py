@@ -217,13 +217,13 @@ def column(
 
 
 def member(
-    section: Section,
+    section: Section | tuple[Section, Section],
     length: float,
     *,
     axial_load: float = 0.0,
     model_parameters: ModelParameters | None = None,
     restrained: int | None = None,
-    panel: float = 0.0,
+    panel: float | tuple[float, float] = 0.0,
     under_load: bool = False,
     name: str = "",
 ) -> FrameMember:
@@ -240,8 +240,9 @@ def member(
 
     Parameters
     ----------
-    section : Section
-        The section; y > 0 is on the left of the way from start to end, which is above in a beam.
+    section : Section or pair of Section
+        The section, or those of its two halves, as of a beam with more bars over one support; y > 0
+        is on the left of the way from start to end, which is above in a beam.
     length : float
         Clear length between its ends [m]; a frame refuses it for members of another one.
     axial_load : float, optional
@@ -260,28 +261,32 @@ def member(
     InputError
         If a value is refused, or the section cannot carry the axial load.
     """
+    halves = tuple(section) if isinstance(section, (tuple, list)) else (section, section)
+    if len(halves) != 2:
+        raise InputError(f"member: {len(halves)} sections; give one, or one for each half")
     if model_parameters is None and not axial_load:
         model_parameters = parameters().with_values(**_BARS_OF_BEAMS)
-    half = column(
-        section,
-        0.5 * column_length(length, "length"),
-        axial_load=axial_load,
-        model_parameters=model_parameters,
-        restrained=restrained,
+    length = column_length(length, "length")
+    common: Any = {"model_parameters": model_parameters, "restrained": restrained}
+    start, end = (column(one, 0.5 * length, axial_load=axial_load, **common) for one in halves)
+    (hinge, above), (last, below) = start.joints("flexure"), end.joints("flexure")
+    (fails, slips), (falls, slides) = start.joints("shear"), end.joints("shear")
+    near, far = (bodies(half)[0][0] / length for half in (start, end))
+    failures = [
+        _failure(one, length, axial_load, shear)
+        for one, shear in zip(halves, (fails, falls), strict=True)
+        if axial_load > 0
+    ]
+    drift = min((one for one, _, _ in failures), default=None)
+    load = min((one for _, one, _ in failures), default=None)
+    modulus, area, depth = (
+        0.5 * (one + other) for one, other in zip(*(_elastic(half) for half in halves), strict=True)
     )
-    hinge, above = half.joints("flexure")
-    joints = {0.0: hinge, 1.0: hinge}
+    joints = {0.0: hinge, 1.0: last}
     if under_load:
         dry = _known(model_parameters).with_values(slip_length=0.0)
-        joints[0.5] = LayeredModel(
-            section, 0.5 * length, axial_load, 2, dry, restrained
-        ).joint.spring
-    place = bodies(half)[0][0] / length
-    fails, slips = half.joints("shear")
-    drift = load = shear_drift = None
-    if axial_load > 0:
-        drift, load, shear_drift = _failure(section, length, axial_load, fails)
-    modulus, area = section.concrete_law["ec"], section.gross_area
+        middle = LayeredModel(halves[0], 0.5 * length, axial_load, 2, dry, restrained)
+        joints[0.5] = middle.joint.spring
     # The hinges shorten by their layers, the rest by this.
     hinges = sum(
         modulus * area / sum(layer.k for _, layer in joint.layers)  # type: ignore[attr-defined]
@@ -290,17 +295,22 @@ def member(
     return FrameMember(
         modulus=modulus,
         area=area * length / max(length - hinges, 0.1 * length),
-        inertia=area * section.depth**2 / 12,
-        flexure={**joints, place: above, 1 - place: above.mirrored()},
-        shear={0.0: fails, 0.5 * place: slips, 1 - 0.5 * place: slips, 1.0: fails.mirrored()},
+        inertia=area * depth**2 / 12,
+        flexure={**joints, near: above, 1 - far: below.mirrored()},
+        shear={0.0: fails, 0.5 * near: slips, 1 - 0.5 * far: slides, 1.0: falls.mirrored()},
         between="rigid",
         panel=panel,
         length=length,
         name=name,
         failure_drift=drift,
         failure_load=load,
-        shear_drift=shear_drift,
+        shear_drift=min((one for _, _, one in failures if one is not None), default=None),
+        sections=halves,
     )
+
+
+def _elastic(section: Section) -> tuple[float, float, float]:
+    return section.concrete_law["ec"], section.gross_area, section.depth
 
 
 def _failure(

@@ -17,11 +17,12 @@ from rbsdem._package import recorded
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, NDArray
 from rbsdem.errors import InputError, RbsdemError, SolveError
-from rbsdem.model.frame import Frame, FrameMember
+from rbsdem.model.frame import FrameMember
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.output.frames import cubic
 from rbsdem.run.analysis import modes
 from rbsdem.run.result import pushover
+from rbsdem.section.building import Frame
 from rbsdem.web.state import Faults, group
 
 #: The frame that the page begins with.

@@ -242,6 +242,8 @@ contains
             if (cell(j)%kind == 'none') member%kind_of = left_out
             member%rigid = cell(j)%panel
             if (letter == 'C' .and. storey == 1) member%rigid(1) = 0.0_wp
+            if (is_given(cell(j)%panel_from)) member%rigid(1) = cell(j)%panel_from
+            if (is_given(cell(j)%panel_to)) member%rigid(2) = cell(j)%panel_to
          end do
       end subroutine choose
    end subroutine add_cell

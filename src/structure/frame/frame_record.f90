@@ -49,7 +49,8 @@ module rbs_structure_frame_frame_record
       logical :: is_beam = .false.
       integer :: line = 0, storey = 0
       character(len=name_length) :: kind = ''
-      real(wp) :: panel = 0.0_wp
+      !> In all nodes, or at the two ends where these are given
+      real(wp) :: panel = 0.0_wp, panel_from = unset, panel_to = unset
    contains
       procedure :: visit => visit_cell
    end type cell_record
@@ -274,6 +275,10 @@ contains
                   required=.true.)
       call v%key('panel', self%panel, 'm', not_negative, &
                  'rigid length in each node that it ends in, not at the base')
+      call v%key('panel_from', self%panel_from, 'm', not_negative, 'rigid length at its beginning, '// &
+                 'if it is another one', optional=.true.)
+      call v%key('panel_to', self%panel_to, 'm', not_negative, 'rigid length at its end, if it is '// &
+                 'another one', optional=.true.)
    end subroutine visit_cell
 
    subroutine visit_node(self, v)

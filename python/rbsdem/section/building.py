@@ -1,0 +1,432 @@
+"""Frames from the sections of their members: lengths, rigid ends, gravity loads found by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from typing import Any, Literal
+
+import numpy as np
+
+from rbsdem import _arguments
+from rbsdem._tables import STANDARD_GRAVITY
+from rbsdem._types import Array, ArrayLike
+from rbsdem.errors import InputError, warn
+from rbsdem.model import frame as model
+from rbsdem.model.frame import FrameMember, FrameNode
+from rbsdem.model.materials import Ties
+from rbsdem.model.shape import RectangularSection, Section
+from rbsdem.section.beams import rigid_ends
+from rbsdem.section.columns import member
+from rbsdem.section.panel import Panel, PanelClass
+
+Halves = tuple[Section, Section]
+Drawn = Section | Halves | FrameMember
+Cells = Drawn | Mapping[tuple[int, int], Drawn | None]
+
+#: Weight of reinforced concrete [N/m3].
+CONCRETE_WEIGHT = 25e3
+#: Axial loads of columns are rounded to this part of f'c A_g, so that like columns are one kind.
+_STEP = 0.01
+#: Masses that differ by more than this from those of the loads are told.
+_DIFFER = 0.05
+
+
+@dataclass(frozen=True)
+class Building:
+    """What a frame was drawn from.
+
+    Attributes
+    ----------
+    columns, beams : dict
+        Section, or those of the two halves, by (line, storey) and (bay, storey), 0 for all.
+    ends : float or "asce"
+        Rule of the rigid ends, the `share` of `rbsdem.section.rigid_ends`.
+    panel_hoops : Ties, "none" or None
+        Hoops in the panels of nodes; None: the nodes are rigid.
+    dead_load, live_load : tuple of float
+        On the beams of each floor, without their own weight [N/m].
+    live_share : float
+        Part of the live load that acts with the earthquake.
+    node_load : dict
+        Weights of walls and facades by (line, floor), 0 for all [N].
+    self_weight : bool
+        Whether columns and beams have their own weight.
+    """
+
+    columns: dict[tuple[int, int], Any]
+    beams: dict[tuple[int, int], Any]
+    ends: float | Literal["asce"] = "asce"
+    panel_hoops: Ties | Literal["none"] | None = None
+    dead_load: tuple[float, ...] = (0.0,)
+    live_load: tuple[float, ...] = (0.0,)
+    live_share: float = 0.3
+    node_load: dict[tuple[int, int], float] = field(default_factory=dict)
+    self_weight: bool = False
+
+
+@dataclass(frozen=True, repr=False)
+class Frame(model.Frame):
+    """A planar frame; see `rbsdem.model.frame.Frame`, whose parameters it has.
+
+    Attributes
+    ----------
+    building : Building or None
+        What it was drawn from, if it was.
+    """
+
+    building: Building | None = field(default=None, compare=False)
+
+    @classmethod
+    def grid(
+        cls,
+        storeys: ArrayLike,
+        bays: ArrayLike | None = None,
+        *,
+        columns: Cells,
+        beams: Cells | None = None,
+        ends: float | Literal["asce"] | None = None,
+        panel_hoops: Ties | Literal["none"] | None = None,
+        dead_load: ArrayLike = 0.0,
+        live_load: ArrayLike = 0.0,
+        live_share: float = 0.3,
+        node_load: float | Mapping[tuple[int, int], float] = 0.0,
+        self_weight: bool = False,
+        mass: Literal["from_loads"] | None = None,
+        **more: Any,
+    ) -> Frame:
+        """Return a frame of storeys and bays, from kinds of members or from their sections.
+
+        Members of sections are layered ones (`rbsdem.section.member`) between the faces of the
+        rigid ends; columns stand under the axial load of the elastic frame, rounded to 1 % of f'c
+        A_g. Equal members are made once.
+
+        Parameters
+        ----------
+        storeys, bays : sequence of float
+            Heights and widths between axes [m].
+        columns, beams : Section, pair of Section, FrameMember, or mapping
+            One for all, or by (line, storey) or (bay, storey), 0 for all, where the last that fits
+            counts; None: there is no member. A pair are the sections of the two halves. Sections
+            lie as their figures show them: y > 0 of a beam is below, of a column on the left.
+        ends : float or "asce", optional
+            Part of a node that is rigid in columns and beams, or the rule of ASCE 41-17, 10.4.2.2.1
+            (`rbsdem.section.rigid_ends`); by default that rule, and 1 with springs in the nodes.
+        panel_hoops : Ties or "none", optional
+            Springs in the panels of the nodes (`rbsdem.frames.Panel`) with these hoops, or without
+            hoops; None: the nodes are rigid.
+        dead_load, live_load : float or sequence of float, optional
+            On the beams of all floors, or of each [N/m].
+        live_share : float, optional
+            Part of the live load that acts.
+        node_load : float or mapping, optional
+            Weights of walls and facades on the nodes of floors: of the outer lines, or by (line,
+            floor), 0 for all; the last that fits counts [N].
+        self_weight : bool, optional
+            Whether members of sections have their own weight, 25 kN/m3.
+        mass : "from_loads", optional
+            Floor masses are those of the loads; given `floor_mass` that differ from them by more
+            than 5 % are told.
+        **more
+            Other parameters of `Frame`; `beam_load` adds to the loads above.
+
+        Raises
+        ------
+        InputError
+            With what is wrong and where.
+        """
+        heights = tuple(_arguments.vector(storeys, "frame: storeys", shape="1 or m").tolist())
+        widths: tuple[float, ...] = ()
+        if bays is not None:
+            widths = tuple(_arguments.vector(bays, "frame: bays", shape="1 or m").tolist())
+        if mass is not None:
+            _arguments.choice(mass, "frame: mass", ("from_loads",))
+        cells = [_cells(given, name) for given, name in ((columns, "columns"), (beams, "beams"))]
+        grid = _Grid(heights, widths, *cells)
+        lines = len(widths) + 1
+        building = Building(
+            cells[0],
+            cells[1],
+            ends if ends is not None else "asce" if panel_hoops is None else 1.0,
+            panel_hoops,
+            grid.floors(dead_load, "dead_load"),
+            grid.floors(live_load, "live_load"),
+            _arguments.number(live_share, "frame: live_share", least=0.0, most=1.0),
+            _node_loads(node_load, lines),
+            _arguments.boolean(self_weight, "frame: self_weight"),
+        )
+        drawn = any(not isinstance(one, FrameMember) for one in grid.all_cells())
+        nodes = {node.name: node for node in more.pop("nodes", ())}
+        loads = grid.loads(building, np.array(grid.floors(more.pop("beam_load", 0.0), "beam_load")))
+        weights = grid.weights(building)
+        for name, weight in weights.items():
+            node = nodes.get(name, FrameNode(name))
+            nodes[name] = replace(node, load_y=node.load_y - weight)
+        more["beam_load"] = loads if len(set(loads.tolist())) > 1 else loads[:1]
+        floors = loads * sum(widths) / STANDARD_GRAVITY
+        for name, node in nodes.items():
+            level = int(name.rsplit("-", 1)[1]) if name.startswith("N-") else 0
+            if level > 0:
+                floors[level - 1] -= node.load_y / STANDARD_GRAVITY
+        _masses(more, floors, mass)
+        if drawn:
+            cells = grid.members(cls, building, more | {"nodes": tuple(nodes.values())})
+            for name, node in grid.panels(building).items():
+                own = nodes.get(name, FrameNode(name))
+                nodes[name] = own if own.panel is not None else replace(own, panel=node)
+            more["building"] = building
+        return cls(
+            heights, widths or None, cells[0], cells[1] or None, nodes=tuple(nodes.values()), **more
+        )
+
+
+def _masses(more: dict[str, Any], floors: Array, mass: str | None) -> None:
+    """Put floor masses that follow from loads into the arguments, or compare those given."""
+    given = more.get("floor_mass")
+    if given is None:
+        if mass is not None:
+            more["floor_mass"] = floors if len(set(floors.tolist())) > 1 else floors[:1]
+        return
+    stated = np.broadcast_to(
+        _arguments.vector(given, "frame: floor_mass", shape="1 or m"), floors.shape
+    )
+    apart = np.abs(stated - floors) > _DIFFER * floors
+    if mass is not None and apart.any():
+        at = int(apart.argmax())
+        warn(
+            f"frame: floor_mass of floor {at + 1} is {stated[at]:.4g} kg, and its loads weigh "
+            f"{floors[at]:.4g} kg; leave out floor_mass, or mass"
+        )
+
+
+def _cells(given: Any, name: str) -> dict[tuple[int, int], Any]:
+    """Return sections and kinds by line (or bay) and storey."""
+    if given is None:
+        return {}
+    items = given.items() if isinstance(given, Mapping) else [((0, 0), given)]
+    found: dict[tuple[int, int], Any] = {}
+    for pair, one in items:
+        if not (isinstance(pair, tuple) and len(pair) == 2):
+            raise InputError(
+                f"frame: {name}: {_arguments.shown(pair)} must be a pair (line or bay, storey)"
+            )
+        halves = one if isinstance(one, (tuple, list)) and len(one) == 2 else (one,)
+        known = all(isinstance(part, Section) for part in halves)
+        if one is not None and not known and not isinstance(one, FrameMember):
+            raise InputError(
+                f"frame: {name} = {_arguments.shown(one)} must be a Section, a pair of them, a "
+                "FrameMember, or a mapping from pairs (line or bay, storey), 0 for all, to these"
+            )
+        at, storey = (_arguments.integer(number, f"frame: {name}") for number in pair)
+        found.pop((at, storey), None)
+        found[at, storey] = tuple(halves) if known and len(halves) == 2 else one
+    return found
+
+
+def _node_loads(given: Any, lines: int) -> dict[tuple[int, int], float]:
+    if isinstance(given, Mapping):
+        for pair in given:
+            for number in pair:
+                _arguments.integer(number, "frame: node_load")
+        return {at: _arguments.number(load, "frame: node_load") for at, load in given.items()}
+    load = _arguments.number(given, "frame: node_load")
+    return {(line, 0): load for line in {1, lines}} if load else {}
+
+
+class _Grid:
+    """Places of a grid and what stands in them."""
+
+    def __init__(
+        self,
+        storeys: tuple[float, ...],
+        bays: tuple[float, ...],
+        columns: dict[tuple[int, int], Any],
+        beams: dict[tuple[int, int], Any],
+    ) -> None:
+        self.storeys, self.bays = storeys, bays
+        lines, levels = range(1, len(bays) + 2), range(1, len(storeys) + 1)
+        self.columns = {(i, k): _at(columns, i, k) for k in levels for i in lines}
+        self.beams = {(i, k): _at(beams, i, k) for k in levels for i in lines[:-1]}
+        self.kinds: tuple[dict[Any, FrameMember | None], ...] = ({}, {})
+
+    def all_cells(self) -> list[Any]:
+        return [one for one in (*self.columns.values(), *self.beams.values()) if one is not None]
+
+    def floors(self, given: Any, name: str) -> tuple[float, ...]:
+        """Return a value for each floor."""
+        values = _arguments.vector(given, f"frame: {name}", shape="1 or m")
+        if values.size not in (1, len(self.storeys)):
+            raise InputError(
+                f"frame: {name} has {values.size} values for {len(self.storeys)} storeys; give "
+                "one, or one for each"
+            )
+        return tuple(np.broadcast_to(values, len(self.storeys)).tolist())
+
+    def loads(self, building: Building, more: Array) -> Array:
+        """Return the loads on the beams of each floor that act [N/m]."""
+        found = more + np.array(building.dead_load)
+        found = found + building.live_share * np.array(building.live_load)
+        if building.self_weight:
+            for k in range(len(self.storeys)):
+                own = [_area(self.beams[i, k + 1]) for i in range(1, len(self.bays) + 1)]
+                # One load for the beams of a floor: that of their mean.
+                found[k] += (
+                    CONCRETE_WEIGHT * float(np.dot(own, self.bays)) / max(sum(self.bays), 1.0)
+                )
+        return np.asarray(found)
+
+    def weights(self, building: Building) -> dict[str, float]:
+        """Return the weights on the nodes of floors [N]: walls, and halves of the columns."""
+        found = {}
+        for i, k in self.columns:
+            weight = _at(building.node_load, i, k) or 0.0
+            if building.self_weight:
+                above = self.columns.get((i, k + 1))
+                for one, height in (
+                    (self.columns[i, k], self.storeys[k - 1]),
+                    (above, self.storeys[k] if above is not None else 0.0),
+                ):
+                    weight += 0.5 * CONCRETE_WEIGHT * _area(one) * height
+            if weight:
+                found[f"N-{i}-{k}"] = weight
+        return found
+
+    def members(self, cls: type[Frame], building: Building, more: dict[str, Any]) -> list[Any]:
+        """Return the kinds of all columns and beams."""
+        elastic = [
+            {at: _elastic_kind(one) for at, one in cells.items()}
+            for cells in (self.columns, self.beams)
+        ]
+        given = {key: value for key, value in more.items() if key not in ("losses", "building")}
+        standing = cls(
+            self.storeys, self.bays or None, elastic[0], elastic[1] or None,
+            **given | {"kinematics": "small", "panel": None, "damping": None},
+        )  # fmt: skip
+        axial = dict(zip(standing.parts.members, standing.parts.compression.tolist(), strict=True))
+        load = {
+            at: _rounded(self.columns[at], axial.get(f"C-{at[0]}-{at[1]}", 0.0))
+            for at in self.columns
+        }
+        rigid = {
+            (i, k): self._ends(building, load, i, k)
+            for k in range(1, len(self.storeys) + 1)
+            for i in range(1, len(self.bays) + 2)
+        }
+        columns, beams = self.kinds
+        for (i, k), one in self.columns.items():
+            ends = rigid.get((i, k - 1), (0.0, 0.0))[0], rigid[i, k][0]
+            columns[i, k] = _kind(one, self.storeys[k - 1], ends, load[i, k], f"C-{i}-{k}")
+        for (i, k), one in self.beams.items():
+            ends = rigid[i, k][1], rigid[i + 1, k][1]
+            turned = one
+            if one is not None and not isinstance(one, FrameMember):
+                turned = tuple(part.mirrored for part in _halves(one))
+            beams[i, k] = _kind(turned, self.bays[i - 1], ends, 0.0, f"B-{i}-{k}")
+        return list(self.kinds)
+
+    def around(self, i: int, k: int) -> tuple[list[Any], list[Any]]:
+        """Return the columns below and above a node, and the beams on its left and right."""
+        columns = [self.columns.get((i, k)), self.columns.get((i, k + 1))]
+        beams = [self.beams.get((i - 1, k)), self.beams.get((i, k))]
+        return columns, beams
+
+    def _ends(
+        self, building: Building, load: dict[tuple[int, int], float], i: int, k: int
+    ) -> tuple[float, float]:
+        """Return the rigid lengths of columns and beams in a node [m]."""
+        places = [(i, k), (i, k + 1)]
+        columns = [(self.columns[at], load[at]) for at in places if _is_drawn(self.columns.get(at))]
+        left, right = self.beams.get((i - 1, k)), self.beams.get((i, k))
+        beams = [_halves(left)[1]] if _is_drawn(left) else []
+        beams += [_halves(right)[0]] if _is_drawn(right) else []
+        if not columns or not beams:
+            return 0.0, 0.0
+        # The half of a column that ends in the node.
+        parts = [_halves(one)[j == 0] for j, (one, _) in enumerate(columns)]
+        return rigid_ends(parts, beams, axial_load=[n for _, n in columns], share=building.ends)
+
+    def panels(self, building: Building) -> dict[str, Any]:
+        """Return the springs in the panels of the nodes."""
+        found: dict[str, Any] = {}
+        hoops = building.panel_hoops
+        if hoops is None:
+            return found
+        if hoops != "none":
+            _arguments.instance(hoops, "frame: panel_hoops", Ties, 'or "none"')
+        for i, k in self.columns:
+            columns, beams = (
+                [one for one in several if _is_drawn(one)] for several in self.around(i, k)
+            )
+            if not columns or not beams:
+                continue
+            column = _halves(columns[0])[0]
+            beam = max((_halves(one)[0] for one in beams), key=lambda one: one.depth)
+            if not (
+                isinstance(column, RectangularSection) and isinstance(beam, RectangularSection)
+            ):
+                raise InputError(f"frame: panel_hoops: node N-{i}-{k} is not of rectangles")
+            going = len(columns) + len(beams)
+            kind: PanelClass = "interior" if going == 4 else "knee" if going == 2 else "exterior"
+            ties = None if hoops == "none" else hoops
+            found[f"N-{i}-{k}"] = Panel(column, beam, kind, hoops=ties).spring()
+        return found
+
+
+def _at(cells: Mapping[tuple[int, int], Any], i: int, k: int) -> Any:
+    """Return what stands in a place: the last that fits."""
+    found = [one for (at, level), one in cells.items() if at in (0, i) and level in (0, k)]
+    return found[-1] if found else None
+
+
+def _halves(one: Any) -> Halves:
+    return one if isinstance(one, tuple) else (one, one)
+
+
+def _is_drawn(one: Any) -> bool:
+    return one is not None and not isinstance(one, FrameMember)
+
+
+def _area(one: Any) -> float:
+    if not _is_drawn(one):
+        return 0.0
+    return 0.5 * sum(part.gross_area for part in _halves(one))
+
+
+def _elastic_kind(one: Any) -> FrameMember | None:
+    """Return a member of the gross section, for the axial loads."""
+    if not _is_drawn(one):
+        return one  # type: ignore[no-any-return]
+    parts = _halves(one)
+    modulus, inertia = parts[0].concrete_law["ec"], 0.5 * sum(part.inertia for part in parts)
+    return FrameMember(modulus, _area(one), inertia)
+
+
+def _rounded(one: Any, load: float) -> float:
+    """Return an axial load in steps of a part of f'c A_g; a column in tension has none."""
+    if not _is_drawn(one):
+        return load
+    step = _STEP * _area(one) * _halves(one)[0].concrete.fc
+    return max(round(load / step), 1) * step if load > 0 else 0.0
+
+
+def _kind(
+    one: Any, length: float, ends: tuple[float, float], load: float, name: str
+) -> FrameMember | None:
+    if not _is_drawn(one):
+        return one  # type: ignore[no-any-return]
+    clear = length - sum(ends)
+    if not clear > 0:
+        raise InputError(
+            f"frame: member {name} of {length:g} m has rigid ends of {sum(ends):g} m, and no length"
+        )
+    try:
+        made = _made(_halves(one), clear, load)
+    except InputError as error:
+        raise InputError(f"frame: member {name}: {error}") from None
+    return model.with_panel(made, ends)
+
+
+@lru_cache(maxsize=1024)
+def _made(sections: Halves, length: float, axial_load: float) -> FrameMember:
+    return member(sections, length, axial_load=axial_load)
