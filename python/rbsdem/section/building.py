@@ -344,7 +344,10 @@ class _Grid:
             return 0.0, 0.0
         # The half of a column that ends in the node.
         parts = [_halves(one)[j == 0] for j, (one, _) in enumerate(columns)]
-        return rigid_ends(parts, beams, axial_load=[n for _, n in columns], share=building.ends)
+        try:
+            return rigid_ends(parts, beams, axial_load=[n for _, n in columns], share=building.ends)
+        except InputError as error:
+            raise InputError(f"frame: node N-{i}-{k}: {error}") from None
 
     def panels(self, building: Building) -> dict[str, Any]:
         """Return the springs in the panels of the nodes."""

@@ -1,0 +1,163 @@
+"""Frames from the sections of their members, held against frames that were put together by hand."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem.frames import TeeSection
+from rbsdem.run.case import case_of_text
+
+STEEL, HOOP = rbsdem.Steel(450e6, 600e6), rbsdem.Steel(400e6)
+TIES = rbsdem.Ties(0.008, 0.15, HOOP)
+C = rbsdem.RectangularSection(
+    0.4, 0.4, rbsdem.Concrete(25e6), layout=rbsdem.Layout(8, 0.018, STEEL), ties=TIES, cover=0.03
+)
+#: Drawn with its top at y < 0.
+B = rbsdem.RectangularSection(
+    0.3, 0.5, rbsdem.Concrete(25e6), bars=[(-0.2, 10e-4, STEEL), (0.2, 6e-4, STEEL)],
+    bar_diameter=0.018, ties=TIES, cover=0.03,
+)  # fmt: skip
+MORE = {"dead_load": 20e3, "live_load": 10e3, "kinematics": "pdelta"}
+
+
+@pytest.fixture(scope="module")
+def drawn():
+    return rbsdem.Frame.grid([3.2, 3.0], [5.6, 4.0], columns=C, beams=B, ends=1.0, **MORE)
+
+
+def test_a_drawn_frame_is_one_of_members_by_hand(drawn):
+    kinds = {}
+    for line in (1, 2, 3):
+        for storey, clear in ((1, 3.2 - 0.25), (2, 3.0 - 0.5)):
+            # 1 % of f'c A_g is the step of the axial loads.
+            elastic = drawn.parts.compression[drawn.parts.members.index(f"C-{line}-{storey}")]
+            load = max(round(elastic / 40e3), 1) * 40e3
+            panel = (0.0 if storey == 1 else 0.25), 0.25
+            kinds[line, storey] = rbsdem.section.member(C, clear, axial_load=load, panel=panel)
+    beams = {
+        (bay, 0): rbsdem.section.member(B.mirrored, width - 0.4, panel=(0.2, 0.2))
+        for bay, width in ((1, 5.6), (2, 4.0))
+    }
+    hand = rbsdem.Frame.grid(
+        [3.2, 3.0], [5.6, 4.0], columns=kinds, beams=beams, beam_load=23e3, kinematics="pdelta"
+    )
+    one, two = (rbsdem.pushover(each, drift=0.005, points=5) for each in (drawn, hand))
+    np.testing.assert_array_equal(one.base_shear, two.base_shear)
+    # Beams are stronger where their top is in tension: more bars are drawn there.
+    hinge = drawn.kind_of("B-1-1").at("flexure", 0.0)
+    above = sum(layer.k for y, layer in hinge.layers if y > 0.15)
+    below = sum(layer.k for y, layer in hinge.layers if y < -0.15)
+    assert above > below
+
+
+def test_columns_carry_the_loads_that_were_stated():
+    more = {"self_weight": True, "node_load": {(0, 0): 5e3, (2, 1): 12e3}}
+    frame = rbsdem.Frame.grid([3.2, 3.0], [5.6, 4.0], columns=C, beams=B, **MORE, **more)
+    on_beams = 2 * 9.6 * (20e3 + 0.3 * 10e3 + 25e3 * 0.15)
+    walls = 5 * 5e3 + 12e3
+    # The lower halves of the columns of the ground storey stand on the base.
+    columns = 3 * 25e3 * 0.16 * (3.2 / 2 + 3.0)
+    parts = frame.parts
+    feet = [parts.compression[parts.members.index(f"C-{line}-1")] for line in (1, 2, 3)]
+    assert sum(feet) == pytest.approx(on_beams + walls + columns, rel=1e-9)
+
+
+def test_masses_from_loads():
+    whole = rbsdem.Frame.grid(
+        [3.2, 3.0], [5.6], columns=C, beams=B, dead_load=[20e3, 10e3], node_load=8e3,
+        mass="from_loads",
+    )  # fmt: skip
+    g = 9.80665
+    assert whole.floor_mass == pytest.approx(
+        [(5.6 * q + 16e3) / g for q in (20e3, 10e3)], rel=1e-12
+    )
+    with pytest.warns(rbsdem.errors.AccuracyWarning, match="floor_mass of floor 1"):
+        rbsdem.Frame.grid(
+            [3.2], [5.6], columns=C, beams=B, dead_load=20e3, floor_mass=9e3, mass="from_loads"
+        )
+
+
+def test_rigid_ends_by_strength():
+    # Weak columns between strong beams: the beams are rigid in the nodes, and the other way round.
+    strong = rbsdem.RectangularSection(
+        0.6, 0.6, rbsdem.Concrete(25e6), layout=rbsdem.Layout(12, 0.025, STEEL), ties=TIES,
+        cover=0.03,
+    )  # fmt: skip
+    weak = rbsdem.Frame.grid([3.2] * 2, [5.6], columns=C, beams=strong, dead_load=20e3)
+    assert weak.beams[1, 1].panel == (0.2, 0.2)
+    assert weak.columns[1, 2].panel == (0.0, 0.0)
+    stiff = rbsdem.Frame.grid([3.2] * 2, [5.6], columns=strong, beams=B, dead_load=20e3)
+    assert stiff.beams[1, 1].panel == (0.0, 0.0)
+    assert (stiff.columns[1, 1].panel, stiff.columns[1, 2].panel) == ((0.0, 0.25), (0.25, 0.25))
+
+
+def test_unlike_halves():
+    light = rbsdem.RectangularSection(
+        0.3, 0.5, rbsdem.Concrete(25e6), bars=[(-0.2, 5e-4, STEEL), (0.2, 6e-4, STEEL)],
+        bar_diameter=0.018, ties=TIES, cover=0.03,
+    )  # fmt: skip
+    pair = rbsdem.Frame.grid([3.2], [5.6], columns=C, beams=(B, light), **MORE)
+    mirror = rbsdem.Frame.grid([3.2], [5.6], columns=C, beams=(light, B), **MORE)
+    one = rbsdem.pushover(pair, drift=0.01, points=10)
+    # Mirrored it is the same frame pushed the other way, at the node of the other line.
+    back = rbsdem.pushover(replace(mirror, control_node="N-2-1"), drift=-0.01, points=10)
+    assert back.base_shear[-1] == pytest.approx(-one.base_shear[-1], rel=1e-6)
+    alike = rbsdem.section.member((B, B), 5.0)
+    assert alike == rbsdem.section.member(B, 5.0)
+    assert alike.sections == (B, B)
+
+
+def test_a_drawn_frame_comes_back_from_its_springs(drawn):
+    loading = "&loading drive = 'displacement', values = 0.01 /\n"
+    assert case_of_text(drawn.to_namelist() + loading).column == drawn
+
+
+def test_equal_members_are_one_kind():
+    tall = rbsdem.Frame.grid([3.2] * 6, [5.6] * 4, columns=C, beams=B, **MORE)
+    kinds = {id(kind.flexure[0][1]) for kind in tall._kinds()}
+    assert len(tall.parts.members) == 54
+    assert len(kinds) < 20
+
+
+def test_springs_in_nodes():
+    frame = rbsdem.Frame.grid([3.2] * 2, [5.6] * 2, columns=C, beams=B, panel_hoops="none", **MORE)
+    springs = {node.name: node.panel for node in frame.nodes}
+    assert set(springs) == {f"N-{i}-{k}" for i in (1, 2, 3) for k in (1, 2)}
+    panel = rbsdem.frames.Panel(C, B, "interior")
+    assert springs["N-2-1"] == panel.spring()
+    assert springs["N-1-2"] == rbsdem.frames.Panel(C, B, "knee").spring()
+    assert springs["N-1-1"] == rbsdem.frames.Panel(C, B, "exterior").spring()
+    assert frame.beams[1, 1].panel == (0.2, 0.2)
+
+
+@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
+def test_a_tee_hogs_with_its_slab_in_tension():
+    tee = TeeSection(
+        0.3, 0.5, rbsdem.Concrete(25e6), bars=[(-0.2, 10e-4, STEEL), (0.2, 6e-4, STEEL)],
+        bar_diameter=0.018, ties=TIES, cover=0.03, flange_width=1.0, flange_thickness=0.12,
+    )  # fmt: skip
+    frame = rbsdem.Frame.grid([3.2], [5.6], columns=C, beams=tee, **MORE)
+    assert frame.kind_of("B-1-1").sections == (tee.mirrored, tee.mirrored)
+
+
+@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        ({"columns": 3.0}, "must be a Section"),
+        ({"columns": {1: C}}, "pair"),
+        ({"dead_load": [1e3, 2e3, 3e3]}, "3 values for 2 storeys"),
+        ({"mass": "loads"}, "from_loads"),
+        ({"live_share": 3.0}, "live_share"),
+        ({"ends": 7.0}, "share"),
+        ({"storeys": [3.2, 0.5], "ends": 1.0}, "C-1-2 of 0.5 m has rigid ends of 0.5 m"),
+        ({"panel_hoops": 3}, "panel_hoops"),
+        ({"dead_load": 2e7}, "node N-1-1: axial_load"),
+    ],
+)
+def test_refusals(change, text):
+    given = {"storeys": [3.2, 3.0], "bays": [5.6], "columns": C, "beams": B, **MORE} | change
+    with pytest.raises(rbsdem.InputError, match=text):
+        rbsdem.Frame.grid(**given)
