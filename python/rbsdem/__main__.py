@@ -39,6 +39,13 @@ def main() -> int:
         from rbsdem.cli import main as run_command  # noqa: PLC0415
 
         return run_command(words)
+    if words == ["keys", "--schema"]:
+        import json  # noqa: PLC0415
+
+        from rbsdem.run.schema import case_schema  # noqa: PLC0415
+
+        print(json.dumps(case_schema(), indent=1))
+        return 0
     try:
         program = executable()
     except FileNotFoundError as error:

@@ -21,7 +21,7 @@ module rbs_app_command_line
       !> Path of the output; not allocated: the path that the case gives
       character(len=:), allocatable :: output
       logical :: quiet = .false.
-      !> keys: as JSON, else as a table
+      !> keys: as JSON, else as a table; check: as JSON, else in words
       logical :: as_json = .false.
       !> modes: how many, the lowest first (0: all), and whether the matrices are printed too
       integer :: count = 0
@@ -137,8 +137,8 @@ contains
             call complain('no command')
          else if (command%name == 'help' .or. command%name == 'version') then
             return
-         else if (command%as_json .and. command%name /= 'keys') then
-            call complain('--json is for keys only')
+         else if (command%as_json .and. command%name /= 'keys' .and. command%name /= 'check') then
+            call complain('--json is for keys and check only')
          else if ((command%count > 0 .or. command%matrices) .and. command%name /= 'modes') then
             call complain(trim(merge('--count   ', '--matrices', command%count > 0))//' is for modes only')
          else if (command%name == 'keys') then

@@ -251,33 +251,87 @@ contains
    end subroutine run_case
 
    !> rbsdem check: report all errors of the input without solving the case.
-   subroutine check_case(path, quiet, error)
+   subroutine check_case(path, quiet, as_json, error)
       character(len=*), intent(in) :: path
-      logical, intent(in) :: quiet
+      logical, intent(in) :: quiet, as_json
       type(error_type), allocatable, intent(out) :: error
       type(run_type) :: run
       type(time_plan) :: plan
       type(message_list) :: notes
+      type(text_buffer) :: buffer
       character(len=:), allocatable :: text
 
       call prepare(run, path, error)
-      if (allocated(error)) return
-      if (run%case%analysis%dynamic()) then
-         call plan_dynamic(run%structure, run%case%analysis, run%history%time, run%history%loads, plan, error)
-         if (allocated(error)) return
+      if (.not. allocated(error)) then
+         if (run%case%analysis%dynamic()) then
+            call plan_dynamic(run%structure, run%case%analysis, run%history%time, run%history%loads, plan, &
+                              error)
+         end if
       end if
-      if (quiet) return
-      call say(path//': no errors', error)
-      if (plan%reason /= '') call say('method: '//method_text(plan%method, plan%reason), error)
-      call structure_notes(run%case, notes)
-      if (run%case%analysis%dynamic()) then
+      if (.not. allocated(error)) call structure_notes(run%case, notes)
+      if (allocated(error)) then
+         if (as_json) call print_json()
+         return
+      else if (run%case%analysis%dynamic()) then
          call long_run_note(run%structure, plan, text)
          if (text /= '') call notes%add(text)
       else if (all(run%case%loading(:run%case%loadings)%drive /= 'force') .and. &
                run%case%column%kinematics /= 'finite') then
          call drift_note(maxval(abs(run%history%target)), run%case%height(), notes)
       end if
-      call print_notes(notes, error)
+      if (as_json) then
+         call print_json()
+      else if (.not. quiet) then
+         call say(path//': no errors', error)
+         if (plan%reason /= '') call say('method: '//method_text(plan%method, plan%reason), error)
+         call print_notes(notes, error)
+      end if
+
+   contains
+
+      !> {"case": ..., "errors": [{"line": ..., "message": ...}], "method": ..., "notes": [...]}
+      subroutine print_json()
+         type(error_type), allocatable :: printing
+
+         call buffer%append('{"case": '//json_text(path)//', "errors": [')
+         if (allocated(error)) call append_lines(error%message, .true.)
+         call buffer%append(']')
+         if (plan%reason /= '') call buffer%append(', "method": '//json_text(trim(plan%method)))
+         call buffer%append(', "notes": [')
+         if (notes%count > 0) call append_lines(notes%text, .false.)
+         call buffer%append(']}')
+         call say(buffer%text(:buffer%length), printing)
+         ! It has been printed; the code of the process stays.
+         if (allocated(error)) error%message = ''
+         if (allocated(printing)) call move_alloc(printing, error)
+      end subroutine print_json
+
+      !> The lines of a text; those of errors with the line of the file that they name, else null.
+      subroutine append_lines(message, numbered)
+         character(len=*), intent(in) :: message
+         logical, intent(in) :: numbered
+         character(len=:), allocatable :: number
+         integer :: first, last, at, digits
+
+         first = 1
+         do while (first <= len(message))
+            last = index(message(first:)//new_line('a'), new_line('a')) + first - 2
+            if (first > 1) call buffer%append(', ')
+            if (numbered) then
+               number = 'null'
+               at = index(message(first:last), ' line ') + first - 1
+               if (at >= first) then
+                  digits = verify(message(at + 6:last)//':', '0123456789') - 1
+                  if (digits > 0) number = message(at + 6:at + 5 + digits)
+               end if
+               call buffer%append('{"line": '//number//', "message": '//json_text(message(first:last))//'}')
+            else
+               call buffer%append(json_text(message(first:last)))
+            end if
+            first = last + 2
+         end do
+      end subroutine append_lines
+
    end subroutine check_case
 
    !> rbsdem modes: frequencies, stable step, and the matrices if they are asked for.
@@ -435,5 +489,26 @@ contains
          first = last + 2
       end do
    end subroutine print_notes
+
+   !> A text in quotes, as JSON has it.
+   pure function json_text(text) result(quoted)
+      character(len=*), intent(in) :: text
+      character(len=:), allocatable :: quoted
+      character(len=6) :: code
+      integer :: i
+
+      quoted = '"'
+      do i = 1, len(text)
+         if (text(i:i) == '"' .or. text(i:i) == '\') then
+            quoted = quoted//'\'//text(i:i)
+         else if (iachar(text(i:i)) < 32) then
+            write (code, '(a, z4.4)') '\u', iachar(text(i:i))
+            quoted = quoted//code
+         else
+            quoted = quoted//text(i:i)
+         end if
+      end do
+      quoted = quoted//'"'
+   end function json_text
 
 end module rbs_app_commands

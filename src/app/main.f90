@@ -30,7 +30,7 @@ program rbsdem
       case ('run')
          call run_case(command%case, command%output, command%quiet, error)
       case ('check')
-         call check_case(command%case, command%quiet, error)
+         call check_case(command%case, command%quiet, command%as_json, error)
       case ('modes')
          call show_modes(command%case, command%count, command%matrices, error)
       case ('keys')
@@ -43,7 +43,7 @@ program rbsdem
    end if
    status = 0_c_int
    if (allocated(error)) then
-      call print_error(error%message)
+      if (error%message /= '') call print_error(error%message)
       status = int(error%code, c_int)
    end if
    flush (error_unit)
@@ -77,7 +77,7 @@ contains
          '', &
          'usage:', &
          '  rbsdem run CASE.nml [--output FILE] [--quiet]   solve a case, write a csv', &
-         '  rbsdem check CASE.nml [--quiet]                 find all errors of the input', &
+         '  rbsdem check CASE.nml [--quiet] [--json]        find all errors of the input', &
          '  rbsdem modes CASE.nml [--count N] [--matrices]  natural frequencies, stable step', &
          '  rbsdem keys [NAME] [--json]                     keys of a group or rule, or all', &
          '  rbsdem COMMAND --help                           options of a command', &
@@ -143,13 +143,14 @@ contains
          call say('Exit code: 0 all went well, 1 the analysis failed (the rows before are in', error)
          call say('FILE.partial), 2 the input is wrong, 3 collapse_drift was reached.', error)
       case ('check')
-         call say('usage: rbsdem check CASE.nml [--quiet]', error)
+         call say('usage: rbsdem check CASE.nml [--quiet] [--json]', error)
          call say('', error)
          call say('Reports all errors of a case with their lines, and what may be a mistake;', error)
          call say('solves nothing. For a run in time it says which method is chosen and why, and how', error)
          call say('long it will take if that is long.', error)
          call say('', error)
          call say('  -q, --quiet         print errors only', error)
+         call say('  --json              errors with lines, method and notes as JSON', error)
          call say('', error)
          call say('Exit code: 0 no errors, 2 the input is wrong.', error)
       case ('modes')
@@ -170,6 +171,8 @@ contains
          call say('takeda, or all of them, each key with kind, unit, bounds, default and meaning.', error)
          call say('', error)
          call say('  --json              as JSON, for programs', error)
+         call say('', error)
+         call say('With the Python package, rbsdem keys --schema prints a JSON schema of a case.', error)
       end select
    end subroutine print_topic
 

@@ -5,6 +5,7 @@ What is written is whole, and nothing else is touched. What is refused stands in
 
 from __future__ import annotations
 
+import json
 import os
 import pty
 import re
@@ -861,3 +862,22 @@ def test_million_steps_in_constant_memory(executable, dynamic_text, tmp_path, re
         np.testing.assert_allclose(np.diff(rows["time_s"])[:-1], 1.0, rtol=1e-9)
     # One double a step would be 7 MB more.
     assert peaks[1_000_000] < peaks[100_000] + 1000
+
+
+def test_check_as_json(run_cli, case_text, dynamic_text, tmp_path):
+    """The same errors, notes and code as in words, for programs that write cases."""
+    (tmp_path / "good.nml").write_text(dynamic_text())
+    (tmp_path / 'b"ad.nml').write_text(case_text(column='hieght = 1.6, title = "x"', shear="k = 1"))
+    for name, code in (("good.nml", 0), ('b"ad.nml', 2), ("none.nml", 2)):
+        plain, told = (run_cli(["check", name, *more], tmp_path) for more in ([], ["--json"]))
+        assert (plain.returncode, told.returncode, told.stderr) == (code, code, "")
+        found = json.loads(told.stdout)
+        assert found["case"] == name
+        said = [f"rbsdem: {each['message']}" for each in found["errors"]]
+        assert said == plain.stderr.splitlines()
+        for each in found["errors"]:
+            line = re.search(r" line (\d+)", each["message"])
+            assert each["line"] == (int(line[1]) if line else None)
+        notes = [line[6:] for line in plain.stdout.splitlines() if line.startswith("note: ")]
+        assert found["notes"] == notes
+        assert ("method: " in plain.stdout) == ("method" in found)

@@ -7,6 +7,8 @@ import importlib.util
 import inspect
 import json
 import re
+import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import MISSING, fields
 from types import ModuleType, UnionType
@@ -214,3 +216,34 @@ def test_tables_of_the_rules_name_every_key_and_default():
             else:
                 assert not any(known), row
         assert named == set(keys), title
+
+
+def test_schema_of_a_case():
+    """It is a schema, takes a case and refuses slips; it follows from the list of keys."""
+    jsonschema = pytest.importorskip("jsonschema")
+    schema = json.loads(
+        subprocess.run(
+            [sys.executable, "-m", "rbsdem", "keys", "--schema"],
+            capture_output=True, check=True, text=True,
+        ).stdout
+    )  # fmt: skip
+    check = jsonschema.Draft202012Validator(schema)
+    check.check_schema(schema)
+    case = {
+        "column": {"height": 1.6, "mass": 600.0, "kinematics": "pdelta"},
+        "shear": {"rule": "elastic", "k": 1e8},
+        "flexure": [{"rule": "bilinear", "k": 1e8, "d_y": 1e-3, "k_post": 1e5, "joint": 1}],
+        "loading": {"drive": "displacement", "amplitudes": [0.01, 0.02], "cycles": 2},
+    }
+    assert list(check.iter_errors(case)) == []
+    for group, slip, said in (
+        ("column", {"hieght": 1.0}, "'hieght' was unexpected"),
+        ("column", {"height": -1.0}, "-1.0 is less than or equal to the minimum of 0"),
+        ("column", {"kinematics": "pdleta"}, "'pdleta' is not one of"),
+        ("shear", {"rule": "elastic", "k": 1.0, "d_y": 1.0}, "'d_y' was unexpected"),
+        ("shear", {"rule": "elastik"}, "'elastik' is not one of"),
+        ("loading", {"cycles": 1.5}, "1.5 is not of type 'integer'"),
+    ):
+        errors = list(check.iter_errors(case | {group: slip}))
+        context = [e.message for error in errors for e in (error, *error.context)]
+        assert any(said in message for message in context), (slip, context)

@@ -211,7 +211,7 @@ _of_modes = [_case, click.Option(["--count"]), click.Option(["--matrices"], is_f
 _key = click.Argument(["name"], shell_complete=_named_keys)
 for _name, _help, _params in (
     ("run", "Solve a case.", [_case, _hush, _output]),
-    ("check", "Find all errors of a case.", [_case, _hush]),
+    ("check", "Find all errors of a case.", [_case, _hush, click.Option(["--json"], is_flag=True)]),
     ("modes", "Natural frequencies, stable step.", _of_modes),
     ("keys", "Keys of a group or rule, or all.", [_key, click.Option(["--json"], is_flag=True)]),
 ):
