@@ -50,6 +50,10 @@ module rbs_output_summary
       type(energy_type) :: energy
       !> Steps that were cut: at an event, for accuracy, or because they did not converge
       integer :: cut_steps = 0
+      !> Snap-backs of a static path, and the energy that a test would release in them, with the displacement
+      !> held [J]
+      integer :: snap_backs = 0
+      real(wp) :: released = 0.0_wp
       !> Whether the analysis ended where the user's criterion of collapse was met
       logical :: collapsed = .false.
       !> Joint whose layers could not carry the axial load any more, where the analysis ended; 0: none
@@ -159,6 +163,8 @@ contains
               figure_type('snap_member', '', real(self%snap_member, wp)), &
               figure_type('snap_time', 's', self%snap_time), &
               figure_type('fallen_member', '', real(self%fallen_member, wp)), &
+              figure_type('snap_backs', '', real(self%snap_backs, wp)), &
+              figure_type('released_energy', 'J', self%released), &
               figure_type('lost_joint', '', real(self%lost_joint, wp)), &
               figure_type('lost_axial_load', 'N', self%fall%axial_load), &
               figure_type('axial_capacity', 'N', self%fall%capacity), &
@@ -172,6 +178,8 @@ contains
             applies(i) = self%fallen_member > 0
          case ('snaps', 'snap_energy', 'snap_member', 'snap_time')
             applies(i) = self%snaps > 0
+         case ('snap_backs', 'released_energy')
+            applies(i) = self%snap_backs > 0
          case ('peak_floor_acceleration')
             applies(i) = self%peak_floor_acceleration >= 0.0_wp
          case default

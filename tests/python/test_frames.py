@@ -423,7 +423,7 @@ def test_a_column_of_layers_as_a_frame():
     frame = Frame(nodes=nodes, members=[Member("C", "foot", "top", kind)], pattern="uniform")
     path = 1.6 * rbsdem.protocol([0.004, 0.02, 0.03], points=7)
     one, other = followed(column, path, openings=True), followed(frame, path)
-    assert np.abs(other.force - one.force).max() < 1e-11 * np.abs(one.force).max()
+    assert np.abs(other.force - one.force).max() < 1e-10 * np.abs(one.force).max()
     turned = other.springs["rotation"][:, 0]
     assert np.abs(turned - one.rotation[:, 0]).max() < 1e-12
     assert np.abs(other.springs["opening"][:, 0] - one.opening[:, 0]).max() < 1e-12
@@ -649,6 +649,19 @@ def test_elastic_frames_follow_one_line(seed, kinematics):
     slope = (pushed.force[0] - pushed.force[1]) / (2 * far)
     line = slope * (pushed.displacement - still.displacement[0])
     assert pushed.force == pytest.approx(line, abs=1e-10 * abs(slope) * far)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_paths_of_capped_frames_go_through_snap_backs(seed):
+    """Hinges that lose their strength: equilibrium and energy at every corner of the loops too."""
+    frame = random_frame(np.random.default_rng(seed), ["peak_oriented", "pinching"])
+    top = np.linspace(0, 0.05, 101)[1:] * frame.height
+    pushed = rbsdem.cyclic(frame, displacement=top, corners=True)
+    assert pushed.summary["status"] == "completed"
+    assert np.abs(pushed.base_shear - pushed.force).max() < 1e-9 * np.abs(pushed.force).max()
+    assert pushed.summary["relative_energy_residual"] < 1e-9
+    goes_back = (np.diff(pushed.displacement) < 0).any()
+    assert goes_back == (pushed.summary.get("snap_backs", 0) > 0)
 
 
 def test_mirrored_loads_have_mirrored_answers():
@@ -1281,7 +1294,7 @@ def test_shear_springs_of_members_hear_the_nearest_hinge(rule):
     frame = Frame(nodes=nodes, members=[Member("C", "foot", "top", kind)], pattern="nodes")
     path = 1.5 * rbsdem.protocol([0.005, 0.01, 0.02], cycles=2)
     one, other = rbsdem.cyclic(column, displacement=path), rbsdem.cyclic(frame, displacement=path)
-    assert np.abs(other.force - one.force).max() < 1e-11 * np.abs(one.force).max()
+    assert np.abs(other.force - one.force).max() < 1e-10 * np.abs(one.force).max()
     deaf = rbsdem.cyclic(replace(column, shear=replace(slips, lambda_h=0.0)), displacement=path)
     assert np.abs(deaf.force - one.force).max() > 0.1 * np.abs(one.force).max()
 

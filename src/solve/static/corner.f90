@@ -14,12 +14,17 @@ module rbs_solve_static_corner
 
    public :: turn_corner, report_no_line
 
-   !> Most springs whose two ways out of a corner are tried in all combinations, and most trials times
-   !> springs.
-   integer, parameter :: most_tried = 14, most_work = 1000000
-
    !> How often all springs may be changed at once while their least number without room stays the same.
    integer, parameter :: patience = 3
+
+   !> Rate of a spring at rest, as a share of the largest, which says how far it may go back virtually.
+   real(wp), parameter :: at_rest = 1.0e-6_wp
+
+   !> Most sets of gaps.
+   integer, parameter :: most_gaps = 2
+
+   !> Its multiples spread over the fractions, so that no two springs are alike.
+   real(wp), parameter :: golden = 0.6180339887498949_wp
 
 contains
 
@@ -35,10 +40,20 @@ contains
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
       integer :: changes, count, fewest, left, i
-      logical :: found
+      logical :: found, may_pass, marked
 
       path%direction = 0
       path%changed = 0
+      marked = .false.
+      may_pass = path%may_go_back
+      if (may_pass) may_pass = any(path%arrived /= 0)
+      if (may_pass) path%way_in = path%rate
+      found = path%goes_back
+      if (found) then
+         call pass()
+         if (.not. found) call report_snap_back()
+         return
+      end if
       fewest = huge(1)
       left = patience
       do changes = 1, 20 + min(10*path%moving, 1000 + path%moving)
@@ -51,7 +66,8 @@ contains
                end do
                cycle
             end if
-            call report_no_line(path, target, error)
+            call pass()
+            if (.not. found) call report_no_line(path, target, error)
             return
          end if
          count = without_room()
@@ -59,6 +75,7 @@ contains
          if (path%springs%lost_joint() > 0) return
          if (count == 0) then
             path%direction = direction
+            if (marked) call path%springs%forget_mark()
             return
          end if
          if (count < fewest) then
@@ -67,19 +84,45 @@ contains
          else
             left = left - 1
          end if
+         if (left < 0) then
+            call pass()
+            if (found) return
+         end if
+         if (may_pass .and. .not. marked) then
+            call path%springs%mark()
+            marked = .true.
+         end if
          call change_lines(left >= 0)
       end do
-      call try_all_ways()
-      if (found) then
-         path%direction = direction
-      else
+      call pass(always=.true.)
+      if (.not. found) call report_snap_back()
+
+   contains
+
+      !> Follow the path through the corner, where something softens; once.
+      subroutine pass(always)
+         !> Whether it is the last resort
+         logical, intent(in), optional :: always
+
+         found = .false.
+         if (.not. may_pass) return
+         if (.not. present(always) .and. .not. path%goes_back .and. .not. path%structure%axially_loaded .and. &
+             .not. any(path%springs%k(:path%moving) < 0.0_wp)) return
+         may_pass = .false.
+         if (.not. marked) call path%springs%mark()
+         call path%springs%restore()
+         call follow_through(path, direction, found)
+         if (.not. found) call path%springs%restore()
+         call path%springs%forget_mark()
+         marked = .false.
+      end subroutine pass
+
+      subroutine report_snap_back()
          call fatal_error(error, analysis_failed, 'the structure snaps back at '//trim(state_of(path))// &
                           ': no combination of loading and unloading springs was found that lets its '// &
                           'top go on; '//trim(weakest_spring(path))//' has the least stiffness left. A '// &
                           'driven top cannot follow that; use a dynamic analysis')
-      end if
-
-   contains
+      end subroutine report_snap_back
 
       !> The layers of joints whose axial loads vary choose their lines for the present rates; a joint whose
       !> plane changes by that had no room on it.
@@ -120,37 +163,151 @@ contains
          end do
       end subroutine change_lines
 
-      !> Try both ways of the springs at the corner in all combinations, one change at a time (Gray code),
-      !> until
-      !> all have room. Of more springs than can be tried, those come first that the search has changed more
-      !> than
-      !> once.
-      subroutine try_all_ways()
-         integer, allocatable :: tried(:)
-         integer :: trial, i, most, count
-
-         tried = pack([(i, i=1, path%moving)], [(way_out(path%springs, i) /= 0, i=1, path%moving)])
-         tried = [pack(tried, path%changed(tried) > 1), pack(tried, path%changed(tried) <= 1)]
-         most = min(most_tried, int(log(real(most_work, wp)/path%moving)/log(2.0_wp)))
-         tried = tried(:min(size(tried), most))
-         found = .false.
-         do trial = 1, 2**size(tried)
-            call path%solve_line(direction, found)
-            if (found) then
-               count = without_room()
-               if (path%springs%pressed) call choose_planes(count)
-               found = count == 0
-               if (found) return
-            end if
-         ! The bit that changes next in the Gray code.
-            if (trial == 2**size(tried)) exit
-            i = tried(trailz(trial) + 1)
-            call path%springs%leave(i, way_out(path%springs, i))
-         end do
-         found = .false.
-      end subroutine try_all_ways
-
    end subroutine turn_corner
+
+   !> Follow the path of a structure that softens through a corner, and back where it snaps back.
+   !>
+   !> Each spring on a one-way line may virtually go back by a small gap before it turns. Then the corner is
+   !> one of a continuous piecewise linear map, through which one path runs: the spring that has changed its
+   !> line last goes on the way it has come, which says whether the control goes forward or back; the first
+   !> spring that is blocked on these rates changes its line and is the last one now. No lines come twice.
+   !> Where no spring is blocked ahead, these rates lead out of the corner, however small the gaps are. Of
+   !> several ways out, as symmetric structures have them, the gaps choose one.
+   subroutine follow_through(path, toward, found)
+      class(static_path), intent(inout) :: path
+      !> Direction of the target; the mark of the springs is the corner
+      integer, intent(in) :: toward
+      logical, intent(out) :: found
+      !> Virtual ways of the springs, gaps, where they have changed their lines, stiffness of the line after
+      !> the corner
+      real(wp), dimension(path%moving) :: v, gap, edge, k
+      !> Whether a spring is virtually back on the line on which it came to the corner
+      logical :: is_back(path%moving)
+      integer :: crossed(path%moving), i, m, first, spring, next, way, goes, sense, pivots, trial, ends
+
+      m = path%moving
+      first = findloc(path%arrived(:m) /= 0, .true., dim=1)
+      path%passes = .true.
+      ! If one end of the path is plain unloading, the other one leads on. Where it closes in itself, other gaps
+      ! open it.
+      do trial = 1, 2*most_gaps
+         ends = merge(1, -1, modulo(trial, 2) == 1)
+         gap = [(1.0_wp + modulo(i*((trial + 1)/2)*golden, 1.0_wp), i=1, m)]
+         gap = gap*max(abs(path%way_in(:m)), at_rest**(1.0_wp/((trial + 1)/2))*maxval(abs(path%way_in(:m))))
+         v = 0.0_wp
+         is_back = .false.
+         ! Springs that have come to their ends at once did so one after the other.
+         crossed = path%arrived(:m)
+         edge = -0.1_wp*crossed*gap
+         edge(first) = 0.0_wp
+         do i = 1, m
+            if (crossed(i) == 0) cycle
+            if (is_on_closed_end(path%springs, i, crossed(i))) call path%springs%leave(i, crossed(i))
+         end do
+         k = path%springs%k(:m)
+         spring = first
+         goes = ends*crossed(first)
+         if (ends < 0) call change(first, goes, 0.0_wp)
+         do pivots = 1, 100 + 4*m
+            call path%solve_line(1, found)
+            if (.not. found) exit
+            sense = merge(1, -1, goes*path%rate(spring) > 0.0_wp)
+            path%rate = sense*path%rate
+            call find_next()
+            if (next == 0) exit
+         end do
+         found = found .and. next == 0
+         if (found) found = any(path%rate(:m)*path%way_in(:m) > 0.0_wp)
+         where (is_back) path%springs%k(:m) = k
+         if (found) exit
+         call path%springs%restore()
+      end do
+      path%passes = .false.
+      if (.not. found) return
+      path%direction = sense
+      path%goes_back = sense /= toward
+
+   contains
+
+      !> The spring that is blocked first, and its change of lines; 0: none is.
+      subroutine find_next()
+         real(wp) :: at, room, least, next_at
+         integer :: next_way
+
+         next = 0
+         next_way = 0
+         next_at = 0.0_wp
+         least = huge(1.0_wp)
+         do i = 1, m
+            if (is_back(i)) then
+               way = merge(1, -1, path%rate(i) > 0.0_wp)
+               if (.not. abs(path%rate(i)) > 0.0_wp) cycle
+               at = edge(i)
+               if (way /= path%arrived(i)) at = edge(i) + way*gap(i)
+            else
+               way = barred(path, i)
+               if (way == 0) cycle
+               at = merge(edge(i), way*gap(i), crossed(i) == -way)
+               if (way == path%arrived(i) .and. path%one_way(i)) at = edge(i) - way*gap(i)
+            end if
+            room = max((at - v(i))*way, 0.0_wp)/abs(path%rate(i))
+            if (.not. room < least) cycle
+            least = room
+            next = i
+            next_way = way
+            next_at = at
+         end do
+         if (next == 0) return
+         v = v + least*path%rate(:m)
+         call change(next, next_way, next_at)
+         spring = next
+         goes = next_way
+      end subroutine find_next
+
+      !> Change the line of a spring that is blocked in a direction. Over the corner a one-way line goes back as
+      !> it came, and turns a gap later.
+      subroutine change(i, way, at)
+         integer, intent(in) :: i, way
+         real(wp), intent(in) :: at
+
+         v(i) = at
+         associate (springs => path%springs, came => path%arrived(i))
+            if (.not. is_back(i) .and. way == -came .and. path%one_way(i)) then
+               is_back(i) = .true.
+               springs%k(i) = path%k_in(i)
+            else if (is_back(i)) then
+               is_back(i) = .false.
+               springs%k(i) = k(i)
+               if (way == came) return
+               call springs%leave(i, way)
+               crossed(i) = way
+            else
+               call springs%leave(i, way)
+               crossed(i) = way
+               if (way == came .and. path%one_way(i)) then
+                  is_back(i) = .true.
+                  k(i) = springs%k(i)
+                  springs%k(i) = path%k_in(i)
+               else
+                  edge(i) = at
+               end if
+            end if
+         end associate
+      end subroutine change
+
+   end subroutine follow_through
+
+   !> Whether a spring stands on an end that belongs to its line.
+   pure logical function is_on_closed_end(springs, i, way)
+      type(spring_array), intent(in) :: springs
+      integer, intent(in) :: i, way
+
+      if (way > 0) then
+         is_on_closed_end = springs%includes_upper_end(i) .and. springs%d(i) >= springs%last(i)
+      else
+         is_on_closed_end = springs%includes_lower_end(i) .and. springs%d(i) <= springs%first(i)
+      end if
+   end function is_on_closed_end
 
    !> The direction in which a spring should go but cannot, 0 if it can.
    pure integer function barred(path, i)
@@ -162,27 +319,13 @@ contains
          ! A spring is beyond the last deformation of its line where the end itself does not belong to it.
          if (path%rate(i) > 0.0_wp) then
             if (springs%unload_on_reversal(i) < 0 .or. springs%d(i) > springs%last(i) .or. &
-                (springs%includes_upper_end(i) .and. springs%d(i) >= springs%last(i))) barred = 1
+                is_on_closed_end(springs, i, 1)) barred = 1
          else if (path%rate(i) < 0.0_wp) then
             if (springs%unload_on_reversal(i) > 0 .or. springs%d(i) < springs%first(i) .or. &
-                (springs%includes_lower_end(i) .and. springs%d(i) <= springs%first(i))) barred = -1
+                is_on_closed_end(springs, i, -1)) barred = -1
          end if
       end associate
    end function barred
-
-   !> The way by which a spring can leave its line where it stands, 0 if it cannot.
-   pure integer function way_out(springs, i)
-      type(spring_array), intent(in) :: springs
-      integer, intent(in) :: i
-
-      way_out = -springs%unload_on_reversal(i)
-      if (way_out /= 0) return
-      if (springs%d(i) >= springs%end_toward(i, 1)) then
-         way_out = 1
-      else if (springs%d(i) <= springs%end_toward(i, -1)) then
-         way_out = -1
-      end if
-   end function way_out
 
    !> Report why the path cannot be continued.
    subroutine report_no_line(path, target, error)

@@ -42,8 +42,9 @@ module rbs_solve_static_equilibrium
       logical :: of_dead_load = .false.
       !> Number of springs that can move; they are the first ones
       integer :: moving = 0
-      !> An element that snaps back on the present lines; 0: none
+      !> An element that snaps back on the present lines; 0: none. Whether the path may go on with it
       integer :: unstable = 0
+      logical :: may_snap_back = .false.
       !> Whether the stiffnesses are too far apart for the arithmetic
       logical :: lost_digits = .false.
       !> Rates of force and displacement; work of the load per force and per unit of what is driven, less that
@@ -198,7 +199,7 @@ contains
 
       associate (structure => self%structure, m => self%moving)
          call structure%linearise(springs%k, self%tangent, self%unstable)
-         found = self%unstable == 0
+         found = self%unstable == 0 .or. self%may_snap_back
          if (.not. found) return
          call find_residual(self, springs, force)
          call factor(self, springs%k, by_force, found)

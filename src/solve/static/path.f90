@@ -82,6 +82,18 @@ module rbs_solve_static_path
       logical :: is_straight = .false.
       !> Whether rates were not found as the stiffnesses are too far apart for the arithmetic
       logical :: lost_digits = .false.
+      !> Whether the path follows snap-backs, goes back at present, and seeks its way through a corner, where
+      !> the inside of elements may snap back
+      logical :: may_go_back = .false., goes_back = .false., passes = .false.
+      !> Ways by which springs have come to the ends of their lines, 0 for others; whether those lines went one
+      !> way, and their stiffness; rates before the corner (springs)
+      integer, allocatable :: arrived(:)
+      logical, allocatable :: one_way(:)
+      real(wp), allocatable :: k_in(:), way_in(:)
+      !> Number of snap-backs, and the energy that the structure gave back in them while the displacement of a
+      !> test would have been held [J]
+      integer :: snap_backs = 0
+      real(wp) :: released = 0.0_wp
       !> How often each spring has changed its line at the present corner (springs)
       integer, allocatable :: changed(:)
       !> Energy of springs and axial load at the start, work of the axial load as far as it varies [J], and
@@ -188,7 +200,9 @@ contains
       self%moving = moving
       call self%structure%create_springs(self%springs, self%structure%constant_axial)
       allocate (self%rate(self%springs%count), source=0.0_wp)
-      allocate (self%changed(self%springs%count), source=0)
+      allocate (self%changed(self%springs%count), self%arrived(self%springs%count), source=0)
+      allocate (self%one_way(self%springs%count), source=.false.)
+      allocate (self%k_in(self%springs%count), source=0.0_wp)
       allocate (self%rotation(self%structure%n))
    end subroutine prepare
 
@@ -295,6 +309,8 @@ contains
             task%summary%steps = i
             task%summary%events = self%springs%events
             task%summary%cut_steps = self%cuts
+            task%summary%snap_backs = self%snap_backs
+            task%summary%released = self%released
          end if
          if (allocated(failure)) call move_alloc(failure, error)
          if (allocated(error) .or. ends) return

@@ -5,9 +5,10 @@ module rbs_solve_static_straight
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
+   use rbs_base_text, only: to_text
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_equilibrium, only: equilibrium_type
-   use rbs_solve_static_path, only: static_path, state_of, is_on_end, on_the_end, serialize_path
+   use rbs_solve_static_path, only: static_path, state_of, weakest_spring, is_on_end, on_the_end, serialize_path
    use rbs_solve_static_resume, only: begin_path, end_path
    use rbs_solve_task, only: task_type
    use rbs_structure_structure, only: structure_type
@@ -20,6 +21,9 @@ module rbs_solve_static_straight
    !> are on one.
    real(wp), parameter :: nearly = 2.0_wp*on_the_end
 
+   !> A correction of equilibrium below this share of a deformation is round-off.
+   real(wp), parameter :: round_off = 1.0e-10_wp
+
    !> The state of a path and the line it is on.
    type, extends(static_path) :: straight_path
       type(equilibrium_type), pointer :: equilibrium => null()
@@ -30,6 +34,13 @@ module rbs_solve_static_straight
       !> Its end, and the spring that ends it (0: none)
       real(wp) :: finish = 0.0_wp
       integer :: ends = 0
+      !> Way that the control went last, the farthest it has been, and the largest share of the way to the
+      !> present target
+      integer :: last_way = 0
+      real(wp) :: farthest = 0.0_wp, share = 0.0_wp
+      !> Whether the path is in a loop of snap-backs, and control and work where it began [m, J]
+      logical :: in_loop = .false.
+      real(wp) :: loop_control = 0.0_wp, loop_work = 0.0_wp
    contains
       procedure :: advance
       procedure :: solve_line
@@ -57,6 +68,7 @@ contains
       path%steady => structure
       path%equilibrium => equilibrium
       path%is_straight = .true.
+      path%may_go_back = .not. by_force
       path%of_dead_load = equilibrium%of_dead_load
       allocate (path%q(equilibrium%moving), source=0.0_wp)
       call begin_path(path, by_force, equilibrium%moving, .false., task%before, error)
@@ -73,23 +85,41 @@ contains
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
       integer :: direction, lines
+      logical :: went_back
 
+      self%share = 0.0_wp
+      direction = 0
       do lines = 1, 10000 + 1000*self%springs%count
-         if (.not. abs(target - self%control) > 0.0_wp) return
-         direction = merge(1, -1, target > self%control)
-         if (self%direction /= direction) then
+         if (.not. self%goes_back) then
+            if (.not. abs(target - self%control) > 0.0_wp) return
+            direction = merge(1, -1, target > self%control)
+         end if
+         if (self%direction == 0 .or. (self%direction /= direction .and. .not. self%goes_back)) then
+            went_back = self%goes_back
+            ! Where the top turns back at a target, springs turn as they must.
+            if (direction /= self%last_way .and. .not. went_back) self%arrived = 0
             call turn_corner(self, direction, target, error)
             if (allocated(error) .or. self%springs%lost_joint() > 0) return
             call self%look(target, self%equilibrium%unbalance, .true., error)
             if (allocated(error)) return
-            call begin_line(self, direction)
+            call begin_line(self, self%direction)
+            self%last_way = self%direction
+            if (self%goes_back .and. .not. went_back) call begin_loop(self)
          end if
-         if (direction*(self%finish - target) > on_the_end*abs(target)) then
+         if (self%goes_back) then
+            if (self%ends == 0 .or. direction*self%finish < -max(abs(target), self%farthest)) then
+               call report_fall(self, target, error)
+               return
+            end if
+            call go(self, self%finish)
+            call end_line(self)
+            call tell_corner()
+         else if (direction*(self%finish - target) > on_the_end*abs(target)) then
             call go(self, target)
          else if (direction*(self%finish - target) < -on_the_end*abs(target)) then
             call go(self, self%finish)
             call end_line(self)
-            call self%see_corner((self%control - self%way_begin)/(target - self%way_begin))
+            call tell_corner()
          else
             call go(self, target)
             call end_line(self)
@@ -98,7 +128,39 @@ contains
       call fatal_error(error, analysis_failed, 'the static path makes no progress at '// &
                        trim(state_of(self))//'; the parameters of the springs or the targets are too '// &
                        'extreme for the arithmetic')
+
+   contains
+
+      !> On a way back the number of rows between targets does not fall.
+      subroutine tell_corner()
+         self%share = max(self%share, (self%control - self%way_begin)/(target - self%way_begin))
+         call self%see_corner(self%share)
+      end subroutine tell_corner
+
    end subroutine advance
+
+   !> The control goes back from here on; the first time of a loop counts for its energy.
+   subroutine begin_loop(self)
+      class(straight_path), intent(inout) :: self
+
+      self%snap_backs = self%snap_backs + 1
+      if (self%in_loop) return
+      self%in_loop = .true.
+      self%loop_control = self%control
+      self%loop_work = self%work
+   end subroutine begin_loop
+
+   !> Report that the way back has no end.
+   subroutine report_fall(self, target, error)
+      class(straight_path), intent(in) :: self
+      real(wp), intent(in) :: target
+      type(error_type), allocatable, intent(out) :: error
+
+      call fatal_error(error, analysis_failed, 'the equilibrium path to '//to_text(target)//' m leads away '// &
+                       'for good at '//trim(state_of(self))//': beyond the strength of '// &
+                       trim(weakest_spring(self))//' a part of the structure falls, which no displacement '// &
+                       'of the top holds. The path up to there is kept; a response in time follows the fall')
+   end subroutine report_fall
 
    !> Rates of the structure on the present lines of its springs.
    subroutine solve_line(self, direction, found)
@@ -106,6 +168,7 @@ contains
       integer, intent(in) :: direction
       logical, intent(out) :: found
 
+      self%equilibrium%may_snap_back = self%passes
       call self%equilibrium%follow(self%springs, self%by_force, self%displacement, self%force, &
                                    self%rate(:self%moving), found)
       self%lost_digits = self%equilibrium%lost_digits
@@ -116,16 +179,24 @@ contains
    subroutine begin_line(self, direction)
       class(straight_path), intent(inout) :: self
       integer, intent(in) :: direction
-      real(wp) :: way, missing
+      real(wp) :: way, missing, least, most
       integer :: i
 
+      self%arrived = 0
       self%start = self%control
       self%displacement_start = self%displacement
       self%force_start = self%force + self%equilibrium%force_correction
       do i = 1, self%moving
-         ! What is no more than round-off of the equilibrium moves no spring off its line, however soft it is.
-         self%q(i) = min(max(self%springs%d(i) + self%equilibrium%correction(i), self%springs%first(i)), &
-                         self%springs%last(i))
+         ! Round-off of the equilibrium is corrected in full, off the rear end of a line too, or what is left
+         ! out would be missing at the next corner. More than round-off moves no spring off its line.
+         self%q(i) = self%springs%d(i) + self%equilibrium%correction(i)
+         least = self%springs%first(i)
+         most = self%springs%last(i)
+         if (abs(self%equilibrium%correction(i)) <= round_off*abs(self%springs%d(i))) then
+            if (self%rate(i) > 0.0_wp) least = self%q(i)
+            if (self%rate(i) < 0.0_wp) most = self%q(i)
+         end if
+         self%q(i) = min(max(self%q(i), least), most)
       end do
       missing = self%displacement - sum(self%structure%arm(:self%moving)*self%q)
       if (self%by_force) then
@@ -152,8 +223,7 @@ contains
       do i = 1, merge(self%moving, 0, near)
          d = self%q(i) + self%rate(i)*abs(change)
          if (is_on_end(self%springs, i, d, self%rate(i))) then
-            call self%springs%arrive(i, merge(1, -1, self%rate(i) > 0.0_wp))
-            self%direction = 0
+            call arrive(self, i)
          end if
       end do
       associate (line => self%equilibrium)
@@ -164,6 +234,8 @@ contains
          else
             displacement = control
          end if
+         if (self%in_loop .and. (control - self%loop_control)*(self%control - self%loop_control) <= 0.0_wp) &
+            call end_loop()
          self%work = self%work + 0.5_wp*(force + self%force)*(displacement - self%displacement &
                                                               + line%further_rate*(control - self%control))
       end associate
@@ -171,7 +243,38 @@ contains
       self%force = force
       self%displacement = displacement
       self%control = control
+      self%farthest = max(self%farthest, abs(control))
+
+   contains
+
+      !> The displacement at which the loop began is reached again: the difference of works is what a test,
+      !> whose displacement does not go back, would release.
+      subroutine end_loop()
+         real(wp) :: at, work
+
+         if (self%goes_back .or. .not. abs(self%control - self%loop_control) > 0.0_wp) return
+         associate (line => self%equilibrium)
+            at = self%force_start + line%force_rate*(self%loop_control - self%start)
+            work = self%work + 0.5_wp*(at + self%force)*(1.0_wp + line%further_rate) &
+                   *(self%loop_control - self%control)
+         end associate
+         self%released = self%released + (self%loop_work - work)
+         self%in_loop = .false.
+      end subroutine end_loop
+
    end subroutine go
+
+   !> Put a spring on the end of its line.
+   subroutine arrive(self, i)
+      class(straight_path), intent(inout) :: self
+      integer, intent(in) :: i
+
+      self%arrived(i) = merge(1, -1, self%rate(i) > 0.0_wp)
+      self%one_way(i) = self%springs%unload_on_reversal(i) /= 0
+      self%k_in(i) = self%springs%k(i)
+      call self%springs%arrive(i, self%arrived(i))
+      self%direction = 0
+   end subroutine arrive
 
    !> The spring that ends the line stands exactly on its end.
    subroutine end_line(self)
@@ -180,7 +283,7 @@ contains
 
       i = self%ends
       ! If `go` has put it there already, the line has ended.
-      if (self%direction /= 0 .and. i > 0) call self%springs%arrive(i, merge(1, -1, self%rate(i) > 0.0_wp))
+      if (self%direction /= 0 .and. i > 0) call arrive(self, i)
       self%direction = 0
    end subroutine end_line
 

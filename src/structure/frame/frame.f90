@@ -168,7 +168,9 @@ contains
                call find_tangent(e, m, n, k(first), k0(first), tangent(e%at), tangent(e%at + 9), &
                                  tangent(at), tangent(at + m**2), stable)
             end if
-            if (stable) call remember(m + n, tangent(of), k(first), k0(first))
+            call remember(m + n, tangent(of), k(first), k0(first))
+            ! That it snaps back is to be found again.
+            if (.not. stable .and. m + n > 0) tangent(of) = huge(1.0_wp)
          end associate
          if (.not. stable) unstable = i
       end do
