@@ -32,7 +32,7 @@ _LONG_RUN = 3
 #: Summary values that are whole numbers.
 _COUNTS = (
     *("steps", "rows", "events", "cut_steps", "lost_joint"),
-    *("snaps", "snap_member", "fallen_member"),
+    *("snaps", "snap_member", "fallen_member", "snap_backs"),
 )
 
 

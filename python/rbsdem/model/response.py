@@ -91,7 +91,8 @@ class Response:
         (steps cut at an event, for accuracy, or because they did not converge); where members of a
         frame jumped to another equilibrium, snaps (in how many steps), snap_energy (lost in them
         [J]), snap_member and snap_time [s] (number of the one that lost most, and when); where a
-        member carries its load no more, fallen_member. Whatever rows are
+        member carries its load no more, fallen_member; where a static path snaps back, snap_backs
+        and released_energy (by a test that holds the top [J]). Whatever rows are
         kept, they are those of all points or steps, the residual that of all points or times of the
         loading; "rk45" and located events resolve peaks within a step.
     opening : ndarray, shape (steps, n)

@@ -106,8 +106,8 @@ contains
 
          found = .false.
          if (.not. may_pass) return
-         if (.not. present(always) .and. .not. path%goes_back .and. .not. path%structure%axially_loaded .and. &
-             .not. any(path%springs%k(:path%moving) < 0.0_wp)) return
+         if (.not. (present(always) .or. path%goes_back .or. path%structure%axially_loaded .or. &
+                    any(path%springs%k(:path%moving) < 0.0_wp))) return
          may_pass = .false.
          if (.not. marked) call path%springs%mark()
          call path%springs%restore()
@@ -188,8 +188,8 @@ contains
       m = path%moving
       first = findloc(path%arrived(:m) /= 0, .true., dim=1)
       path%passes = .true.
-      ! If one end of the path is plain unloading, the other one leads on. Where it closes in itself, other gaps
-      ! open it.
+      ! If one end of the path is plain unloading, the other one leads on. Where it closes in itself, other
+      ! gaps may open it.
       do trial = 1, 2*most_gaps
          ends = merge(1, -1, modulo(trial, 2) == 1)
          gap = [(1.0_wp + modulo(i*((trial + 1)/2)*golden, 1.0_wp), i=1, m)]
@@ -264,8 +264,8 @@ contains
          goes = next_way
       end subroutine find_next
 
-      !> Change the line of a spring that is blocked in a direction. Over the corner a one-way line goes back as
-      !> it came, and turns a gap later.
+      !> Change the line of a spring that is blocked in a direction. Over the corner a one-way line goes back
+      !> as it came, and turns a gap later.
       subroutine change(i, way, at)
          integer, intent(in) :: i, way
          real(wp), intent(in) :: at
@@ -337,8 +337,8 @@ contains
       remark = ''
       if (path%structure%axially_loaded) remark = ' above what the axial load takes away'
       if (path%lost_digits) then
-         call fatal_error(error, analysis_failed, 'the stiffnesses are too far apart for the arithmetic at '// &
-                          trim(state_of(path))//': '//trim(weakest_spring(path))//' has the least left. '// &
+         call fatal_error(error, analysis_failed, 'the stiffnesses are too far apart for the arithmetic '// &
+                          'at '//trim(state_of(path))//': '//trim(weakest_spring(path))//' has the least left. '// &
                           'Take stiff springs less stiff, a million times the others is rigid enough, or '// &
                           'fewer bodies')
       else if (.not. path%by_force) then
