@@ -394,8 +394,10 @@ def test_a_frame_is_that_of_the_functions(post, tmp_path):
     # The case file is the same frame and the same push.
     (tmp_path / "frame.nml").write_text(answer["case"])
     case = rbsdem.read_case(tmp_path / "frame.nml")
-    assert case.run().displacement[-1] == pytest.approx(0.03 * 9.6)
-    assert case.run().base_shear[-1] == pytest.approx(push.base_shear[-1])
+    again = case.run()
+    assert len(again.displacement) > 40
+    assert again.displacement[-1] == pytest.approx(0.03 * 9.6)
+    assert again.base_shear[-1] == pytest.approx(push.base_shear[-1])
 
 
 def test_members_of_a_frame_bend_as_the_figures_of_python_have_them():
@@ -416,9 +418,10 @@ def test_members_of_a_frame_bend_as_the_figures_of_python_have_them():
         (("storeys", 1, "height"), -1.0, "frame.storeys", r"height = -1 m must be .*storey 2"),
         (("storeys", 0, "beam"), 4, "beam.moment", "moment = None must be a number"),
         (("storeys", 2, "column", "width"), 1e9, "column.width", "must be from 0.05 to 5"),
-        (("storeys", 2), 7, "frame.storeys", "height = None must be a number"),
-        (("storeys",), [], "frame.storeys", "give 1 to 6"),
-        (("bays",), [6.0] * 7, "frame.bays", "give 1 to 6"),
+        (("storeys", 2), 7, "frame.storeys", "height is missing, or too large for a number"),
+        (("storeys",), [], "frame.storeys", "give one to six"),
+        (("modulus",), None, "frame.modulus", "modulus is missing, or too large for a number"),
+        (("bays",), [6.0] * 7, "frame.bays", "give one to six"),
         (("bays",), ["x"], "frame.bays", "must be a number"),
         (("modulus",), 30, "frame.modulus", "must be from"),
         (("drift",), 10**400, "frame.drift", "drift"),

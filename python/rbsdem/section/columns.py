@@ -289,8 +289,7 @@ def member(
         joints[0.5] = middle.joint.spring
     # The hinges shorten by their layers, the rest by this.
     hinges = sum(
-        modulus * area / sum(layer.k for _, layer in joint.layers)
-        for joint in joints.values()
+        modulus * area / sum(layer.k for _, layer in joint.layers) for joint in joints.values()
     )
     return FrameMember(
         modulus=modulus,

@@ -68,6 +68,9 @@ def frame_of(state: Mapping[str, Any], faults: Faults) -> Frame | None:
     """Make the frame of a state; None if something is wrong with it."""
 
     def read(given: Any, name: str, field: str, where: str = "") -> float:
+        if given is None:  # JSON has no other word for what is beyond its numbers.
+            faults.add(field, f"{name} is missing, or too large for a number{where}")
+            return 1.0
         try:
             return _arguments.number(given, name, **_BOUNDS[name])
         except InputError as error:
@@ -120,7 +123,8 @@ def _listed(state: Mapping[str, Any], name: str, faults: Faults) -> list[Any]:
     given = state.get(name)
     if isinstance(given, list) and 1 <= len(given) <= _MOST:
         return given
-    faults.add(f"frame.{name}", f"give 1 to {_MOST} of them")
+    # In words: the page shows numbers in the unit of the field.
+    faults.add(f"frame.{name}", "give one to six of them")
     return []
 
 
@@ -143,7 +147,9 @@ def pushed(state: Mapping[str, Any]) -> dict[str, Any]:
     frame, parts = result.frame, result.frame.parts
     springs = parts.springs_of("flexure")
     rows = np.flatnonzero(result.time == np.rint(result.time))
-    loading = f"&loading drive = 'displacement', values = {state['drift'] * frame.height:.10g} /\n"
+    targets = np.linspace(0.0, state["drift"] * frame.height, _PICTURES + 1)[1:]
+    values = ", ".join(f"{target:.10g}" for target in targets)
+    loading = f"&loading drive = 'displacement', values = {values} /\n"
     return {
         "faults": [],
         "notes": [str(one.message) for one in told],

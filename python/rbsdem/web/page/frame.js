@@ -124,7 +124,7 @@ function showMessages() {
 function show() {
   if (!answer) return;
   const at = Math.min(Number(get("scrub").value), answer.pictures.length - 1), row = answer.pictures[at];
-  const [unit, factor] = unitOf(system, "force"), drift = 100 * answer.displacement[row] / answer.height;
+  const [unit, factor] = unitOf(system, "force"), drift = Math.round(1e5 * answer.displacement[row] / answer.height) / 1e3;
   const text = `${shown(drift, 3)} %, base shear ${shown(answer.base_shear[row] / factor)} ${unit}`;
   get("scrubbed").textContent = text;
   get("scrub").setAttribute("aria-valuetext", text);
