@@ -19,7 +19,6 @@ module rbs_loading_loads
       procedure :: set_begin
       procedure :: at_time
       procedure :: corner_after
-      procedure :: slope_after
       procedure :: find_largest
    end type loads_type
 
@@ -57,19 +56,6 @@ contains
          if (self%acts(i)) load(i) = self%signal(i)%at_time(t)
       end do
    end subroutine at_time
-
-   !> Slopes of all loads until the first corner after t [per s].
-   subroutine slope_after(self, t, slope)
-      class(loads_type), intent(inout) :: self
-      real(wp), intent(in) :: t
-      real(wp), intent(out) :: slope(signals)
-      integer :: i
-
-      slope = 0.0_wp
-      do i = 1, signals
-         if (self%acts(i)) slope(i) = self%signal(i)%slope_after(t)
-      end do
-   end subroutine slope_after
 
    !> The first time after t at which a load changes its slope; `huge` if there is none [s].
    real(wp) function corner_after(self, t) result(corner)

@@ -18,7 +18,6 @@ module rbs_loading_signal
    contains
       procedure :: at_time
       procedure :: corner_after
-      procedure :: slope_after
       procedure :: acts
       procedure :: replace
       procedure, private :: find
@@ -55,18 +54,6 @@ contains
       if (after < self%begin .or. after >= self%finish) call self%find(after)
       corner = self%finish
    end function corner_after
-
-   !> The slope until the first point after a time [1/s].
-   real(wp) function slope_after(self, t) result(slope)
-      class(signal_type), intent(inout) :: self
-      !> Time [s]
-      real(wp), intent(in) :: t
-      real(wp) :: after
-
-      after = t + 8.0_wp*spacing(t)
-      if (after < self%begin .or. after >= self%finish) call self%find(after)
-      slope = self%slope
-   end function slope_after
 
    !> Take other points, as many as there are.
    pure subroutine replace(self, time, value)

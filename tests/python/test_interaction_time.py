@@ -1,15 +1,13 @@
-"""Layered joints under an axial load that varies, in time, with events that are located.
+"""Layered joints under an axial load that varies, in time.
 
-Between events the equation of motion is smooth, so that a located scheme keeps its order through
-yielding and turning of every layer; with events that are passed over it would be two at best. The
-reference is the same pair with a tolerance a hundred times finer than any that is tested, and the
-average acceleration, which is independent of it.
+Their layers change their lines at the ends of steps: the responses of an explicit and an implicit
+method, which are independent of each other, tend to the same one. Steps that stop at events are for
+springs under a constant axial load.
 """
 
 from __future__ import annotations
 
 import dataclasses
-import itertools
 
 import numpy as np
 import pytest
@@ -62,53 +60,44 @@ def distance(one: rbsdem.Result, other: rbsdem.Result) -> float:
     )
 
 
-@pytest.mark.parametrize(
-    ("n", "kinematics", "lift"),
-    [(1, "pdelta", None), (2, "pdelta", LIFT), (2, "small", None), (1, "finite", LIFT)],
-)
-def test_order_4_through_the_events_of_all_layers(
+CASES = [(1, "pdelta", None), (2, "pdelta", LIFT), (2, "small", None), (1, "finite", LIFT)]
+
+
+@pytest.mark.parametrize(("n", "kinematics", "lift"), CASES)
+def test_explicit_and_implicit_steps_tend_to_one_response(
     n: int, kinematics: str, lift: np.ndarray | None
 ) -> None:
-    """Half the step, a sixteenth of the error; the balance of energy closes as fast or faster."""
+    """A quarter of the step, a quarter of the distance or less, and of the error of the energy."""
     about = column(n, kinematics)
-    exact = run(about, lift=lift, method="rk45", tolerance=1e-13)
-    assert exact.summary["events"] >= 12
-    errors, balances = [], []
-    for dt in (5e-4, 2.5e-4, 1.25e-4):
-        found = run(about, lift=lift, method="rk4", events="located", dt=dt)
-        errors.append(distance(found, exact))
+    distances, balances = [], []
+    for dt in (5e-4, 1.25e-4, 3.125e-5):
+        found = run(about, lift=lift, method="rk4", dt=dt)
+        distances.append(distance(found, run(about, lift=lift, method="newmark", dt=dt)))
         balances.append(found.summary["relative_energy_residual"])
-    orders = np.log2(np.array(errors[:-1]) / errors[1:])
-    assert (orders > 3.6).all()
-    assert (orders < 4.6).all()
-    assert (np.log2(np.array(balances[:-1]) / balances[1:]) > 3.6).all()
-    # An independent method of order 2 tends to the same response.
-    newmark = run(about, lift=lift, method="newmark", dt=1.25e-4)
-    assert distance(newmark, exact) < 3e-4
+    assert found.summary["events"] >= 12
+    assert distances[-1] < 1e-3
+    assert distances[-1] < distances[0] / 4
+    assert balances[-1] < balances[0] / 4
 
 
-def test_errors_of_rk45_follow_the_tolerance() -> None:
-    """A hundredth of the tolerance, about a hundredth of the error."""
-    about = column(2, "pdelta")
-    exact = run(about, method="rk45", tolerance=1e-13)
-    errors = [
-        distance(run(about, method="rk45", tolerance=tolerance), exact)
-        for tolerance in (1e-6, 1e-8, 1e-10)
-    ]
-    assert errors[2] < 1e-8
-    for coarse, fine in itertools.pairwise(errors):
-        assert coarse > 10 * fine
+@pytest.mark.parametrize("settings", [{"method": "rk4", "events": "located"}, {"method": "rk45"}])
+def test_steps_that_stop_at_events_are_refused(settings: dict[str, str]) -> None:
+    about = column(1, "pdelta")
+    with pytest.raises(rbsdem.InputError, match="layers of a joint whose axial load varies; use"):
+        run(about, **settings)
+    assert run(about).summary["method"] == "rk4"
+    assert run(column(1, "finite")).summary["method"] in ("rk4", "generalised_alpha")
 
 
 def test_layers_that_fail_end_the_run_at_that_time() -> None:
-    """Plastic layers fail where N(t) reaches the sum of their yield forces."""
+    """Plastic layers fail where N(t) reaches the sum of their yield forces, within a step."""
     pairs = [(y, Bilinear(k=1e8, d_y=1e-3, k_post=0.0)) for y in (-0.1, 0.1)]
     about = rbsdem.Column(1.5, 2e4, Elastic(4e7), Layered(pairs), kinematics="small")
     load = np.linspace(0, 3e5, TIME.size)
-    for options in ({"method": "rk4", "events": "located"}, {"method": "rk45"}):
-        lost = rbsdem.time_history(about, TIME, axial_load=load, **options)
+    for method in ("rk4", "newmark"):
+        lost = rbsdem.time_history(about, TIME, axial_load=load, method=method, dt=1e-4)
         assert lost.summary["status"] == "axial_failure"
-        assert lost.time[-1] == pytest.approx(0.5 * 2 / 3, rel=1e-9)
+        assert lost.time[-1] == pytest.approx(0.5 * 2 / 3, abs=2e-4)
 
 
 def test_a_spring_in_equilibrium_on_its_yield_line_does_not_chatter() -> None:

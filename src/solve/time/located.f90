@@ -7,9 +7,8 @@ module rbs_solve_time_located
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_hysteresis_interaction_joints, only: choose_lines, put_on_plane
-   use rbs_solve_time_event, only: event_type, find_event, same_event, distance_to, standing_rotation, &
-                                   round_off_of, felt, turn_layer, direction_of
+   use rbs_solve_time_event, only: event_type, find_event, same_event, distance_to, round_off_of, felt, &
+                                   direction_of
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_scheme, only: scheme_type
    use rbs_solve_time_state, only: state_type, stepper_type, in_bounds
@@ -32,8 +31,6 @@ module rbs_solve_time_located
       real(wp), private :: largest = 0.0_wp
       !> The equation of motion where springs stand still, and where one turns back
       type(motion_result), private :: now
-      !> Slopes of the loads in the present part of a step
-      real(wp), private :: slope(4) = 0.0_wp
       !> Deformations that are zero (springs)
       real(wp), allocatable, private :: at_rest(:)
    contains
@@ -78,11 +75,6 @@ contains
             ! Two equal steps rather than a long and a short one.
             part = min(self%next_step, 0.5_wp*part)
          end if
-         if (state%springs%pressed) then
-            call state%loads%slope_after(state%time, self%slope)
-            call choose_planes()
-            if (state%springs%lost_joint() > 0) return
-         end if
          call leave_at_once(self, state, part, error)
          if (allocated(error)) return
          do tries = 1, 200
@@ -105,7 +97,7 @@ contains
                return
             end if
          end do
-         call find_event(state, self%scheme, part, self%slope, event)
+         call find_event(state, self%scheme, part, event)
          if (event%spring > 0) call locate(part)
          call accept(part)
          left = left - part
@@ -128,31 +120,6 @@ contains
 
    contains
 
-      !> Layered joints whose axial loads vary choose the lines of their layers for the present rates, or
-      !> where
-      !> nothing moves for those that follow.
-      subroutine choose_planes()
-         real(wp) :: turn, press
-         integer :: i, j
-         logical :: known
-
-         known = .false.
-         do j = 1, size(state%springs%layered)
-            i = state%springs%layered(j)
-            turn = state%v(i)
-            press = state%motion%structure%axial_rate(i, self%slope)
-            if (.not. abs(turn) + abs(press) > 0.0_wp) then
-               if (.not. known) then
-                  call state%motion%acceleration(state%springs, state%q, state%v, state%load, self%now)
-                  known = .true.
-               end if
-               turn = felt(self%now%a(i), round_off_of(state, i))
-            end if
-            if (abs(turn) + abs(press) > 0.0_wp) call choose_lines(state%springs, i, turn, press)
-         end do
-         self%scheme%begun = .false.
-      end subroutine choose_planes
-
       !> Take the attempt; the springs follow, that of the event onto its next line.
       subroutine accept(h)
          real(wp), intent(in) :: h
@@ -164,9 +131,7 @@ contains
          i = event%spring
          if (i > 0) then
             self%cut_steps = self%cut_steps + 1
-            if (event%layer > 0) then
-               if (event%turns) state%v(i) = standing_rotation(state, event, self%slope)
-            else if (event%turns) then
+            if (event%turns) then
                state%v(i) = 0.0_wp
             else
                state%q(i) = state%springs%end_toward(i, event%way)
@@ -174,47 +139,19 @@ contains
          end if
          call state%sight%see_within(state%motion, state%springs, self%scheme%q, self%scheme%v, state%q, &
                                      state%v, h, state%begin + state%time)
-         if (state%springs%pressed) call carry_planes(h)
-      ! No other spring has passed an end by more than the last digits.
+         ! No other spring has passed an end by more than the last digits.
          call state%springs%carry_to(state%q)
-         if (i > 0 .and. event%layer == 0) call state%springs%leave(i, event%way)
+         if (i > 0) call state%springs%leave(i, event%way)
          if (self%tolerance > 0.0_wp) then
             self%longest_step = max(self%longest_step, h)
             self%largest = max(self%largest, energy_of(state%q, state%v))
-         ! A step that ends at an event does not tell what accuracy would allow.
+            ! The length of a step that ends at an event is not that which accuracy allows.
             if (i == 0) then
                self%next_step = h*min(5.0_wp, 0.9_wp*max(wrong, 1.0e-10_wp)**(-1.0_wp/self%scheme%order))
                self%next_step = min(self%next_step, self%longest)
             end if
          end if
       end subroutine accept
-
-      !> Layered joints whose axial loads vary go on their planes to the end of a step. Between its ends the
-      !> load
-      !> is straight in time and the rotation a cubic: the work of the moment is that of the trapezoidal rule
-      !> and
-      !> a correction by the velocities.
-      subroutine carry_planes(h)
-         real(wp), intent(in) :: h
-         real(wp) :: turned, before, press, centre
-         integer :: i, j, layer
-
-         associate (springs => state%springs)
-            do j = 1, size(springs%layered)
-               i = springs%layered(j)
-               layer = merge(event%layer, 0, i == event%spring .and. .not. event%turns)
-               press = state%motion%structure%axial_rate(i, self%slope)
-               turned = state%q(i) - springs%d(i)
-               before = springs%force(i)
-               centre = springs%centre(i)
-               call put_on_plane(springs, i, state%q(i), springs%press_to(i), state%v(i), press, layer)
-               springs%work(i) = springs%work(i) + 0.5_wp*(before + springs%force(i))*turned &
-                                 + centre*press*h**2/12.0_wp*(self%scheme%v(i) - state%v(i))
-            end do
-            if (event%layer > 0 .and. event%turns) call turn_layer(springs, event%spring, event%layer, &
-                event%way)
-         end associate
-      end subroutine carry_planes
 
       !> Error of the attempt over the tolerance, in energy norm; above 1 also where it is not finite.
       real(wp) function error_of() result(wrong)
@@ -251,7 +188,7 @@ contains
 
          do rounds = 1, 2 + most_idle(state)/5
             call approach(h)
-            call find_event(state, self%scheme, h, self%slope, other)
+            call find_event(state, self%scheme, h, other)
             if (other%spring == 0) return
             if (same_event(other, event)) return
             event = other
@@ -261,7 +198,7 @@ contains
       !> Newton's method for the time of one event.
       subroutine approach(h)
          real(wp), intent(inout) :: h
-         real(wp) :: low, high, t, wrong, growth, small
+         real(wp) :: low, high, t, distance, rate, round_off
          integer :: iteration
 
          low = 0.0_wp
@@ -270,17 +207,17 @@ contains
          if (.not. t > 0.0_wp) t = 0.5_wp*high
          do iteration = 1, 60
             call self%scheme%attempt(state, t)
-            call distance_to(state, self%scheme, event, self%slope, self%now, wrong, growth, small)
+            call distance_to(state, self%scheme, event, self%now, distance, rate, round_off)
             h = t
-            if (abs(wrong) <= small .or. high - low <= 4.0_wp*epsilon(1.0_wp)*high) exit
-            if (wrong > 0.0_wp) then
+            if (abs(distance) <= round_off .or. high - low <= 4.0_wp*epsilon(1.0_wp)*high) exit
+            if (distance > 0.0_wp) then
                high = t
             else
                low = t
             end if
             t = 0.5_wp*(low + high)
-            if (growth > 0.0_wp) then
-               if (h - wrong/growth > low .and. h - wrong/growth < high) t = h - wrong/growth
+            if (rate > 0.0_wp) then
+               if (h - distance/rate > low .and. h - distance/rate < high) t = h - distance/rate
             end if
          end do
       end subroutine approach
@@ -303,7 +240,6 @@ contains
       type(state_type), intent(in) :: state
 
       most_idle = 20 + 10*state%springs%count
-      if (state%springs%pressed) most_idle = most_idle + 100*size(state%springs%layered)
    end function most_idle
 
    !> Springs that stand at an end of their line and go on, or have turned back already, change their line

@@ -12,7 +12,7 @@ module rbs_solve_time_run_dynamic
    use rbs_solve_time_effort, only: check_effort
    use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha, &
                                       with_finite_rotations
-   use rbs_loading_loads, only: loads_type, lateral, signals, signal_names
+   use rbs_loading_loads, only: loads_type, lateral, vertical, top_axial, signals, signal_names
    use rbs_solve_time_located, only: located_stepper
    use rbs_solve_time_march, only: initial_state, march
    use rbs_solve_time_pair45, only: pair45_scheme
@@ -47,8 +47,12 @@ contains
       type(time_plan), intent(out) :: plan
       type(error_type), allocatable, intent(out) :: error
 
+      logical :: on_planes
+
       call check_times(time, error)
       if (allocated(error)) return
+      on_planes = any(structure%rules%name == 'layered') .and. &
+                  (loads%signal(vertical)%acts() .or. loads%signal(top_axial)%acts())
       plan%method = analysis%method
       if (structure%tangent_numbers > 0) then
          call choose_implicit()
@@ -57,6 +61,12 @@ contains
       if (plan%method == 'auto') then
          call choose_method()
          if (allocated(error)) return
+      end if
+      if (on_planes .and. (plan%method == 'rk45' .or. analysis%events == 'located')) then
+         call fatal_error(error, bad_input, "analysis: events = 'located' and method = 'rk45' stop at events "// &
+                          'of springs, not at those of the layers of a joint whose axial load varies; use '// &
+                          "'rk4' without events, 'newmark', 'hht' or 'generalised_alpha'")
+         return
       end if
       call plan_steps()
       if (allocated(error)) return
@@ -140,13 +150,13 @@ contains
             plan%method = implicit_choice%name
             plan%reason = 'stiff: rk4 would take '//to_text(anint(explicit_steps))//' steps for its '// &
                           'stability, this method takes about '//to_text(anint(implicit_steps))
-         else if (structure%kinematics == finite) then
+         else if (structure%kinematics == finite .and. .not. on_planes) then
             ! How fast the column turns, and with it the step that resolves it, is not known in advance.
             plan%method = 'rk45'
             plan%reason = 'finite rotations: the steps follow from a tolerance'
          else
             plan%method = explicit_choice%name
-            plan%located = any(structure%rules%name /= 'elastic')
+            plan%located = any(structure%rules%name /= 'elastic') .and. .not. on_planes
             plan%reason = to_text(anint(explicit_steps))//' steps take little time'
             if (plan%located) plan%reason = trim(plan%reason)//'; events located'
          end if
