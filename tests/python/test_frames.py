@@ -1350,3 +1350,31 @@ def test_the_frame_of_vecchio_and_emara_is_pushed_to_its_end(monkeypatch, capsys
     assert "the path ends" not in told
     assert "peak 291 kN at 56 mm" in told
     assert "energy 35.0 kN m" in told
+
+
+def test_a_frame_has_the_loops_of_a_column():
+    """Envelope, half-cycles, idealisation and states of one record, from corner to corner."""
+    frame = three_storeys(beam_load=0.0)
+    path = frame.height * rbsdem.protocol([0.005, 0.02], cycles=1)
+    coarse, fine = (
+        rbsdem.cyclic(frame, displacement=rows)
+        for rows in (path, frame.height * rbsdem.protocol([0.005, 0.02], cycles=1, points=9))
+    )
+    for side in (1, -1):
+        one, other = coarse.envelope(side), fine.envelope(side)
+        assert one.force.max() == pytest.approx(other.force.max(), rel=1e-12)
+        assert one.idealise("asce_41").yield_force == pytest.approx(
+            other.idealise("asce_41").yield_force, rel=1e-6
+        )
+    work = coarse.half_cycles().energy
+    done = coarse.path.energy["input"][-1]
+    assert done == pytest.approx(coarse.energy["input"][-1], rel=1e-9)
+    assert work == pytest.approx(fine.half_cycles().energy, rel=1e-9)
+    assert np.isnan(coarse.strength_loss())
+    middle = coarse.at(0.5)
+    rows = coarse.path
+    assert middle["force"] == pytest.approx(np.interp(0.5, rows.time, rows.force), rel=1e-12)
+    assert middle["x"] == pytest.approx(
+        [np.interp(0.5, rows.time, column) for column in rows.x.T], rel=1e-9, abs=1e-15
+    )
+    assert middle["springs"]["moment"].shape == coarse.springs["moment"].shape[1:]

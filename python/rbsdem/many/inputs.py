@@ -19,7 +19,8 @@ from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
 from rbsdem.model.frame import Frame, Structure, checked_structure
-from rbsdem.model.response import Response, state_of
+from rbsdem.model.response import Response
+from rbsdem.model.rows import state_of
 from rbsdem.run.result import Result
 
 #: The state of a column at rest.

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-import os
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
 from rbsdem import _core
 from rbsdem._types import Array
 from rbsdem.errors import InputError
-from rbsdem.model import files
 from rbsdem.model.frame import HONESTY, Frame, FrameSpring, place_of
-from rbsdem.model.response import ENERGIES, same
+from rbsdem.model.rows import ENERGIES, Rows
 from rbsdem.model.springs import Landmark, Layered
 
 if TYPE_CHECKING:
-    import pandas as pd
+    pass
 
 #: Names of the springs' deformations and forces in rows, by group.
 _CHANNELS = {
@@ -106,7 +104,7 @@ class MemberHistory:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class FrameResult:
+class FrameResult(Rows):
     """Rows of an analysis of a frame: arrays with a row for each that was kept.
 
     Attributes
@@ -165,21 +163,12 @@ class FrameResult:
     state: Array | None = None
     lost: Array | None = None
     honesty: str = field(default=HONESTY, init=False)
-
-    @property
-    def dynamic(self) -> bool:
-        """Whether it is a response in time."""
-        return bool(self.summary["analysis"] == "dynamic")
+    _of_column: ClassVar[bool] = False
 
     @property
     def column(self) -> Frame:
         """The structure, by the name that results of columns have for it."""
         return self.frame
-
-    @property
-    def drift(self) -> Array:
-        """Displacement of the top over the height, shape (rows,)."""
-        return self.displacement / self.frame.height
 
     @property
     def storey_drift(self) -> Array:
@@ -365,10 +354,16 @@ class FrameResult:
             if column.any()
         }
 
-    def to_pandas(self) -> pd.DataFrame:
-        """Return a DataFrame, a row for each of the result, nodes and members by their names."""
-        import pandas  # noqa: PLC0415
+    @property
+    def structure(self) -> Frame:
+        """The frame."""
+        return self.frame
 
+    def _again(self, arrays: dict[str, Array]) -> FrameResult:
+        return frame_result_of(arrays, self.frame, self.summary, self.call, self.state)
+
+    def columns(self) -> dict[str, Array]:
+        """Return the columns of the table: nodes and members by their names."""
         columns: dict[str, Array] = {
             "time" if self.dynamic else "step": self.time,
             "displacement_m": self.displacement,
@@ -394,28 +389,7 @@ class FrameResult:
                 for i, spring in enumerate(parts.springs_of(group)):
                     name = f"{channel}_{spring.member}_{spring.place:g}_{unit}"
                     columns[name] = self.springs[channel][:, i]
-        frame = pandas.DataFrame(columns)
-        frame.attrs["summary"] = dict(self.summary) | {"honesty": self.honesty}
-        return frame
-
-    def to_csv(self, path: Any) -> None:
-        """Write the rows as csv, whole or not at all."""
-        from rbsdem._files import atomic_write  # noqa: PLC0415
-
-        text = self.to_pandas().to_csv(index=False)
-        with atomic_write(path) as file:
-            file.write(f"# rbsdem {_core.version()}\n# {self.honesty}\n{text}".encode())
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the whole result into one file, which `rbsdem.read_result` reads bit for bit.
-
-        As `Result.save`.
-        """
-        files.save(self, path)
-
-    def save_state(self, path: str | os.PathLike[str]) -> None:
-        """Write the state at the end as text, for ``initial=path`` and the executable."""
-        files.save_state(self, path)
+        return columns
 
     def __repr__(self) -> str:
         about = self.summary
@@ -424,14 +398,6 @@ class FrameResult:
             f"peak displacement {about['peak_displacement']:.4g} m, "
             f"peak base shear {about['peak_base_shear']:.4g} N, {len(self.events)} limit states)"
         )
-
-    def __eq__(self, other: object) -> bool:
-        """Return whether another result has the same frame, rows and summary, bit for bit."""
-        if not isinstance(other, FrameResult):
-            return NotImplemented
-        return all(same(getattr(self, one.name), getattr(other, one.name)) for one in fields(self))
-
-    __hash__ = None  # type: ignore[assignment]
 
 
 def landmarks_of(frame: Frame, spring: FrameSpring) -> list[Landmark]:

@@ -3,26 +3,18 @@
 from __future__ import annotations
 
 import math
-import os
-import zipfile
-from dataclasses import dataclass, fields
-from pathlib import Path
-from typing import Any, Protocol, TypeVar, runtime_checkable
+from dataclasses import dataclass
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
 from rbsdem import _arguments, _core
-from rbsdem._types import Array
+from rbsdem._types import Array, Self
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
+from rbsdem.model.rows import ENERGIES, Rows
 from rbsdem.model.springs import Gauge, Layered, Strains, strains_of
 
-#: Names of the energies.
-ENERGIES = ("input", "kinetic", "spring", "damping", "axial", "residual")
-
-#: First line of a file with a state.
-STATE_HEAD = "# rbsdem state"
-_NO_ROWS = ("state", "reached")
 _CHANNELS = ("displacement", "force", "slip", "rotation", "shear", "moment")
 
 R = TypeVar("R", bound="Response")
@@ -39,21 +31,8 @@ class Recorded(Protocol):
         """Return the text of the case file."""
 
 
-@runtime_checkable
-class Ended(Protocol):
-    """What an analysis can begin from: the result of another one."""
-
-    @property
-    def state(self) -> Array | None:
-        """State at the end."""
-
-    @property
-    def summary(self) -> dict[str, Any]:
-        """What was done."""
-
-
 @dataclass(frozen=True, repr=False, eq=False)
-class Response:
+class Response(Rows):
     """Rows of an analysis: arrays with a row for each kept step and a column for each joint.
 
     Attributes
@@ -150,48 +129,6 @@ class Response:
     reached: Array | None = None
 
     @property
-    def path(self: R) -> R:
-        """A static path from corner to corner: the rows of all points, and of the events between.
-
-        Between two rows a static path is straight with small rotations under a constant axial load;
-        with exact rotations, or a load that varies, it is a piece of curve. `time` of a row between
-        two points holds the share of the way. If the first point is not where the path begins, its
-        beginning is the first row, at time -1. What is measured on a path is measured here, so that
-        it depends neither on `every` nor on points put on the way. The openings are kept. It is
-        found by the same analysis once more, when it is first asked for. A response in time is its
-        own path.
-        """
-        known = vars(self)
-        if self.dynamic or "_is_path" in known:
-            return self
-        if "_path" not in known:
-            known["_path"] = self._follow_corners()
-        path: R = known["_path"]
-        return path
-
-    def _follow_corners(self: R) -> R:
-        """Return a row for every corner, from the same analysis once more."""
-        call = self.call
-        by_force = self.summary["driven"] == "force"
-        run = _core.cyclic(
-            self.column._statement
-            + settings_of(None, True, collapse_drift=call.get("collapse_drift")),
-            by_force,
-            call["force" if by_force else "displacement"],
-            call.get("axial_load"),
-            state_of(call["initial"], "cyclic") if "initial" in call else None,
-            corners=True,
-        )
-        # Where the path broke off, the result has been told of it.
-        path = response_of(type(self), run[0], self.column, self.summary, call, self.state)
-        vars(path)["_is_path"] = True
-        return path
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Leave out the path: it is found again."""
-        return {name: value for name, value in vars(self).items() if name != "_path"}
-
-    @property
     def elongation(self) -> Array:
         """Growth of the column's axis from the openings of its joints [m], shape (steps,).
 
@@ -270,16 +207,6 @@ class Response:
             )
 
     @property
-    def dynamic(self) -> bool:
-        """Whether it is a response in time."""
-        return bool(self.summary["analysis"] == "dynamic")
-
-    @property
-    def loop_force(self) -> Array:
-        """Force of the loop [N], shape (steps,): `force`, in time `base_shear`."""
-        return self.base_shear if self.dynamic else self.force
-
-    @property
     def velocity(self) -> Array:
         """Velocity of the top relative to the ground [m/s], shape (steps,).
 
@@ -323,11 +250,6 @@ class Response:
         return self.motion
 
     @property
-    def drift(self) -> Array:
-        """Drift ratio, displacement of the top over the height, shape (steps,)."""
-        return self.displacement / self.column.height
-
-    @property
     def residual_drift(self) -> float:
         """Drift ratio that is left at the end.
 
@@ -341,78 +263,29 @@ class Response:
             return float(self.displacement[-1]) / self.column.height
         return _last_zero(self.path.displacement, self.path.force) / self.column.height
 
-    def at(self, time: float) -> dict[str, Any]:
-        """Return the state at a time, or at a point of a static path, linear between rows.
+    @property
+    def structure(self) -> Column:
+        """The column."""
+        return self.column
 
-        The rows are those of `path`, which of a static path has the events between the points too.
+    def _again(self, arrays: dict[str, Array]) -> Self:
+        return response_of(type(self), arrays, self.column, self.summary, self.call, self.state)
 
-        Parameters
-        ----------
-        time : float
-            Within `time` [s]; in a static analysis the number of the point, which may lie between
-            two.
-
-        Returns
-        -------
-        dict
-            Every array of the result by name, its value or its values of the joints; "energy" is a
-            dict of the energies.
-
-        Raises
-        ------
-        InputError
-            If the time is outside of the rows.
-        """
-        at = _arguments.number(time, "time")
-        path, times = self.path, self.path.time
-        if not times.size or not times[0] <= at <= times[-1]:
-            span = f"{times[0]:g} to {times[-1]:g}" if times.size else "nothing"
-            raise InputError(f"time = {at:g} is outside of the rows, which hold {span}")
-        row = int(np.searchsorted(times, at, side="right")) - 1
-        after = min(row + 1, times.size - 1)
-        length = times[after] - times[row]
-        share = (at - times[row]) / length if length > 0 else 0.0
-
-        def between(values: Any) -> Any:
-            if isinstance(values, dict):
-                return {name: between(value) for name, value in values.items()}
-            mixed = values[row] if share == 0 else (1 - share) * values[row] + share * values[after]
-            return float(mixed) if np.ndim(mixed) == 0 else np.array(mixed)
-
-        arrays = {name: value for name, value in vars(path).items() if name not in _NO_ROWS}
-        state: dict[str, Any] = {
-            name: between(value) for name, value in arrays.items() if isinstance(value, np.ndarray)
-        }
-        return state | {"energy": between(path.energy), "time": at}
-
-    def __repr__(self) -> str:
-        about, key = self.summary, "peak_base_shear" if self.dynamic else "peak_force"
-        return (
-            f"{type(self).__name__}({about['method']}, {self.time.size} rows, {about['status']}, "
-            f"peak displacement {about['peak_displacement']:.4g} m, "
-            f"{key.replace('_', ' ')} {about[key]:.4g} N)"
-        )
-
-    def __eq__(self, other: object) -> bool:
-        """Return whether another result has the same column, rows and summary, bit for bit."""
-        if not isinstance(other, Response):
-            return NotImplemented
-        return all(
-            same(getattr(self, field.name), getattr(other, field.name)) for field in fields(self)
-        )
-
-    __hash__ = None  # type: ignore[assignment]
-
-
-def same(one: Any, other: Any) -> bool:
-    """Return whether two values are equal; arrays by all elements, with NaN equal to NaN."""
-    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
-        return np.array_equal(one, other, equal_nan=True)
-    if isinstance(one, dict) and isinstance(other, dict):
-        return one.keys() == other.keys() and all(same(one[key], other[key]) for key in one)
-    if isinstance(one, float) and isinstance(other, float):
-        return one == other or (math.isnan(one) and math.isnan(other))
-    return bool(one == other)
+    def columns(self) -> dict[str, Array]:
+        """Return the columns of the executable's csv, the unit of each in its name."""
+        known = self.energy | {"step": self.time, "top_height": self.top[:, 1]}
+        if self.motion is not None:
+            known["ground_acceleration"] = self.motion[:, 2]
+        found = {}
+        for name in self.channels:
+            values = known[name] if name in known else getattr(self, name)
+            unit = f"_{_core.units()[name]}".replace(" ", "").rstrip("_")
+            if values.ndim == 1:
+                found[name + unit] = values
+            else:
+                for at, joint in enumerate(self.column.joint_numbers):
+                    found[f"{name}_{joint}{unit}"] = values[:, at]
+        return found
 
 
 def _last_zero(displacement: Array, force: Array) -> float:
@@ -462,81 +335,3 @@ def response_of(
         motion=motion,
         reached=reached,
     )
-
-
-def settings_of(
-    every: int | None, openings: bool, motion: bool = False, **given: Any
-) -> _core.Statement:
-    """Return the groups analysis and output with the settings that are given."""
-    statement = _core.settings({name: v for name, v in given.items() if v is not None})
-    if every is None and not openings and not motion:
-        return statement
-    if every is not None:
-        _arguments.integer(every, "every", least=1)
-    return statement + _core.group(
-        "output", {"every": every, "openings": int(openings) or None, "motion": int(motion) or None}
-    )
-
-
-def state_of(initial: Any, call: str) -> Array:
-    """Return the state that an analysis begins in, from a response or a path.
-
-    Parameters
-    ----------
-    initial : Response or path
-        As the user gave it.
-    call : str
-        Name of the analysis, for messages.
-
-    Raises
-    ------
-    InputError
-        If it is neither, has no state, or the file is damaged.
-    """
-    if isinstance(initial, (str, os.PathLike)):
-        return _read_state(_arguments.file(initial, f"{call}: initial"))
-    if isinstance(initial, Ended):
-        return last_state(initial)
-    if isinstance(initial, np.ndarray):
-        # The state of a result, as `Result.call` keeps it.
-        return _arguments.vector(initial, "initial")
-    a_dict = " or a dict, as {'slip': [0.001]}" if call == "time_history" else ""
-    raise InputError(
-        f"{call}: initial = {_arguments.shown(initial)} must be a Result of this column, the path "
-        f"of a state{a_dict}"
-    )
-
-
-def last_state(response: Ended) -> Array:
-    """Return the state that an analysis ended in; `InputError` if it has none."""
-    if response.state is None:
-        why = {
-            "failed": "the analysis failed on its way; end it before the failure",
-            "axial_failure": "the column has lost its axial load, and nothing can follow",
-        }.get(response.summary["status"], "run the analysis again")
-        raise InputError(f"initial: the result has no state at its end: {why}")
-    return response.state
-
-
-def _read_state(path: str) -> Array:
-    if not Path(path).is_file():
-        raise InputError(f"initial: {path}: there is no such file; check the path")
-    if zipfile.is_zipfile(path):
-        raise InputError(
-            f"initial: {path} is a saved result and no state; give "
-            f"initial=rbsdem.read_result({path!r})"
-        )
-    try:
-        lines = Path(path).read_text(encoding="ascii").splitlines()
-        if lines[0] != STATE_HEAD:
-            raise ValueError("another kind of file")
-        numbers = [line for line in lines if not line.startswith("#")]
-        state = np.array(numbers[1:], dtype=np.float64)
-        if state.size != int(numbers[0]):
-            raise ValueError(f"{state.size} numbers of {numbers[0]}")
-    except (OSError, ValueError, IndexError) as error:
-        raise InputError(
-            f"initial: {path} is no state of rbsdem, or it is damaged ({error}); "
-            "Result.save_state and the key state of the group output write one"
-        ) from error
-    return state

@@ -11,7 +11,8 @@ from rbsdem import _arguments
 from rbsdem._types import Array, ArrayLike, Axes
 from rbsdem.errors import InputError
 from rbsdem.model.column import bodies
-from rbsdem.model.response import ENERGIES, Response
+from rbsdem.model.response import Response
+from rbsdem.model.rows import ENERGIES
 from rbsdem.output.style import (
     MODEL_LINE,
     ZERO_LINE,

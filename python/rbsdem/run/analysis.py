@@ -16,7 +16,8 @@ from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveErro
 from rbsdem.model.column import TELLING, Column
 from rbsdem.model.frame import Frame, Structure, checked_structure
 from rbsdem.model.frame_result import FrameResult, frame_result_of, span_note
-from rbsdem.model.response import Ended, Response, response_of, settings_of, state_of
+from rbsdem.model.response import Response, response_of
+from rbsdem.model.rows import Ended, settings_of, state_of
 from rbsdem.motions.motion import GroundMotion, acting
 from rbsdem.run.solver import Solver, checked_solver
 

@@ -18,9 +18,9 @@ from rbsdem._types import Array
 from rbsdem.errors import InputError, SolveError
 from rbsdem.model.column import Column, Footing, without_notes
 from rbsdem.model.damping import Damping
-from rbsdem.model.files import FORMAT, FORMAT_VERSION, check_ending
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.model.frame_result import FrameResult
+from rbsdem.model.rows import FORMAT, FORMAT_VERSION, check_ending
 from rbsdem.run.groups import (
     SPRING_GROUPS,
     frame_of,

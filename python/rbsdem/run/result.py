@@ -6,25 +6,18 @@ import contextlib
 import functools
 import inspect
 import math
-import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, Concatenate, Literal, ParamSpec, Protocol, cast, overload
+from typing import Any, Concatenate, ParamSpec, Protocol, cast, overload
 
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._types import DataFrame
 from rbsdem.checks.criteria import all_watches
 from rbsdem.checks.limit_states import Hinge, LimitStates
 from rbsdem.checks.limit_states import hinge as hinge_of
 from rbsdem.checks.limit_states import limit_states as find_limit_states
-from rbsdem.curves.cycles import HalfCycles, half_cycles
-from rbsdem.curves.envelope import Envelope, Idealisation, Method, strength_loss
-from rbsdem.curves.envelope import envelope as curve_envelope
-from rbsdem.curves.metrics import loop_pair
 from rbsdem.errors import InputError, SolveError
-from rbsdem.model import files
 from rbsdem.model.column import Column
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.model.frame_result import FrameResult
@@ -90,31 +83,6 @@ class ErrorEstimate:
 class Result(Response):
     """What `cyclic` and `time_history` return: a response with what it reaches and means."""
 
-    def envelope(self, side: Literal[1, -1] = 1) -> Envelope:
-        """Return the envelope of the loop to one side; see `rbsdem.curves.envelope`."""
-        return curve_envelope(self, side)
-
-    def idealise(
-        self, method: Method = "asce_41", side: Literal[1, -1] = 1, *, end: float | None = None
-    ) -> Idealisation:
-        """Replace the envelope of a side by two straight lines; see `Envelope.idealise`."""
-        return self.envelope(side).idealise(method, end=end)
-
-    def half_cycles(self) -> HalfCycles:
-        """Return energy, stiffness and damping of each half-cycle.
-
-        See `rbsdem.curves.half_cycles`.
-        """
-        done = None if self.dynamic else self.path.energy["input"]
-        return half_cycles(*loop_pair(self, "result"), done=done)
-
-    def strength_loss(self, share: float = 0.2) -> float:
-        """Return the displacement at which a share of the strength is lost [m]; NaN if it is not.
-
-        See `rbsdem.curves.strength_loss`.
-        """
-        return strength_loss(*loop_pair(self, "result"), share=share)
-
     def limit_states(self) -> LimitStates:
         """Return the limit states that the response reaches, with row, drift and source.
 
@@ -150,57 +118,6 @@ class Result(Response):
             If there is no such joint, or the openings of a layered hinge were not kept in time.
         """
         return hinge_of(self, joint, length)
-
-    def to_pandas(self) -> DataFrame:
-        """Return a DataFrame, a row for each of the result, with units in the names.
-
-        The names are those of the columns of the executable's csv.
-        """
-        return files.to_pandas(self)
-
-    def to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write the rows as csv with all digits, whole or not at all, as the executable does.
-
-        Parameters
-        ----------
-        path : path
-            File to write.
-        """
-        files.to_csv(self, path)
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the whole result into one file, which `rbsdem.read_result` reads back bit for bit.
-
-        It holds the arrays, the column and the case as text, the summary, the settings, units and
-        version. It is written whole or not at all. A column that a section made comes back as the
-        plain `Column` that was solved.
-
-        Parameters
-        ----------
-        path : path
-            File to write, ``.npz``.
-
-        Raises
-        ------
-        InputError
-            For another ending.
-        """
-        files.save(self, path)
-
-    def save_state(self, path: str | os.PathLike[str]) -> None:
-        """Write the state at the end as text, for ``initial=path`` and the executable.
-
-        Parameters
-        ----------
-        path : path
-            File to write, whole or not at all.
-
-        Raises
-        ------
-        InputError
-            If the result has no state, as after a failure.
-        """
-        files.save_state(self, path)
 
     @property
     def error_estimate(self) -> ErrorEstimate:

@@ -1,0 +1,436 @@
+"""What results have in common: loops, tables, states, and one file that describes itself."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import zipfile
+from collections.abc import Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, ClassVar, Literal, Protocol, runtime_checkable
+
+import numpy as np
+
+from rbsdem import _arguments, _core
+from rbsdem._files import atomic_write, data_frame
+from rbsdem._types import Array, DataFrame, Self
+from rbsdem.curves.cycles import HalfCycles, half_cycles
+from rbsdem.curves.envelope import Envelope, Idealisation, Method, strength_loss
+from rbsdem.curves.envelope import envelope as curve_envelope
+from rbsdem.curves.metrics import loop_pair
+from rbsdem.errors import InputError
+from rbsdem.model.frame import Structure
+
+#: Names of the energies.
+ENERGIES = ("input", "kinetic", "spring", "damping", "axial", "residual")
+
+#: First line of a file with a state.
+STATE_HEAD = "# rbsdem state"
+_NO_ROWS, _DICTS = ("state", "reached"), ("energy", "springs")
+
+FORMAT = "rbsdem result"
+FORMAT_VERSION = 1
+
+
+@runtime_checkable
+class Ended(Protocol):
+    """What an analysis can begin from: the result of another one."""
+
+    @property
+    def state(self) -> Array | None:
+        """State at the end."""
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """What was done."""
+
+
+class Rows:
+    """What results of columns and of frames have in common: a path or a response, row by row."""
+
+    time: Array
+    displacement: Array
+    force: Array
+    base_shear: Array
+    energy: dict[str, Array]
+    summary: dict[str, Any]
+    call: dict[str, Any]
+    state: Array | None
+    #: Whether it is of a column: rows can hold openings of joints, and the force does the input.
+    _of_column: ClassVar[bool] = True
+
+    @property
+    def structure(self) -> Structure:
+        """The column or the frame."""
+        raise NotImplementedError
+
+    def columns(self) -> dict[str, Array]:
+        """Return the columns of the table, the unit of each in its name."""
+        raise NotImplementedError
+
+    def _again(self, arrays: dict[str, Array]) -> Self:
+        """Return the same result with the rows of another run."""
+        raise NotImplementedError
+
+    @property
+    def path(self) -> Self:
+        """A static path from corner to corner: the rows of all points, and of the events between.
+
+        Between two rows a static path is straight with small rotations under a constant axial load;
+        with exact rotations, or a load that varies, it is a piece of curve. `time` of a row between
+        two points holds the share of the way. If the first point is not where the path begins, its
+        beginning is the first row, at time -1. What is measured on a path is measured here, so that
+        it depends neither on `every` nor on points put on the way. The openings are kept. It is
+        found by the same analysis once more, when it is first asked for. A response in time is its
+        own path.
+        """
+        known = vars(self)
+        if self.dynamic or "_is_path" in known:
+            return self
+        if "_path" not in known:
+            known["_path"] = self._follow_corners()
+        path: Self = known["_path"]
+        return path
+
+    def _follow_corners(self) -> Self:
+        """Return a row for every corner, from the same analysis once more."""
+        call = self.call
+        by_force = self.summary["driven"] == "force"
+        run = _core.cyclic(
+            self.structure._statement
+            + settings_of(None, self._of_column, collapse_drift=call.get("collapse_drift")),
+            by_force,
+            call["force" if by_force else "displacement"],
+            call.get("axial_load"),
+            state_of(call["initial"], "cyclic") if "initial" in call else None,
+            corners=True,
+        )
+        # Where the path broke off, the result has been told of it.
+        path = self._again(run[0])
+        vars(path)["_is_path"] = True
+        return path
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out the path: it is found again."""
+        return {name: value for name, value in vars(self).items() if name != "_path"}
+
+    @property
+    def dynamic(self) -> bool:
+        """Whether it is a response in time."""
+        return bool(self.summary["analysis"] == "dynamic")
+
+    @property
+    def loop_force(self) -> Array:
+        """Force of the loop [N], shape (steps,): `force`, in time `base_shear`."""
+        return self.base_shear if self.dynamic else self.force
+
+    @property
+    def drift(self) -> Array:
+        """Displacement of the top over the height, shape (rows,)."""
+        return self.displacement / self.structure.height
+
+    def at(self, time: float) -> dict[str, Any]:
+        """Return the state at a time, or at a point of a static path, linear between rows.
+
+        The rows are those of `path`, which of a static path has the events between the points too.
+
+        Parameters
+        ----------
+        time : float
+            Within `time` [s]; in a static analysis the number of the point, which may lie between
+            two.
+
+        Returns
+        -------
+        dict
+            Every array of the result by name: its value, or its values of joints, nodes or members;
+            "energy" and, of a frame, "springs" are dicts.
+
+        Raises
+        ------
+        InputError
+            If the time is outside of the rows.
+        """
+        at = _arguments.number(time, "time")
+        path, times = self.path, self.path.time
+        if not times.size or not times[0] <= at <= times[-1]:
+            span = f"{times[0]:g} to {times[-1]:g}" if times.size else "nothing"
+            raise InputError(f"time = {at:g} is outside of the rows, which hold {span}")
+        row = int(np.searchsorted(times, at, side="right")) - 1
+        after = min(row + 1, times.size - 1)
+        length = times[after] - times[row]
+        share = (at - times[row]) / length if length > 0 else 0.0
+
+        def between(values: Any) -> Any:
+            if isinstance(values, dict):
+                return {name: between(value) for name, value in values.items()}
+            mixed = values[row] if share == 0 else (1 - share) * values[row] + share * values[after]
+            return float(mixed) if np.ndim(mixed) == 0 else np.array(mixed)
+
+        state = {
+            name: between(value)
+            for name, value in vars(path).items()
+            if name in _DICTS or (isinstance(value, np.ndarray) and name not in _NO_ROWS)
+        }
+        return state | {"time": at}
+
+    def envelope(self, side: Literal[1, -1] = 1) -> Envelope:
+        """Return the envelope of the loop to one side; see `rbsdem.curves.envelope`."""
+        return curve_envelope(self, side)
+
+    def idealise(
+        self, method: Method = "asce_41", side: Literal[1, -1] = 1, *, end: float | None = None
+    ) -> Idealisation:
+        """Replace the envelope of a side by two straight lines; see `Envelope.idealise`."""
+        return self.envelope(side).idealise(method, end=end)
+
+    def half_cycles(self) -> HalfCycles:
+        """Return energy, stiffness and damping of each half-cycle.
+
+        See `rbsdem.curves.half_cycles`. The energy of a frame is the work of the force over the
+        displacement of the top, as the loop shows it.
+        """
+        done = self.path.energy["input"] if self._of_column and not self.dynamic else None
+        return half_cycles(*loop_pair(self, "result"), done=done)
+
+    def strength_loss(self, share: float = 0.2) -> float:
+        """Return the displacement at which a share of the strength is lost [m]; NaN if it is not.
+
+        See `rbsdem.curves.strength_loss`.
+        """
+        return strength_loss(*loop_pair(self, "result"), share=share)
+
+    def to_pandas(self) -> DataFrame:
+        """Return a DataFrame, a row for each of the result, with units in the names.
+
+        Of a column the names are those of the executable's csv, of a frame those of nodes and
+        members stand in them.
+        """
+        frame = data_frame(self.columns())
+        frame.attrs["summary"] = dict(self.summary)
+        return frame
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write the rows as csv with all digits, whole or not at all, as the executable does.
+
+        Parameters
+        ----------
+        path : path
+            File to write.
+        """
+        table, about, case = self.columns(), self.summary, getattr(self, "case", None)
+        head = [
+            f"# rbsdem {_core.version()}",
+            f"# case: {case.title if case is not None else ''}".rstrip(),
+            f"# units: SI, in the names of the columns; method: {about['method']}, "
+            f"kinematics: {about['kinematics']}",
+            ",".join(table),
+        ]
+        with atomic_write(path) as file:
+            file.write(("\n".join(head) + "\n").encode())
+            np.savetxt(file, np.column_stack(list(table.values())), fmt="%.17g", delimiter=",")
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the whole result into one file, which `rbsdem.read_result` reads back bit for bit.
+
+        It holds the arrays, the column and the case as text, the summary, the settings, units and
+        version. It is written whole or not at all. A column that a section made comes back as the
+        plain `Column` that was solved.
+
+        Parameters
+        ----------
+        path : path
+            File to write, ``.npz``.
+
+        Raises
+        ------
+        InputError
+            For another ending.
+        """
+        save(self, path)
+
+    def save_state(self, path: str | os.PathLike[str]) -> None:
+        """Write the state at the end as text, for ``initial=path`` and the executable.
+
+        Parameters
+        ----------
+        path : path
+            File to write, whole or not at all.
+
+        Raises
+        ------
+        InputError
+            If the result has no state, as after a failure.
+        """
+        save_state(self, path)
+
+    def __repr__(self) -> str:
+        about, key = self.summary, "peak_base_shear" if self.dynamic else "peak_force"
+        return (
+            f"{type(self).__name__}({about['method']}, {self.time.size} rows, {about['status']}, "
+            f"peak displacement {about['peak_displacement']:.4g} m, "
+            f"{key.replace('_', ' ')} {about[key]:.4g} N)"
+        )
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether another result has the same structure, rows and summary, bit for bit."""
+        if not isinstance(other, Rows):
+            return NotImplemented
+        return all(
+            same(getattr(self, field.name), getattr(other, field.name))
+            for field in fields(self)  # type: ignore[arg-type]
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+def same(one: Any, other: Any) -> bool:
+    """Return whether two values are equal; arrays by all elements, with NaN equal to NaN."""
+    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        return np.array_equal(one, other, equal_nan=True)
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(same(one[key], other[key]) for key in one)
+    if isinstance(one, float) and isinstance(other, float):
+        return one == other or (math.isnan(one) and math.isnan(other))
+    return bool(one == other)
+
+
+def settings_of(
+    every: int | None, openings: bool, motion: bool = False, **given: Any
+) -> _core.Statement:
+    """Return the groups analysis and output with the settings that are given."""
+    statement = _core.settings({name: v for name, v in given.items() if v is not None})
+    if every is None and not openings and not motion:
+        return statement
+    if every is not None:
+        _arguments.integer(every, "every", least=1)
+    return statement + _core.group(
+        "output", {"every": every, "openings": int(openings) or None, "motion": int(motion) or None}
+    )
+
+
+def state_of(initial: Any, call: str) -> Array:
+    """Return the state that an analysis begins in, from a response or a path.
+
+    Parameters
+    ----------
+    initial : Response or path
+        As the user gave it.
+    call : str
+        Name of the analysis, for messages.
+
+    Raises
+    ------
+    InputError
+        If it is neither, has no state, or the file is damaged.
+    """
+    if isinstance(initial, (str, os.PathLike)):
+        return _read_state(_arguments.file(initial, f"{call}: initial"))
+    if isinstance(initial, Ended):
+        return last_state(initial)
+    if isinstance(initial, np.ndarray):
+        # The state of a result, as `Result.call` keeps it.
+        return _arguments.vector(initial, "initial")
+    a_dict = " or a dict, as {'slip': [0.001]}" if call == "time_history" else ""
+    raise InputError(
+        f"{call}: initial = {_arguments.shown(initial)} must be a Result of this column, the path "
+        f"of a state{a_dict}"
+    )
+
+
+def last_state(response: Ended) -> Array:
+    """Return the state that an analysis ended in; `InputError` if it has none."""
+    if response.state is None:
+        why = {
+            "failed": "the analysis failed on its way; end it before the failure",
+            "axial_failure": "the column has lost its axial load, and nothing can follow",
+        }.get(response.summary["status"], "run the analysis again")
+        raise InputError(f"initial: the result has no state at its end: {why}")
+    return response.state
+
+
+def _read_state(path: str) -> Array:
+    if not Path(path).is_file():
+        raise InputError(f"initial: {path}: there is no such file; check the path")
+    if zipfile.is_zipfile(path):
+        raise InputError(
+            f"initial: {path} is a saved result and no state; give "
+            f"initial=rbsdem.read_result({path!r})"
+        )
+    try:
+        lines = Path(path).read_text(encoding="ascii").splitlines()
+        if lines[0] != STATE_HEAD:
+            raise ValueError("another kind of file")
+        numbers = [line for line in lines if not line.startswith("#")]
+        state = np.array(numbers[1:], dtype=np.float64)
+        if state.size != int(numbers[0]):
+            raise ValueError(f"{state.size} numbers of {numbers[0]}")
+    except (OSError, ValueError, IndexError) as error:
+        raise InputError(
+            f"initial: {path} is no state of rbsdem, or it is damaged ({error}); "
+            "Result.save_state and the key state of the group output write one"
+        ) from error
+    return state
+
+
+def save_state(result: Ended, path: str | os.PathLike[str]) -> None:
+    """Write a state as text: a head, then one number a line, whole or not at all."""
+    state = last_state(result)
+    head = f"{STATE_HEAD}\n# version: {_core.version()}\n{state.size}\n"
+    with atomic_write(path) as file:
+        file.write((head + "\n".join(map(_text, state)) + "\n").encode())
+
+
+def _text(number: float) -> str:
+    """Return a number as the executable writes it: all digits, three for the exponent."""
+    digits, _, exponent = f"{number:.16E}".partition("E")
+    return f"{digits}E{int(exponent):+04d}"
+
+
+def save(result: Any, path: str | os.PathLike[str]) -> None:
+    """Write a result as npz, whole or not at all."""
+    check_ending(path)
+    about, arrays = _parts(result)
+    with atomic_write(path) as file:
+        np.savez_compressed(file, about=np.array(json.dumps(about)), **arrays)
+
+
+def check_ending(path: str | os.PathLike[str]) -> None:
+    """Raise `InputError` if the name is not that of a saved result."""
+    if _arguments.path(path).suffix.lower() != ".npz":
+        raise InputError(f"{os.fspath(path)}: the name of a saved result ends in .npz")
+
+
+def _parts(result: Any) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return what is written as text, and the arrays by name."""
+    arrays: dict[str, Any] = {}
+    about: dict[str, Any] = {"format": FORMAT, "format_version": FORMAT_VERSION}
+    about |= {"version": _core.version(), "units": _core.units()}
+    about |= {
+        "column": result.column.to_namelist(),
+        "summary": result.summary,
+        "arrays": {},
+        "case": None,
+    }
+    for field in fields(result):
+        value = getattr(result, field.name)
+        if isinstance(value, np.ndarray) or (value is None and field.name != "case"):
+            about["arrays"][field.name] = value is not None
+            arrays |= {} if value is None else {field.name: value}
+        elif field.name in ("energy", "springs", "call", "channels"):
+            about[field.name] = _apart(field.name, value, arrays)
+        elif field.name == "case" and value is not None:
+            about["case"] = value.to_namelist()
+    return about, arrays
+
+
+def _apart(name: str, value: Any, arrays: dict[str, Any]) -> Any:
+    """Return a value for json; arrays in it are put aside under their names."""
+    if isinstance(value, Mapping):
+        return {key: _apart(f"{name}/{key}", each, arrays) for key, each in value.items()}
+    if isinstance(value, np.ndarray):
+        arrays[name] = value
+        return {"array": name}
+    return value.item() if isinstance(value, np.generic) else value
