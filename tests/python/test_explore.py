@@ -395,7 +395,7 @@ def test_a_frame_is_that_of_the_functions(post, tmp_path):
     (tmp_path / "frame.nml").write_text(answer["case"])
     case = rbsdem.read_case(tmp_path / "frame.nml")
     again = case.run()
-    assert len(again.displacement) > 40
+    assert len(again.displacement) >= 40
     assert again.displacement[-1] == pytest.approx(0.03 * 9.6)
     assert again.base_shear[-1] == pytest.approx(push.base_shear[-1])
 
@@ -416,7 +416,7 @@ def test_members_of_a_frame_bend_as_the_figures_of_python_have_them():
     ("place", "value", "field", "text"),
     [
         (("storeys", 1, "height"), -1.0, "frame.storeys", r"height = -1 m must be .*storey 2"),
-        (("storeys", 0, "beam"), 4, "beam.moment", "moment = None must be a number"),
+        (("storeys", 0, "beam"), 4, "beam.moment", "moment is missing, or too large for"),
         (("storeys", 2, "column", "width"), 1e9, "column.width", "must be from 0.05 to 5"),
         (("storeys", 2), 7, "frame.storeys", "height is missing, or too large for a number"),
         (("storeys",), [], "frame.storeys", "give one to six"),
