@@ -63,7 +63,7 @@ contains
       type(run_type), target :: run
       type(message_list) :: notes
       type(error_type), allocatable :: closing
-      character(len=:), allocatable :: file
+      character(len=:), allocatable :: file, partial
 
       call prepare(run, path, error)
       if (.not. allocated(error)) call output_path(file)
@@ -157,7 +157,8 @@ contains
                write (error_unit, '(a)') 'rbsdem: note: '//recorder%file%left//' has rows of a run '// &
                   'that was killed'
             end if
-            call keep_if_stopped(recorder%file%own, recorder%file%partial_name())
+            call recorder%file%get_partial_name(partial)
+            call keep_if_stopped(recorder%file%own, partial)
             call recorder%write_head(header(case, plan%method), error)
             if (allocated(error)) return
             call progress%start(quiet)

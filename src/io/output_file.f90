@@ -53,7 +53,7 @@ module rbs_io_output_file
       procedure :: open => open_file
       procedure :: put
       procedure :: close => close_file
-      procedure :: partial_name
+      procedure :: get_partial_name
       procedure, private :: flush => flush_buffer
       procedure, private :: open_own
    end type output_file
@@ -231,7 +231,7 @@ contains
       else
          ! As PATH.partial if this name is free or has been left by an earlier run
          self%kept = self%own
-         name = self%partial_name()
+         call self%get_partial_name(name)
          if (name == self%own) return
          if (c_rename(self%own//c_null_char, name//c_null_char) == 0_c_int) self%kept = name
       end if
@@ -239,16 +239,16 @@ contains
 
    !> Name of the rows of a run that does not come to its end: PATH.partial if this is free or has been left
    !> by an earlier run, else its own.
-   function partial_name(self) result(name)
+   subroutine get_partial_name(self, name)
       class(output_file), intent(in) :: self
-      character(len=:), allocatable :: name
+      character(len=:), allocatable, intent(out) :: name
       logical :: free
 
       name = self%path//partial
       free = .not. is_taken(name)
       if (.not. free) free = is_ours(name)
       if (self%own == '' .or. .not. free) name = self%own
-   end function partial_name
+   end subroutine get_partial_name
 
    !> Whether a path is an ordinary file that a run has left.
    logical function is_ours(path)
