@@ -6,12 +6,16 @@ exception.
 
 from __future__ import annotations
 
+import atexit
 import json
 import os
+import signal
+import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import cache
 from itertools import islice
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -19,6 +23,9 @@ from rbsdem import _arguments, _rbsdem
 from rbsdem._arguments import boolean, number, vector
 from rbsdem._types import Array, NDArray
 from rbsdem.errors import InputError, SolveError
+
+if TYPE_CHECKING:
+    import socket
 
 #: A number that was not given.
 UNSET = -float(np.finfo(np.float64).max)
@@ -134,6 +141,52 @@ class _Rows:
 
 _NOTHING = np.empty(0)
 _NO_CONTROL = np.zeros(2, np.int32)
+
+#: Control words of runs that Ctrl-C ends.
+_RUNNING: list[NDArray[np.int32]] = []
+
+
+@cache
+def _waker(_process: int) -> socket.socket:
+    """Return the end that Python writes signals to at once, also while Fortran runs.
+
+    A thread of the process reads the other end, and ends the runs; a fork has its own.
+    """
+    import socket  # noqa: PLC0415
+
+    read, write = socket.socketpair()
+    write.setblocking(False)
+
+    def watch() -> None:
+        with read:
+            while number := read.recv(1):
+                for control in _RUNNING if number[0] == signal.SIGINT else ():
+                    control[0] = 1
+
+    atexit.register(write.close)
+    threading.Thread(target=watch, name="rbsdem interrupts", daemon=True).start()
+    return write
+
+
+@contextmanager
+def _interruptible() -> Iterator[NDArray[np.int32]]:
+    """Give a run its control word, which Ctrl-C sets; what follows is what Python does on Ctrl-C.
+
+    Signals reach the main thread alone; there the program keeps the waker that it may have.
+    """
+    control = np.zeros(2, np.int32)
+    if threading.current_thread() is not threading.main_thread():
+        yield control
+        return
+    before = signal.set_wakeup_fd(_waker(os.getpid()).fileno(), warn_on_full_buffer=False)
+    if before >= 0:
+        signal.set_wakeup_fd(before)
+    _RUNNING.append(control)
+    try:
+        yield control
+    finally:
+        _RUNNING.pop()
+        signal.set_wakeup_fd(before)
 
 
 def _ask(
@@ -274,7 +327,8 @@ def cyclic(
     spring leaves its line.
     """
     given: dict[str, Any] = {"by_force": by_force, "target": target, "axial_load": axial_load}
-    answer = _ask("cyclic", column, before=before, corners=corners, **given)
+    with _interruptible() as control:
+        answer = _ask("cyclic", column, control, before=before, corners=corners, **given)
     return _finish(answer, answer.values)
 
 
@@ -298,7 +352,8 @@ def time_history(
     given |= {"opening_given": opening_given, "before": before, **loads}
     told = False
     while True:
-        answer = _ask("time_history", column, told=told, **given)
+        with _interruptible() as control:
+            answer = _ask("time_history", column, control, told=told, **given)
         if answer.status != _LONG_RUN:
             break
         tell(answer.text)

@@ -99,7 +99,7 @@ contains
          character(len=:), allocatable :: text
 
          associate (summary => run%task%summary, fall => run%task%summary%fall)
-            if (summary%status() == 'completed') return
+            if (summary%status() == 'completed' .or. summary%stopped) return
             text = 'step '//to_text(nint(summary%last_time))
             if (run%case%analysis%dynamic()) text = 'time '//to_text(summary%last_time)//' s'
             if (summary%lost_joint > 0) then
@@ -166,6 +166,7 @@ contains
             task%progress => progress
             task%every = case%output%every
             task%collapse_drift = case%analysis%collapse_drift
+            task%most_seconds = case%analysis%max_seconds
             task%keeps_end = .true.
             if (case%analysis%dynamic()) then
                call run_dynamic(structure, case%analysis, plan, history%time, history%loads, at_rest, task, &

@@ -40,7 +40,7 @@ contains
    subroutine evaluate(request, control, answer)
       type(request_type), intent(in) :: request
       !> See `run_block`
-      integer(c_int), intent(inout), volatile :: control(2)
+      integer(c_int), intent(inout), volatile, target :: control(2)
       type(answer_type), intent(inout) :: answer
       type(text_buffer) :: buffer
       character(len=1), parameter :: line = new_line('a')
@@ -64,7 +64,7 @@ contains
       case ('check_structure', 'frame_parts', 'modes', 'matrices')
          call evaluate_structure(request, answer)
       case ('cyclic', 'time_history')
-         call run_analysis(request, answer)
+         call run_analysis(request, control, answer)
       case ('plan_ensemble')
          call plan_ensemble(request, answer)
       case ('run_ensemble')

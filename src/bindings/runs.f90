@@ -1,7 +1,7 @@
 !> Analyses for Python.
 module rbs_bindings_runs
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-   use, intrinsic :: iso_c_binding, only: c_double
+   use, intrinsic :: iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type, message_list, fatal_error, analysis_failed, &
                              bad_input
    use rbs_base_kinds, only: wp
@@ -49,8 +49,10 @@ contains
    !> run; the state at its end, if there is one. The text is the method, the reason for it, how the run
    !> ended, the channels of the rows, the names of the figures, and a note on a run that succeeded, a line
    !> each.
-   subroutine run_analysis(request, answer)
+   subroutine run_analysis(request, control, answer)
       type(request_type), intent(in) :: request
+      !> See `run_block`
+      integer(c_int), intent(inout), volatile, target :: control(2)
       type(answer_type), intent(inout) :: answer
       type(run_type), target :: run
       real(c_double), pointer, contiguous :: watches(:)
@@ -73,6 +75,8 @@ contains
          run%task%every = run%case%output%every
          run%task%collapse_drift = run%case%analysis%collapse_drift
          run%task%keeps_end = .true.
+         run%task%most_seconds = run%case%analysis%max_seconds
+         run%task%control => control(1)
          associate (before => request%array('before'))
             if (size(before) > 0) then
                run%task%before%stream%value = before

@@ -85,7 +85,8 @@ contains
       call v%key('allow_unstable', self%allow_unstable, &
                  'rk4: take a step beyond the stability limit all the same')
       call v%key('max_seconds', self%max_seconds, 's', above_zero, &
-                 'a run in time that is expected to take longer is not begun; without it 300', &
+                 'a run in time that is expected to take longer is not begun, one that does is stopped; '// &
+                       'without it 300 are expected', &
                  optional=.true.)
       call v%long_text('initial', self%initial, &
                        'path of the state that another analysis ended in, to begin there')

@@ -56,6 +56,8 @@ module rbs_output_summary
       real(wp) :: released = 0.0_wp
       !> Whether the analysis ended where the user's criterion of collapse was met
       logical :: collapsed = .false.
+      !> Whether it was stopped from outside before its end
+      logical :: stopped = .false.
       !> Joint whose layers could not carry the axial load any more, where the analysis ended; 0: none
       integer :: lost_joint = 0
       !> The axial load that it lost and what its layers can carry at that rotation, compression positive [N];
@@ -195,6 +197,7 @@ contains
       class(summary_type), intent(in) :: self
 
       status = 'completed'
+      if (self%stopped) status = 'stopped'
       if (self%collapsed) status = 'collapsed'
       if (self%lost_joint > 0) status = 'axial_failure'
    end function status

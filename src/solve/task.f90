@@ -1,6 +1,8 @@
 !> What a run of any analysis is given besides the column and its loads, and what it gives back besides rows.
 module rbs_solve_task
+   use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_constants, only: unset, unset_integer
+   use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
    use rbs_output_recorder, only: recorder_type, observer_type
    use rbs_output_summary, only: summary_type
@@ -18,6 +20,11 @@ module rbs_solve_task
       integer :: every = unset_integer
       !> Displacement of the top over the height at which the run ends as collapsed; `unset`: it does not
       real(wp) :: collapse_drift = unset
+      !> The word by which another thread ends the run, where it is not 0 (null: none)
+      integer, pointer :: control => null()
+      !> Seconds by the clock after which the run ends; `unset`: it does not
+      real(wp) :: most_seconds = unset
+      integer(int64), private :: begun = -1_int64
       !> The state to begin in, empty: virgin; and the state at the end, if it is asked for
       type(end_state) :: before, after
       logical :: keeps_end = .false.
@@ -25,6 +32,7 @@ module rbs_solve_task
       type(summary_type) :: summary
    contains
       procedure :: resumes
+      procedure :: stops
    end type task_type
 
 contains
@@ -35,5 +43,27 @@ contains
 
       resumes = self%before%is_given()
    end function resumes
+
+   !> Whether the run ends here, as another thread or the clock wants it. Rows up to here are kept.
+   logical function stops(self)
+      class(task_type), intent(inout) :: self
+      integer(int64) :: now, rate
+
+      stops = .false.
+      if (associated(self%control)) stops = is_set(self%control)
+      if (is_given(self%most_seconds)) then
+         call system_clock(now, rate)
+         if (self%begun < 0_int64) self%begun = now
+         stops = stops .or. real(now - self%begun, wp) > self%most_seconds*real(rate, wp)
+      end if
+      self%summary%stopped = self%summary%stopped .or. stops
+   end function stops
+
+   !> Whether a word is set that other threads may change at any time.
+   logical function is_set(word)
+      integer, intent(inout), volatile :: word
+
+      is_set = word /= 0
+   end function is_set
 
 end module rbs_solve_task

@@ -140,6 +140,7 @@ contains
          self%extent = max(self%extent, abs(target))
       end if
       do strides = 1, 10000 + 1000*self%moving
+         if (self%task%stops()) return
          if (.not. abs(self%goal - self%here%t) > 0.0_wp) exit
          direction = merge(1, -1, self%goal > self%here%t)
          if (self%direction /= direction) then

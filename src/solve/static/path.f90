@@ -111,7 +111,7 @@ module rbs_solve_static_path
       !> Rotations of the bodies, a work array (n)
       real(wp), allocatable, private :: rotation(:)
       !> What is told of a corner between two targets: its summary, and its recorder if the row is to be kept
-      type(task_type), pointer, private :: task => null()
+      type(task_type), pointer :: task => null()
    contains
       procedure :: prepare
       procedure :: compress
@@ -274,6 +274,7 @@ contains
          ! A path whose first target is not where it begins has a way to it.
          if (i == 1 .and. abs(target(1) - self%control) > 0.0_wp) call self%see_corner(0.0_wp)
          call self%advance(target(i), failure)
+         if (task%summary%stopped) return
          lost = self%springs%lost_joint()
          if (lost > 0) then
             task%summary%lost_joint = self%structure%place(lost)%index

@@ -90,6 +90,7 @@ contains
       self%share = 0.0_wp
       direction = 0
       do lines = 1, 10000 + 1000*self%springs%count
+         if (self%task%stops()) return
          if (.not. self%goes_back) then
             if (.not. abs(target - self%control) > 0.0_wp) return
             direction = merge(1, -1, target > self%control)

@@ -1,0 +1,71 @@
+"""Runs that are ended while they are under way: by Ctrl-C, or by the time that they may take."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+
+import numpy as np
+import pytest
+
+import rbsdem
+from rbsdem.springs import Elastic
+
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning"),
+    pytest.mark.filterwarnings("ignore::rbsdem.errors.LongRunWarning"),
+    pytest.mark.skipif(os.name == "nt", reason="a process of Windows cannot send itself Ctrl-C"),
+]
+
+COLUMN = rbsdem.Column(2.0, 1e4, Elastic(2e7), [Elastic(1e8)] * 50, n=50)
+# Hours of work: a test would not end if the run were not ended.
+TIME = np.array([0.0, 1e6])
+
+
+def endless(**more):
+    ground = np.array([0.0, 1.0])
+    return rbsdem.time_history(
+        COLUMN,
+        TIME,
+        ground_acceleration=ground,
+        method="newmark",
+        dt=1e-3,
+        every=10**6,
+        **{"max_seconds": 1e9} | more,
+    )
+
+
+@pytest.fixture
+def interrupted():
+    """Send the process the signal of Ctrl-C while it runs."""
+    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    yield
+    timer.join()
+
+
+def test_ctrl_c_ends_a_run_in_time(interrupted):
+    with pytest.raises(KeyboardInterrupt):
+        endless()
+
+
+def test_a_handler_that_goes_on_has_the_rows_so_far(interrupted):
+    """The energies balance at the last row, which is that of the moment of the signal."""
+    before = signal.signal(signal.SIGINT, lambda *_: None)
+    try:
+        run = endless()
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert run.summary["status"] == "stopped"
+    assert 0 < run.time[-1] < TIME[-1]
+    assert run.summary["steps"] == pytest.approx(run.time[-1] / 1e-3, abs=1)
+    assert run.summary["relative_energy_residual"] < 1e-6
+
+
+def test_ctrl_c_ends_a_static_path(interrupted):
+    path = np.tile([0.01, -0.01], 2 * 10**6)
+    softening = rbsdem.springs.Takeda(k_c=2.5e8, d_c=3e-4, k_y=6e7, d_y=2.7e-3, k_u=7e6, b1=0.3)
+    column = rbsdem.Column(2.0, 1e4, Elastic(2e7), [softening] * 50, n=50)
+    with pytest.raises(KeyboardInterrupt):
+        rbsdem.cyclic(column, displacement=path, every=10**6)
