@@ -68,13 +68,7 @@ class Building:
 
 @dataclass(frozen=True, repr=False)
 class Frame(model.Frame):
-    """A planar frame; see `rbsdem.model.frame.Frame`, whose parameters it has.
-
-    Attributes
-    ----------
-    building : Building or None
-        What it was drawn from, if it was.
-    """
+    """A planar frame that knows what it was drawn from."""
 
     building: Building | None = field(default=None, compare=False)
 
@@ -179,6 +173,14 @@ class Frame(model.Frame):
         return cls(
             heights, widths or None, cells[0], cells[1] or None, nodes=tuple(nodes.values()), **more
         )
+
+
+# With the parameters of the frame that it extends.
+Frame.__doc__ = str(model.Frame.__doc__).replace(
+    "\n\n    Raises\n",
+    "\n    building : Building, optional\n        What it was drawn from; `grid` gives it.\n\n"
+    "    Raises\n",
+)
 
 
 def _masses(more: dict[str, Any], floors: Array, mass: str | None) -> None:
