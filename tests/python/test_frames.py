@@ -270,6 +270,43 @@ def test_critical_loads_of_one_member_a_column(make, given):
         rbsdem.modes(under((1 + 1e-5) * critical), 1)
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_a_pressed_frame_is_the_same_however_its_columns_are_divided(seed):
+    """Random elastic frames up to near their critical load; modes are those of the matrices."""
+    rng = np.random.default_rng(seed)
+    heights, widths = rng.uniform(2.5, 6, rng.integers(1, 4)), rng.uniform(3, 8, rng.integers(0, 3))
+    columns, beams = (FrameMember(E, 0.1, 10 ** float(rng.uniform(-3.6, -2.6))) for _ in "cb")
+    while True:
+        loads = [
+            FrameNode(f"N-{line + 1}-{floor + 1}", load_y=-float(rng.uniform(-1e5, 6e5)))
+            for floor in range(heights.size) for line in range(widths.size + 1)
+        ]  # fmt: skip
+        grid = {"columns": columns, "beams": beams if widths.size else None, "nodes": loads}
+        try:
+            frame = Frame.grid(heights, widths if widths.size else None, **grid, floor_mass=3e4,
+                               kinematics="pdelta")  # fmt: skip
+            periods = rbsdem.modes(frame, 2).period
+            break
+        except rbsdem.SolveError:
+            continue  # it buckles
+    parts, nodes, members = frame.parts, list(loads), []
+    for name, (start, end) in zip(parts.members, parts.ends, strict=True):
+        if name.startswith("C"):
+            middle = (parts.y[start] + parts.y[end]) / 2
+            nodes.append(FrameNode(f"X{name}", x=float(parts.x[start]), y=float(middle)))
+            members.append(Member(f"{name}a", parts.nodes[start], f"X{name}", columns))
+            members.append(Member(f"{name}b", f"X{name}", parts.nodes[end], columns))
+    divided = replace(frame, columns={(0, 0): None}, nodes=nodes, members=members)
+    one, other = (rbsdem.cyclic(each, displacement=[0.01]).force[0] for each in (frame, divided))
+    assert other == pytest.approx(one, rel=1e-9)
+    matrices = rbsdem.matrices(frame)
+    whole, mass = matrices.stiffness + matrices.geometric, np.diag(matrices.mass)
+    flexible = np.linalg.inv(whole)[np.ix_(mass > 0, mass > 0)]
+    root = np.sqrt(mass[mass > 0])
+    squares = np.linalg.eigvalsh(root[:, None] * flexible * root)[::-1]
+    assert periods == pytest.approx(2 * np.pi * np.sqrt(squares[:2]), rel=1e-9)
+
+
 def test_a_mechanism_falls_by_its_chords():
     """Hinges at both ends leave columns straight: the force falls by P/h, not by more."""
     plastic, axial, height = 2e5, 4e5, 4.0
