@@ -29,15 +29,22 @@ def drawn():
 
 def test_a_drawn_frame_is_one_of_members_by_hand(drawn):
     kinds = {}
+    # The axial loads are those of the elastic frame of gross sections.
+    columns, beams = (
+        rbsdem.FrameMember(one.concrete_law["ec"], one.gross_area, one.inertia) for one in (C, B)
+    )
+    elastic = rbsdem.Frame.grid(
+        [3.2, 3.0], [5.6, 4.0], columns=columns, beams=beams, beam_load=23e3
+    ).parts
     for line in (1, 2, 3):
         for storey, clear in ((1, 3.2 - 0.25), (2, 3.0 - 0.5)):
             # 1 % of f'c A_g is the step of the axial loads.
-            elastic = drawn.parts.compression[drawn.parts.members.index(f"C-{line}-{storey}")]
-            load = max(round(elastic / 40e3), 1) * 40e3
+            carried = elastic.compression[elastic.members.index(f"C-{line}-{storey}")]
+            load = max(round(carried / 40e3), 1) * 40e3
             panel = (0.0 if storey == 1 else 0.25), 0.25
             kinds[line, storey] = rbsdem.section.member(C, clear, axial_load=load, panel=panel)
     beams = {
-        (bay, 0): rbsdem.section.member(B.mirrored, width - 0.4, panel=(0.2, 0.2))
+        (bay, 0): rbsdem.section.member(B.mirrored, width - 0.4, panel=(0.2, 0.2), under_load=True)
         for bay, width in ((1, 5.6), (2, 4.0))
     }
     hand = rbsdem.Frame.grid(

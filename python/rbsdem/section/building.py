@@ -316,6 +316,7 @@ class _Grid:
             for i in range(1, len(self.bays) + 2)
         }
         columns, beams = self.kinds
+        loads = np.broadcast_to(more["beam_load"], len(self.storeys))
         for (i, k), one in self.columns.items():
             ends = rigid.get((i, k - 1), (0.0, 0.0))[0], rigid[i, k][0]
             columns[i, k] = _kind(one, self.storeys[k - 1], ends, load[i, k], f"C-{i}-{k}")
@@ -324,7 +325,9 @@ class _Grid:
             turned = one
             if one is not None and not isinstance(one, FrameMember):
                 turned = tuple(part.mirrored for part in _halves(one))
-            beams[i, k] = _kind(turned, self.bays[i - 1], ends, 0.0, f"B-{i}-{k}")
+            beams[i, k] = _kind(
+                turned, self.bays[i - 1], ends, 0.0, f"B-{i}-{k}", under_load=bool(loads[k - 1])
+            )
         return list(self.kinds)
 
     def around(self, i: int, k: int) -> tuple[list[Any], list[Any]]:
@@ -416,7 +419,13 @@ def _rounded(one: Any, load: float) -> float:
 
 
 def _kind(
-    one: Any, length: float, ends: tuple[float, float], load: float, name: str
+    one: Any,
+    length: float,
+    ends: tuple[float, float],
+    load: float,
+    name: str,
+    *,
+    under_load: bool = False,
 ) -> FrameMember | None:
     if not _is_drawn(one):
         return one  # type: ignore[no-any-return]
@@ -426,12 +435,12 @@ def _kind(
             f"frame: member {name} of {length:g} m has rigid ends of {sum(ends):g} m, and no length"
         )
     try:
-        made = _made(_halves(one), clear, load)
+        made = _made(_halves(one), clear, load, under_load)
     except InputError as error:
         raise InputError(f"frame: member {name}: {error}") from None
     return model.with_panel(made, ends)
 
 
 @lru_cache(maxsize=1024)
-def _made(sections: Halves, length: float, axial_load: float) -> FrameMember:
-    return member(sections, length, axial_load=axial_load)
+def _made(sections: Halves, length: float, axial_load: float, under_load: bool) -> FrameMember:
+    return member(sections, length, axial_load=axial_load, under_load=under_load)

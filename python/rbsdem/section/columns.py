@@ -285,7 +285,9 @@ def member(
     joints = {0.0: hinge, 1.0: last}
     if under_load:
         dry = _known(model_parameters).with_values(slip_length=0.0)
-        middle = LayeredModel(halves[0], 0.5 * length, axial_load, 2, dry, restrained)
+        # Bars that are more over one support end before the middle.
+        least = min(halves, key=lambda one: one.steel_area)
+        middle = LayeredModel(least, 0.5 * length, axial_load, 2, dry, restrained)
         joints[0.5] = middle.joint.spring
     # The hinges shorten by their layers, the rest by this.
     hinges = sum(
