@@ -4,6 +4,9 @@
 a frame.
 """
 
+from rbsdem.checks.acceptance import Assessment as Assessment
+from rbsdem.checks.acceptance import assess as assess
+from rbsdem.checks.acceptance import beam_rotations as beam_rotations
 from rbsdem.checks.capacity import Capacity as Capacity
 from rbsdem.checks.code_values import CodeComparison as CodeComparison
 from rbsdem.checks.code_values import CodeValue as CodeValue
