@@ -1368,6 +1368,42 @@ def test_members_too_stiff_for_the_digits_are_refused():
             period(ratio)
 
 
+def test_a_beam_and_a_column_that_yield_at_once():
+    """Equal moments of beam and columns: w = 16 M_p/L2 = 25 kN/m, though a knee might turn."""
+    kind = FrameMember(E, A, INERTIA, yield_moment=100e3, hardening=0.0)
+    nodes = [FrameNode("a", 0, 0, "fixed"), FrameNode("b", 8, 0, "fixed")]
+    nodes += [FrameNode("c", 0, 4, push_x=1.0), FrameNode("m", 4, 4), FrameNode("d", 8, 4)]
+
+    def portal(w: float) -> Frame:
+        members = [Member("left", "a", "c", kind), Member("right", "b", "d", kind)]
+        members += [Member("first", "c", "m", kind, load=w), Member("last", "m", "d", kind, load=w)]
+        return Frame(nodes=nodes, members=members, pattern="nodes", control_node="c")
+
+    assert rbsdem.cyclic(portal(24.999e3), displacement=[0.05]).force[0] > 0
+    with pytest.raises(
+        rbsdem.SolveError, match=r"capacity of the frame: at a share of 0\.99996 of it"
+    ):
+        rbsdem.cyclic(portal(25.001e3), displacement=[0.05])
+
+
+def test_a_frame_that_buckles_under_its_dead_load():
+    """A cantilever of one member under 1.1 times its critical load, which it is told."""
+    critical = np.pi**2 * E * INERTIA / (4 * 4.0**2)
+    nodes = [FrameNode("foot", 0, 0, "fixed")]
+    nodes += [
+        FrameNode(f"n{i}", 0, i, push_x=float(i == 4), load_y=-1.1 * critical * (i == 4))
+        for i in range(1, 5)
+    ]
+    members = [
+        Member(f"m{i}", n.name, o.name, ELASTIC)
+        for i, (n, o) in enumerate(itertools.pairwise(nodes))
+    ]
+    with pytest.raises(
+        rbsdem.SolveError, match=r"buckles under it: 0\.909\d* of it is the critical"
+    ):
+        Frame(nodes=nodes, members=members, pattern="nodes", control_node="n4", kinematics="pdelta")
+
+
 def test_a_frame_that_cannot_carry_its_load_or_goes_nowhere():
     """The share of the dead load and the spring are told; a push-over needs a way."""
     with pytest.raises(

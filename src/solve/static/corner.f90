@@ -60,14 +60,18 @@ contains
          call path%solve_line(direction, found)
          if (.not. found) then
             ! Some springs may unload, though there is no stiffness under the driven force: let them.
-            if (path%by_force .and. any(path%springs%unload_on_reversal(:path%moving) == -direction)) then
+            if (path%by_force .and. path%structure%tangent_numbers == 0 .and. &
+                any(path%springs%unload_on_reversal(:path%moving) == -direction)) then
                do i = 1, path%moving
                   if (path%springs%unload_on_reversal(i) == -direction) call path%springs%leave(i, direction)
                end do
                cycle
             end if
             call pass()
-            if (.not. found) call report_no_line(path, target, error)
+            if (found) return
+            if (path%by_force .and. path%structure%tangent_numbers > 0) call let_one_unload()
+            if (found) cycle
+            call report_no_line(path, target, error)
             return
          end if
          count = without_room()
@@ -95,7 +99,12 @@ contains
          call change_lines(left >= 0)
       end do
       call pass(always=.true.)
-      if (.not. found) call report_snap_back()
+      if (found) return
+      if (path%by_force) then
+         call report_no_line(path, target, error)
+      else
+         call report_snap_back()
+      end if
 
    contains
 
@@ -117,11 +126,26 @@ contains
          marked = .false.
       end subroutine pass
 
+      !> Springs that yield at once may leave a node free to turn, though one of them holds it: the one that
+      !> has come last and was changed least unloads. Those that should not are put back.
+      subroutine let_one_unload()
+         integer, allocatable :: turns(:)
+         integer :: i
+
+         turns = pack([(i, i=1, path%moving)], path%springs%unload_on_reversal(:path%moving) /= 0)
+         found = size(turns) > 0
+         if (.not. found) return
+         i = turns(minloc(2*path%changed(turns) + merge(0, 1, path%arrived(turns) /= 0), dim=1))
+         path%changed(i) = path%changed(i) + 1
+         call path%springs%leave(i, -path%springs%unload_on_reversal(i))
+      end subroutine let_one_unload
+
       subroutine report_snap_back()
          call fatal_error(error, analysis_failed, 'the structure snaps back at '//trim(state_of(path))// &
                           ': no combination of loading and unloading springs was found that lets its '// &
-                          'top go on; '//trim(weakest_spring(path))//' has the least stiffness left. A '// &
-                          'driven top cannot follow that; use a dynamic analysis')
+                          'top go on; '//trim(weakest_spring(path))//' has the least stiffness left. The '// &
+                          'path up to there is kept. Strength that is lost more slowly, or a response in '// &
+                          'time, goes on')
       end subroutine report_snap_back
 
       !> The layers of joints whose axial loads vary choose their lines for the present rates; a joint whose
@@ -338,8 +362,9 @@ contains
       if (path%structure%axially_loaded) remark = ' above what the axial load takes away'
       if (path%lost_digits) then
          call fatal_error(error, analysis_failed, 'the stiffnesses are too far apart for the arithmetic '// &
-                          'at '//trim(state_of(path))//': '//trim(weakest_spring(path))//' has the least left. '// &
-                          'Take stiff springs less stiff, a million times the others is rigid enough, or '// &
+                          'at '//trim(state_of(path))//': '//trim(weakest_spring(path))//' has the least '// &
+                          'left. Take stiff springs less stiff, a million times the others is rigid '// &
+                          'enough, or '// &
                           'fewer bodies')
       else if (.not. path%by_force) then
          call fatal_error(error, analysis_failed, 'the equilibrium is not unique at the displacement '// &

@@ -1,6 +1,7 @@
 !> Frames under their dead load: the path from no load to all of it, event by event, on which the columns get
 !> the axial forces whose second-order work is counted from then on.
 module rbs_solve_static_dead_load
+   use rbs_base_band_matrix, only: band_matrix
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
@@ -21,6 +22,9 @@ module rbs_solve_static_dead_load
    real(wp), parameter :: same_force = 1.0e-14_wp, nearly_same = 1.0e-9_wp
    integer, parameter :: most_rounds = 100
 
+   !> Halvings by which a critical load has its digits.
+   integer, parameter :: most_halvings = 40
+
 contains
 
    !> Put the dead load on a frame: its axial forces, and the state in which every analysis begins.
@@ -38,6 +42,7 @@ contains
          before = frame%compression(:frame%members)
          call load_once(frame, state, error)
          if (.not. allocated(error)) call check_members(frame, error)
+         if (allocated(error)) call check_stability(frame, error)
          if (allocated(error) .or. .not. frame%axially_loaded) exit
          last = change
          change = maxval(abs(frame%compression(:frame%members) - before))
@@ -47,6 +52,45 @@ contains
       ! The path has one row, from no load to all of it.
       if (allocated(error)) error%message = 'dead load: '//error%message(len('row 1: ') + 1:)
    end subroutine put_dead_load
+
+   !> Report a frame that buckles under axial forces of its dead load while it is elastic: by the share of
+   !> them at which a pivot of its stiffness vanishes.
+   subroutine check_stability(frame, error)
+      type(frame_type), intent(in) :: frame
+      type(error_type), allocatable, intent(inout) :: error
+      type(frame_type) :: loaded
+      type(band_matrix) :: matrix
+      real(wp) :: tangent(frame%tangent_numbers), low, high, share
+      integer :: i, trial, unstable
+
+      if (.not. frame%axially_loaded .or. .not. any(frame%compression > 0.0_wp)) return
+      loaded = frame
+      call matrix%create(frame%unknowns, frame%half_width)
+      low = 0.0_wp
+      high = 1.0_wp
+      share = high
+      do trial = 1, most_halvings
+         do i = 1, frame%members
+            call loaded%press(i, share*frame%compression(i))
+         end do
+         tangent = 0.0_wp
+         call loaded%linearise(loaded%initial_stiffness, tangent, unstable)
+         matrix%band = 0.0_wp
+         call loaded%add_stiffness(loaded%initial_stiffness, tangent, matrix%band)
+         call loaded%add_geometric(loaded%compression, matrix%band)
+         call matrix%factor()
+         if (matrix%negative == 0 .and. unstable == 0) then
+            if (trial == 1) return
+            low = share
+         else
+            high = share
+         end if
+         share = 0.5_wp*(low + high)
+      end do
+      call fatal_error(error, analysis_failed, 'row 1: the frame buckles under it: '//to_text(share)// &
+                       ' of it is the critical load of the elastic frame. Give stiffer columns, braces '// &
+                       'or less load')
+   end subroutine check_stability
 
    !> Refuse members that buckle between their ends, whatever holds these.
    subroutine check_members(frame, error)

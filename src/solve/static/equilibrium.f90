@@ -255,7 +255,8 @@ contains
                                        self%load(:, 1), self%inner)
             if (j == 2) self%load(:, 1) = self%load(:, 1) + self%residual
             if (self%has_still) where (self%still) self%load(:, 1) = 0.0_wp
-            call solve_once(2, displacement - self%structure%top_displacement(self%moved(:, j)), more, regular)
+            call solve_once(2, displacement - self%structure%top_displacement(self%moved(:, j)), more, &
+                            regular)
             if (.not. regular) return
             y(j) = y(j) + more
             call self%structure%spring_rates(self%tangent, self%change(:, 2), self%more)
@@ -281,7 +282,8 @@ contains
             self%change(:, i) = self%load(:, 1)
             call self%matrix%solve(self%change(:, i:i), regular)
          else
-            call self%matrix%solve_bordered(self%load, [displacement], self%change(:, i:i), of_border, regular)
+            call self%matrix%solve_bordered(self%load, [displacement], self%change(:, i:i), of_border, &
+                                            regular)
             more = of_border(1)
          end if
       end subroutine solve_once

@@ -85,8 +85,8 @@ module rbs_solve_static_path
       !> Whether the path follows snap-backs, goes back at present, and seeks its way through a corner, where
       !> the inside of elements may snap back
       logical :: may_go_back = .false., goes_back = .false., passes = .false.
-      !> Ways by which springs have come to the ends of their lines, 0 for others; whether those lines went one
-      !> way, and their stiffness; rates before the corner (springs)
+      !> Ways by which springs have come to the ends of their lines, 0 for others; whether those lines went
+      !> one way, and their stiffness; rates before the corner (springs)
       integer, allocatable :: arrived(:)
       logical, allocatable :: one_way(:)
       real(wp), allocatable :: k_in(:), way_in(:)
@@ -524,13 +524,16 @@ contains
       text = 'force '//to_text(path%force)//' N, displacement '//to_text(path%displacement)//' m'
    end function state_of
 
-   !> The spring that has least of its initial stiffness left, for a message.
+   !> The spring that has least of its initial stiffness left, for a message; springs that yield before those
+   !> that nothing has happened to.
    pure character(len=80) function weakest_spring(path) result(text)
       class(static_path), intent(in) :: path
+      real(wp) :: left(path%moving)
 
       associate (structure => path%structure, m => path%moving)
-         text = spring_name(structure%place(minloc(path%springs%k(:m)/structure%initial_stiffness(:m), &
-                                                   dim=1)))
+         left = path%springs%k(:m)/structure%initial_stiffness(:m)
+         text = 'its elastic stiffness'
+         if (minval(left) < 1.0_wp) text = spring_name(structure%place(minloc(left, dim=1)))
       end associate
    end function weakest_spring
 

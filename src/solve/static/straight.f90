@@ -8,7 +8,8 @@ module rbs_solve_static_straight
    use rbs_base_text, only: to_text
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_equilibrium, only: equilibrium_type
-   use rbs_solve_static_path, only: static_path, state_of, weakest_spring, is_on_end, on_the_end, serialize_path
+   use rbs_solve_static_path, only: static_path, state_of, weakest_spring, is_on_end, on_the_end, &
+                                    serialize_path
    use rbs_solve_static_resume, only: begin_path, end_path
    use rbs_solve_task, only: task_type
    use rbs_structure_structure, only: structure_type
@@ -157,10 +158,11 @@ contains
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
 
-      call fatal_error(error, analysis_failed, 'the equilibrium path to '//to_text(target)//' m leads away '// &
-                       'for good at '//trim(state_of(self))//': beyond the strength of '// &
-                       trim(weakest_spring(self))//' a part of the structure falls, which no displacement '// &
-                       'of the top holds. The path up to there is kept; a response in time follows the fall')
+      call fatal_error(error, analysis_failed, 'the equilibrium path to '//to_text(target)//' m leads '// &
+                       'away for good at '//trim(state_of(self))//': beyond the strength of '// &
+                       trim(weakest_spring(self))//' a part of the structure falls, which no '// &
+                       'displacement of the top holds. The path up to there is kept; a response in '// &
+                       'time follows the fall')
    end subroutine report_fall
 
    !> Rates of the structure on the present lines of its springs.
@@ -235,8 +237,9 @@ contains
          else
             displacement = control
          end if
-         if (self%in_loop .and. (control - self%loop_control)*(self%control - self%loop_control) <= 0.0_wp) &
-            call end_loop()
+         if (self%in_loop) then
+            if ((control - self%loop_control)*(self%control - self%loop_control) <= 0.0_wp) call end_loop()
+         end if
          self%work = self%work + 0.5_wp*(force + self%force)*(displacement - self%displacement &
                                                               + line%further_rate*(control - self%control))
       end associate
