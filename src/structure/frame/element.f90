@@ -112,8 +112,7 @@ contains
       real(wp), intent(in) :: compression, load
       !> Rotations of the ends of the rest under the load
       real(wp), intent(out) :: turned(2)
-      real(wp), allocatable :: springs(:, :)
-      real(wp) :: c, x, flexible(2), added
+      real(wp) :: springs(2, self%bending), c, x, flexible(2), added
 
       turned = 0.0_wp
       springs = self%share(:, :self%bending)
