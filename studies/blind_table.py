@@ -1,4 +1,4 @@
-"""How good blind prediction is: the tables of docs/peer.md.
+"""How good blind prediction is: the tables of docs/evidence.md.
 
     python studies/blind_table.py FOLDER
 

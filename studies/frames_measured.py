@@ -1,4 +1,4 @@
-"""Frames from their drawings against tested frames: tables and figures of docs/frames.md.
+"""Frames from their drawings against tested frames: tables and figures of docs/evidence.md.
 
     python studies/frames_measured.py [FOLDER] [--ends 0|1|asce] [--entries] [--figures FOLDER]
 

@@ -2,7 +2,7 @@
 
     python studies/frames_measured_causes.py [FOLDER] [--ends 0|1|asce]
 
-prints the table of docs/frames.md: the portals with tie rods, Vecchio and Emara, Park and Dai
+prints the table of docs/evidence.md: the portals with tie rods, Vecchio and Emara, Park and Dai
 Ruitong, each with the members, nodes and loads of `frames_measured.py` but for one change. None of
 them is fitted to frames; none of them is taken over here.
 """
