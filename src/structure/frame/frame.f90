@@ -708,10 +708,14 @@ contains
 
       do m = 1, self%members
          associate (e => self%element(m), length => self%lengths(:, m))
+            do j = 1, 2
+               associate (at => e%number(3*j))
+                  if (at > 0) band(1, at) = band(1, at) - k(m)*length(j)
+               end associate
+            end do
             do j = 1, 6
                associate (column => e%number(j))
                   if (column == 0) cycle
-                  if (mod(j, 3) == 0) band(1, column) = band(1, column) - k(m)*length(j/3)
                   do i = 1, 6
                      if (e%number(i) < column) cycle
                      associate (entry => band(1 + e%number(i) - column, column))
