@@ -86,13 +86,6 @@ def _parquet_table(data: bytes) -> Any:
 #: Tables of pyarrow, of one kind.
 PARQUET = Format(".parquet", _parquet_bytes, _parquet_table)
 
-#: Values that JSON takes, one a line.
-JSON_LINES = Format(
-    ".jsonl",
-    lambda rows: "".join(f"{json.dumps(row)}\n" for row in rows).encode(),
-    lambda data: [json.loads(line) for line in data.splitlines()],
-)
-
 
 class Store:
     """A folder of shards.
@@ -274,21 +267,6 @@ class Store:
         path = self._shards / f"{self._prefix}{digest(data)}{self._form.ending}"
         with _clear(self.folder), atomic_write(path) as file:
             file.write(data)
-
-    def remove(self, mine: Callable[[Any], bool]) -> None:
-        """Remove shards of which all rows are of a kind, and damaged ones; then an empty store."""
-        with self._alone():
-            others = {path for path, rows in self._whole() if not all(map(mine, rows))}
-            for path in set(self._shards.iterdir()) - others:
-                path.unlink()
-            if others:
-                return
-            self._shards.rmdir()
-            for path in [*self.folder.glob(_PART.format("*", "*")), self.folder / _MANIFEST]:
-                path.unlink()
-        with suppress(OSError):
-            (self.folder / _LOCK).unlink()
-            self.folder.rmdir()
 
 
 def store_status(folder: Path) -> list[str]:

@@ -6,19 +6,16 @@ interface of `concurrent.futures`, as its threads do.
 
 from __future__ import annotations
 
-import multiprocessing
 import os
-import pickle
 import signal
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
-from multiprocessing import connection
 from typing import Any, TypeVar
 
 from rbsdem import _arguments
@@ -144,95 +141,6 @@ def check_jobs(jobs: Any) -> int:
     """Return the number of threads or processes, or raise `InputError` if it is none."""
     _arguments.integer(jobs, "jobs", least=1)
     return int(jobs)
-
-
-class Serial(Executor):
-    """Do tasks in the calling thread: one is done when it is submitted."""
-
-    def submit(self, function: Callable[..., Any], /, *args: Any, **more: Any) -> Future[Any]:
-        """Do a task; a keyboard interrupt is not caught."""
-        future: Future[Any] = Future()
-        try:
-            future.set_result(function(*args, **more))
-        except Exception as error:
-            future.set_exception(error)
-        return future
-
-
-class Processes(Executor):
-    """Processes that end with this one, by whatever signal.
-
-    The tasks of a process that dies, and of its neighbours, raise `BrokenProcessPool`; later ones
-    are done by new processes.
-
-    Parameters
-    ----------
-    jobs : int
-        Number of processes.
-    preload : str
-        Module that each process begins with, so that it is imported once.
-    """
-
-    def __init__(self, jobs: int, preload: str) -> None:
-        self._jobs = jobs
-        self._preload = preload
-        self._others = set(multiprocessing.active_children())
-        self._pool = self._new_pool()
-
-    def _new_pool(self) -> ProcessPoolExecutor:
-        # Not by fork, since libraries may have started threads.
-        known = multiprocessing.get_all_start_methods()
-        context: Any = multiprocessing.get_context(
-            "forkserver" if "forkserver" in known else "spawn"
-        )
-        if "forkserver" in known:
-            context.set_forkserver_preload([self._preload])
-        return ProcessPoolExecutor(self._jobs, mp_context=context, initializer=_begin)
-
-    def submit(self, function: Callable[..., Any], /, *args: Any, **more: Any) -> Future[Any]:
-        """Give a task to a process."""
-        try:
-            return self._pool.submit(function, *args, **more)
-        except BrokenProcessPool:
-            self._pool.shutdown(wait=False)
-            self._pool = self._new_pool()
-            return self._pool.submit(function, *args, **more)
-
-    def __exit__(self, kind: object, error: object, trace: object) -> None:
-        """Let go of the processes, after an error without waiting for them."""
-        self.shutdown(wait=kind is None)
-
-    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Let go of the processes; without `wait` they are killed."""
-        if not wait:
-            for child in set(multiprocessing.active_children()) - self._others:
-                child.kill()
-        self._pool.shutdown(wait=wait, cancel_futures=cancel_futures)
-
-
-def _begin() -> None:
-    """Prepare a process: a keyboard interrupt reaches all of them, the main one handles it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with_main, daemon=True).start()
-
-
-def _end_with_main() -> None:
-    """End this process as soon as the main one is gone, by whatever signal."""
-    main = multiprocessing.parent_process()
-    if main is not None:
-        connection.wait([main.sentinel])
-        os._exit(1)
-
-
-def check_sent(name: str, value: object, what: str) -> None:
-    """Raise `InputError` for what cannot be sent to another process."""
-    try:
-        pickle.dumps(value)
-    except Exception as error:
-        raise InputError(
-            f"{name} = {what} cannot be sent to another process ({error}); take jobs = 1, or put "
-            "the function into a module of its own"
-        ) from error
 
 
 def check_client(client: Any) -> None:
