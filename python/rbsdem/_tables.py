@@ -342,19 +342,23 @@ def _first_row(lines: list[str], begin: int, mark: str, point: str) -> int:
     top, between = (begin, False), begin
     for i in range(begin - 1, -1, -1):
         words = _split(lines[i], mark)
-        if not words or lines[i].lstrip().startswith("#"):
+        if not words or lines[i].lstrip().startswith("#") or _STATEMENT.match(lines[i]):
             continue
         numbers = _kinds(words, point)
         like = any(numbers) or any(map(_NOT_FINITE.match, words))
         fields = len(words) if mark == " " else lines[i].count(mark) + 1
+        if len(words) < columns and _is_count(lines, i, mark):
+            continue
         top = i, all(numbers) and (len(words) == columns or mark != " ")
         # Between blanks, a title is words and numbers too.
         title = mark == " " and not (numbers[0] or _NOT_FINITE.match(words[0]))
-        if top[1] or (like and columns in (len(words), fields) and not title):
+        short = all(numbers) and len(words) < columns
+        if top[1] or short or (like and columns in (len(words), fields) and not title):
             first = first if named else i
         elif len(words) == columns and not like and "" not in words:
             first = first if named or mark == " " else min(first, between)
-            named = True
+            # In one column a word among numbers is no name.
+            named = columns > 1
         elif any(map(str.isalnum, lines[i])):
             between = i
     return top[0] if top[1] else first
@@ -387,6 +391,12 @@ def _values(
             continue
         words = _split(line, mark)
         if len(words) != columns:
+            if not found and len(words) == 1 and words[0].isdigit():
+                behind = sum(bool(line.strip()) for line in rows[number - first :])
+                raise InputError(
+                    f"{where} line {number}: declares {words[0]} rows, but there are {behind}; the "
+                    "file is cut or mixed up, or the number wants correcting"
+                )
             raise InputError(
                 f"{where} line {number}: has {len(words)} value{'s' * (len(words) != 1)}, the rows "
                 f"{'before' if found else 'behind'} have {columns}; every row has one for each "
@@ -429,7 +439,7 @@ def _kinds(words: Sequence[str], point: str) -> tuple[bool, ...]:
 
 def _is_count(lines: Sequence[str], at: int, mark: str) -> bool:
     """Whether a line has the number of the lines behind it, alone or with a 0."""
-    if mark != " " or at < 0:
+    if mark not in (" ", "\t") or at < 0:
         return False
     words = lines[at].split()
     if not words or not words[0].isdigit() or words[1:] not in ([], ["0"]):

@@ -279,6 +279,8 @@ def test_a_wrong_value_of_one_column_is_named(wrong):
         (rows(ONE, "DT=0.01\nUNITS: g\n"), {"dt": 0.02}, "step is 0.01 s, and dt = 0.02 s was"),
         (rows(TWO, "DT=0.01\nUNITS: g\n"), {}, "times have a step of 0.02 s, and a line above"),
         (NEW + ROWS, {"dt": 0.01}, "step is 0.02 s, and dt = 0.01 s was"),
+        (rows(TWO, "NPTS=14, DT=0.02\nUNITS: g\n"), {}, "7 rows, but 14 are stated"),
+        ("Station: X\nUnits: g\n0.1\ne5\n0.2\n0.3\n0.1\n", {"dt": 0.02}, "'e5' is not a number"),
         (rows(ONE, ESM.replace("NDATA: 7", "NDATA: 70")), {}, "7 values, but NPTS = 70; the"),
         (rows(ONE, ESM.replace("ACCELERATION", "VELOCITY").replace("PGA_CM/S^2", "PGV").replace(
             "ACC", "A")), {}, "it says that it holds a velocity"),

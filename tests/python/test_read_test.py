@@ -102,6 +102,21 @@ def test_units(tmp_path, units, scale):
     np.testing.assert_allclose(test.force, F, rtol=1e-7)
 
 
+@pytest.mark.parametrize("separator", ["\t", " "])
+def test_the_number_of_rows_of_a_peer_file_must_be_right(separator):
+    """Title, number, rows in mm and kN; a row that is missing is no other kind of file."""
+    rows = [f"{1e3 * d:.6g}{separator}{1e-3 * f:.6g}" for d, f in zip(D, F, strict=True)]
+    for tail in ("", "\t"):
+        text = "\n".join(["Test 7" + tail, f"{len(rows)}{tail}", *rows]) + "\n"
+        test = read_test(text, **NAMED)
+        np.testing.assert_allclose(test.force, F, rtol=1e-5, atol=1e-3)
+        cut = text.replace(rows[40] + "\n", "", 1)
+        with pytest.raises(
+            InputError, match="line 2: declares 90 rows, but there are 89; the file"
+        ):
+            read_test(cut, units=("mm", "kN"), **NAMED)
+
+
 def test_columns_of_texts_and_clocks_are_left_out_and_said(tmp_path):
     rows = "".join(f"2020-01-02 12:00:{i % 60:02d};{1e3 * d:.6g};ok;{1e-3 * f:.6g}\n"
                    for i, (d, f) in enumerate(zip(D, F, strict=True)))  # fmt: skip

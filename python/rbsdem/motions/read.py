@@ -667,7 +667,12 @@ def _is_one_record(lines: list[str], column: str | int | None) -> bool:
     count = stated_count(lines[:first])
     # As many lines as values are rows of columns.
     rows = [line for line in lines[first:] if re.match(r"\s*[-+.\d]", line)]
-    return count is None or len(rows) != count
+    if count is None or len(rows) == count:
+        return count is None
+    pairs = [_NUMBER.findall(row) for row in rows[:_MOST_HEAD]]
+    # Pairs of which nearly all first numbers ascend are times and accelerations.
+    times = np.array([_float(pair[0]) for pair in pairs if len(pair) == 2])
+    return len(times) < 0.8 * len(pairs) or float(np.mean(np.diff(times) > 0)) < 0.8
 
 
 def _refuse_format(path: object, kind: str) -> None:
