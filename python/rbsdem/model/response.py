@@ -61,8 +61,9 @@ class Response(Rows):
     summary : dict
         What was done: "analysis" ("static" or "dynamic"), "driven" (static), "kinematics", the
         "method" that was used and, if the program chose it, the "reason"; "status": "completed",
-        "collapsed" (`collapse_drift` was reached), "stopped" (`max_seconds` were over) or "failed"
-        (the result of a `SolveError`).
+        "collapsed" (`collapse_drift` was reached), "stopped" (`max_seconds` were over),
+        "ended" (a push-over that goes no farther, and why as "reason") or "failed" (the result of a
+        `SolveError`).
         Values: steps, rows, events (how often a spring left its line), time_step and stable_step
         [s], peak_displacement [m], peak_force [N] and displacement_at_peak_force [m] (static, where
         the force has the sign of the displacement; in time of a lateral force, if there is one),

@@ -345,6 +345,7 @@ def last_state(response: Ended) -> Array:
     if response.state is None:
         why = {
             "failed": "the analysis failed on its way; end it before the failure",
+            "ended": "the push-over ended on its way; end it before that",
             "axial_failure": "the column has lost its axial load, and nothing can follow",
         }.get(response.summary["status"], "run the analysis again")
         raise InputError(f"initial: the result has no state at its end: {why}")

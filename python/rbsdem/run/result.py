@@ -235,7 +235,9 @@ def pushover(
     Returns
     -------
     FrameResult or Result
-        With a row for each point and each event; `events` are the limit states in their order.
+        With a row for each point and each event; `events` are the limit states in their order. A
+        path that ends before is a result too: its `summary` has "ended" as status, and why as
+        reason. `cyclic`, whose path is prescribed, raises `SolveError` there.
     """
     given = {"drift": drift, "displacement": displacement, "force": force}
     said = [name for name, value in given.items() if value is not None]
@@ -255,7 +257,13 @@ def pushover(
         raise InputError(f"pushover: points = {points} must be 1 or more")
     name = "force" if said[0] == "force" else "displacement"
     way: dict[str, Any] = {name: far * np.arange(1, points + 1) / points}
-    return cyclic(structure, **way, initial=initial, corners=True)
+    try:
+        return cyclic(structure, **way, initial=initial, corners=True)
+    except SolveError as error:
+        if error.result is None or len(error.result.displacement) == 0:
+            raise
+        error.result.summary.update(status="ended", reason=str(error))
+        return error.result
 
 
 cyclic = _public(analysis.cyclic, analysis.cyclic)

@@ -16,7 +16,7 @@ from rbsdem import _arguments
 from rbsdem._package import recorded
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, NDArray
-from rbsdem.errors import InputError, RbsdemError, SolveError
+from rbsdem.errors import InputError, RbsdemError
 from rbsdem.model.frame import FrameMember
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.output.frames import cubic
@@ -138,12 +138,12 @@ def pushed(state: Mapping[str, Any]) -> dict[str, Any]:
                 return {"faults": faults.listed}
             result = pushover(made, drift=state["drift"], points=_PICTURES)
     except RbsdemError as error:
-        if not isinstance(error, SolveError) or error.result is None:
-            member = re.search(r"of member ([\w-]+)", str(error))
-            text = f"the frame does not carry its dead load{f' ({member[1]})' if member else ''}: "
-            text += "give less load, or larger yield moments"
-            return {"faults": [{"field": "frame.beam_load", "text": text}]}
-        result, stopped = error.result, str(error)
+        member = re.search(r"of member ([\w-]+)", str(error))
+        text = f"the frame does not carry its dead load{f' ({member[1]})' if member else ''}: "
+        text += "give less load, or larger yield moments"
+        return {"faults": [{"field": "frame.beam_load", "text": text}]}
+    if result.summary["status"] == "ended":
+        stopped = result.summary["reason"]
     frame, parts = result.frame, result.frame.parts
     springs = parts.springs_of("flexure")
     rows = np.flatnonzero(result.time == np.rint(result.time))
