@@ -21,16 +21,16 @@ module rbs_solve_time_implicit
    private
 
    !> How often a spring may leave its lines at one place.
-   integer, parameter :: most_returns = 10
+   integer, parameter :: most_returns = 5
 
-   !> Rounds in which a member snaps, the residuals that they leave, that of a state at rest, and the least
-   !> and the largest resistance as shares of the initial stiffness.
-   integer, parameter :: most_rounds = 100
+   !> Rounds in which a member snaps and trials of each, the residuals that they leave, that of a state at
+   !> rest, and the least and the largest resistance as shares of the initial stiffness.
+   integer, parameter :: most_rounds = 100, few_trials = 8
    real(wp), parameter :: loose = 1.0e-6_wp, at_rest = 1.0e-8_wp, least_resistance = 1.0e-6_wp, &
                           most_resistance = 1.0e4_wp
 
-   !> Share of the energy that a step may lose without a jump.
-   real(wp), parameter :: far = 0.01_wp
+   !> Shares of the energy that a step may lose without a jump, and that no jump loses.
+   real(wp), parameter :: far = 0.01_wp, no_loss = 1.0e-5_wp
 
    public :: implicit_stepper, new_newmark, new_generalised_alpha, new_hht, with_finite_rotations
 
@@ -165,8 +165,7 @@ contains
 
       !> Find the end of the step. If it is not found, the springs are as before.
       subroutine solve_step()
-         real(wp) :: loss
-         logical :: jumps
+         real(wp) :: loss, energy
 
          self%marked = .false.
          self%weighed = .false.
@@ -182,16 +181,17 @@ contains
                if (.not. state%springs%pressed) call go_by_events()
                if (self%converged) call find_runaway()
             end if
-            jumps = condensed .and. .not. self%converged
-            if (condensed .and. self%converged) call find_loss(loss, jumps)
-            if (jumps) then
+            loss = 0.0_wp
+            energy = 0.0_wp
+            if (condensed .and. self%converged) call find_loss(loss, energy)
+            if (condensed .and. .not. (self%converged .and. abs(loss) <= far*energy)) then
                ! What has no mass goes to the next state at which it rests, not to any.
                call state%springs%restore()
                self%runaway = 0
                call snap()
                if (self%converged) then
-                  call find_loss(loss, jumps)
-                  call count_snap(loss)
+                  call find_loss(loss, energy)
+                  if (abs(loss) > no_loss*energy) call count_snap(loss)
                end if
             end if
             self%weighed = condensed
@@ -255,9 +255,11 @@ contains
       !> small as the softening springs allow.
       subroutine snap()
          real(wp) :: resistance, wanted, tried, way, way_before, at_last
-         integer :: round
+         integer :: round, trials
 
          wanted = self%wanted
+         trials = self%most_trials
+         self%most_trials = few_trials
          resistance = 1.0_wp
          at_last = resistance
          tried = huge(1.0_wp)
@@ -299,6 +301,7 @@ contains
             if (self%runaway > 0) exit
          end do
          self%step%now%resistance = 0.0_wp
+         self%most_trials = trials
       end subroutine snap
 
       !> A state in which the tangent is not definite is an equilibrium too. Its tangent for what follows is
@@ -387,10 +390,9 @@ contains
          end associate
       end subroutine find_works
 
-      !> Energy that is lost in a step, and whether it is more than what steps leave of the balance.
-      subroutine find_loss(loss, jumps)
-         real(wp), intent(out) :: loss
-         logical, intent(out) :: jumps
+      !> Energy that is lost in a step, and that of springs and motion.
+      subroutine find_loss(loss, energy)
+         real(wp), intent(out) :: loss, energy
          real(wp) :: kinetic
 
          call find_works()
@@ -401,7 +403,7 @@ contains
             loss = self%of_loads - self%of_damping - (sum(work) - sum(work_before)) &
                    - (structure%kinetic_energy(self%step%q1, self%step%w1) - kinetic) &
                    - (structure%potential_energy(self%step%q1) - structure%potential_energy(state%q))
-            jumps = abs(loss) > far*(abs(sum(work)) + kinetic)
+            energy = abs(sum(work)) + kinetic
          end associate
       end subroutine find_loss
 

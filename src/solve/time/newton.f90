@@ -19,7 +19,7 @@ module rbs_solve_time_newton
    !> Number of trials in which Newton's method may overshoot, most trials in turn that do not bring the
    !> residual below the least one before, most cuts of a step in halves, and most tries of a step and its
    !> parts that fail.
-   integer, parameter :: most_free = 8, most_idle = 16, most_cuts = 24, most_failed = 60
+   integer, parameter :: most_free = 8, most_idle = 10, most_cuts = 24, most_failed = 60
 
    !> Share of the least residual so far that a trial must come below, or it is idle.
    real(wp), parameter :: progress = 0.95_wp
