@@ -40,7 +40,7 @@ module rbs_app_commands
    !> Exit code of a run that ended because the user's criterion of collapse was met.
    integer, parameter :: column_collapsed = 3
 
-   !> What a case asks for, and what comes of it.
+   !> A case with its structure, its recorder and its summary.
    type :: run_type
       !> Path of the case
       character(len=:), allocatable :: path

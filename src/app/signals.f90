@@ -1,4 +1,4 @@
-!> What the process does on signals.
+!> Response of the process to signals.
 !>
 !> A handler gets nothing but the number of the signal, so the names of the unfinished file are variables of
 !> this module, the only ones in the house.

@@ -85,7 +85,7 @@ contains
    pure subroutine hold(self, unknown, diagonal)
       class(band_matrix), intent(inout) :: self
       integer, intent(in) :: unknown
-      !> What stands on the diagonal in its place
+      !> Diagonal element of the unknown
       real(wp), intent(in) :: diagonal
       integer :: i
 

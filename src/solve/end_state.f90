@@ -29,7 +29,7 @@ module rbs_solve_end_state
    !> Kinds of analyses.
    integer, parameter :: static_state = 1, moving_state = 2
 
-   !> Where a structure stands, as either kind of analysis takes it up.
+   !> State of a structure at the end of an analysis, as either kind of analysis takes it up.
    type :: standing_type
       integer :: kind = 0
       !> Whether the axial loads of layered joints varied

@@ -17,7 +17,7 @@ module rbs_solve_line_search
 
 contains
 
-   !> Where to look next.
+   !> The next trial.
    pure real(wp) function next(self)
       class(false_position), intent(in) :: self
 

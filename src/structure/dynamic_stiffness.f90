@@ -1,4 +1,4 @@
-!> The dynamic stiffness K - s M of a structure at rest, as the search for its modes sees it: a factor whose
+!> The dynamic stiffness K - s M of a structure at rest, for the search of its modes: a factor whose
 !> negative pivots are counted, their number being that of the squared frequencies below s (Sylvester), and
 !> with the same factor the answer to inertia forces.
 !>

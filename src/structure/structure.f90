@@ -1,4 +1,4 @@
-!> A structure of rigid bodies and springs, as the solvers see it: unknowns with a diagonal mass, springs
+!> A structure of rigid bodies and springs, as solvers use it: unknowns with a diagonal mass, springs
 !> whose deformations are linear in them, and loads that are signals times patterns.
 !>
 !>     M x'' + C x' + B' f(d) + K_G(N) x = sum signal * pattern,   d = B x
@@ -37,7 +37,7 @@ module rbs_structure_structure
    end type load_pattern
 
    !> Unknowns of one kind and the springs whose forces are of that kind: forces, moments, vertical forces.
-   !> Both are slices of their arrays; that of the unknowns is told by first, count and step.
+   !> Both are slices of their arrays; that of the unknowns is given by first, count and step.
    type :: unknown_group
       integer :: first = 1, count = 0, step = 1, first_spring = 1, last_spring = 0
       !> Largest force of the group per lateral force
@@ -74,7 +74,7 @@ module rbs_structure_structure
       real(wp), allocatable :: arm(:)
       !> The same per unknown (unknowns)
       real(wp), allocatable :: control(:)
-      !> The spring whose force is the base shear; 0: `base_force` tells it
+      !> The spring whose force is the base shear; 0: `base_force` gives it
       integer :: base_spring = 0
       !> Axial load at the top that is there from the start, compression positive [N]; change of the axial
       !> load at the top per lateral force on a static path
@@ -485,7 +485,7 @@ contains
       if (.false.) call springs%let_go(member, self%height)
    end subroutine let_go
 
-   !> Whether a part has fallen so far that small rotations tell nothing of it.
+   !> Whether a part has fallen so far that small rotations do not describe it.
    pure logical function has_fallen(self, d)
       class(structure_type), intent(in) :: self
       !> Deformations of the springs (springs)
@@ -621,7 +621,7 @@ contains
       end do
    end subroutine add_ground
 
-   !> What the ground holds the structure with along x where no springs alone tell it [N].
+   !> Base shear of a structure in which it is not the force of one spring [N].
    real(wp) function base_force(self, d, f) result(force)
       class(structure_type), intent(in) :: self
       !> Deformations and forces of the springs (springs)

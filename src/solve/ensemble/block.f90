@@ -27,11 +27,11 @@ module rbs_solve_ensemble_block
 
    !> Fewer runs go faster one after the other: a step of the lanes takes about as long as that of these
    !> alone, however many lanes are empty.
-   integer, parameter :: fewest = 4
+   integer, parameter :: min_batch = 4
 
 contains
 
-   !> What a run of each motion will take: expected seconds, within a factor of three (motions), and whether
+   !> Effort of a run of each motion: expected seconds, within a factor of three (motions), and whether
    !> lanes take it. Stops at the first motion that the column cannot be run with.
    subroutine plan_column(column, motion, seconds, in_lanes, error)
       type(ensemble_column), intent(in) :: column
@@ -135,10 +135,10 @@ contains
                            column(run(task(1)%run)%column)%structure%damped)
          end do
          others = pack(task, .not. together)
-         if (count(together) >= fewest) then
+         if (count(together) >= min_batch) then
             call run_in_lanes(column, motion, run, pack(task, together), level, result, control)
          else
-            call run_few(column, motion, run, pack(task, together), result, control)
+            call run_singly(column, motion, run, pack(task, together), result, control)
          end if
          call move_alloc(others, task)
          deallocate (together)
@@ -146,7 +146,7 @@ contains
    end subroutine run_block
 
    !> Runs that lanes could take, one after the other.
-   subroutine run_few(column, motion, run, task, result, control)
+   subroutine run_singly(column, motion, run, task, result, control)
       type(ensemble_column), intent(in) :: column(:)
       type(ensemble_motion), intent(in) :: motion(:)
       type(run_type), intent(in) :: run(:)
@@ -166,7 +166,7 @@ contains
          end associate
          control(2) = control(2) + 1
       end do
-   end subroutine run_few
+   end subroutine run_singly
 
    !> Whether the column or the motion of a run is another one than before.
    pure logical function is_new(run, i)

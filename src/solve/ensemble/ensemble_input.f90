@@ -1,4 +1,4 @@
-!> What an ensemble is made of: columns with what is asked of them, motions of the ground, and runs.
+!> Input of an ensemble: columns with their settings and limit states, motions of the ground, and runs.
 module rbs_solve_ensemble_ensemble_input
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
@@ -11,16 +11,16 @@ module rbs_solve_ensemble_ensemble_input
 
    public :: ensemble_column, ensemble_motion, run_type, lane_task
 
-   !> A column, or a frame, and what is asked of it.
+   !> A column, or a frame, with the settings of its runs.
    type :: ensemble_column
       class(structure_type), allocatable :: structure
       type(analysis_record) :: analysis
-      !> What its runs are watched for, and the number of limit states of the ensemble
+      !> Limit states of its runs, and the number of limit states of the ensemble
       type(watch_type), allocatable :: watch(:)
       integer :: states = 1
       !> The state that its runs begin in, as `end_state` has it; not allocated: at rest
       real(wp), allocatable :: before(:)
-      !> What is wrong with it; all its runs fail
+      !> Its fault, with which all its runs fail
       type(error_type), allocatable :: error
    end type ensemble_column
 

@@ -1,5 +1,5 @@
 !> Columns that are advanced side by side, each in a lane: each value is an array over the lanes, so that one
-!> instruction does the same for several columns. It stands below the rest of the program, since it is
+!> instruction does the same for several columns. It uses nothing of the rest of the program, since it is
 !> compiled together with the kernels, each for its own set of instructions.
 module rbs_solve_ensemble_lane_arrays
    use, intrinsic :: iso_fortran_env, only: int32, real64
@@ -25,7 +25,7 @@ module rbs_solve_ensemble_lane_arrays
                   acceptable = 1.0e-7_wp
    end type lane_method
 
-   !> What there is of every lane: the motion of the ground, the clock, what is measured, and the column; in
+   !> Numbers of every lane: the motion of the ground, the clock, the measures of the run, and the column; in
    !> SI units. Flags are 1 or 0.
    type :: lane_clock
       !> Whether there is a run in the lane, and whether its next step may be taken on its lines
@@ -55,7 +55,7 @@ module rbs_solve_ensemble_lane_arrays
       real(wp) :: ended(lanes) = 0.0_wp, left(lanes) = 0.0_wp
       !> Place of the next point of the motion but one
       integer(int32) :: at(lanes) = 1
-      !> What an implicit step leaves for lanes whose springs leave their lines, which is what the
+      !> Result of an implicit step for lanes whose springs leave their lines: the motion of the
       !> body moves on its lines, the work of the residual on that, and the acceleration of the ground
       real(wp) :: trial(lanes, 4) = 0.0_wp
       !> Inverse of the tangent of an implicit step (11, 12, 21, 22), and 1/(beta h**2); of RK4 see

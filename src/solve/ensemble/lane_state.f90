@@ -86,7 +86,7 @@ contains
       call state%loads%signal(horizontal)%replace(time, value)
    end subroutine ground_from_lane
 
-   !> The bounds of what is watched for, and the deformations that were seen last.
+   !> Deformations between which no limit state is reached, and those at the last check.
    subroutine bounds_to_lane(y, l, state)
       type(body_arrays), intent(inout) :: y
       integer, intent(in) :: l
@@ -97,7 +97,7 @@ contains
       y%from(l, :) = state%sight%q
    end subroutine bounds_to_lane
 
-   !> What an implicit method starts the next step from.
+   !> Velocities, accelerations and forces at the start of the next implicit step.
    subroutine step_to_lane(y, l, stepper)
       type(body_arrays), intent(inout) :: y
       integer, intent(in) :: l

@@ -18,7 +18,7 @@ module rbs_solve_ensemble_one_body_lane
 
 contains
 
-   !> What of a column stays as it is.
+   !> Masses, lengths and axial force of a column.
    subroutine body_to_lane(x, l, state)
       type(lane_clock), intent(inout) :: x
       integer, intent(in) :: l
@@ -38,7 +38,7 @@ contains
       end associate
    end subroutine body_to_lane
 
-   !> What is the same in all lanes.
+   !> Parameters of the method, which are the same in all lanes.
    pure subroutine method_to_body(method, body)
       type(lane_method), intent(in) :: method
       type(one_body_step), intent(inout) :: body
@@ -220,7 +220,7 @@ contains
       end do
    end subroutine lines_from_lane
 
-   !> What a step of RK4 needs of the present lines.
+   !> Resistance and damping per velocity on the present lines, for a step of RK4.
    pure subroutine fit_resistance(x, y, l, damping)
       type(lane_clock), intent(inout) :: x
       type(body_arrays), intent(in) :: y

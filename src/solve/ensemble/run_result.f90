@@ -1,4 +1,4 @@
-!> What is kept of each run of an ensemble: its fate and its measures.
+!> Result of a run of an ensemble: its fate and its measures.
 module rbs_solve_ensemble_run_result
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use rbs_base_error, only: error_type

@@ -1,7 +1,7 @@
 !> Runs in lanes: columns that advance side by side, and beside each lane the state of its run and its method.
-!> For a step on which a spring leaves its line, for which the method has to find something first, or which
-!> has to be cut, the lane is put into them, goes on as every run does, and comes back. So a lane has the bits
-!> of a run alone, and all rules of the program. A lane that is done takes the next run.
+!> A step on which a spring leaves its line, the first step of a run and a step that has to be cut are taken
+!> by that state and that method, and the lane gets their result. So a lane has the bits of a run alone, and
+!> all rules of the program. A lane that is done takes the next run.
 module rbs_solve_ensemble_simd_batch
    use, intrinsic :: iso_c_binding, only: c_f_pointer, c_intptr_t, c_loc
    use, intrinsic :: iso_fortran_env, only: int32
@@ -29,7 +29,7 @@ module rbs_solve_ensemble_simd_batch
 
    public :: run_in_lanes
 
-   !> What stands beside a lane.
+   !> The run of a lane: its task, its state and its method.
    type :: lane_type
       !> Places of the task, and of the column that state and method are for; 0: none
       integer :: task = 0, column = 0

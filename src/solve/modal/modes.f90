@@ -410,7 +410,7 @@ contains
    subroutine find(self, j, place, squares, shapes)
       class(mode_search), intent(inout) :: self
       integer, intent(in) :: j
-      !> Where it belongs in the arrays; before it stand the modes below
+      !> Its index in the arrays, after the modes below it
       integer, intent(in) :: place
       !> Squares of the frequencies, and shapes of unit modal mass (unknowns, as many)
       real(wp), intent(inout), contiguous :: squares(:), shapes(:, :)

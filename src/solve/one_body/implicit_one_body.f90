@@ -56,7 +56,7 @@ module rbs_solve_one_body_implicit_one_body
       !> The springs at the start, and now, which is the same at first; branches left
       type(body_spring) :: start(2), spring(2)
       integer :: events = 0
-      !> What the body has moved, the last correction, and the work of the residual on it at its start. The
+      !> Motion of the body, its last correction, and the work of the residual on it at its start. The
       !> first is that on the lines of the start, which is given with its work
       real(wp) :: moved(2) = 0.0_wp, dx(2) = 0.0_wp, work = 0.0_wp
       !> At the end: deformations, residual, velocities, accelerations, forces, and what the residual is
@@ -69,7 +69,7 @@ module rbs_solve_one_body_implicit_one_body
       real(wp), private :: stiffness(2) = -1.0_wp
       logical :: fits = .false.
       integer, private :: version = -1
-      !> What velocity and acceleration at the start would move; share of the forces and accelerations at the
+      !> Motion by velocity and acceleration at the start; share of the forces and accelerations at the
       !> start in the balance
       real(wp), private :: before(2) = 0.0_wp, carried(2) = 0.0_wp
       !> Whether a rule goes round in lines
@@ -123,7 +123,7 @@ contains
                  g0_1 => g0(1), g0_2 => g0(2), largest_1 => largest(1), largest_2 => largest(2))
          include 'implicit_step.inc'
       end associate
-      ! Written so that a number that is not one leaves too.
+      ! NaN fails this comparison too.
       if (.not. (abs(to_1) < out_of_bounds .and. abs(to_2) < out_of_bounds)) return
       taken = to_1 <= springs%last(1) .and. to_1 >= springs%first(1) .and. &
               to_2 <= springs%last(2) .and. to_2 >= springs%first(2) .and. &
@@ -351,7 +351,7 @@ contains
       end do
    end subroutine put_back
 
-   !> What is left of the balance where the body has moved so far.
+   !> Residual of the balance for the present motion of the body.
    pure subroutine find_residual(self)
       type(one_body_step), intent(inout) :: self
       real(wp) :: shear, moment, inertia_1, inertia_2, v(2), c(3), damping(2)

@@ -130,7 +130,7 @@ contains
       call task%after%take_up(frame, standing, springs, error)
       if (allocated(error)) return
       call frame%set_compression(springs%d, springs%f0 + springs%k*(springs%d - springs%d0))
-      ! What has been done so far is no part of an analysis, whose lateral force begins at zero.
+      ! Work of the dead load is no part of an analysis, whose lateral force begins at zero.
       standing%force = 0.0_wp
       standing%load = 0.0_wp
       standing%input = 0.0_wp

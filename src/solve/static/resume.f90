@@ -107,8 +107,8 @@ contains
 
    end subroutine begin_path
 
-   !> What must be the same for a path to go on with what another one remembered: what is driven, and whether
-   !> the axial load varies.
+   !> Kind of a path: force or displacement is driven, and the axial load is constant or varies. A path can
+   !> take up the memory of one of its own kind.
    pure integer function kind_of(path, varies)
       class(static_path), intent(in) :: path
       logical, intent(in) :: varies

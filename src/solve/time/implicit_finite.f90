@@ -501,7 +501,7 @@ contains
       work = sum(self%r*self%dx)
    end function work_of_residual
 
-   !> Where the bodies turn, round-off is not told from the rest: the acceptable residual decides.
+   !> While bodies turn, round-off cannot be separated from the residual: the acceptable residual decides.
    logical function is_round_off(self, state)
       class(finite_stepper), intent(in) :: self
       type(state_type), intent(in) :: state

@@ -63,9 +63,9 @@ contains
          if (allocated(error)) return
       end if
       if (on_planes .and. (plan%method == 'rk45' .or. analysis%events == 'located')) then
-         call fatal_error(error, bad_input, "analysis: events = 'located' and method = 'rk45' stop at events "// &
-                          'of springs, not at those of the layers of a joint whose axial load varies; use '// &
-                          "'rk4' without events, 'newmark', 'hht' or 'generalised_alpha'")
+         call fatal_error(error, bad_input, "analysis: events = 'located' and method = 'rk45' stop at "// &
+                          'events of springs, not at those of the layers of a joint whose axial load '// &
+                          "varies; use 'rk4' without events, 'newmark', 'hht' or 'generalised_alpha'")
          return
       end if
       call plan_steps()

@@ -1,5 +1,5 @@
-!> What is seen of a run at the end of every step, and within the steps of methods that resolve it: the
-!> largest responses, collapse, and limit states. Which rows are kept has no part in it.
+!> Peaks of the response, collapse and limit states of a run: at the end of every step, and within the steps
+!> of methods that resolve it. They do not depend on which rows are kept.
 !>
 !> Cubics on a step: through four values at its start, its thirds and its end.
 module rbs_solve_time_sight
@@ -44,7 +44,7 @@ module rbs_solve_time_sight
       !> Displacement of the top at which the structure has collapsed [m], and whether it has
       real(wp) :: furthest = huge(1.0_wp)
       logical :: collapsed = .false.
-      !> What is watched for, and when each limit state is reached first; `huge` before (states) [s]
+      !> Watches of limit states, and the time at which each is first reached; `huge` before (states) [s]
       type(watch_type), allocatable :: watch(:)
       real(wp), allocatable :: reached(:)
       !> Displacement of the top then (states) [m]
@@ -53,8 +53,8 @@ module rbs_solve_time_sight
       logical :: watching = .false.
       !> Deformations between which no limit state is reached for the first time (springs)
       real(wp), allocatable :: lowest(:), highest(:)
-      !> What was seen last: clock [s], displacement of the top [m], deformations (springs), shares of the
-      !> openings in what is watched (watches)
+      !> State at the last check: clock [s], displacement of the top [m], deformations (springs), shares of
+      !> openings in the watches (watches)
       real(wp) :: clock = 0.0_wp, displacement = 0.0_wp
       real(wp), allocatable :: q(:), openings(:)
       !> Shares of the openings now (watches)
@@ -233,8 +233,8 @@ contains
       call set_bounds(self)
    end subroutine look_closely
 
-   !> A step from a state that was seen, with springs on their lines; between its ends deformations are cubics
-   !> in time.
+   !> A step from a state that has been checked, with springs on their lines; between its ends deformations
+   !> are cubics in time.
    subroutine see_within(self, motion, springs, q0, v0, q1, v1, h, clock)
       class(sight_type), intent(inout) :: self
       type(motion_type), intent(in) :: motion
@@ -469,7 +469,7 @@ contains
       are_beyond = beyond > 0
    end function are_beyond
 
-   !> What a watch compares with its threshold.
+   !> Value of a watch, which is compared with its threshold.
    pure real(wp) function value_of(watch, q, opening) result(value)
       type(watch_type), intent(in) :: watch
       !> Deformations (springs), and the share of the opening

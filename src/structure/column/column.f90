@@ -29,7 +29,7 @@ module rbs_structure_column_column
    public :: column_type
    public :: small, pdelta, finite, column_channel
 
-   !> What rows of a column hold besides what all structures have; some only where joints have axial
+   !> Channels of a column besides those of all structures; some only where joints have axial
    !> springs, in time where there is damping, on demand how the top moves, and layered joints. Without
    !> `base_shear` and `base_moment` the base has the forces of the lowest joint. The motion is that of
    !> the top relative to the ground. Openings of layered joints are those at the middle of their
@@ -75,7 +75,7 @@ module rbs_structure_column_column
       real(wp), allocatable :: axial_body(:), axial_joint(:)
       !> The latter as far as it does second-order work on slips: not where they keep their direction (n) [N]
       real(wp), allocatable :: axial_slip(:)
-      !> What does second-order work, `axial_body` times the lengths, then `axial_slip` (2 n) [N m, N]
+      !> Axial forces in second-order work: `axial_body` times the lengths, then `axial_slip` (2 n) [N m, N]
       real(wp), allocatable :: second_order(:)
       !> Axial force of load and weight in the joints of the straight column, compression positive (n) [N]
       real(wp), allocatable :: compression(:)

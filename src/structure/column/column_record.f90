@@ -1,4 +1,4 @@
-!> What the user asked of the column: geometry, mass, joints, axial load, damping.
+!> Input of a column: geometry, mass, joints, axial load, damping.
 module rbs_structure_column_column_record
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use rbs_base_check, only: is_given
@@ -22,7 +22,7 @@ module rbs_structure_column_column_record
    !> Every row holds four numbers or more for each body: more bodies are a slip of the pen.
    integer, parameter :: most_bodies = 10000
 
-   !> What needs dense matrices (mode shapes, modal damping) takes seconds with this number of bodies and
+   !> Modal damping and all modes at once take seconds with this number of bodies and
    !> grows with its cube.
    integer, parameter :: most_dense = 500
 
@@ -182,7 +182,7 @@ contains
 
    contains
 
-      !> What has no meaning where the top does not turn.
+      !> Values without meaning where the top does not turn.
       subroutine check_top()
 
          if (self%top /= 'fixed') return

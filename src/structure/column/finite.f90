@@ -28,9 +28,9 @@ module rbs_structure_column_finite
 
    public :: finite_chain_type
 
-   !> What the work array of `accelerations` holds of each joint (n): its axial force, tension positive [N],
-   !> which is a reaction where it does not open; sine and cosine of its rotation; diagonal of the equations
-   !> of the reactions, and the numbers beside it [1/kg]
+   !> Columns of the work array of `accelerations`, one number a joint (n): its axial force, tension positive
+   !> [N], which is a reaction where it does not open; sine and cosine of its rotation; diagonal of the
+   !> equations of the reactions, and the numbers beside it [1/kg]
    integer, parameter :: reaction = 1, sine = 2, cosine = 3, diagonal = 4, beside = 5
 
    type, extends(column_type) :: finite_chain_type

@@ -1,4 +1,4 @@
-!> What a member is of: its springs, and the elastic rest between them.
+!> Kind of a member: its springs, and the elastic rest between them.
 module rbs_structure_frame_frame_kinds
    use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
