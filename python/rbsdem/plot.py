@@ -5,6 +5,7 @@ take SI and draw millimetres and kilonewtons. Without axes they make a figure in
 the dictionary `RC`; axes that are given keep the style of the caller.
 """
 
+from rbsdem.output.buildings import assessment as assessment
 from rbsdem.output.buildings import target as target
 from rbsdem.output.frames import frame as frame
 from rbsdem.output.frames import member_forces as member_forces

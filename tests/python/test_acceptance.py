@@ -1,5 +1,6 @@
 """Acceptance of members: tables of codes, a beam by hand, and what follows from them."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -181,6 +182,22 @@ def test_a_record_is_judged_by_its_envelope(frame):
     assert row == pytest.approx(np.abs(chord).max(), rel=1e-9)
     with pytest.raises(rbsdem.InputError, match="envelope"):
         assess(quake, at=0.1)
+
+
+def test_the_report_of_an_assessment_is_short(push, tmp_path):
+    found = target(push, DesignSpectrum.en_1998(0.25, "C"), "en_1998")
+    checked = assess(push, "en_1998_3", at=found)
+    path = rbsdem.report(checked, tmp_path / "house.html", title="House", target=found)
+    text = path.read_text("utf-8")
+    headings = re.findall("<h2>([^<]*)</h2>", text)
+    assert headings == ["Inputs", "Target displacement", "Members", "Assumed"]
+    # Ten rows of members and one of a figure each of the target; layers and springs are beside it.
+    assert text.count("<tr>") == 2 + 10 + len(found.to_pandas())
+    rows = (tmp_path / "house_all_members.csv").read_text("utf-8").splitlines()
+    assert len(rows) == 1 + len(checked.rows)
+    assert (tmp_path / "house_inputs.csv").is_file()
+    whole = rbsdem.report(push, tmp_path / "push.html").read_text("utf-8")
+    assert whole.count("<tr>") < 60
 
 
 @pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")

@@ -75,6 +75,8 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
     member = rbsdem.FrameMember(30e9, 0.16, 2.1e-3, yield_moment=2e5, hardening=0.01)
     bent = rbsdem.Frame.grid([3.2, 3.0], [6.0], columns=member, beams=member, beam_load=2e4)
     pushed = rbsdem.pushover(bent, drift=0.03, points=20)
+    drawn = rbsdem.Frame.grid([3.2], [5.0], columns=SECTION, beams=SECTION, dead_load=1e4)
+    bent_beams = rbsdem.pushover(drawn, drift=0.01, points=5)
     single = codes.Capacity([0, 0.01, 0.1], [0, 1e4, 1e4], 1.25, 1e3, 2e3)
     target = codes.target(single, codes.DesignSpectrum.en_1998(0.2, "C"), "en_1998")
     corner, massive = target.lines, 1.25e3
@@ -124,6 +126,7 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
         "pushover": (plot.pushover, (pushed,), (roof, shear_of)),
         "storey_drift": (plot.storey_drift, (pushed,), (100 * pushed.storey_drift[-1, 0], 3.2)),
         "member_forces": (plot.member_forces, (pushed,), None),
+        "assessment": (plot.assessment, (codes.assess(bent_beams, at=0.01),), None),
         "target": (
             plot.target,
             (target,),
@@ -159,6 +162,7 @@ LABELS = {
     "pushover": ("Roof displacement (mm)", "Base shear (kN)"),
     "storey_drift": ("Storey drift (%)", "Height (m)"),
     "member_forces": ("Distance (m)", "Height (m)"),
+    "assessment": ("Distance (m)", "Height (m)"),
     "target": ("Spectral displacement (mm)", "Spectral acceleration (g)"),
 }
 

@@ -8,14 +8,19 @@ import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._tables import STANDARD_GRAVITY
+from rbsdem.checks.acceptance import Assessment
 from rbsdem.errors import InputError
 from rbsdem.many.target import Target
+from rbsdem.output import frames
 from rbsdem.output.style import MODEL_LINE, TEST_LINE, ZERO_LINE, axes_or_new, line_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _NAMES = {"asce_41": "ASCE 41-17", "en_1998": "EN 1998-1, N2", "capacity_spectrum": "FEMA 440"}
+#: Fills of ends by the levels that they have passed, and of those that are not covered.
+_PASSED = ("white", "#f4d35e", "#ee964b", "#c0392b")
+_NOT_COVERED = "0.75"
 _POINT: dict[str, Any] = {"marker": "o", "markersize": 4.5, "color": "#c0392b", "zorder": 5}
 
 
@@ -83,3 +88,45 @@ def _inside(found: Target, period: float) -> bool:
     except InputError:
         return False
     return True
+
+
+def assessment(found: Assessment, *, ax: Axes | None = None, **line: Any) -> Axes:
+    """Draw a frame with the ends of its members in the colours of the levels that they have passed.
+
+    Parameters
+    ----------
+    found : Assessment
+        What `rbsdem.codes.assess` returned.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+    **line
+        Properties of the marks, as for ``Axes.plot``.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes, in m. An end beyond its shear strength has the colour of the last level.
+    """
+    _arguments.instance(found, "plot.assessment", Assessment, "as of rbsdem.codes.assess")
+    structure, states = found.result.frame, found.states()
+    names = ["within all", *(f"beyond {name}" for name in found.levels)]
+    with axes_or_new(ax, frames._figure_size(structure)) as drawn:
+        frames._draw_supports(drawn, structure, frames._size(structure))
+        frames._undeformed(drawn, structure, True)
+        places: dict[int, list[Any]] = {}
+        for member in frames._members(structure):
+            start = frames._start(structure, member)
+            for end, share in (("start", 0.06), ("end", 0.94)):
+                if (member.name, end) in states:
+                    at = start + share * member.length * member.axis
+                    places.setdefault(states[member.name, end], []).append(at)
+        for passed, points in sorted(places.items()):
+            face = _NOT_COVERED if passed < 0 else _PASSED[passed]
+            name = "not covered" if passed < 0 else names[passed]
+            mark = {"linestyle": "none", "marker": "o", "markersize": 5.0, "zorder": 5}
+            mark |= {"markeredgecolor": "black", "markeredgewidth": 0.5, "markerfacecolor": face}
+            words = f"{name} ({len(points)})"
+            drawn.plot(*np.array(points).T, **line_of({**mark, "label": words}, line))
+        drawn.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, handletextpad=0.2)
+        frames._dress(drawn, structure)
+    return drawn
