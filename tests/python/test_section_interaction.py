@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -14,6 +15,7 @@ from samples import TWELVE_BARS as ROUND
 
 import rbsdem
 from rbsdem import InputError
+from rbsdem.section import axial_moment
 from rbsdem.section.curvature import _moments
 from rbsdem.springs import SteelSpring
 
@@ -164,3 +166,17 @@ def test_utilisation():
     assert diagram.utilisation([2e7, -1e7], [0.0, 1.0]).tolist() == [math.inf, math.inf]
     nominal = diagram.utilisation([0.0, 1e6], [1e5, 1e5], design=False)
     assert nominal == pytest.approx(1e5 / diagram.moment_at([0.0, 1e6]))
+
+
+@pytest.mark.parametrize(
+    ("fc", "share"),
+    [(20e6, 0.85), (28e6, 0.85), (35e6, 0.80), (42e6, 0.75), (56e6, 0.65), (70e6, 0.65)],
+)
+def test_depth_of_the_aci_block_is_that_of_its_table(fc, share):
+    """ACI 318-19, table 22.2.2.4.3: the largest depth of the block over that of the section.
+
+    Without bars the neutral axis at the far face carries 0.85 f'c over the share of the depth.
+    """
+    block = axial_moment._aci_block(replace(SQUARE, concrete=rbsdem.Concrete(fc)))
+    assert block.share == pytest.approx(share, abs=1e-12)
+    assert block.stress == pytest.approx(0.85 * fc)

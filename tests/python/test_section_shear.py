@@ -7,6 +7,7 @@ written down a second time.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ import pytest
 import rbsdem
 from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection
-from rbsdem.section import strength
+from rbsdem.section import hinge, strength
 from rbsdem.section.shear import closed_form_shear, fit_shear_spring, shear_diagram
 
 MPA = 1e6
@@ -263,3 +264,28 @@ def test_drifts_of_elwood_and_moehle_2005_by_hand() -> None:
     assert found == pytest.approx(drift, rel=1e-5)
     assert strength.shear_failure_drift(plain(ties=None), 1e6, 2e6) == 0.01
     assert strength.axial_failure_drift(plain(ties=None), 375e3) == 0.0
+
+
+def test_crack_spacing_without_ties_has_the_floor_of_the_theory():
+    """35 z/(16 + aggregate) is not below 0.85 z: above 25.2 mm the aggregate has no effect."""
+    plain = replace(PAPER["zahn_7"].section, ties=None)
+    found = [
+        strength.shear_strength_mcft(plain, 1.6, 5e5, aggregate=size)
+        for size in (0.010, 0.020, 0.026, 0.040)
+    ]
+    assert found[0] < found[1] < found[2] == found[3]
+
+
+def test_confining_stress_of_a_spiral_by_hand():
+    """Mander et al. 1988: half of k_e rho_s f_yh; rho_s = pi d^2/(d_s s)."""
+    section = rbsdem.CircularSection(
+        0.4,
+        rbsdem.Concrete(30e6),
+        layout=rbsdem.Layout(8, 0.02, rbsdem.Steel(450e6)),
+        spiral=rbsdem.Spiral(0.010, 0.06, rbsdem.Steel(400e6)),
+        cover=0.03,
+    )
+    # Core of 0.33 m: rho_s = 0.015867, rho_cc = 0.029385, k_e = (1 - 0.05/0.66)/(1 - rho_cc).
+    stress, ratio = hinge._spiral(section, 0.33)
+    assert ratio == pytest.approx(0.015867, rel=1e-4)
+    assert stress == pytest.approx(0.5 * 0.952227 * 0.015867 * 400e6, rel=1e-4)
