@@ -306,6 +306,16 @@ def test_a_curve_that_ends_too_early_says_so(s3):
         assert "not reached" in repr(found)
 
 
+def test_a_falling_branch_without_lines_hides_no_point():
+    # Behind the drop no two lines have its area; the point before it is found as without the drop.
+    up, force = [0.0, 0.02, 0.10], [0.0, 1e5, 1.2e5]
+    masses = 1.3, 1e5, 1.4e5, 3
+    demand = DesignSpectrum.en_1998(0.1, "B")
+    whole = target(Capacity(up, force, *masses), demand, "capacity_spectrum")
+    cut = target(Capacity([*up, 0.11], [*force, 0.3e5], *masses), demand, "capacity_spectrum")
+    assert cut.displacement == pytest.approx(whole.displacement, rel=1e-8)
+
+
 def test_refusals(s3):
     demand = DesignSpectrum.en_1998(0.24, "C")
     for call, text in [

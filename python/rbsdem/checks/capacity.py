@@ -363,12 +363,20 @@ def capacity_spectrum(curve: Capacity, spectrum: DesignSpectrum) -> Estimate:
         return curve.gamma * spectrum.sd(period) / factor
 
     trials = np.linspace(0.0, curve.largest, _STEPS + 1).tolist()
-    above = [i for i, u in enumerate(trials) if not i or demand(u) > u]
+
+    def tried(end: float) -> float:
+        # Behind its peak a curve may have no such lines.
+        try:
+            return demand(end)
+        except InputError:
+            return math.nan
+
+    above = [i for i, u in enumerate(trials) if not i or tried(u) > u]
     low, missing = trials[above[-1]], above[-1] == _STEPS
     end = curve.largest
     if not missing:
         step = trials[above[-1] + 1] - low
-        end = low + _settled(lambda u: demand(low + u) - low, step)
+        end = low + _settled(lambda u: tried(low + u) - low, step)
     target = demand(end)
     lines = curve.idealise("asce_41", end)
     secant = curve.force_at(end) / end
