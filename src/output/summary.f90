@@ -81,6 +81,9 @@ module rbs_output_summary
       procedure :: status
    end type summary_type
 
+   !> Forces closer than this share of them are the same peak.
+   real(wp), parameter :: same_peak = 1.0e-12_wp
+
 contains
 
    !> Take a displacement and a force into account.
@@ -90,7 +93,8 @@ contains
       real(wp), intent(in) :: displacement, force
 
       if (abs(displacement) > abs(self%peak_displacement)) self%peak_displacement = displacement
-      if (abs(force) > abs(self%peak_force)) then
+      ! Of peaks that differ by round-off the first one counts.
+      if (abs(force) > (1.0_wp + same_peak)*abs(self%peak_force)) then
          self%peak_force = force
          self%displacement_at_peak = displacement
       end if

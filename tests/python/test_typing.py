@@ -109,7 +109,8 @@ def mypy(folder: Path, programs: dict[str, str]) -> list[str]:
     for name, text in programs.items():
         (folder / name).write_text(text, "utf-8")
     checked = subprocess.run(
-        [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", *programs],
+        [sys.executable, "-m", "mypy", "--strict", "--no-error-summary",
+         "--disable-error-code", "import-untyped", *programs],
         cwd=folder,
         env=os.environ | {"MYPY_CACHE_DIR": str(folder / "cache")},
         capture_output=True,
@@ -134,7 +135,10 @@ def test_types_of_a_user_program(tmp_path):
     scripts = sorted((REPOSITORY / "examples").glob("*/*.py"))
     assert len(scripts) >= 11
     for script in scripts:
-        name = re.sub(r"\W", "_", f"example_{script.parent.name}_{script.stem}")
+        # A script that another one imports keeps its name.
+        name = script.stem
+        if name in ("case", "run"):
+            name = re.sub(r"\W", "_", f"example_{script.parent.name}_{name}")
         programs[f"{name}.py"] = script.read_text("utf-8")
     slips = head + "".join(f"{slip}\n" for slip, _ in SLIPS)
     said = mypy(tmp_path, programs | {"slips.py": slips})

@@ -295,7 +295,7 @@ def progress_bar(
     how: Any = {"console": console, "auto_refresh": not between, "transient": True}
     bar = progress.Progress(*columns, progress.TimeRemainingColumn(), **how)
     with bar:
-        task = bar.add_task("", total=total)
+        task = bar.add_task(unit, total=total)
 
         def show(done: int, text: str) -> None:
             speed = bar.tasks[task].speed

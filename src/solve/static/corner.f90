@@ -20,6 +20,10 @@ module rbs_solve_static_corner
    !> Rate of a spring at rest, as a share of the largest, which says how far it may go back virtually.
    real(wp), parameter :: at_rest = 1.0e-6_wp
 
+   !> Most springs whose ways are tried in all combinations on curved paths, and most springs times
+   !> combinations.
+   integer, parameter :: most_tried = 14, most_work = 200000
+
    !> Most sets of gaps.
    integer, parameter :: most_gaps = 2
 
@@ -100,6 +104,11 @@ contains
       end do
       call pass(always=.true.)
       if (found) return
+      if (.not. path%may_go_back) call try_all_ways()
+      if (found) then
+         path%direction = direction
+         return
+      end if
       if (path%by_force) then
          call report_no_line(path, target, error)
       else
@@ -186,6 +195,33 @@ contains
             if (.not. all_of_them) return
          end do
       end subroutine change_lines
+
+      !> Try both ways of the springs at a corner of a curved path in all combinations, one change at a time
+      !> (Gray code), until all have room: equal springs in series reach their caps at once. Of more springs
+      !> than can be tried, those come first that the search has changed more than once.
+      subroutine try_all_ways()
+         integer, allocatable :: tried(:)
+         integer :: trial, i, most, count
+
+         tried = pack([(i, i=1, path%moving)], [(way_out(path%springs, i) /= 0, i=1, path%moving)])
+         tried = [pack(tried, path%changed(tried) > 1), pack(tried, path%changed(tried) <= 1)]
+         most = min(most_tried, int(log(real(most_work, wp)/path%moving)/log(2.0_wp)))
+         tried = tried(:min(size(tried), most))
+         do trial = 1, 2**size(tried)
+            call path%solve_line(direction, found)
+            if (found) then
+               count = without_room()
+               if (path%springs%pressed) call choose_planes(count)
+               found = count == 0
+               if (found) return
+            end if
+            ! The bit that changes next in the Gray code.
+            if (trial == 2**size(tried)) exit
+            i = tried(trailz(trial) + 1)
+            call path%springs%leave(i, way_out(path%springs, i))
+         end do
+         found = .false.
+      end subroutine try_all_ways
 
    end subroutine turn_corner
 
@@ -350,6 +386,20 @@ contains
          end if
       end associate
    end function barred
+
+   !> The way by which a spring can leave its line where it stands, 0 if it cannot.
+   pure integer function way_out(springs, i)
+      type(spring_array), intent(in) :: springs
+      integer, intent(in) :: i
+
+      way_out = -springs%unload_on_reversal(i)
+      if (way_out /= 0) return
+      if (springs%d(i) >= springs%end_toward(i, 1)) then
+         way_out = 1
+      else if (springs%d(i) <= springs%end_toward(i, -1)) then
+         way_out = -1
+      end if
+   end function way_out
 
    !> Report why the path cannot be continued.
    subroutine report_no_line(path, target, error)
