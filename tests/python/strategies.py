@@ -8,6 +8,7 @@ from the list of keys, and is kept where the rule accepts it beside the rest.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -92,7 +93,7 @@ _HARDENING = {"elastic": {}, "bilinear": {"k_post": 0.01}, "takeda": {"k_u": 0.0
 _HARDENING |= {"steel": {"k_post": 0.01}}
 
 
-def _hardening(rng: Rng, rule: str, force: float, way: float) -> Spring:
+def hardening(rng: Rng, rule: str, force: float, way: float) -> Spring:
     """Return a spring that hardens: a column of such springs has one answer to every load."""
     given = RECIPES[rule](rng, force, way)
     least = {name: share * force / way for name, share in _HARDENING[rule].items()}
@@ -136,11 +137,24 @@ def spring(rng: Rng, rule: str, force: float, way: float, *, options: float = 0.
     return made
 
 
-def layered(rng: Rng, moment: float, turn: float, depth: float = 0.4) -> Layered:
-    """Return a joint of layers with bars at its faces, or one of contacts that rocks."""
+def scaled_spring(spring: Spring, force: float, way: float) -> Spring:
+    """Return the spring in other units, by the dimensions that its keys have."""
+    sizes = {"force": force, "deformation": way, "stiffness": force / way}
+    changes = {}
+    for key in _core.keys()["rules"][spring.rule]["keys"]:
+        value = getattr(spring, key["name"])
+        if value is not None and "unit" in key:
+            changes[key["name"]] = value * sizes[key["unit"]]
+    return replace(spring, **changes)
+
+
+def layered(
+    rng: Rng, moment: float, turn: float, depth: float = 0.4, *, rocks: float = 0.2
+) -> Layered:
+    """Return a joint of layers with bars at its faces, or now and then of contacts that rocks."""
     arm = 0.4 * depth
     force, way = moment / (2 * arm), turn * arm
-    if rng.random() < 0.2:
+    if rng.random() < rocks:
         contact = SPRINGS["compression"](force / way)
         return Layered([(-arm, contact), (arm, contact)])
     bar = spring(rng, str(rng.choice(["steel", "bilinear", "elastic"])), force, way)
@@ -159,7 +173,7 @@ def joints(
     for _ in range(int(rng.integers(1, 4))):
         rule = str(rng.choice(names or list(_HARDENING)))
         size = force * between(rng, 0.7, 2), between(rng, low, high)
-        several.append(spring(rng, rule, *size) if names else _hardening(rng, rule, *size))
+        several.append(spring(rng, rule, *size) if names else hardening(rng, rule, *size))
     if rng.random() < 0.3:
         return several[0]
     return [several[rng.integers(len(several))] for _ in range(n)]

@@ -1,17 +1,12 @@
 """What must not change an answer: each relation over random columns of all rules.
 
-A relation is a function of a random generator; `relation` makes it a test of some hundred cases.
-RBSDEM_CASES=50 takes fifty times as many, RBSDEM_SEED=7 others; a failure names its case, and
-`replay("relation", case)` runs it alone. "Bits" means equal to the last one: nothing that is added
-up changes its size or its order. Elsewhere the tolerance is a multiple of round-off, for a reason
-that stands beside it.
+`relations.relation` says how they are tried. "Bits" means equal to the last one: nothing that is
+added up changes its size or its order. Elsewhere the tolerance is a multiple of round-off, for a
+reason that stands beside it.
 """
 
 from __future__ import annotations
 
-import os
-import warnings
-import zlib
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -19,13 +14,14 @@ from typing import Any
 import numpy as np
 import strategies
 from reference_chain import Linear, as_initial, bodies_of
+from relations import Discard, Rng, ended, relation
 from strategies import (
     MOST_STEPS,
-    Rng,
     any_column,
     between,
     motion,
     rules,
+    scaled_spring,
     static_path,
     two_sided,
     walk,
@@ -35,9 +31,6 @@ from strategies import (
 import rbsdem
 from rbsdem import _core
 from rbsdem.springs import SPRINGS, Elastic, Layered, Spring
-
-TIMES = float(os.environ.get("RBSDEM_CASES", "1"))
-SEED = int(os.environ.get("RBSDEM_SEED", "0"))
 
 ARRAYS = ("time", "displacement", "force", "slip", "rotation", "opening", "shear", "moment")
 ARRAYS += ("base_shear", "base_moment", "axial_force", "top", "motion", "rest")
@@ -54,64 +47,14 @@ FIGURES += ("displacement_at_peak_force", "peak_base_shear", "peak_rotation")
 BY_ROW = ("rows", "energy_residual", "relative_energy_residual", "peak_floor_acceleration")
 
 
-class Discard(Exception):  # noqa: N818
-    """The case has nothing to say of the relation."""
-
-
-def replay(name: str, case: int, judge: Callable[[Rng], None] | None = None) -> None:
-    """Run one case of a relation."""
-    rng = np.random.default_rng((zlib.crc32(name.encode()), SEED, case))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        (judge or RELATIONS[name])(rng)
-
-
-RELATIONS: dict[str, Callable[[Rng], None]] = {}
-
-
-def relation(cases: int, judged: float = 0.5) -> Callable[[Callable[[Rng], None]], Any]:
-    """Make a relation a test of some cases, of which at least a share is not discarded."""
-
-    def make(judge: Callable[[Rng], None]) -> Callable[[], None]:
-        RELATIONS[judge.__name__] = judge
-
-        def test() -> None:
-            count, discarded, found = int(cases * TIMES), 0, []
-            for case in range(count):
-                try:
-                    replay(judge.__name__, case, judge)
-                except Discard:
-                    discarded += 1
-                except Exception as error:  # all of them, with the numbers of their cases
-                    found.append(f"case {case}: {type(error).__name__}: {error}")
-            shown = "\n".join(line[:600] for line in found[:20])
-            assert not found, f"{len(found)} of {count - discarded}:\n{shown}"
-            assert discarded <= (1 - judged) * count, f"only {count - discarded} were judged"
-
-        test.__name__ = judge.__name__
-        test.__doc__ = judge.__doc__
-        return test
-
-    return make
-
-
 def follow(column: rbsdem.Column, loading: dict[str, Any], **more: Any) -> rbsdem.Result:
     """Follow a static path, or what there is of it."""
-    return _ended(lambda: rbsdem.cyclic(column, **loading, **more))
+    return ended(lambda: rbsdem.cyclic(column, **loading, **more))
 
 
 def move(column: rbsdem.Column, loading: dict[str, Any], **more: Any) -> rbsdem.Result:
     """Follow a motion, or what there is of it."""
-    return _ended(lambda: rbsdem.time_history(column, **loading, **more))
-
-
-def _ended(run: Callable[[], rbsdem.Result]) -> rbsdem.Result:
-    try:
-        return run()
-    except rbsdem.SolveError as error:
-        if error.result is None:
-            raise Discard from None
-        return error.result
+    return ended(lambda: rbsdem.time_history(column, **loading, **more))
 
 
 def same_bits(one: rbsdem.Result, other: rbsdem.Result, names: tuple[str, ...] = ARRAYS) -> None:
@@ -339,17 +282,6 @@ def test_mirror(rng: Rng) -> None:
 def turned_back(run: rbsdem.Result) -> rbsdem.Result:
     """Return the result of the mirrored column as that of the column."""
     return replace(run, **{name: -getattr(run, name) for name in SIZED})
-
-
-def scaled_spring(spring: Spring, force: float, way: float) -> Spring:
-    """Return the spring in other units, by the dimensions that its keys have."""
-    sizes = {"force": force, "deformation": way, "stiffness": force / way}
-    changes = {}
-    for key in _core.keys()["rules"][spring.rule]["keys"]:
-        value = getattr(spring, key["name"])
-        if value is not None and "unit" in key:
-            changes[key["name"]] = value * sizes[key["unit"]]
-    return replace(spring, **changes)
 
 
 def scaled(

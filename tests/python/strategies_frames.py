@@ -1,0 +1,94 @@
+"""Random frames of all rules, for tests and studies: families of springs, and paths."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from strategies import Rng, between, hardening, layered, rules, spring
+
+import rbsdem
+from rbsdem.frames import Frame, FrameMember
+from rbsdem.springs import Spring
+
+RULES = [rule for rule in rules("flexure") if rule not in ("layered", "compression")]
+#: Rules of the springs of a family; None: springs that harden all the way.
+FAMILIES: dict[str, list[str] | None] = {
+    "hardening": None,
+    "capped": ["peak_oriented", "pinching"],
+    "mixed": RULES,
+    "layered": ["layered"],
+    "all": [*RULES, "layered"],
+}
+MODULUS = 3e10
+
+
+def end(rng: Rng, family: str, moment: float) -> Spring:
+    """Return a spring of a family that yields near a moment."""
+    names = FAMILIES[family]
+    way = between(rng, 1e-3, 8e-3)
+    if names is None:
+        return hardening(rng, str(rng.choice(["bilinear", "takeda"])), moment, way)
+    rule = str(rng.choice(names))
+    if rule == "layered":
+        # Contacts that rock carry nothing without an axial load.
+        return layered(rng, moment, way, rocks=0.0)
+    return spring(rng, rule, moment, way)
+
+
+def kind(rng: Rng, family: str, moment: float, *, panels: bool = True) -> FrameMember:
+    """Return a kind of members: elastic, sections that yield, or springs at ends or along it."""
+    stiffness = moment * between(rng, 60, 400)
+    area = stiffness / MODULUS * between(rng, 30, 200)
+    given: dict[str, Any] = {"modulus": MODULUS, "area": area, "inertia": stiffness / MODULUS}
+    given["panel"] = float(rng.choice([0.0, 0.2])) if panels else 0.0
+    drawn = rng.random()
+    if drawn < 0.15:
+        return FrameMember(**given, shear_rigidity=float(rng.choice([0.0, 0.3 * MODULUS * area])))
+    if family != "capped" and drawn < 0.45:
+        least = 0.01 if family == "hardening" else 0.0
+        share = float(rng.choice([least, 0.01, 0.05]))
+        return FrameMember(**given, yield_moment=moment, hardening=share)
+    ends = [end(rng, family, moment) for _ in "ab"]
+    if drawn > 0.7:
+        inner = {0.0: ends[0], 0.5: ends[1], 1.0: ends[0]}
+        return FrameMember(**given, flexure=inner, between="rigid")
+    return FrameMember(**given, flexure=ends)
+
+
+def frame(rng: Rng, family: str = "mixed", **fixed: Any) -> Frame:
+    """Return a frame of 1 to 6 storeys and 1 to 4 bays that stands under its load."""
+    panels = fixed.pop("panels", rng.random() < 0.3)
+    of_panels = "mixed" if family in ("layered", "all") else family  # layers stand in members
+    for _ in range(200):
+        tied = bool(rng.random() < 0.3)
+        given: dict[str, Any] = {
+            "columns": kind(rng, family, between(rng, 1e5, 6e5), panels=panels),
+            "beams": kind(rng, family, between(rng, 1e5, 5e5), panels=panels),
+            "floor_mass": between(rng, 1e4, 1e5),
+            "beam_load": float(rng.choice([0.0, between(rng, 1e3, 2e4)])),
+            "kinematics": str(rng.choice(["small", "pdelta"])),
+            "base": str(rng.choice(["fixed", "pinned"])),
+            "diaphragm": tied,
+            "pattern": str(rng.choice(["triangular", "uniform", "modal"])),
+            "panel": end(rng, of_panels, between(rng, 1e5, 5e5)) if panels else None,
+        }
+        storeys = [between(rng, 2.5, 4.5) for _ in range(rng.integers(1, 7))]
+        bays = [between(rng, 3, 8) for _ in range(rng.integers(1, 5))]
+        try:
+            made = Frame.grid(storeys, bays, **given | fixed)
+            assert made.parts.mass > 0  # lays it out, under its load
+        except (rbsdem.InputError, rbsdem.SolveError):
+            continue  # too weak for its load, or its modes buckle
+        return made
+    raise AssertionError(f"no frame of 200 was accepted: {family}, {fixed}")
+
+
+def drifts(rng: Rng, made: Frame, largest: float = 0.04) -> np.ndarray:
+    """Return displacements of the top that grow from turn to turn [m].
+
+    No part of a way ends where an earlier turning point is passed: there springs stand on the ends
+    of their lines but for the round-off of the point that is given.
+    """
+    far = between(rng, 0.005, largest) * made.height
+    return far * np.array([1.0, -1.0, 1.53, -0.7, 2.0, 0.0])

@@ -1,0 +1,595 @@
+"""What holds for any frame, and what must not change an answer: relations over random frames.
+
+`relations.relation` says how they are tried; `python studies/random_frames.py` takes 10 000 cases
+of each and prints how far they are off.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+from relations import Discard, Rng, ended, relation
+from strategies import between, scaled_spring, spring, waves
+from strategies_frames import FAMILIES, MODULUS, drifts, frame
+
+import rbsdem
+from rbsdem.frames import Frame, FrameMember, FrameNode, Member
+from rbsdem.model.frame_result import FrameResult, rigid_lengths
+from rbsdem.springs import Elastic
+
+
+def any_family(rng: Rng) -> str:
+    return str(rng.choice(list(FAMILIES)))
+
+
+def follow(made: Frame, path: Any, **more: Any) -> FrameResult:
+    """Follow a static path, or what there is of it."""
+    return sound(ended(lambda: rbsdem.cyclic(made, displacement=path, **more)))
+
+
+def move(made: Frame, time: Any, **more: Any) -> FrameResult:
+    """Follow a motion, or what there is of it."""
+    return sound(ended(lambda: rbsdem.time_history(made, time, **more)))
+
+
+def sound(run: FrameResult) -> FrameResult:
+    """Return a result without the last row of an analysis that could not go on from there."""
+    rows = run.time.size - (run.summary["status"] != "completed")
+    if rows < 1:
+        raise Discard
+    return rows_of(run, slice(rows))
+
+
+def rows_of(run: FrameResult, rows: slice) -> FrameResult:
+    """Return some rows of a result."""
+    values = {
+        one.name: getattr(run, one.name)[rows]
+        for one in fields(run)
+        if isinstance(getattr(run, one.name), np.ndarray) and one.name != "state"
+    }
+    return replace(run, **values, springs={name: part[rows] for name, part in run.springs.items()})
+
+
+def apart(one: FrameResult, other: FrameResult) -> float:
+    """Return the largest difference of two results, in rows that both have, over the sizes."""
+    rows = min(one.time.size, other.time.size)
+    worst = 0.0
+    for size, names in (
+        (np.abs(one.x).max(), ("displacement", "x", "y")),
+        (np.abs(one.x).max() / 3.0, ("turn",)),
+        (moment_size(one) / 3.0, ("force", "base_shear", "member_axial")),
+        (moment_size(one), ("moment_from", "moment_to")),
+    ):
+        for name in names:
+            away = np.abs(getattr(one, name)[:rows] - getattr(other, name)[:rows]).max(initial=0.0)
+            worst = max(worst, float(away) / size)
+    return worst
+
+
+def moment_size(run: FrameResult) -> float:
+    """Return the largest moment, to measure others by [N m].
+
+    Axial forces of layers have an arm of some 0.1 m; members yield at 1e5 N m and more, so that
+    1e3 stands for a frame whose strength is spent.
+    """
+    arms = 0.1 * np.abs(run.member_axial).max()
+    return float(max(np.abs(run.moment_from).max(), np.abs(run.moment_to).max(), arms, 1e3))
+
+
+class Geometry:
+    """Directions and lengths of a member: e along it, t clockwise across."""
+
+    def __init__(self, made: Frame, at: int) -> None:
+        parts = made.parts
+        self.start, self.end = parts.ends[at]
+        way = np.array([parts.x[self.end] - parts.x[self.start],
+                        parts.y[self.end] - parts.y[self.start]])  # fmt: skip
+        length = float(np.hypot(*way))
+        self.e = way / length
+        self.t = np.array([self.e[1], -self.e[0]])
+        self.name = parts.members[at]
+        self.rigid = rigid_lengths(made, self.name)
+        self.clear = length - sum(self.rigid)
+        self.load = made.load_of(self.name) * abs(self.e[0])
+
+
+def off_balance(run: FrameResult) -> np.ndarray:
+    """Return what is missing to the equilibrium of every node: along x and up, moment.
+
+    Forces of members, dead load and lateral load, with P-Delta on the chords of members. Shape
+    (rows, nodes, 3).
+    """
+    made, parts = run.frame, run.frame.parts
+    total = np.zeros((run.time.size, len(parts.nodes), 3))
+    panels = dict.fromkeys(parts.nodes, 0.0)
+    for i, own in enumerate(parts.springs_of("flexure")):
+        if own.group == "panel":
+            panels[own.member] = run.springs["moment"][:, i]
+    for at in range(len(parts.members)):
+        m = Geometry(made, at)
+        across = (run.moment_from[:, at] + run.moment_to[:, at]) / m.clear
+        weight = np.array([0.0, -m.load * m.clear / 2])
+        for node, side, moment, rigid in (
+            (m.start, 1, run.moment_from[:, at], m.rigid[0]),
+            (m.end, -1, run.moment_to[:, at], m.rigid[1]),
+        ):
+            force = (
+                -side * (np.outer(run.member_axial[:, at], m.e) + np.outer(across, m.t)) + weight
+            )
+            turn = run.turn[:, node]
+            if made.kinematics == "pdelta":
+                # The axial force of the dead load goes along the chord, from ends that rotate.
+                load = parts.compression[at]
+                force = force - side * load * np.outer(chord(run, m), m.t)
+                total[:, node, 2] += rigid * load * turn
+            total[:, node, :2] += force
+            total[:, node, 1] -= m.load * rigid
+            total[:, node, 2] += -moment + side * rigid * (force @ m.t)
+            total[:, node, 2] -= side * m.load * rigid**2 / 2 * -m.t[1]
+    total[..., 0] += np.outer(run.force, pushes(made))
+    return total
+
+
+def chord(run: FrameResult, m: Geometry) -> np.ndarray:
+    """Return the rotation of the line between the ends of the clear length of a member."""
+    apart = np.column_stack(
+        (run.x[:, m.end] - run.x[:, m.start], run.y[:, m.end] - run.y[:, m.start])
+    )
+    arms = m.rigid[0] * run.turn[:, m.start] + m.rigid[1] * run.turn[:, m.end]
+    return np.asarray((apart @ m.t - arms) / m.clear)
+
+
+def pushes(made: Frame) -> np.ndarray:
+    """Return the share of the lateral load at each node along x."""
+    parts = made.parts
+    shares = np.zeros(len(parts.nodes))
+    for own in made.nodes:
+        shares[parts.nodes.index(own.name)] = own.push_x
+    return shares
+
+
+def free(made: Frame) -> np.ndarray:
+    """Return which components of nodes are free, shape (nodes, 3)."""
+    found = np.ones((len(made.parts.nodes), 3), dtype=bool)
+    feet = made.parts.floor == 0
+    found[feet, :2] = False
+    found[feet, 2] = made.base == "pinned"
+    return found
+
+
+def pushed_at_nodes(rng: Rng, made: Frame) -> Frame:
+    """Return the frame with a lateral load whose shares are known: at nodes of the left line."""
+    floors = len(made.storeys)
+    shares = rng.dirichlet(np.ones(floors))
+    nodes = [FrameNode(f"N-1-{i + 1}", push_x=float(share)) for i, share in enumerate(shares)]
+    return replace(made, pattern="nodes", nodes=nodes, diaphragm=False)
+
+
+@relation(60, judged=0.8, bar=1e-8)
+def test_nodes_are_in_equilibrium(rng: Rng) -> float:
+    """At every row: forces of members, dead load and lateral load, over the largest force."""
+    made = pushed_at_nodes(rng, frame(rng, any_family(rng), panels=False))
+    run = follow(made, drifts(rng, made))
+    missing = np.abs(off_balance(run))[:, free(made)].max()
+    return float(missing / moment_size(run))
+
+
+@relation(60, judged=0.8, bar=1e-8)
+def test_reactions_are_the_loads(rng: Rng) -> float:
+    """The feet carry the dead load that was stated, and the lateral load."""
+    made = replace(frame(rng, any_family(rng)), kinematics="small")
+    run = follow(made, drifts(rng, made))
+    parts = made.parts
+    feet = [i for i, name in enumerate(parts.members) if name.startswith("C") and name[-2:] == "-1"]
+    stated = sum(made.load_of(f"B-1-{i + 1}") for i in range(len(made.storeys))) * sum(made.bays)
+    across = np.zeros(run.time.size)
+    for at in feet:
+        m = Geometry(made, at)
+        across -= (run.moment_from[:, at] + run.moment_to[:, at]) / m.clear
+    up = np.abs(run.member_axial[:, feet].sum(axis=1) - stated).max()
+    size = max(stated, np.abs(run.force).max(), np.abs(run.member_axial).max(), 1e3)
+    along = max(np.abs(across - run.force).max(), np.abs(run.base_shear - run.force).max())
+    return float(max(up, along) / size)
+
+
+def sections_off(run: FrameResult) -> float:
+    """Return how far flexural springs are from the moments between the ends of their members."""
+    made, parts = run.frame, run.frame.parts
+    worst = 0.0
+    for i, own in enumerate(parts.springs_of("flexure")):
+        if own.group == "panel":
+            continue
+        at = parts.members.index(own.member)
+        m, share = Geometry(made, at), own.place
+        line = -(1 - share) * run.moment_from[:, at] + share * run.moment_to[:, at]
+        line -= m.load * m.clear**2 * share * (1 - share) / 2
+        worst = max(worst, float(np.abs(run.springs["moment"][:, i] - line).max()))
+    return worst / moment_size(run)
+
+
+@relation(60, judged=0.8, bar=1e-8)
+def test_sections_carry_what_the_ends_do(rng: Rng) -> float:
+    """Springs along a member are on the parabola between the moments of its ends."""
+    made = frame(rng, any_family(rng))
+    return sections_off(follow(made, drifts(rng, made)))
+
+
+def gaps(run: FrameResult) -> float:
+    """Return how far members are from what their springs and elastic parts leave between nodes."""
+    made, parts = run.frame, run.frame.parts
+    hinges: dict[str, list[tuple[str, float, np.ndarray]]] = {name: [] for name in parts.members}
+    turned = run.turn[:, None, :].repeat(2, axis=1)  # as columns and as beams turn
+    for group, channel in (("flexure", "rotation"), ("shear", "slip"), ("axial_spring", "opening")):
+        for i, own in enumerate(parts.springs_of(group)):
+            values = run.springs[channel][:, i]
+            if own.group == "panel":
+                turned[:, 1, parts.nodes.index(own.member)] -= values
+            else:
+                hinges[own.member].append((channel, own.place, values))
+    worst, size = 0.0, float(np.abs(run.x).max() + 1e-12)
+    for at, name in enumerate(parts.members):
+        m, own = Geometry(made, at), made.kind_of(name)
+        beam = int(name.startswith("B"))
+        (start, rigid), (end, other) = (
+            (n, r) for n, r in zip((m.start, m.end), m.rigid, strict=True)
+        )
+        turns = [turned[:, beam, node] for node in (start, end)]
+        moved = [np.column_stack((run.x[:, node], run.y[:, node])) for node in (start, end)]
+        across = (moved[1] - moved[0]) @ m.t - other * turns[1] - rigid * turns[0]
+        away, bend = across - turns[0] * m.clear, turns[1] - turns[0]
+        along = (moved[1] - moved[0]) @ m.e
+        for channel, place, values in hinges[name]:
+            if channel == "rotation":
+                bend, away = bend - values, away - values * (1 - place) * m.clear
+            elif channel == "slip":
+                away = away - values
+            else:
+                along = along - values
+        a, b = run.moment_from[:, at], run.moment_to[:, at]
+        if own.yield_moment is None and own.between == "elastic":
+            soft, load = m.clear / (own.modulus * own.inertia), m.load * m.clear**2
+            bend = bend - soft * ((b - a) / 2 - load / 12)
+            away = away - soft * m.clear * (b / 6 - a / 3 - load / 24)
+        if own.shear_rigidity:
+            away = away + (a + b) / own.shear_rigidity
+        along = along + run.member_axial[:, at] * m.clear / (own.modulus * own.area)
+        worst = max(worst, *(float(np.abs(gap).max()) for gap in (away, bend * m.clear, along)))
+    return worst / size
+
+
+@relation(60, judged=0.8, bar=1e-8)
+def test_members_fit_between_their_nodes(rng: Rng) -> float:
+    """Springs and elastic parts of a member are what its nodes leave: over the displacement."""
+    made = frame(rng, any_family(rng), kinematics="small")
+    return gaps(follow(made, drifts(rng, made)))
+
+
+def sides(given: Any) -> Any:
+    """Return springs of a column at its places, for a column whose left is its right."""
+    return None if given is None else {place: one.mirrored() for place, one in given}
+
+
+def turned_ends(given: Any) -> Any:
+    """Return springs of a beam whose ends are exchanged: they open on the same sides."""
+    return None if given is None else {1.0 - place: one for place, one in given}
+
+
+def remade(own: FrameMember, **changes: Any) -> FrameMember:
+    """Return a kind of members with other values."""
+    values = {one.name: getattr(own, one.name) for one in fields(own)}
+    for name in ("flexure", "shear"):
+        values[name] = None if values[name] is None else dict(values[name])
+    return FrameMember(**values | changes)
+
+
+def mirrored(made: Frame) -> Frame:
+    """Return the frame whose left is the right of another one."""
+    columns = remade(made.columns[0, 0], flexure=sides(made.columns[0, 0].flexure))
+    beams = remade(made.beams[0, 0], flexure=turned_ends(made.beams[0, 0].flexure))
+    panel = made.panel and made.panel.mirrored()
+    top = f"N-{len(made.bays) + 1}-{len(made.storeys)}"
+    return replace(made, bays=made.bays[::-1], columns=columns, beams=beams, panel=panel,
+                   control_node=top)  # fmt: skip
+
+
+def seen_in_a_mirror(run: FrameResult) -> FrameResult:
+    """Return the result of the mirrored frame as that of the frame."""
+    parts = run.frame.parts
+    last = len(run.frame.bays)
+    names = [name.split("-") for name in (*parts.nodes, *parts.members)]
+    other = [f"{kind}-{last + 1 + (kind != 'B') - int(at)}-{level}" for kind, at, level in names]
+    nodes = [parts.nodes.index(name) for name in other[: len(parts.nodes)]]
+    members = [parts.members.index(name) for name in other[len(parts.nodes) :]]
+    beams = np.array([name.startswith("B") for name in parts.members])
+    start = np.where(beams, run.moment_to[:, members], run.moment_from[:, members])
+    end = np.where(beams, run.moment_from[:, members], run.moment_to[:, members])
+    return replace(
+        run, displacement=-run.displacement, force=-run.force, base_shear=-run.base_shear,
+        x=-run.x[:, nodes], y=run.y[:, nodes], turn=-run.turn[:, nodes],
+        member_axial=run.member_axial[:, members], moment_from=-start, moment_to=-end,
+    )  # fmt: skip
+
+
+@relation(40, judged=0.6, bar=1e-7)
+def test_mirror(rng: Rng) -> float:
+    """Left and right are names; springs whose forces fall may take another of several answers."""
+    made = frame(rng, str(rng.choice(["hardening", "layered"])))
+    path = drifts(rng, made)
+    try:
+        other = mirrored(made)
+    except rbsdem.InputError:
+        raise Discard from None  # a spring that cannot be mirrored
+    corner = replace(made, control_node=f"N-1-{len(made.storeys)}")
+    return apart(follow(corner, path), seen_in_a_mirror(follow(other, -path)))
+
+
+def explicit(rng: Rng, made: Frame, x: float, y: float) -> Frame:
+    """Return the frame as nodes and members under other names, in another order, elsewhere."""
+    parts = made.parts
+    names = {name: f"node {i}" for i, name in enumerate(rng.permutation(parts.nodes))}
+    mass = made.floor_mass[0]
+    widths = np.concatenate([[0.0], made.bays, [0.0]])
+    shares = (widths[1:] + widths[:-1]) / 2 / sum(made.bays)
+    nodes = [
+        FrameNode(
+            names[name], parts.x[i] + x, parts.y[i] + y,
+            support=made.base if parts.floor[i] == 0 else "free",
+            mass=mass * shares[int(name.split("-")[1]) - 1] if parts.floor[i] else 0.0,
+            push_x=push, panel=made.panel if parts.floor[i] else None,
+        )
+        for i, (name, push) in enumerate(zip(parts.nodes, pushes(made), strict=True))
+    ]  # fmt: skip
+    members = [
+        Member(
+            f"member {i}", *(names[parts.nodes[at]] for at in parts.ends[i]),
+            kind=remade(made.kind_of(name), panel=0.0), panel=rigid_lengths(made, name),
+            load=made.load_of(name),
+        )
+        for i, name in enumerate(parts.members)
+    ]  # fmt: skip
+    order = rng.permutation(len(nodes))
+    return Frame(
+        nodes=[nodes[i] for i in order], members=members, kinematics=made.kinematics,
+        pattern="nodes", control_node=names[f"N-1-{len(made.storeys)}"],
+    )  # fmt: skip
+
+
+def as_grid(run: FrameResult, made: Frame) -> FrameResult:
+    """Return the result of `explicit` in the order of the grid."""
+    parts, other = made.parts, run.frame.parts
+    places = np.column_stack((other.x - other.x.min(), other.y - other.y.min()))
+    order = [np.abs(places - at).sum(axis=1).argmin() for at in np.column_stack((parts.x, parts.y))]
+    return replace(run, x=run.x[:, order], y=run.y[:, order], turn=run.turn[:, order])
+
+
+@relation(40, judged=0.6, bar=1e-7)
+def test_names_order_and_place(rng: Rng) -> float:
+    """A grid said node by node, under other names, in another order, elsewhere: round-off."""
+    made = pushed_at_nodes(rng, frame(rng, str(rng.choice(["hardening", "layered"]))))
+    path = drifts(rng, made)
+    other = explicit(rng, made, *(float(at) for at in rng.uniform(-100.0, 100.0, 2)))
+    return apart(follow(made, path), as_grid(follow(other, path), made))
+
+
+@relation(40, judged=0.5)
+def test_cut_and_restart(rng: Rng) -> float:
+    """A path in two parts has the bits of one."""
+    made = frame(rng, any_family(rng))
+    path = drifts(rng, made)
+    at = int(rng.integers(1, len(path)))
+    first = ended(lambda: rbsdem.cyclic(made, displacement=path[:at]))
+    if first.summary["status"] != "completed":
+        raise Discard
+    whole, rest = follow(made, path), follow(made, path[at:], initial=first)
+    if whole.time.size <= at:
+        raise Discard
+    return apart(rest, rows_of(whole, slice(at, None)))
+
+
+@relation(40, judged=0.5)
+def test_points_on_the_way(rng: Rng) -> float:
+    """Seven points on each way change no bit of its end."""
+    made = frame(rng, any_family(rng))
+    path = drifts(rng, made)
+    try:
+        begin = rbsdem.cyclic(made, displacement=path[:1], corners=True).displacement[0]
+    except rbsdem.SolveError:
+        raise Discard from None
+    starts = np.concatenate([[begin], path[:-1]])
+    parts = [np.linspace(a, b, 8)[1:] for a, b in zip(starts, path, strict=True)]
+    whole, fine = follow(made, path), follow(made, np.concatenate(parts))
+    rows = min(whole.time.size, fine.time.size // 7)
+    if not rows:
+        raise Discard
+    return float(np.abs(fine.force[6::7][:rows] - whole.force[:rows]).max())
+
+
+@relation(40, judged=0.6, bar=1e-7)
+def test_elastic_members_are_sections_that_do_not_yield(rng: Rng) -> float:
+    """An elastic member and one whose sections yield at 1e30 N m, among others."""
+    made = replace(frame(rng, any_family(rng)), kinematics="small")
+    stiff = {name: getattr(made, name)[0, 0] for name in ("columns", "beams")}
+    which = str(rng.choice(["columns", "beams"]))
+    plain = remade(stiff[which], flexure=None, yield_moment=None, hardening=0.0, between="elastic")
+    three = remade(plain, yield_moment=1e30)
+    path = drifts(rng, made, 0.01)
+    try:
+        pair = [follow(replace(made, **{which: one}), path) for one in (plain, three)]
+    except rbsdem.SolveError:
+        raise Discard from None
+    return apart(*pair)
+
+
+@relation(60, judged=0.8, bar=1e-6)
+def test_a_column_as_a_frame_with_second_order_work(rng: Rng) -> float:
+    """Bodies as rigid members that turn on springs: the forces of `Column` under its load.
+
+    As far as 1e13 N/m are no slip, which the two count in other ways.
+    """
+    n, length = int(rng.integers(1, 5)), between(rng, 0.5, 2.0)
+    rule = str(rng.choice(["bilinear", "takeda", "peak_oriented"]))
+    turns = [spring(rng, rule, between(rng, 1e5, 3e5), 5e-3, options=0) for _ in range(n)]
+    load = float(rng.uniform(-1e5, 4e5))
+    more = {"kinematics": "pdelta", "axial_load": load}
+    slip = Elastic(1e13)
+    column = rbsdem.Column(n * length, 1.0, slip, turns, n=n, **more)
+    nodes = [FrameNode("0", 0, 0, "fixed")]
+    nodes += [
+        FrameNode(f"{i}", 0, i * length, push_x=float(i == n), load_y=-load * (i == n))
+        for i in range(1, n + 1)
+    ]
+    members = [
+        Member(f"{i}", f"{i}", f"{i + 1}",
+               FrameMember(MODULUS, 1e4, 1.0, flexure={0.0: own}, shear=slip, between="rigid"))
+        for i, own in enumerate(turns)
+    ]  # fmt: skip
+    made = Frame(nodes=nodes, members=members, pattern="nodes", kinematics="pdelta")
+    path = 0.02 * n * length * np.array([0.3, -0.5, 1.0, -0.8, 0.0])
+    run = follow(made, path)
+    own = ended(lambda: rbsdem.cyclic(column, displacement=path))
+    rows = min(run.time.size, own.time.size - (own.summary["status"] != "completed"))
+    if not rows:
+        raise Discard
+    return float(np.abs(run.force[:rows] - own.force[:rows]).max() / np.abs(own.force).max())
+
+
+# ---- in time ------------------------------------------------------------------------------------
+
+
+IMPLICIT = ("newmark", "hht", "generalised_alpha")
+
+
+def ground(rng: Rng, made: Frame, points: int = 200) -> tuple[np.ndarray, np.ndarray]:
+    """Return times of a clock of binary fractions, and a motion that makes a frame yield."""
+    period = 2 * np.pi / rbsdem.modes(made, 1).omega[0]
+    interval = 2.0 ** np.round(np.log2(period / between(rng, 20, 60)))
+    return interval * np.arange(points), between(rng, 0.5, 6.0) * waves(rng, points)
+
+
+def shaken(rng: Rng, family: str, **fixed: Any) -> tuple[Frame, np.ndarray, dict[str, Any]]:
+    """Return a frame, times, and a motion with the settings of a method."""
+    made = frame(rng, family, **fixed)
+    time, motion = ground(rng, made)
+    method = str(rng.choice(IMPLICIT))
+    dt = float(time[1] / rng.choice([1, 2, 4]))
+    return made, time, {"ground_acceleration": motion, "method": method, "dt": dt}
+
+
+@relation(40, judged=0.8, bar=1e-8)
+def test_sections_carry_what_the_ends_do_in_time(rng: Rng) -> float:
+    """At the end of every step of each method, inside of members too."""
+    made, time, load = shaken(rng, any_family(rng))
+    return sections_off(move(made, time, **load))
+
+
+@relation(40, judged=0.8, bar=1e-8)
+def test_rotations_without_inertia_are_in_equilibrium_in_time(rng: Rng) -> float:
+    """Moments at nodes, which have neither mass nor damping against rotation."""
+    made, time, load = shaken(rng, any_family(rng), panels=False, kinematics="small")
+    run = move(made, time, **load)
+    missing = off_balance(replace(run, force=np.zeros(run.time.size)))[..., 2]
+    return float(np.abs(missing[:, free(made)[:, 2]]).max() / moment_size(run))
+
+
+@relation(40, judged=0.8, bar=1e-7)
+def test_members_fit_between_their_nodes_in_time(rng: Rng) -> float:
+    """Of springs of one line each."""
+    family = str(rng.choice(["hardening", "capped", "mixed"]))
+    made, time, load = shaken(rng, family, kinematics="small")
+    return gaps(move(made, time, **load))
+
+
+@relation(30, judged=0.5, bar=1e-7)
+def test_cut_and_restart_in_time(rng: Rng) -> float:
+    """A run in two parts is that of one, but for the round-off of the clock."""
+    made, time, load = shaken(rng, any_family(rng))
+    at = int(rng.integers(20, 180))
+    motion = load.pop("ground_acceleration")
+    whole = move(made, time, ground_acceleration=motion, **load)
+    first = move(made, time[: at + 1], ground_acceleration=motion[: at + 1], **load)
+    if "completed" not in (whole.summary["status"], first.summary["status"]):
+        raise Discard
+    rest = move(made, time[at:], ground_acceleration=motion[at:], initial=first, **load)
+    return apart(rest, rows_of(whole, slice(at, None)))
+
+
+@relation(30, judged=0.5, bar=1e-7)
+def test_zeros_before_a_record(rng: Rng) -> float:
+    """A frame at rest stays there, and answers later as it would have at once."""
+    made, time, load = shaken(rng, any_family(rng))
+    motion = load.pop("ground_acceleration")
+    wait = int(rng.integers(1, 60))
+    later = time[1] * np.arange(time.size + wait)
+    zeros = np.concatenate([np.zeros(wait), motion])
+    run = move(made, time, ground_acceleration=motion, **load)
+    other = move(made, later, ground_acceleration=zeros, **load)
+    return apart(run, rows_of(other, slice(wait, None)))
+
+
+def in_units(made: Frame, length: float, mass: float, time: float) -> Frame:
+    """Return the frame in other units, by the dimensions that its values have."""
+    force = mass * length / time**2
+
+    def of(own: Any) -> Any:
+        return own and scaled_spring(own, force * length, 1.0)
+
+    def kind(own: FrameMember) -> FrameMember:
+        flexure = own.flexure and {place: of(one) for place, one in own.flexure}
+        return remade(
+            own, modulus=own.modulus * force / length**2, area=own.area * length**2,
+            inertia=own.inertia * length**4, flexure=flexure, panel=own.panel * length,
+            yield_moment=own.yield_moment and own.yield_moment * force * length,
+            shear_rigidity=own.shear_rigidity * force,
+        )  # fmt: skip
+
+    return replace(
+        made, storeys=[one * length for one in made.storeys],
+        bays=[one * length for one in made.bays], panel=of(made.panel),
+        columns=kind(made.columns[0, 0]), beams=kind(made.beams[0, 0]),
+        floor_mass=[one * mass for one in made.floor_mass],
+        beam_load=[one * force / length for one in made.beam_load],
+    )  # fmt: skip
+
+
+def powers(rng: Rng) -> tuple[float, float, float]:
+    """Return factors of length, mass and time, of powers of two."""
+    length, mass, time = (2.0 ** float(rng.integers(-4, 5)) for _ in range(3))
+    return length, mass, time
+
+
+def out_of_units(run: FrameResult, length: float, mass: float, time: float) -> FrameResult:
+    """Return a result of `in_units` in the units of the frame."""
+    force = mass * length / time**2
+    return replace(
+        run, displacement=run.displacement / length, x=run.x / length, y=run.y / length,
+        force=run.force / force, base_shear=run.base_shear / force,
+        member_axial=run.member_axial / force, moment_from=run.moment_from / (force * length),
+        moment_to=run.moment_to / (force * length),
+    )  # fmt: skip
+
+
+@relation(40, judged=0.5, bar=1e-8)
+def test_powers_of_two(rng: Rng) -> float:
+    """Units are names: round-off."""
+    made = frame(rng, str(rng.choice(["hardening", "capped", "mixed"])))
+    units = powers(rng)
+    path = drifts(rng, made)
+    return apart(
+        follow(made, path), out_of_units(follow(in_units(made, *units), path * units[0]), *units)
+    )
+
+
+@relation(30, judged=0.5, bar=1e-8)
+def test_powers_of_two_in_time(rng: Rng) -> float:
+    """Units are names, that of time too: round-off."""
+    made, time, load = shaken(rng, str(rng.choice(["hardening", "capped", "mixed"])))
+    length, mass, clock = powers(rng)
+    other = in_units(made, length, mass, clock)
+    scaled = {
+        "ground_acceleration": load["ground_acceleration"] * length / clock**2,
+        "dt": load["dt"] * clock,
+    }
+    run = move(other, time * clock, **load | scaled)
+    return apart(move(made, time, **load), out_of_units(run, length, mass, clock))
