@@ -109,8 +109,16 @@ def mypy(folder: Path, programs: dict[str, str]) -> list[str]:
     for name, text in programs.items():
         (folder / name).write_text(text, "utf-8")
     checked = subprocess.run(
-        [sys.executable, "-m", "mypy", "--strict", "--no-error-summary",
-         "--disable-error-code", "import-untyped", *programs],
+        [
+            sys.executable,
+            "-m",
+            "mypy",
+            "--strict",
+            "--no-error-summary",
+            "--disable-error-code",
+            "import-untyped",
+            *programs,
+        ],
         cwd=folder,
         env=os.environ | {"MYPY_CACHE_DIR": str(folder / "cache")},
         capture_output=True,
