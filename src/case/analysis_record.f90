@@ -80,7 +80,7 @@ contains
                  'hht, generalised_alpha: spectral radius at infinite frequency; without it 0.8', &
                  optional=.true.)
       call v%key('collapse_drift', self%collapse_drift, '', above_zero, &
-                 'displacement of the top over the height at which the column counts as collapsed', &
+                 'drift at which the structure counts as collapsed, of a storey of a frame or of the top', &
                  optional=.true.)
       call v%key('allow_unstable', self%allow_unstable, &
                  'rk4: take a step beyond the stability limit all the same')

@@ -18,7 +18,7 @@ module rbs_solve_task
       class(observer_type), pointer :: progress => null()
       !> Every n-th point is kept, and the last; `unset_integer`: all
       integer :: every = unset_integer
-      !> Displacement of the top over the height at which the run ends as collapsed; `unset`: it does not
+      !> Drift of a storey, or of the top, at which the run ends as collapsed; `unset`: it does not
       real(wp) :: collapse_drift = unset
       !> The word by which another thread ends the run, where it is not 0 (null: none)
       integer, pointer :: control => null()

@@ -50,6 +50,8 @@ module rbs_structure_structure
       integer :: unknowns = 0, half_width = 0, n = 0
       !> `small`, `pdelta` or `finite`; number of storeys whose drifts are known
       integer :: kinematics = small, storeys = 0
+      !> Whether collapse is judged by the drifts of the storeys, else by that of the top
+      logical :: by_storeys = .false.
       !> Lengths of the bodies (n) [m]
       real(wp), allocatable :: length(:)
       !> Height that drifts are in proportion to, and that of the top above the ground [m]
@@ -131,6 +133,7 @@ module rbs_structure_structure
       procedure :: kinetic_energy
       procedure :: largest_turn
       procedure :: storey_drifts
+      procedure :: largest_drift
       procedure :: top_displacement
       procedure :: top_acceleration
       procedure :: axial_force
@@ -415,6 +418,20 @@ contains
 
       if (self%storeys < size(d)) drift = 0.0_wp
    end subroutine storey_drifts
+
+   !> The drift that collapse is judged by, in size: of the storeys, or of the top over the height.
+   pure real(wp) function largest_drift(self, d) result(drift)
+      class(structure_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: d(:)
+      real(wp) :: storey(self%storeys)
+
+      if (self%by_storeys) then
+         call self%storey_drifts(d, storey)
+         drift = maxval(abs(storey))
+      else
+         drift = abs(self%top_displacement(d))/self%height
+      end if
+   end function largest_drift
 
    !> Acceleration of the top along x, relative to the ground [m/s2].
    pure real(wp) function top_acceleration(self, d, v, a) result(acceleration)

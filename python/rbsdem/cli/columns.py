@@ -467,7 +467,7 @@ def _write(
     written = [folder / "ida.csv", folder / "fractiles.csv", folder / "fragility.csv"]
     analysis.runs.to_csv(written[0])
     level, fractiles = analysis.fractiles()
-    names = [f"peak_drift_{share}" for share in (16, 50, 84)]
+    names = [f"{analysis.runs.drift}_{share}" for share in (16, 50, 84)]
     values = {"intensity_m/s2": level, **dict(zip(names, fractiles, strict=True))}
     save_frame(data_frame(values), written[1])
     save_frame(frame, written[2])

@@ -33,7 +33,7 @@ from rbsdem.many.plan import (
 )
 from rbsdem.model.frame import Structure
 from rbsdem.run.result import Result
-from rbsdem.run.solver import Solver, checked_solver
+from rbsdem.run.solver import COLLAPSE_DRIFT, Solver, checked_solver
 
 #: Seconds of a task at the most, as far as that is known: what a kill may cost.
 _LONGEST = 2.0
@@ -158,7 +158,7 @@ def ensemble(
     *,
     scales: ArrayLike = 1.0,
     measures: Sequence[str | inputs.Measure] | None = None,
-    collapse_drift: float | None = None,
+    collapse_drift: float | None = COLLAPSE_DRIFT,
     initial: Any = None,
     jobs: int | None = None,
     store: str | os.PathLike[str] | None = None,
@@ -192,7 +192,8 @@ def ensemble(
         functions of a `Result` that return a number. A function makes the run's history once more,
         which takes as long as `time_history`; the others do not.
     collapse_drift : float, optional
-        As for `time_history`.
+        Drift at which a run ends as collapsed, as for `time_history`; by default 0.1. None: no run
+        ends before its record.
     initial : Result, path, or sequence or mapping of them, optional
         The state that the runs begin in, which another analysis has ended in, as for
         `time_history`: one for all columns, or one for each, in their order or by their names

@@ -571,7 +571,7 @@ class Fragile(Tabular, ABC, Generic[Curve]):
     def fragilities(
         self,
         limits: Mapping[str, Any],
-        edp: str = "peak_drift",
+        edp: str | None = None,
         beta: Mapping[str, float] | None = None,
     ) -> dict[str, Curve]:
         """Return the fragility curves of several limit states.
@@ -582,7 +582,7 @@ class Fragile(Tabular, ABC, Generic[Curve]):
             By name a threshold of `edp`, or a pair of a measure and its threshold, as
             ``{"yield": ("first_yield", None), "repair": 0.01, "collapse": ("collapse", None)}``.
         edp : str, optional
-            Measure of the thresholds that come alone.
+            Measure of the thresholds that come alone, by default `Runs.drift`.
         beta : mapping, optional
             By name a stated beta, as for `IDA.fragility`.
 
@@ -591,7 +591,7 @@ class Fragile(Tabular, ABC, Generic[Curve]):
         InputError
             If a curve is not determined, or a beta belongs to no limit state.
         """
-        states, stated = limit_states(edp, limits), dict(beta or {})
+        states, stated = limit_states(edp or self.runs.drift, limits), dict(beta or {})
         if unknown := stated.keys() - states.keys():
             raise InputError(
                 f"beta of {', '.join(sorted(unknown))}: no such limit state; there are "

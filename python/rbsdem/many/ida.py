@@ -29,6 +29,8 @@ from rbsdem.many.runs import (
     RunOptions,
     Runs,
     checked_levels,
+    columns_by_name,
+    drift_of,
     make_collector,
     motions_by_name,
     own_records,
@@ -243,7 +245,7 @@ class IDA(Fragile[Fragility]):
         return np.where(self.lower > 0, np.sqrt(self.lower * self.upper), self.upper)
 
     def curve(
-        self, motion: str | int, column: str | int = 0, edp: str = "peak_drift"
+        self, motion: str | int, column: str | int = 0, edp: str | None = None
     ) -> tuple[Array, Array]:
         """Return intensities and responses under one motion, from the origin upwards.
 
@@ -252,14 +254,15 @@ class IDA(Fragile[Fragility]):
         motion, column : str or int
             Name, or place from 0.
         edp : str, optional
-            Measure of the response; it is infinite where the column collapsed.
+            Measure of the response, by default `Runs.drift`; it is infinite where the column
+            collapsed.
         """
         c = _place(column, list(self.runs.columns), "column")
         m = _place(motion, list(self.runs.motions), "motion")
         return self._curve(c, m, self.runs.response(edp))
 
     def fractiles(
-        self, levels: ArrayLike | None = None, edp: str = "peak_drift"
+        self, levels: ArrayLike | None = None, edp: str | None = None
     ) -> tuple[Array, Array]:
         """Return the 16, 50 and 84 % fractiles of the response at intensities.
 
@@ -268,7 +271,7 @@ class IDA(Fragile[Fragility]):
         levels : array_like, shape (k,), optional
             Intensities [m/s2]; by default 50 up to the highest of the runs.
         edp : str, optional
-            Measure of the response.
+            Measure of the response, by default `Runs.drift`.
 
         Returns
         -------
@@ -400,7 +403,7 @@ def ida(
     """
     begin = time.perf_counter()
     if "measures" in options:
-        options["measures"] = _with_drift(options["measures"])
+        options["measures"] = _with_drift(options["measures"], column)
     hunt = _hunt(levels)
     records = own_records(motions_by_name(motions), options)
     work = make_collector("ida", column, records, **options)
@@ -442,10 +445,12 @@ def _refined(refine: Any, measures: Collection[str]) -> list[str]:
     return list(dict.fromkeys(_arguments.choice(name, "refine", WATCHED) for name in names))
 
 
-def _with_drift(measures: Sequence[str | Measure]) -> list[Any]:
+def _with_drift(measures: Sequence[str | Measure], columns: Any) -> list[Any]:
+    """Return measures with the drift of `Runs.drift` among them."""
     given = measures_in_a_list(measures)
-    kept = any(isinstance(measure, str) and measure == "peak_drift" for measure in given)
-    return given if kept else ["peak_drift", *given]
+    named = [measure for measure in given if isinstance(measure, str)]
+    drift = drift_of(columns_by_name(columns).values())
+    return given if drift in named else [drift, *given]
 
 
 def _first(levels: Array, collapsed: NDArray[np.bool_]) -> tuple[Array, Array]:

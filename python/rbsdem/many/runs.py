@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -131,7 +131,8 @@ class RunOptions(Solver, total=False):
     damping : float
         Damping ratio of the spectrum; the default is 0.05.
     collapse_drift : float
-        Displacement of the top over the height that counts as a collapse; the default is 0.1.
+        Drift that counts as a collapse, of a storey of a frame (`Frame.collapse`), or displacement
+        of the top over the height; the default is 0.1.
     measures : sequence
         What is kept of each run, as for `rbsdem.ensemble`; the default is `MEASURES`, and those of
         the storeys of frames.
@@ -203,6 +204,12 @@ class Runs(Tabular):
     def collapsed(self) -> NDArray[np.bool_]:
         """Whether a run ended in a collapse, or could not be continued, shape (runs,)."""
         return np.isin(self.status, LOST)
+
+    @property
+    def drift(self) -> str:
+        """The measure of drift that figures and limits mean: of storeys, else of the top."""
+        drift = drift_of(self.columns.values())
+        return drift if drift in self.measures else "peak_drift"
 
     def response(self, edp: str) -> Array:
         """Return a measure of the response, infinite where the column collapsed, shape (runs,).
@@ -437,6 +444,15 @@ def own_records(motions: dict[str, GroundMotion], options: RunOptions) -> dict[s
         faults.append(f"shard: {parts} parts of {len(motions)} motions; a part has one or more")
     _arguments.raise_faults(faults)
     return dict(list(motions.items())[place - 1 :: parts])
+
+
+def drift_of(structures: Iterable[Structure]) -> str:
+    """Return the measure of drift that collapse is judged by: of storeys, or of the top."""
+    by_storeys = [
+        isinstance(one, Frame) and bool(one.storeys) and one.collapse == "storey"
+        for one in structures
+    ]
+    return "peak_storey_drift" if by_storeys and all(by_storeys) else "peak_drift"
 
 
 def columns_by_name(columns: Any) -> dict[str | int, Structure]:

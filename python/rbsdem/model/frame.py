@@ -379,6 +379,9 @@ class Frame:
     control_node, control : str, optional
         Node and direction ("x" or "y") whose displacement is that of the top; without it the first
         node of the highest.
+    collapse : {"storey", "roof"}, optional
+        Whose drift `collapse_drift` of an analysis is: the largest of the storeys of the grid, or
+        that of the top over the height.
     nodes : sequence of FrameNode, optional
         Nodes, or what nodes of the grid have in addition.
     members : sequence of Member, optional
@@ -417,6 +420,7 @@ class Frame:
     pattern: Literal["triangular", "uniform", "modal", "nodes"] = "triangular"
     control_node: str = ""
     control: Literal["x", "y"] = "x"
+    collapse: Literal["storey", "roof"] = "storey"
     nodes: Sequence[FrameNode] = ()
     members: Sequence[Member] = ()
     damping: Damping | float | None = None
@@ -605,6 +609,7 @@ class Frame:
                     number += 1
                 names[own] = own.name or f"kind-{number}"
         usual = {"kinematics": "small", "base": "fixed", "pattern": "triangular", "control": "x"}
+        usual["collapse"] = "storey"
         grid = {
             name: getattr(self, name)
             for name in ("storeys", "bays", "diaphragm", "control_node", *usual)

@@ -24,7 +24,7 @@ _STYLES = ("--", "-", "--")
 _COLOURS = ("#1f77b4", "#2ca02c", "#e67e22", "#c0392b", "#6c3483", "#000000")
 
 
-def ida(found: IDA, *, edp: str = "peak_drift", ax: Axes | None = None, **line: Any) -> Axes:
+def ida(found: IDA, *, edp: str | None = None, ax: Axes | None = None, **line: Any) -> Axes:
     """Draw the curve of every record, its collapse, and the 16, 50 and 84 % fractiles.
 
     Parameters
@@ -32,12 +32,13 @@ def ida(found: IDA, *, edp: str = "peak_drift", ax: Axes | None = None, **line: 
     found : IDA
         The analysis.
     edp : str, optional
-        Measure of the response.
+        Measure of the response, by default `Runs.drift`.
     ax : matplotlib Axes, optional
         Axes to draw on; by default new ones.
     **line
         Keywords of the lines of the fractiles.
     """
+    edp = edp or found.runs.drift
     percent = 100.0 if edp.endswith("drift") else 1.0
     with axes_or_new(ax, (4.2, 3.2)) as drawn:
         for column, motion in np.ndindex(found.lower.shape):
@@ -61,9 +62,7 @@ def ida(found: IDA, *, edp: str = "peak_drift", ax: Axes | None = None, **line: 
     return drawn
 
 
-def stripes(
-    found: Stripes, *, edp: str = "peak_drift", ax: Axes | None = None, **line: Any
-) -> Axes:
+def stripes(found: Stripes, *, edp: str | None = None, ax: Axes | None = None, **line: Any) -> Axes:
     """Draw the response of every run over its level; collapses stand at the right edge.
 
     Parameters
@@ -71,12 +70,13 @@ def stripes(
     found : Stripes
         The analysis.
     edp : str, optional
-        Measure of the response.
+        Measure of the response, by default `Runs.drift`.
     ax : matplotlib Axes, optional
         Axes to draw on; by default new ones.
     **line
         Keywords of the points.
     """
+    edp = edp or found.runs.drift
     with axes_or_new(ax, (4.2, 3.2)) as drawn:
         _points(drawn, found.runs, edp, line)
         if ax is None:

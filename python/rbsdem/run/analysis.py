@@ -214,8 +214,9 @@ def cyclic(
     every : int, optional
         Keep every n-th point and the last one. By default all points are kept.
     collapse_drift : float, optional
-        Displacement of the top over the height at which the column counts as collapsed: the path
-        ends there, and `summary["status"]` is "collapsed".
+        Drift at which the structure counts as collapsed, of a storey of a frame
+        (`Frame.collapse`), of a column displacement of the top over the height: the path ends
+        there, and `summary["status"]` is "collapsed".
     openings : bool, optional
         Whether to keep the openings of layered joints, for `Result.elongation` and
         `Result.layer_deformation`.
@@ -323,8 +324,9 @@ def time_history(
     axial_load : array_like, shape (m,), optional
         Axial load at the top [N], compression positive, in place of the constant one of the column.
     collapse_drift : float, optional
-        Displacement of the top over the height at which the column counts as collapsed: the
-        analysis ends there, and `summary["status"]` is "collapsed".
+        Drift at which the structure counts as collapsed, of a storey of a frame
+        (`Frame.collapse`), of a column displacement of the top over the height: the analysis ends
+        there, and `summary["status"]` is "collapsed".
     every : int, optional
         Keep every n-th step and the last one. By default rows are kept as described for `dt` of
         `Solver`.

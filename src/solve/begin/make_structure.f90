@@ -65,6 +65,7 @@ contains
       call new_frame(frame, parts%node, parts%member, merge(pdelta, small, &
                      case%frame%kinematics == 'pdelta'), &
                      parts%top, case%frame%control == 'y')
+      frame%by_storeys = frame%storeys > 0 .and. case%frame%collapse == 'storey'
       associate (damping => case%column%damping)
          frame%mass_damping = damping%mass
          frame%stiffness_damping = damping%stiffness

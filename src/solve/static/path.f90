@@ -286,7 +286,7 @@ contains
             call check_members(self, failure)
          end if
          if (may_collapse) then
-            task%summary%collapsed = abs(self%displacement)/self%structure%height >= task%collapse_drift
+            task%summary%collapsed = self%structure%largest_drift(self%springs%d) >= task%collapse_drift
          end if
          ends = i == size(target) .or. lost > 0 .or. task%summary%collapsed .or. allocated(failure)
          if (lost > 0 .or. allocated(failure)) then

@@ -41,8 +41,9 @@ module rbs_solve_time_sight
    end type watch_type
 
    type, extends(peaks_type) :: sight_type
-      !> Displacement of the top at which the structure has collapsed [m], and whether it has
-      real(wp) :: furthest = huge(1.0_wp)
+      !> Displacement of the top [m] or drift of a storey at which the structure has collapsed, and whether it
+      !> has
+      real(wp) :: furthest = huge(1.0_wp), furthest_storey = huge(1.0_wp)
       logical :: collapsed = .false.
       !> Watches of limit states, and the time at which each is first reached; `huge` before (states) [s]
       type(watch_type), allocatable :: watch(:)
@@ -97,13 +98,19 @@ contains
       type(spring_array), intent(in) :: springs
       real(wp), intent(in), contiguous :: q(:), v(:)
       real(wp), intent(in) :: load(4), clock
-      !> Displacement of the top over the height at which the structure has collapsed; `unset`: none
+      !> Drift at which the structure has collapsed, of a storey or of the top; `unset`: none
       real(wp), intent(in) :: collapse_drift
       !> Whether the acceleration of the top is looked at
       logical, intent(in) :: floor
       integer :: i, m
 
-      if (is_given(collapse_drift)) self%furthest = collapse_drift*motion%structure%height
+      if (is_given(collapse_drift)) then
+         if (motion%structure%by_storeys) then
+            self%furthest_storey = collapse_drift
+         else
+            self%furthest = collapse_drift*motion%structure%height
+         end if
+      end if
       if (.not. allocated(self%watch)) call self%watch_for([watch_type ::], 0)
       m = size(q)
       if (.not. allocated(self%lowest)) then
@@ -167,11 +174,12 @@ contains
          if (allocated(self%storey_drift)) then
             call motion%structure%storey_drifts(q, self%storey_drift)
             self%peak_storey_drift = max(self%peak_storey_drift, abs(self%storey_drift))
+            self%collapsed = self%collapsed .or. any(self%peak_storey_drift >= self%furthest_storey)
          end if
       end if
       if (abs(displacement) > abs(self%peak_displacement) .or. abs(load(lateral)) > abs(self%peak_force)) then
          call self%see_peak(displacement, load(lateral))
-         self%collapsed = abs(self%peak_displacement) >= self%furthest
+         self%collapsed = self%collapsed .or. abs(self%peak_displacement) >= self%furthest
       end if
       if (turn > self%peak_rotation) call self%see_turn(turn)
       if (abs(shear) > abs(self%peak_base_shear)) call self%see_base(shear)
@@ -363,7 +371,7 @@ contains
       if (may_exceed(displacement, self%peak_displacement)) then
          part = cubic_through(displacement)
          call self%see_peak(part%largest(), 0.0_wp)
-         self%collapsed = abs(self%peak_displacement) >= self%furthest
+         self%collapsed = self%collapsed .or. abs(self%peak_displacement) >= self%furthest
       end if
       if (may_exceed(base, self%peak_base_shear)) then
          part = cubic_through(base)

@@ -79,7 +79,7 @@ contains
    !> Look at the state for the first time; what to watch for is known.
    subroutine begin_sight(self, collapse_drift, floor)
       class(state_type), intent(inout) :: self
-      !> Displacement of the top over the height at which the structure has collapsed; `unset`: none
+      !> Drift at which the structure has collapsed, of a storey or of the top; `unset`: none
       real(wp), intent(in) :: collapse_drift
       !> Whether the acceleration of the top is looked at
       logical, intent(in) :: floor

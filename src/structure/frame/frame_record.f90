@@ -96,7 +96,7 @@ module rbs_structure_frame_frame_record
 
    type, extends(visited_record) :: frame_record
       real(wp), allocatable :: storeys(:), bays(:)
-      character(len=16) :: kinematics = 'small', base = 'fixed', pattern = 'triangular'
+      character(len=16) :: kinematics = 'small', base = 'fixed', pattern = 'triangular', collapse = 'storey'
       logical :: diaphragm = .false.
       character(len=name_length) :: control_node = ''
       character(len=8) :: control = 'x'
@@ -220,6 +220,8 @@ contains
       call v%word('control_node', self%control_node, 'node whose displacement is that of the top; '// &
                   'without it the first of the highest')
       call v%word('control', self%control, 'direction of that displacement', 'x y')
+      call v%word('collapse', self%collapse, 'whose drift collapse is judged by: the largest of the '// &
+                  'storeys, or that of the top', 'storey roof')
    end subroutine visit_frame
 
    subroutine visit_floor(self, v)
