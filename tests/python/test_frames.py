@@ -1139,6 +1139,31 @@ def test_a_column_that_failed_in_shear_sheds_its_load():
     assert not [e for e in run.events if e.member == "C-2-1" and e.step > lost.step]
 
 
+def test_collapse_is_that_of_a_storey_unless_the_roof_is_asked_for():
+    """A soft storey has nearly all of the displacement of the top."""
+    soft = replace(COLUMN, yield_moment=60e3)
+    storeys = {"columns": {(0, 0): COLUMN, (0, 1): soft}, "beam_load": 0.0}
+    storey = three_storeys(**storeys)
+    roof = three_storeys(**storeys, collapse="roof")
+    path = storey.height * np.linspace(0.005, 0.1, 20)
+    ends = [rbsdem.cyclic(one, displacement=path, collapse_drift=0.05) for one in (storey, roof)]
+    assert [end.summary["status"] for end in ends] == ["collapsed"] * 2
+    for drifts in (ends[0].storey_drift.max(axis=1), ends[1].drift):
+        assert drifts[-2] < 0.05 <= drifts[-1]
+    assert ends[0].drift[-1] < 0.5 * ends[1].drift[-1]
+    (motion,) = rbsdem.motions.synthetic(1, seed=3)
+    for one, measure in ((storey, "peak_storey_drift"), (roof, "peak_drift")):
+        # Ten per cent, and a run whose storeys go beyond them ends there.
+        (status,) = rbsdem.ensemble(one, motion, scales=[40.0], method="newmark").status
+        run = rbsdem.time_history(one, motion.scaled(40.0), method="newmark", collapse_drift=0.1)
+        assert status == run.summary["status"] == "collapsed"
+        drifts = np.abs(run.drift if one is roof else run.storey_drift)
+        assert drifts[:-1].max() < 0.1
+        assert rbsdem.ida(one, motion, levels=[1.0, 2.0], method="newmark").runs.drift == measure
+    back = replace(roof, collapse="storey")
+    assert back == storey != roof
+
+
 @pytest.mark.parametrize("columns", [COLUMN, ELASTIC])
 def test_a_loss_that_does_not_come_changes_nothing(columns):
     """The springs that could be let go are as stiff as what they stand for."""
@@ -1312,6 +1337,14 @@ def test_a_static_path_ends_where_a_column_loses_its_load():
     limits = 0.1 / (1 + path.member_axial[[-2, -1], 1] / 200e3)
     assert before < limits[0] < 0.08
     assert last >= limits[1]
+    failed, lost = (e for e in path.events if e.what in ("shear failure", "lost"))
+    assert (failed.member, failed.what) == (lost.member, "shear failure") == ("C-2-1", failed.what)
+    assert lost.drift == path.drift[-1]
+    assert lost.force == path.force[-1]
+    # The spring yields at 2 mm, in the first row from there on.
+    slip = np.abs(path.springs["slip"][:, 0])
+    row = int(np.flatnonzero(path.time == failed.step)[0])
+    assert slip[row] >= 2e-3 * (1 - 1e-9) > 0.999 * slip[row - 1]
     # In tension, or without failure in shear, nothing is lost.
     strong = replace(SHEAR, f_y=600e3, f_cap=610e3)
     rbsdem.pushover(bent(replace(BRITTLE, shear=strong)), drift=0.08)

@@ -259,7 +259,7 @@ class IDA(Fragile[Fragility]):
         """
         c = _place(column, list(self.runs.columns), "column")
         m = _place(motion, list(self.runs.motions), "motion")
-        return self._curve(c, m, self.runs.response(edp))
+        return self._curve(c, m, self.runs.response(edp or self.runs.drift))
 
     def fractiles(
         self, levels: ArrayLike | None = None, edp: str | None = None
@@ -280,7 +280,7 @@ class IDA(Fragile[Fragility]):
         """
         usual = np.linspace(0, self.runs.intensity.max(), 51)[1:]
         at = usual if levels is None else checked_levels(levels)
-        response = self.runs.response(edp)
+        response = self.runs.response(edp or self.runs.drift)
         values = np.array([_at(at, *self._curve(c, m, response)) for c, m in self._pairs()])
         return at, np.percentile(values, FRACTILES, axis=0, method="inverted_cdf")
 

@@ -46,8 +46,10 @@ class FrameEvent(NamedTuple):
     end : str
         "start", "end", or the place between them in shares of the clear length; "" in a panel.
     what : str
-        "cracking", "yield" or "cap"; of a member "lost", "snap" where its inside jumps to another
-        equilibrium (the jump that loses most energy), or "fall" where it has none any more.
+        "cracking", "yield" or "cap"; of a member "shear failure", from where on its drift decides
+        whether it carries its axial load, "lost" where it does not, "snap" where its inside jumps
+        to another equilibrium (the jump that loses most energy), or "fall" where it has none any
+        more.
     side : int
         1 or -1; 0 of a member as a whole.
     displacement : float
@@ -332,6 +334,7 @@ class FrameResult(Rows):
                     )
                 )
         wholes = [(name, "lost", float(self.time[row])) for name, row in self._lost_at().items()]
+        wholes += self._failures()
         for what in ("snap", "fall"):
             member = self.summary.get("snap_member" if what == "snap" else "fallen_member")
             if member:
@@ -343,6 +346,36 @@ class FrameResult(Rows):
             drift = top / self.frame.height
             found.append(FrameEvent(at, name, "member", "", what, 0, top, drift, force))
         return tuple(sorted(found, key=lambda event: event.step))
+
+    def _failures(self) -> list[tuple[str, str, float]]:
+        """Return members that fail in shear, and that lose their axial load on a static path."""
+        parts, found, lost = self.frame.parts, [], self._lost_at()
+        for at, name in enumerate(parts.members):
+            kind = self.frame.kind_of(name)
+            if kind.failure_drift is None or kind.failure_load is None:
+                continue
+            (start, end), rigid = parts.ends[at], rigid_lengths(self.frame, name)
+            way = np.array([parts.y[end] - parts.y[start], parts.x[start] - parts.x[end]])
+            length = float(np.hypot(*way))
+            moved = np.stack((self.x[:, [start, end]], self.y[:, [start, end]]))
+            across = np.tensordot(way / length, np.diff(moved, axis=2)[..., 0], 1)
+            arms = rigid[0] * self.turn[:, start] + rigid[1] * self.turn[:, end]
+            drift = np.abs(across - arms) / (length - sum(rigid))
+            failed = drift >= (np.inf if kind.shear_drift is None else kind.shear_drift)
+            for spring, values, _ in self._springs():
+                if spring.member == name and spring.group == "shear":
+                    for point in landmarks_of(self.frame, spring):
+                        if point.name == "yield":
+                            failed |= point.side * values >= _REACHED * point.deformation
+            rows = np.flatnonzero(failed[: lost.get(name)])
+            if rows.size:
+                found.append((name, "shear failure", float(self.time[rows[0]])))
+            load = np.maximum(self.member_axial[:, at], 0.0)
+            falls = (load > 0) & (drift * (1 + load / kind.failure_load) >= kind.failure_drift)
+            fallen = np.flatnonzero(falls & np.logical_or.accumulate(failed))
+            if fallen.size and not self.dynamic:
+                found.append((name, "lost", float(self.time[fallen[0]])))
+        return found
 
     def _lost_at(self) -> dict[str, int]:
         """Return members that are lost, and the first row in which they are."""

@@ -56,9 +56,11 @@ _MARKS: dict[str, dict[str, Any]] = {
     "cracking": {"marker": "v", "markerfacecolor": "white"},
     "yield": {"marker": "o", "markerfacecolor": "white"},
     "cap": {"marker": "D", "markerfacecolor": "#c0392b"},
+    "shear failure": {"marker": "s", "markerfacecolor": "#e67e22"},
     "lost": {"marker": "X", "markerfacecolor": "#c0392b", "markersize": 6.0},
 }
 _VERBS = {"cracking": "cracks", "yield": "yields", "cap": "reaches its cap", "lost": "is lost"}
+_VERBS |= {"shear failure": "fails in shear"}
 
 #: Size of a support and place of a hinge beside its node, in shares of the larger dimension.
 _SYMBOL = 0.022

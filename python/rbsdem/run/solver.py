@@ -131,8 +131,8 @@ METHODS = {
     for row in _core.methods()
 }
 
-#: Drift that counts as a collapse, where runs need one and none is given: the displacement of the
-#: top over the height.
+#: Drift that counts as a collapse, where runs need one and none is given: of a storey of a frame,
+#: of a column the displacement of the top over the height.
 COLLAPSE_DRIFT = 0.1
 
 #: Names of the methods in time, and of those of them that are implicit.
