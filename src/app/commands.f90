@@ -114,10 +114,13 @@ contains
                end if
             else if (summary%remark /= '') then
                text = 'collapsed: '//trim(summary%remark)//'; the'
-            else
-               text = 'collapsed at '//text//': the top was at '//to_text(summary%peak_displacement)// &
-                      ' m at the most, and a drift is beyond collapse_drift = '// &
+            else if (run%structure%by_storeys) then
+               text = 'collapsed at '//text//': the drift of a storey is beyond collapse_drift = '// &
                       to_text(run%case%analysis%collapse_drift)//'; the'
+            else
+               text = 'collapsed at '//text//': the top is at '//to_text(summary%peak_displacement)// &
+                      ' m, beyond collapse_drift = '//to_text(run%case%analysis%collapse_drift)// &
+                      ' of the height; the'
             end if
          end associate
          call fatal_error(error, column_collapsed, text//' rows up to there are in '//run%recorder%file%path)
