@@ -21,57 +21,18 @@ from typing import Any
 import numpy as np
 
 import rbsdem
-from rbsdem.frames import Frame, FrameMember
+from rbsdem.frames import Frame
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "python"))
 
-from strategies import between, rules, spring
+from strategies import between
+from strategies_frames import RULES, frame
 
 #: No part of a way ends where an earlier turning point is passed: there springs stand on the ends
 #: of their lines but for the round-off of the point that is given.
 TURNS = np.array([1.0, -1.0, 1.53, -0.7, 2.0, 0.0])
-RULES = [rule for rule in rules("flexure") if rule not in ("layered", "compression")]
-CAPPED = ["peak_oriented", "pinching"]
 #: Every so many frames are followed in 1000 parts: these take the time of a thousand paths.
 SPARSE = 10
-
-
-def kind(rng: np.random.Generator, names: list[str], moment: float, *, bilinear: bool) -> Any:
-    """Return a kind of members: sections that yield, or springs at the ends or along it."""
-    stiffness = moment * between(rng, 60, 400)
-    given = {
-        "modulus": 3e10,
-        "area": stiffness / 3e10 * between(rng, 30, 200),
-        "inertia": stiffness / 3e10,
-    }
-    if bilinear and rng.random() < 0.4:
-        hardening = float(rng.choice([0.0, 0.01, 0.05]))
-        return FrameMember(**given, yield_moment=moment, hardening=hardening)
-    ends = [spring(rng, str(rng.choice(names)), moment, between(rng, 1e-3, 8e-3)) for _ in "ab"]
-    if rng.random() < 0.3:
-        inner = {0.0: ends[0], 0.5: ends[1], 1.0: ends[0]}
-        return FrameMember(**given, flexure=inner, between="rigid")
-    return FrameMember(**given, flexure=ends, panel=float(rng.choice([0.0, 0.2])))
-
-
-def frame(rng: np.random.Generator, names: list[str], *, bilinear: bool = True) -> Frame:
-    """Return a frame that stands under its load."""
-    while True:
-        try:
-            return Frame.grid(
-                [between(rng, 2.5, 4.5) for _ in range(rng.integers(1, 7))],
-                [between(rng, 3, 8) for _ in range(rng.integers(1, 5))],
-                columns=kind(rng, names, between(rng, 1e5, 6e5), bilinear=bilinear),
-                beams=kind(rng, names, between(rng, 1e5, 5e5), bilinear=bilinear),
-                floor_mass=between(rng, 1e4, 1e5),
-                beam_load=float(rng.choice([0.0, between(rng, 1e3, 2e4)])),
-                kinematics=str(rng.choice(["small", "pdelta"])),
-                base=str(rng.choice(["fixed", "pinned"])),
-                diaphragm=bool(rng.random() < 0.3),
-                pattern=str(rng.choice(["triangular", "uniform", "modal"])),
-            )
-        except (rbsdem.InputError, rbsdem.SolveError):
-            continue
 
 
 def followed(structure: Frame, path: Any, **more: Any) -> tuple[Any, str]:
@@ -114,7 +75,7 @@ def cyclic(frames: int, rng: np.random.Generator) -> None:
     residuals, ends = [], Counter[str]()
     different: dict[int, list[tuple[int, float]]] = {7: [], 1000: []}
     for i in range(frames):
-        structure = frame(rng, RULES)
+        structure = frame(rng)
         path = between(rng, 0.005, 0.04) * structure.height * TURNS
         whole, told = followed(structure, path)
         ends[reason(told) or "completed"] += 1
@@ -139,7 +100,7 @@ def capped(frames: int, rng: np.random.Generator) -> None:
     """Print how frames of springs with a cap end; none does so silently."""
     ends, silent, unnamed, residual = Counter[str](), 0, 0, 0.0
     for _ in range(frames):
-        structure = frame(rng, CAPPED, bilinear=False)
+        structure = frame(rng, "capped")
         path = between(rng, 0.05, 0.2) * structure.height * np.arange(1, 21) / 20
         push, told = followed(structure, path, corners=True)
         ends[reason(told) or "completed"] += 1
