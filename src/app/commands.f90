@@ -63,7 +63,7 @@ contains
       type(run_type), target :: run
       type(message_list) :: notes
       type(error_type), allocatable :: closing
-      character(len=:), allocatable :: file, partial
+      character(len=:), allocatable :: file, kept_name
 
       call prepare(run, path, error)
       if (.not. allocated(error)) call output_path(file)
@@ -160,8 +160,8 @@ contains
                write (error_unit, '(a)') 'rbsdem: note: '//recorder%file%left//' has rows of a run '// &
                   'that was killed'
             end if
-            call recorder%file%get_partial_name(partial)
-            call keep_if_stopped(recorder%file%own, partial)
+            call recorder%file%get_partial_name(kept_name)
+            call keep_if_stopped(recorder%file%own, kept_name)
             call recorder%write_head(header(case, plan%method), error)
             if (allocated(error)) return
             call progress%start(quiet)
