@@ -93,6 +93,7 @@ def test_failed_runs_and_measures_of_functions_come_back(tmp_path: Path) -> None
 
     elastic = rbsdem.Column(1.6, 600.0, Elastic(7e7), Elastic(2.5e8))
     given = {"method": "rk4", "dt": 5e-3, "allow_unstable": True, "scales": [0.0, 1.0]}
+    given["collapse_drift"] = None
     first, again = (
         rbsdem.ensemble(elastic, motion(1), measures=[swing], store=tmp_path, **given)
         for _ in range(2)
@@ -196,7 +197,8 @@ def test_what_is_no_store_of_these_runs(tmp_path: Path) -> None:
     assert (again.resumed, list(again.measures)) == (24, list(MEASURES))
     path = place / "manifest.json"
     manifest = json.loads(path.read_text())
-    assert manifest["settings"] == {"method": "newmark", "dt": 0.0078125}
+    settings = {"method": "newmark", "dt": 0.0078125, "collapse_drift": 0.1}
+    assert manifest["settings"] == settings
     entries = list(manifest["columns"].values())
     assert [entry["name"] for entry in entries] == ["0", "1"]
     assert "&column" in entries[0]["case"]
