@@ -18,10 +18,9 @@ import numpy as np
 from scipy.optimize import differential_evolution, dual_annealing, minimize
 
 import rbsdem
-from rbsdem.calibration import search
 from rbsdem.calibration.misfit import Misfit, Target, rms
 from rbsdem.calibration.paths import Parameters, free_parameters
-from rbsdem.calibration.search import Ended, Search
+from rbsdem.calibration.search import Search, SearchStopped
 from rbsdem.peer import find_history, read_peer
 from rbsdem.run.analysis import reached_force
 
@@ -35,22 +34,20 @@ class Limited(Misfit):
     def loss_at(self, places: np.ndarray) -> float:
         """Return the loss; a place that is refused has a large one."""
         if self.evaluations >= MOST:
-            raise Ended
+            raise SearchStopped
         return rms(self.vector(np.asarray(places)))
 
 
-def used(misfit: Limited, seed: int, kicks: int = search.KICKS) -> None:
+def used(misfit: Limited, seed: int) -> None:
     """Run the search of the package."""
-    search.KICKS, kept = kicks, search.KICKS
     Search(misfit, seed, MOST, None).run()
-    search.KICKS = kept
 
 
 def by_scipy(run: Callable[..., object]) -> Callable[[Limited, int], None]:
     """Return a search of scipy, ended by the number of analyses."""
 
     def searched(misfit: Limited, seed: int) -> None:
-        with suppress(Ended):
+        with suppress(SearchStopped):
             run(misfit, [(0.0, 1.0)] * len(misfit.free), seed)
 
     return searched
@@ -67,8 +64,7 @@ def after_hypercube(method: str) -> Callable[[Limited, int], None]:
 
 
 SEARCHES = {
-    "hypercube, least squares, kicks": used,
-    "hypercube, least squares": lambda misfit, seed: used(misfit, seed, 0),
+    "hypercube, least squares (used)": used,
     "hypercube, Nelder-Mead": after_hypercube("Nelder-Mead"),
     "hypercube, Powell": after_hypercube("Powell"),
     "differential evolution": by_scipy(
@@ -109,7 +105,7 @@ def _drawn(column: rbsdem.Column, d: np.ndarray, random: np.random.Generator) ->
     while True:
         places = random.uniform(0.25, 0.75, len(FREE))
         values = {n: p.at(at) for (n, p), at in zip(free.items(), places, strict=True)}
-        if parameters.accepts(values):
+        with suppress(rbsdem.InputError):
             return reached_force(parameters.build(values), d)[0]
 
 

@@ -15,7 +15,7 @@ from samples import SECTION, SPECIMEN
 import rbsdem
 from rbsdem import peer
 from rbsdem.errors import InputError
-from rbsdem.section.parameters import FACTORS, directions, parameters, table
+from rbsdem.section.parameters import FACTORS, parameters, table
 from rbsdem.springs import Elastic
 
 # Turning points; every row of a static run is exact.
@@ -151,8 +151,6 @@ def test_the_table_of_parameters():
         assert not row.high < 1, name
     ranks = sorted(row.rank for row in table().values() if row.rank)
     assert ranks == list(range(1, len(ranks) + 1))
-    for along in directions().values():
-        assert all(math.isfinite(table()[name].high) for name in along)
 
 
 def test_changed_parameters_are_named_as_changed():
@@ -166,22 +164,6 @@ def test_changed_parameters_are_named_as_changed():
     )
     back = changed.with_parameters(steel_strength=parameters().steel_strength)
     assert back == column
-
-
-def test_directions_are_factors_to_exponents():
-    """Two factors along one direction are their product; no parameter goes beyond its end."""
-    column = rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6)
-    assert list(column.parameters)[:6] == list(directions())
-    there = column.with_parameters(direction_2=1.1, direction_5=0.9)
-    for name, value in there.recipe.parameters.values.items():
-        power = 1.1 ** directions()["direction_2"].get(name, 0.0)
-        power *= 0.9 ** directions()["direction_5"].get(name, 0.0)
-        assert value == pytest.approx(power * parameters().values[name], rel=1e-12)
-    for end in (1e-6, 1e6):
-        far = column.with_parameters(**dict.fromkeys(directions(), end))
-        assert all(math.isfinite(x) for x in far.recipe.parameters.values.values())
-    other = replace(column, shear=column.shear[1])
-    assert "direction_1" not in other.parameters
 
 
 LAYERED = rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6)

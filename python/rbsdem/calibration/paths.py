@@ -9,13 +9,11 @@ factor on all of them, and ``flexure.layers[*].f_y`` a factor on all layers of a
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
 from difflib import get_close_matches
-from functools import cache, partial
+from functools import cache
 from typing import Any
-
-import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem.errors import InputError
@@ -45,9 +43,6 @@ _UNITS = {"shear": _NORMAL, "flexure": _TURNING, "axial_spring": _NORMAL}
 
 #: Way to a parameter: names of fields and indices of tuples; ``None`` stands for all indices.
 Way = tuple[str | int | None, ...]
-
-#: Number of sets of the other parameters with which a bound is tried, and number of bisections.
-_TRIES, _HALVINGS = 16, 16
 
 
 def paths(column: Column) -> dict[str, Way]:
@@ -153,52 +148,6 @@ def _changed_part(column: Column, part: Any, changes: dict[Way, float]) -> Any:
         spring = _changed(part, common) if common else part
         return _changed((spring,) * column.joint_numbers[-1], single)
     return _changed(part, changes)
-
-
-def settle(
-    free: Mapping[str, Parameter],
-    given: Mapping[str, tuple[float, float]],
-    accepts: Callable[[Mapping[str, float]], bool],
-) -> dict[str, Parameter]:
-    """Move bounds into the range that the column accepts, as that of K_y below a fixed K_c.
-
-    If the column is refused at a bound for all tried values of the other free parameters, the limit
-    is found by bisection between the bound and the start. A bound that is refused for some of these
-    values only is kept, as are bounds that were given.
-    """
-    start = {name: one.value for name, one in free.items()}
-    random = np.random.default_rng(0).random((_TRIES, len(free)))
-    tries = [start]
-    tries += [{n: one.at(end) for n, one in free.items()} for end in (0.0, 1.0)]
-    tries += [
-        {n: one.at(place) for (n, one), place in zip(free.items(), places, strict=True)}
-        for places in random
-    ]
-
-    def allowed(name: str, value: float) -> bool:
-        return any(accepts(others | {name: value}) for others in tries)
-
-    settled = {}
-    for name, one in free.items():
-        ends = [one.low, one.high]
-        if name not in given:
-            ends = [_edge(one, end, partial(allowed, name)) for end in ends]
-        settled[name] = replace(one, low=ends[0], high=ends[1]) if ends[0] < ends[1] else one
-    return settled
-
-
-def _edge(one: Parameter, end: float, allowed: Callable[[float], bool]) -> float:
-    """Return the end if it is allowed, otherwise the last allowed value towards it."""
-    if allowed(end):
-        return end
-    inside, outside = one.place(one.value), one.place(end)
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (inside + outside)
-        if allowed(one.at(middle)):
-            inside = middle
-        else:
-            outside = middle
-    return one.at(inside)
 
 
 def _below(part: Any) -> Iterator[tuple[str, Way]]:
@@ -309,14 +258,6 @@ class Parameters:
             return changed
         return with_values(self.column, self.ways, values)
 
-    def accepts(self, values: Mapping[str, float]) -> bool:
-        """Return whether a column with these values is possible."""
-        try:
-            self.build(values)
-        except InputError:
-            return False
-        return True
-
 
 def free_parameters(
     parameters: Parameters, free: Sequence[str], bounds: Mapping[str, Sequence[float]] | None
@@ -345,7 +286,7 @@ def free_parameters(
                 f"bounds={{{name!r}: (low, high)}}"
             )
         chosen[name] = one
-    return chosen if parameters.recipe else settle(chosen, given, parameters.accepts)
+    return chosen
 
 
 def _names(parameters: Parameters, free: Any) -> list[str]:

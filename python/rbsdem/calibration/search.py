@@ -3,9 +3,9 @@
 The force of a chain of straight lines is continuous in its parameters nearly everywhere, with kinks
 where a spring takes another line, and the error has several minima. The search therefore consists
 of a Latin hypercube over the bounds; least squares (scipy, trust region) from its best points with
-coarse finite differences, which smooth the kinks; finer differences from the best of them, the last
-with the dogleg method, which can reach the bounds; and the same from random points near the best
-one, until that no longer helps. docs/calibration.md has the measurements behind this choice.
+coarse finite differences, which smooth the kinks; and finer differences from the best of them, the
+last with the dogleg method, which can reach the bounds. docs/calibration.md compares it
+with others.
 """
 
 from __future__ import annotations
@@ -24,22 +24,16 @@ SAMPLES_EACH, SAMPLES_LEAST = 10, 40
 DRAWS = 20
 
 #: Descents from the best points.
-STARTS = 4
+STARTS = 6
 
 #: Steps of finite differences as shares of the distance between the bounds.
 COARSE, MIDDLE, FINE = 0.02, 0.005, 0.0005
 
-#: Distance of a random restart, and how many without a gain of this share end the search.
-KICK, KICKS, GAIN = 0.15, 3, 0.002
-
 #: A place closer to a bound than this is taken to be on it.
 AT_BOUND = 1e-3
 
-#: A loss below this is taken as zero.
-NOTHING = 1e-6
 
-
-class Ended(Exception):  # noqa: N818 - not an error: the search may do no more
+class SearchStopped(Exception):  # noqa: N818 - not an error: the search may do no more
     """The search has used up its analyses or its time."""
 
 
@@ -70,17 +64,10 @@ class Search:
         try:
             for places in self._sample():
                 self._descend(places, COARSE, "trf", 12)
-            self._sharpen()
-            left = KICKS
-            while left and self.misfit.best > NOTHING:
-                before = self.misfit.best
-                self._descend(self._kicked(), COARSE, "trf", 12)
-                if self.misfit.best < before:
-                    self._sharpen()
-                left = KICKS if self.misfit.best < (1 - GAIN) * before else left - 1
-            self._touch_bounds()
-        except Ended as ended:
-            status = str(ended)
+            self._descend(self.misfit.best_places, MIDDLE, "trf", 12)
+            self._descend(self.misfit.best_places, FINE, "dogbox", 20)
+        except SearchStopped as stopped:
+            status = str(stopped)
         except KeyboardInterrupt:
             status = "interrupted"
         return status
@@ -89,9 +76,9 @@ class Search:
         memory = self._memory
         if any(places.tobytes() not in memory for places in several):
             if self.misfit.evaluations >= self._evaluations:
-                raise Ended("evaluations used up")
+                raise SearchStopped("evaluations used up")
             if time.perf_counter() > self._until:
-                raise Ended("time used up")
+                raise SearchStopped("time used up")
             wanted = [places for places in several if places.tobytes() not in memory]
             if len(memory) > 64:
                 wanted = several
@@ -144,29 +131,6 @@ class Search:
             # a plane, so it needs two parameters.
             tr_solver="lsmr" if places.size > 1 else "exact",
         )
-
-    def _sharpen(self) -> None:
-        self._descend(self.misfit.best_places, MIDDLE, "trf", 12)
-        self._descend(self.misfit.best_places, FINE, "dogbox", 20)
-
-    def _touch_bounds(self) -> None:
-        """Move parameters just inside a bound onto it, as the trust region never reaches bounds."""
-        misfit = self.misfit
-        for i, place in enumerate(misfit.best_places):
-            if 0 < place < AT_BOUND or 0 < 1 - place < AT_BOUND:
-                places = misfit.best_places.copy()
-                places[i] = round(place)
-                loss = rms(self._vectors([places])[0])
-                if loss <= misfit.best * (1 + GAIN * AT_BOUND):
-                    misfit.best, misfit.best_places = loss, places
-
-    def _kicked(self) -> Array:
-        best, size = self.misfit.best_places, len(self.misfit.free)
-        for _ in range(50):
-            places = np.clip(best + KICK * self._random.standard_normal(size), 0.0, 1.0)
-            if rms(self._vectors([places])[0]) < REFUSED:
-                return places
-        return best
 
     def _jacobian(self, places: Array, step: float) -> Array:
         """Return finite differences in a direction that stays in bounds and is not refused."""

@@ -28,7 +28,7 @@ from rbsdem.model.springs import (
 )
 from rbsdem.section.axial_moment import InteractionDiagram, joint_interaction
 from rbsdem.section.hinge import HingeJoint, hinge_joint
-from rbsdem.section.parameters import FACTORS, ModelParameters, directions, table
+from rbsdem.section.parameters import FACTORS, ModelParameters, table
 from rbsdem.section.ranges import axial_load_note, outside
 from rbsdem.section.shear import shear_spring
 
@@ -208,8 +208,7 @@ class LayeredModel:
         return unchecked(Takeda, **first, k_u=0.9 * k_y, b0=0.0)
 
 
-#: Bounds of a factor along a direction, and of those on several parameters.
-_ALONG = (0.04, 25.0)
+#: Bounds of factors on several parameters.
 _TOGETHER = {"strength": (0.7, 1.5), "lengths": (0.2, 4.0), "softening": (0.1, 20.0)}
 
 
@@ -298,9 +297,6 @@ class LayeredColumn(Column):
         """
         values, limits = self._recipe.parameters.values, self._recipe.limits
         found = {}
-        for name, along in directions().items():
-            what = f"factor to exponents on {', '.join(along)}"
-            found[name] = Parameter(1.0, *_ALONG, "-", what)
         for name, (_, what) in FACTORS.items():
             found[name] = Parameter(1.0, *_TOGETHER[name], "-", f"factor of {what}")
         offered = [row for row in table().values() if row.rank]
@@ -338,7 +334,6 @@ class LayeredColumn(Column):
                     )
         # What a factor makes of several is limited, not refused.
         several = {name: FACTORS[name][0] for name in values if name in FACTORS}
-        several |= {name: tuple(directions()[name]) for name in values if name in directions()}
         recipe.check(set(values).difference(several, *several.values()))
         ends = recipe.ends(self.top)
         made = {name: value for name, value in ends.items() if not self._kept(name)}
@@ -417,7 +412,5 @@ def _listed(springs: Any) -> tuple[Any, ...]:
 
 def _made_from(name: str) -> tuple[str, ...]:
     """Return the springs that a parameter belongs to."""
-    if name in directions():
-        return ("flexure", "shear")
     of_shear = name.startswith("shear_") and name != "shear_stiffness"
     return ("shear",) if of_shear else ("flexure",)

@@ -1,7 +1,6 @@
 """Parameters of the layered model, the same for all columns: a table with values, bounds, meaning.
 
-`data/layered_parameters.csv` has them, `data/layered_directions.csv` the directions along which a
-column follows a measured loop best. A refit of the parameters is a new `VERSION`.
+They are in `data/layered_parameters.csv`. A refit of the parameters is a new `VERSION`.
 """
 
 from __future__ import annotations
@@ -76,19 +75,6 @@ def table() -> Mapping[str, Row]:
     return MappingProxyType(rows)
 
 
-@cache
-def directions() -> Mapping[str, Mapping[str, float]]:
-    """Return the exponents of the parameters by direction."""
-    found: dict[str, dict[str, float]] = {}
-    for row in _package.rows("layered_directions.csv"):
-        parameter = row.pop("parameter")
-        for direction, exponent in row.items():
-            along = found.setdefault(direction, {})
-            if exponent:
-                along[parameter] = float(exponent)
-    return MappingProxyType(found)
-
-
 @dataclass(frozen=True)
 class ModelParameters:
     """All parameters of the layered model.
@@ -140,7 +126,7 @@ class ModelParameters:
         ----------
         **values
             Names as in `values`, such as ``steel_strength=1.0`` or ``shear_strength=1.1``; or one
-            of `FACTORS` or `directions`, by which several are multiplied.
+            of `FACTORS`, by which several are multiplied.
 
         Raises
         ------
@@ -151,31 +137,12 @@ class ModelParameters:
             factor = _arguments.number(values.pop(name), f"parameters: {name}")
             for one in FACTORS[name][0]:
                 values[one] = factor * values.get(one, self.values[one])
-        along = {
-            name: _above_zero(values.pop(name), name) for name in directions() if name in values
-        }
-        for one, factor in _factors(along).items():
-            values[one] = factor * values.get(one, self.values[one])
         for name in values:
             if name not in self.values:
-                known = [*self.values, *FACTORS, *directions()]
+                known = [*self.values, *FACTORS]
                 (near,) = get_close_matches(name, known, n=1, cutoff=0.0)
                 raise InputError(f"parameters: {name!r} is not known; did you mean {near!r}?")
         return replace(self, values={**self.values, **values})
-
-
-def _above_zero(value: float, name: str) -> float:
-    return _arguments.number(value, f"parameters: {name}", above=0, why="; it is a factor")
-
-
-def _factors(along: Mapping[str, float]) -> dict[str, float]:
-    """Return the factors of the parameters for factors along directions."""
-    logs: dict[str, float] = {}
-    for direction, factor in along.items():
-        for name, exponent in directions()[direction].items():
-            logs[name] = logs.get(name, 0.0) + exponent * math.log(factor)
-    rows = table()
-    return {n: min(max(math.exp(value), rows[n].low), rows[n].high) for n, value in logs.items()}
 
 
 @cache
