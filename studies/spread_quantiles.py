@@ -1,4 +1,4 @@
-"""Quantiles of left-out tests, and how bands grow with the distance from the tests.
+"""Quantiles of left-out tests.
 
 Used by `studies/spread_table.py`, which says what they are for.
 """
@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rbsdem.run.bands import Middle, Place
+from rbsdem.run.bands import Place
 from rbsdem.run.bands import between as place_between
 
 #: What bands and intervals are to hold.
@@ -127,12 +127,12 @@ class Ratios(Tests):
 
 
 class Points(Tests):
-    """The force along the path: the end is what the band is widened by at the middle."""
+    """The force along the path: the end is what the band is widened by."""
 
-    def __init__(self, scores: np.ndarray, grown: np.ndarray, *about: np.ndarray) -> None:
+    def __init__(self, scores: np.ndarray, *about: np.ndarray) -> None:
         super().__init__(*about)
-        #: Distances over the half band that has grown with the distance from the middle.
-        self.scores = scores / grown[:, None]
+        #: Distances over the half band.
+        self.scores = scores
 
     def ends(self, chosen: np.ndarray, tail: np.ndarray) -> np.ndarray:
         """Return the distance over the half band below which the points are."""
@@ -146,31 +146,3 @@ class Points(Tests):
     def held(self, ends: np.ndarray) -> np.ndarray:
         """Return the share of the points of each test within the band."""
         return np.mean(self.scores <= between(ends, self.near)[:, None], axis=1)
-
-
-class Growth(NamedTuple):
-    """How the band grows with the distance from the middle of some tests."""
-
-    middle: Middle
-    growth: float
-    grown: np.ndarray
-
-
-def growth_of(
-    scores: np.ndarray, places: np.ndarray, near: np.ndarray, weight: np.ndarray, chosen: np.ndarray
-) -> Growth:
-    """Find the middle of chosen tests and the growth; `grown` is the factor of every test."""
-    w = weight[chosen]
-    spread = np.cov(places[chosen].T, aweights=w)
-    axes = np.linalg.inv(np.linalg.cholesky(spread))
-    middle = Middle(
-        tuple(np.average(places[chosen], axis=0, weights=w).round(4).tolist()),
-        tuple(tuple(row[: i + 1].round(4).tolist()) for i, row in enumerate(axes)),
-    )
-    distance = np.array([middle.distance(tuple(place)) for place in places.tolist()])
-    held = np.log(np.quantile(scores[chosen], LEVEL, axis=1))
-    known = np.column_stack([np.ones(len(w)), near[chosen], distance[chosen]])
-    root = np.sqrt(w)
-    found = np.linalg.lstsq(known * root[:, None], held * root, rcond=None)[0]
-    growth = round(max(float(found[-1]), 0.0), 3)
-    return Growth(middle, growth, np.exp(growth * distance))

@@ -12,10 +12,7 @@ of the tests. A test counts 1/sqrt(tests of its series), half-way between every 
 series alike. There are three sets of numbers: for columns far from their shear strength, and for
 squat and for slender ones at it, as far as the model says, whatever the test said.
 
-**Distance.** Left-out tests are the farther from their prediction the farther they are from the
-middle of the tests that were not left out, in five properties (`bands.likeness`). The band
-grows with this distance, by the slope of the logarithm of the distance that holds 80 % of a test's
-points. How much of the band is there without samples (`SHAPE`) is what makes the interval score of
+**Shape.** The part of the band that is there without samples (`SHAPE`) makes the interval score of
 left-out tests least (Winkler 1972: the width, and ten times what a point is beyond); the table of
 the choice prints it.
 
@@ -48,7 +45,7 @@ from typing import Any, NamedTuple
 
 import fit_model
 import numpy as np
-from spread_quantiles import LEVEL, Growth, Numbers, Points, Ratios, between, growth_of, weights
+from spread_quantiles import LEVEL, Numbers, Points, Ratios, between, weights
 
 from rbsdem import peer
 from rbsdem.curves.metrics import PathPoints, secant_stiffness
@@ -59,7 +56,6 @@ from rbsdem.run.bands import (
     near_shear,
     numbers,
     path_force,
-    place_of,
     sample,
     slender,
 )
@@ -197,15 +193,14 @@ class Fold(NamedTuple):
     scatter: Scatter
     inside: dict[str, np.ndarray]
     width: np.ndarray
-    #: Of each shape, without and with growth: interval scores, shares of points, widths.
-    choices: dict[tuple[float, bool], np.ndarray]
+    #: Of each shape: interval scores, shares of points, widths.
+    choices: dict[float, np.ndarray]
 
 
 def fold(
     judged: int | None,
     series: np.ndarray,
     group: np.ndarray,
-    places: np.ndarray,
     samples: int,
     run: Callable[[Any, list[Any]], Iterator[Any]],
     once: dict[str, Any] | None,
@@ -226,42 +221,36 @@ def fold(
     choices = {}
     for shape in SHAPES:
         scores = np.array([band.scores(shape) for band in bands])
-        for grows in (False, True):
-            found_growth = growth_of(scores, places, about[2], weights(series), chosen)
-            grown = found_growth.grown if grows else np.ones(len(series))
-            points = Points(scores, grown, *about)
-            ends = points.ends(chosen, np.full(3, 1 - LEVEL))
-            widen = between(ends, points.near) * grown
-            both_ways = list(zip(bands, widen.tolist(), strict=True))
-            choices[shape, grows] = np.array(
-                [
-                    [band.interval_score(shape, by) for band, by in both_ways],
-                    points.held(ends),
-                    [by * band.width(shape) for band, by in both_ways],
-                ]
-            )
+        points = Points(scores, *about)
+        ends = points.ends(chosen, np.full(3, 1 - LEVEL))
+        widened = list(zip(bands, between(ends, points.near).tolist(), strict=True))
+        choices[shape] = np.array(
+            [
+                [band.interval_score(shape, by) for band, by in widened],
+                points.held(ends),
+                [by * band.width(shape) for band, by in widened],
+            ]
+        )
     scores = np.array([band.scores(SHAPE) for band in bands])
-    far = growth_of(scores, places, about[2], weights(series), chosen)
-    points = Points(scores, far.grown, *about)
+    points = Points(scores, *about)
     ends = points.ends(chosen, points.tail(chosen))
-    widen = between(ends, points.near) * far.grown
-    width = widen * np.array([band.width(SHAPE) for band in bands])
+    width = between(ends, points.near) * np.array([band.width(SHAPE) for band in bands])
     inside, found = {"force": points.held(ends)}, {"force": _rounded(ends)}
     for name in NUMBERS:
         ratios = Ratios(rows, name, *about)
         ends = ratios.ends(chosen, ratios.tail(chosen))
         inside[name] = ratios.held(ends)
         found[name] = tuple(_rounded(np.exp(pair)) for pair in ends)
-    return Fold(_with(scatter, far, found), inside, width, choices)
+    return Fold(_with(scatter, found), inside, width, choices)
 
 
 def _rounded(values: np.ndarray) -> tuple[float, ...]:
     return tuple(round(float(value), 3) for value in values)
 
 
-def _with(scatter: Scatter, far: Growth, found: dict[str, Any]) -> Scatter:
+def _with(scatter: Scatter, found: dict[str, Any]) -> Scatter:
     values = {name: getattr(scatter, name) for name in NAMES.values()}
-    return Scatter(**values, shape=SHAPE, growth=far.growth, middle=far.middle, **found)
+    return Scatter(**values, shape=SHAPE, **found)
 
 
 def residual_table(rows: list[Numbers], series: np.ndarray) -> list[str]:
@@ -315,17 +304,15 @@ def coverage_table(
     return lines
 
 
-def choice_table(choices: dict[tuple[float, bool], np.ndarray], series: np.ndarray) -> list[str]:
+def choice_table(choices: dict[float, np.ndarray], series: np.ndarray) -> list[str]:
     """Return the interval scores of what was tried, a test weighted as everywhere."""
     lines = [
-        "| band without samples | growth with the distance | interval score | points | width |",
-        "| ---: | --- | ---: | ---: | ---: |",
+        "| band without samples | interval score | points | width |",
+        "| ---: | ---: | ---: | ---: |",
     ]
-    for (shape, grows), values in choices.items():
+    for shape, values in choices.items():
         score, held, width = np.average(values, axis=1, weights=weights(series))
-        lines.append(
-            f"| {shape} | {'yes' if grows else 'no'} | {score:.3f} | {held:.2f} | {width:.2f} |"
-        )
+        lines.append(f"| {shape} | {score:.3f} | {held:.2f} | {width:.2f} |")
     return lines
 
 
@@ -352,9 +339,8 @@ def by_chance(inside: dict[str, np.ndarray], series: np.ndarray) -> list[str]:
 
 def write(scatter: Scatter, tables: dict[str, list[str]]) -> None:
     """Put numbers and tables where they belong."""
-    names = (*NAMES.values(), "shape", "force", *NUMBERS, "growth")
+    names = (*NAMES.values(), "shape", "force", *NUMBERS)
     values = {name: getattr(scatter, name) for name in names}
-    values["middle"] = {"mean": scatter.middle.mean, "axes": scatter.middle.axes}
     text = json.dumps(values, indent=2) + "\n"
     (ROOT / "data/layered_spread.json").write_text(text, "utf-8")
     path = ROOT / "docs/peer.md"
@@ -386,13 +372,7 @@ def main() -> None:
     kinds = np.array([case.specimen.kind for case in cases])
     inside = {name: np.full(len(cases), np.nan) for name in ("force", *NUMBERS)}
     width = np.empty(len(cases))
-    places = np.array(
-        [
-            place_of(case.column.recipe.section, case.specimen.length, case.specimen.axial_load)
-            for case in cases
-        ]
-    )
-    choices: dict[tuple[float, bool], np.ndarray] = {}
+    choices: dict[float, np.ndarray] = {}
     with ProcessPoolExecutor(given.jobs, initializer=_begin, initargs=source) as pool:
 
         def run(function: Any, tasks: list[Any]) -> Iterator[Any]:
@@ -402,7 +382,7 @@ def main() -> None:
         once: dict[str, Any] | None = {} if given.once else None
         for judged in range(len(_without)):
             own = group == judged
-            found = fold(judged, series, group, places, given.samples, run, once)
+            found = fold(judged, series, group, given.samples, run, once)
             width[own] = found.width[own]
             for key, values in found.choices.items():
                 choices.setdefault(key, np.empty_like(values))[:, own] = values[:, own]
@@ -411,7 +391,7 @@ def main() -> None:
             seconds = time.perf_counter() - began
             held = inside["force"][own].mean()
             print(f"group {judged + 1}: {held:.2f} within, {seconds:.0f} s", flush=True)
-        shipped = fold(None, series, group, places, given.samples, run, once).scatter
+        shipped = fold(None, series, group, given.samples, run, once).scatter
     tables = {
         "scatter": residual_table(rows, series),
         "coverage": coverage_table(inside, width, kinds, group, series),

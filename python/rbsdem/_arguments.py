@@ -57,7 +57,7 @@ def number(value: Any, name: str, **bounds: Any) -> float:
     if type(value) is float:
         return value
     try:
-        if isinstance(value, _NO_NUMBERS) or np.ma.is_masked(value):
+        if isinstance(value, _NO_NUMBERS):
             raise TypeError
         if isinstance(value, np.ndarray) and (value.ndim or value.dtype.kind not in "iuf"):
             raise TypeError
@@ -145,14 +145,10 @@ def vector(values: ArrayLike, name: str, *, shape: str = "m") -> Array:
 
     `shape` is "m" for one dimension, "1 or m" where one number stands for an array of one, "any".
     """
-    if np.ma.is_masked(values):
-        raise InputError(
-            f"{name} has masked values, which would be used as they are; remove them or fill them",
-            name,
-        )
     try:
         array = np.asarray(values)
-        if array.dtype.kind not in "iuf" and array.size:
+        # numpy would use the value below a mask.
+        if np.ma.is_masked(values) or (array.dtype.kind not in "iuf" and array.size):
             raise TypeError
         array = array.astype(np.float64)
     except Exception:  # Of any class of the caller.

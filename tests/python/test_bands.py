@@ -14,7 +14,6 @@ from rbsdem import Concrete, Layout, Steel
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.run.bands import (
     Interval,
-    Middle,
     Scatter,
     _normal_points,
     near_shear,
@@ -47,23 +46,6 @@ def test_without_scatter_the_band_is_that_of_the_shape() -> None:
     np.testing.assert_allclose(found.force - found.lower, 2 * 0.05 * peak, rtol=1e-9)
     np.testing.assert_array_equal(found.samples, np.tile(found.force, (16, 1)))
     assert found.width == pytest.approx(0.2)
-
-
-def test_the_band_grows_with_the_distance_from_the_tests() -> None:
-    """The distance is that of Mahalanobis, of the properties that the table of the tests has."""
-    covariance = np.diag([0.2, 0.5, 0.6, 0.5, 0.8]) ** 2
-    covariance[0, 2] = covariance[2, 0] = 0.05
-    axes = np.linalg.inv(np.linalg.cholesky(covariance))
-    mean = (0.2, 1.2, 0.3, -1.5, -3.0)
-    middle = Middle(mean, tuple(tuple(row[: i + 1]) for i, row in enumerate(axes.tolist())))
-    found = rbsdem.peer.band(column(), PATH, scatter=replace(NONE, growth=0.3, middle=middle))
-    bars, ties = 8 * np.pi / 4 * 0.02**2 * 450 / 40, 3 * np.pi / 4 * 0.01**2 / 0.08 * 400 / 40
-    logs = np.log([1.6 / 0.4, 40 / 30, bars / 0.16, ties / 0.4])
-    way = np.array([1.2e6 / (0.16 * 40e6), *logs]) - mean
-    distance = math.sqrt(way @ np.linalg.solve(covariance, way))
-    assert found.distance == pytest.approx(distance, rel=1e-12)
-    assert found.width == pytest.approx(0.2 * math.exp(0.3 * distance))
-    assert math.isnan(rbsdem.peer.band(column(), PATH, scatter=NONE).distance)
 
 
 def test_scatter_of_strength_is_a_factor() -> None:

@@ -24,7 +24,7 @@ from rbsdem.measured.drawing import column as column_of
 from rbsdem.measured.specimens import Specimen, read_specimens
 from rbsdem.model.column import Column
 from rbsdem.model.shape import CircularSection, Section
-from rbsdem.run.bands import Band, has_bands, numbers, place_of
+from rbsdem.run.bands import Band, features_of, has_bands, numbers
 from rbsdem.run.bands import band as band_of
 from rbsdem.run.result import Result, cyclic
 from rbsdem.section.columns import DEFAULT, model_name
@@ -467,7 +467,7 @@ def nearest(
         If `n` is below 1.
     """
     _arguments.integer(n, "nearest: n", least=1)
-    features = place_of(section, height, axial_load)
+    features = features_of(section, height, axial_load)
     is_round = isinstance(section, CircularSection) if but is None else _is_round(but)
     found = []
     for one in tests:
@@ -506,4 +506,4 @@ def _is_round(specimen: Specimen) -> bool:
 def _features(specimen: Specimen) -> tuple[float, ...]:
     with unwarned():
         section = draw(specimen).section
-    return place_of(section, specimen.length, specimen.axial_load)
+    return features_of(section, specimen.length, specimen.axial_load)

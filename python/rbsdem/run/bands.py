@@ -6,8 +6,7 @@ laboratory and from test to test (`Scatter`). Samples of it (Sobol points) go th
 force times a factor, the displacement over a factor, and the parameters of degradation times one.
 The bands of the samples are then widened by one number so that 80 % of the points of left-out tests
 lie within (conformal prediction), because a model is wrong in more ways than three. The number is
-another for columns that come near their shear strength, squat or slender, and grows with the
-distance from the middle of the tests.
+another for columns that come near their shear strength, squat or slender.
 """
 
 from __future__ import annotations
@@ -59,38 +58,6 @@ _FASTER = ("fatigue", "wear", "shear_decay", "core_softening", "cover_softening"
 _DEGRADATION = dict.fromkeys(_FASTER, 1) | {"shear_endurance": -1}
 
 
-@dataclass(frozen=True, slots=True)
-class Middle:
-    """The middle of some tests, and how they are spread around it.
-
-    The distance from it is that of Mahalanobis: in standard deviations of the tests, correlations
-    allowed for. Left-out tests are predicted the worse the farther they are from the others.
-
-    Attributes
-    ----------
-    mean : tuple of float
-        Their mean properties.
-    axes : tuple of tuple of float
-        Lower triangle A, a row for each property, of which A' A is the inverse of their covariance.
-    """
-
-    mean: tuple[float, ...]
-    axes: tuple[tuple[float, ...], ...]
-
-    def distance(self, place: tuple[float, ...]) -> float:
-        """Return the distance of a column; it is below 3 for nearly all of the tests.
-
-        Parameters
-        ----------
-        place : tuple of float
-            Its properties, see `place_of`.
-        """
-        way = [value - mean for value, mean in zip(place, self.mean, strict=True)]
-        # The rows of a triangle are shorter than the way.
-        sums = [sum(a * x for a, x in zip(row, way, strict=False)) for row in self.axes]
-        return math.hypot(*sums)
-
-
 @dataclass(frozen=True, kw_only=True)
 class Scatter:
     """Scatter of left-out tests about the model.
@@ -109,11 +76,6 @@ class Scatter:
     peak, energy, drift : ((float, float), (float, float), (float, float))
         Ends of the 80 % intervals of largest force, work and drift at 20 % loss, over what is
         predicted, likewise.
-    growth : float, optional
-        By what the band grows with the distance from the middle of the tests: a factor exp(growth
-        distance), in which `force` is that at the middle.
-    middle : Middle, optional
-        The middle of the tests; without it nothing grows.
     """
 
     strength: tuple[float, float]
@@ -124,8 +86,6 @@ class Scatter:
     peak: tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
     energy: tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
     drift: tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
-    growth: float = 0.0
-    middle: Middle | None = None
 
 
 @cache
@@ -136,11 +96,7 @@ def scatter_of_tests() -> Scatter:
     many points of such tests lie within the bands.
     """
     given = json.loads(_package.text("layered_spread.json"))
-    middle = given.pop("middle")
-    return Scatter(
-        **{name: _frozen(value) for name, value in given.items()},
-        middle=Middle(_frozen(middle["mean"]), _frozen(middle["axes"])),
-    )
+    return Scatter(**{name: _frozen(value) for name, value in given.items()})
 
 
 def _frozen(value: Any) -> Any:
@@ -201,9 +157,6 @@ class Band(Tabular):
         Largest force [N], work [J], drift ratio at which 20 % of the strength is lost.
     near_shear : float
         How near the column is to its shear strength, 0 to 1, on which the width depends.
-    distance : float
-        How far it is from the middle of the tests that the model was fitted to, in their standard
-        deviations, on which the width depends too; NaN where the version does not know it.
     remarks : tuple of str
         Where the column is outside the range of the tests that the parameters were fitted to.
     """
@@ -220,7 +173,6 @@ class Band(Tabular):
     energy: Interval
     drift_at_loss: Interval
     near_shear: float
-    distance: float
     remarks: tuple[str, ...]
 
     def __repr__(self) -> str:
@@ -301,8 +253,8 @@ def likeness(section: Section, height: float, axial_load: float) -> dict[str, fl
     }
 
 
-def place_of(section: Section, height: float, axial_load: float) -> tuple[float, ...]:
-    """Return the properties of `likeness` as the distance from the tests takes them.
+def features_of(section: Section, height: float, axial_load: float) -> tuple[float, ...]:
+    """Return the properties of `likeness` on the scale on which columns are compared.
 
     The axial load ratio, and logarithms of the others: of the concrete strength over 30 MPa.
     """
@@ -379,10 +331,7 @@ def band(
     near = near_shear(column, peak)
     place = Place(near, slender(column.height, column._recipe.section.depth))
     up, down = half_band(force, sampled, scatter)
-    distance = _distance(column, scatter)
     widen = between(scatter.force, place)
-    if scatter.middle is not None:
-        widen *= math.exp(scatter.growth * distance)
     values = numbers(d, force, column.height)
     moved = float(np.abs(np.diff(d)) @ np.abs(0.5 * (force[1:] + force[:-1])))
     return Band(
@@ -398,7 +347,6 @@ def band(
             values["drift"], scatter.drift, place, float(np.max(np.abs(d))) / column.height
         ),
         near_shear=near,
-        distance=distance,
         remarks=remarks,
     )
 
@@ -496,14 +444,6 @@ def near_shear(column: Column, peak: float) -> float:
     strength = min(strength, getattr(foot, "f_y_neg", None) or strength)
     low, high = _NEAR
     return min(max((peak / strength - low) / (high - low), 0.0), 1.0)
-
-
-def _distance(column: LayeredColumn, scatter: Scatter) -> float:
-    """Return how far a column is from the middle of the tests; NaN where that is not known."""
-    recipe = column._recipe
-    if scatter.middle is None:
-        return math.nan
-    return scatter.middle.distance(place_of(recipe.section, recipe.height, column.axial_load))
 
 
 class Place(NamedTuple):
