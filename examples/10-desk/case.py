@@ -37,7 +37,7 @@ print(f"curvature {np.abs(hinge.curvature).max():.3f} 1/m, ductility {hinge.duct
 # The same column by codes and regressions.
 beside = codes.compare(codes.code_values(section, HEIGHT, LOAD), result)
 print("\ndrift at a loss of 20 %")
-for source, drift in beside["strength_loss"].items():
+for source, drift in beside.to_pandas().loc["strength_loss"].drop("unit").dropna().items():
     print(f"{source:9s} {100 * drift:5.2f} %")
 
 # What the section carries, and what the code asks for.

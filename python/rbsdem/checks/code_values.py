@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import Literal
@@ -357,50 +358,29 @@ def backbones(values: CodeValues) -> list[Backbone]:
 
 # ---- the comparison ------------------------------------------------------------------------------
 
-#: The columns of the table, in order.
-SOURCES = ("test", "model", "ASCE 41", "EC 8-3", "Elwood", "Haselton", "Berry", "Goodnight")
 
-
-@dataclass(frozen=True)
-class Quantity:
-    """One quantity by all sources.
+@dataclass(frozen=True, repr=False, eq=False)
+class CodeComparison(Tabular):
+    """A response, perhaps a test, and the values of codes and regressions for the same column.
 
     Attributes
-    ----------
-    name : str
-        "stiffness", "yield_drift", "largest_force", "shear_strength", "spalling", "bar_buckling",
-        "strength_loss" or "axial_failure".
-    meaning, unit : str
-        What it is, and its unit: "N/m", "N" or "drift".
-    values : dict of str to float
-        By the names of `SOURCES`; NaN or missing where a source says nothing.
-    """
-
-    name: str
-    meaning: str
-    unit: str
-    values: dict[str, float]
-
-
-class CodeComparison(Tabular):
-    """A response, perhaps a test, and what codes and regressions say of the same column.
-
-    Parameters
     ----------
     values : CodeValues
         Of the codes.
     result : Result
         The response.
-    test : Curve or None
-        A measured loop.
+    test : (ndarray, ndarray) or None
+        Displacements [m] and forces [N] of a measured loop.
     """
 
-    def __init__(self, values: CodeValues, result: Response, test: Curve | None) -> None:
-        self.values = values
-        self.result = result
-        self.test = None if test is None else _loop(test)
-        self.backbones: list[Backbone] = backbones(values)
-        self._rows = {row.name: row for row in _rows(self)}
+    values: CodeValues
+    result: Response
+    test: tuple[Array, Array] | None = None
+
+    @cached_property
+    def backbones(self) -> list[Backbone]:
+        """Backbones of the sources that cover the column."""
+        return backbones(self.values)
 
     @property
     def span(self) -> float:
@@ -412,19 +392,14 @@ class CodeComparison(Tabular):
         """Axial load that leans with the column [N]; 0 without second-order effects."""
         return 0.0 if self.result.column.kinematics == "small" else self.values.quantities.load
 
-    def __getitem__(self, name: str) -> dict[str, float]:
-        """Return a quantity by source; `KeyError` if there is none of that name."""
-        return self._rows[name].values
-
-    def __iter__(self) -> Iterator[Quantity]:
-        return iter(self._rows.values())
-
     def to_pandas(self) -> DataFrame:
-        """Return a DataFrame in SI: a row a quantity, a column a source that says anything."""
-        rows = [{"quantity": row.name, "unit": row.unit} | row.values for row in self]
-        sources = [source for source in SOURCES if any(source in row.values for row in self)]
-        frame = data_frame(rows, columns=["quantity", "unit", *sources])
-        return frame.set_index("quantity")
+        """Return a DataFrame in SI: a row a quantity, a column each for test, model and sources."""
+        measured = _measured(self)
+        rows = [
+            {"quantity": name, "unit": unit, **measured.get(name, {}), **_stated(self, value, keys)}
+            for name, (unit, value, keys) in _QUANTITIES.items()
+        ]
+        return data_frame(rows).set_index("quantity").dropna(axis="columns", how="all")
 
     def __repr__(self) -> str:
         return f"CodeComparison({', '.join(b.name for b in self.backbones)} beside {self.result})"
@@ -438,8 +413,8 @@ def compare(values: CodeValues, result: Response, test: Curve | None = None) -> 
     values : CodeValues
         What `code_values` returns for the same column.
     result : Result
-        Of the same column; with a fixed top its shear span is half of its height. In time that of a
-        layered hinge needs its openings (``openings=True``).
+        Of the same column; with a fixed top its shear span is half of its height. The table of a
+        layered hinge in time needs its openings (``openings=True``).
     test : Result, PeerTest or pair of arrays, optional
         The measured loop [m, N].
 
@@ -451,12 +426,11 @@ def compare(values: CodeValues, result: Response, test: Curve | None = None) -> 
     Raises
     ------
     InputError
-        If the column has another span, axial load or section, the openings of a layered hinge were
-        not kept in time, or the test is no loop.
+        If the column has another span, axial load or section, or the test is no loop.
     """
     _arguments.instance(values, "compare: values", CodeValues)
     _check_same(values.quantities, result.column)
-    return CodeComparison(values, result, test)
+    return CodeComparison(values, result, None if test is None else _loop(test))
 
 
 def _check_same(q: Quantities, column: Column) -> None:
@@ -489,28 +463,22 @@ def _loop(curve: Curve) -> tuple[Array, Array]:
     return _arguments.finite_vector(d, "displacement"), _arguments.finite_vector(f, "force")
 
 
-def _rows(found: CodeComparison) -> list[Quantity]:
-    """Return all quantities, those of the codes where they cover the column."""
-    measured = _measured(found)
-    rows = []
-    for name, (meaning, unit, how, codes) in _QUANTITIES.items():
-        values = dict(measured.get(name, {}))
-        for source, key in codes.items():
-            try:
-                values[source] = how(found, key)
-            except ValueError:  # This source does not cover the column.
-                continue
-        known = {s: values[s] for s in SOURCES if math.isfinite(values.get(s, math.nan))}
-        rows.append(Quantity(name, meaning, unit, known))
-    return rows
+def _stated(
+    found: CodeComparison, value: Callable[[CodeComparison, str], float], keys: dict[str, str]
+) -> dict[str, float]:
+    """Return a quantity by the sources that cover the column."""
+    stated = {}
+    for source, key in keys.items():
+        with suppress(InputError):
+            stated[source] = value(found, key)
+    return stated
 
 
 def _measured(found: CodeComparison) -> dict[str, dict[str, float]]:
-    """Return what the test and the model say, by quantity and source."""
+    """Return the quantities of the test and of the model."""
     result, height = found.result, found.result.column.height
-    loops = {"model": loop_pair(result, "the model")}
-    if found.test is not None:
-        loops["test"] = found.test
+    loops = {} if found.test is None else {"test": found.test}
+    loops["model"] = loop_pair(result, "the model")
     names = ("stiffness", "yield_drift", "largest_force", "strength_loss")
     rows: dict[str, dict[str, float]] = {name: {} for name in names}
     for source, (d, f) in loops.items():
@@ -587,19 +555,14 @@ _LOSS = {
 }
 _AXIAL = {"ASCE 41": "asce_41.b", "Elwood": "elwood.axial_drift"}
 
-#: Meaning, unit, how the values of codes are found, and from what, by source.
-_QUANTITIES: dict[str, tuple[str, str, Callable[[CodeComparison, str], float], dict[str, str]]] = {
-    "stiffness": ("secant stiffness (codes: to yield)", "N/m", _secant, _YIELD),
-    "yield_drift": (
-        "drift at yield, by the secant at 0.75 of the peak",
-        "drift",
-        _at_yield,
-        _YIELD,
-    ),
-    "largest_force": ("largest lateral force", "N", _largest, {name: name for name in _YIELD}),
-    "shear_strength": ("shear strength", "N", _value, _SHEAR),
-    "spalling": ("drift at spalling", "drift", _value, {"Berry": "berry.spalling"}),
-    "bar_buckling": ("drift at bar buckling", "drift", _value, _BUCKLING),
-    "strength_loss": ("drift at a loss of 20 %", "drift", _loss, _LOSS),
-    "axial_failure": ("drift at axial failure", "drift", _axial_failure, _AXIAL),
+#: Unit, function, and by source the key that the function takes.
+_QUANTITIES: dict[str, tuple[str, Callable[[CodeComparison, str], float], dict[str, str]]] = {
+    "stiffness": ("N/m", _secant, _YIELD),
+    "yield_drift": ("drift", _at_yield, _YIELD),
+    "largest_force": ("N", _largest, {name: name for name in _YIELD}),
+    "shear_strength": ("N", _value, _SHEAR),
+    "spalling": ("drift", _value, {"Berry": "berry.spalling"}),
+    "bar_buckling": ("drift", _value, _BUCKLING),
+    "strength_loss": ("drift", _loss, _LOSS),
+    "axial_failure": ("drift", _axial_failure, _AXIAL),
 }

@@ -378,10 +378,11 @@ def code_comparison(found: CodeComparison, *, ax: Axes | None = None) -> Axes:
         for line in found.backbones:
             way = _above_zero(100 * line.drift, 1e-3 * line.force(found.span, found.leaning))
             drawn.plot(*way, label=line.name, **_BACKBONE, **_BACKBONES[line.name])
+        drifts = found.to_pandas()
         for row, source, label, fill in _DAMAGE:
-            if source in found[row]:
+            if source in drifts and np.isfinite(drifts.loc[row, source]):
                 look: Line = {"marker": "v" if row == "spalling" else "P", "mfc": fill}
-                drawn.plot(100 * found[row][source], 0.0, label=label, **_AT_ZERO, **look)
+                drawn.plot(100 * drifts.loc[row, source], 0.0, label=label, **_AT_ZERO, **look)
         drawn.axhline(0.0, **ZERO_LINE)
         drawn.axvline(0.0, **ZERO_LINE)
         drawn.margins(x=0.03, y=0.06)
