@@ -16,7 +16,7 @@ from strategies_frames import FAMILIES, MODULUS, drifts, frame
 
 import rbsdem
 from rbsdem.frames import Frame, FrameMember, FrameNode, Member
-from rbsdem.model.frame_result import FrameResult, rigid_lengths
+from rbsdem.model.frame_result import FrameResult
 from rbsdem.springs import Elastic
 
 
@@ -90,7 +90,7 @@ class Geometry:
         self.e = way / length
         self.t = np.array([self.e[1], -self.e[0]])
         self.name = parts.members[at]
-        self.rigid = rigid_lengths(made, self.name)
+        self.rigid = made.geometry[self.name].rigid
         self.clear = length - sum(self.rigid)
         self.load = made.load_of(self.name) * abs(self.e[0])
 
@@ -344,7 +344,7 @@ def explicit(rng: Rng, made: Frame, x: float, y: float) -> Frame:
     members = [
         Member(
             f"member {i}", *(names[parts.nodes[at]] for at in parts.ends[i]),
-            kind=remade(made.kind_of(name), panel=0.0), panel=rigid_lengths(made, name),
+            kind=remade(made.kind_of(name), panel=0.0), panel=made.geometry[name].rigid,
             load=made.load_of(name),
         )
         for i, name in enumerate(parts.members)

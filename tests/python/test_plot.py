@@ -391,15 +391,18 @@ def test_shape_and_moments_of_a_frame(figures):
     first = pushed.events[0]
     assert labels[0].startswith(f"{first.member}, {first.end}, yields, then")
     (beam,) = [i for i, name in enumerate(pushed.frame.parts.members) if name == "B-1-1"]
-    member = frames._members(pushed.frame)[beam]
+    member = pushed.frame.geometry["B-1-1"]
     along = frames._forces(pushed, beam, member, "moment", -1)
+    axes = plot.member_forces(pushed, "moment")
+    numbers = {text.get_text() for text in axes.texts}
+    assert {f"{abs(1e-3 * along[at]):.0f}" for at in (0, 20)} <= numbers
     assert along[[0, 10, 20]] == pytest.approx(-pushed.member("B-1-1").force[-1])
     rigid = rbsdem.FrameMember(
         30e9, 0.16, 2.1e-3, flexure=rbsdem.springs.Bilinear(5e7, 4e-3, 5e5), between="rigid"
     )
     bent = rbsdem.Frame.grid([3.0], [6.0], columns=rigid, beams=rigid, base="pinned")
     swayed = rbsdem.pushover(bent, drift=0.03, points=3)
-    for member in frames._members(bent):
+    for member in bent.geometry.values():
         points = frames._deformed(swayed, member, -1, 1.0)
         straight = points[0] + np.linspace(0, 1, len(points))[:, None] * (points[-1] - points[0])
         assert points == pytest.approx(straight, abs=1e-9)

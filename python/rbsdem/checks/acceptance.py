@@ -19,7 +19,7 @@ from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame
 from rbsdem.checks import formulas
 from rbsdem.errors import InputError
-from rbsdem.model.frame_result import FrameResult, rigid_lengths
+from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.shape import Section, TeeSection
 from rbsdem.section.axial_moment import nominal_moment
 
@@ -109,44 +109,22 @@ def demands(result: FrameResult, rows: Array) -> list[_Demand]:
     rows : ndarray of float
         Rows; between two of them with the share of the way.
     """
-    frame, parts = result.frame, result.frame.parts
-    at = np.arange(result.time.size)
+    at, frame = np.arange(result.time.size), result.frame
 
     def of(values: Array) -> Array:
-        return np.column_stack([np.interp(rows, at, one) for one in values.T])
+        """Return what a member has in the rows."""
+        return np.column_stack([np.interp(rows, at, one) for one in np.atleast_2d(values.T)])
 
-    x, y, turn = of(result.x), of(result.y), of(result.turn)
-    axial, first, last = of(result.member_axial), of(result.moment_from), of(result.moment_to)
-    panels = {
-        one.member: np.interp(rows, at, result.springs["rotation"][:, i])
-        for i, one in enumerate(parts.springs_of("flexure"))
-        if one.group == "panel"
-    }
     found = []
-    for i, (name, (start, end)) in enumerate(zip(parts.members, parts.ends, strict=True)):
-        sections = frame.kind_of(name).sections
+    for i, (name, one) in enumerate(frame.geometry.items()):
+        sections, length = frame.kind_of(name).sections, one.clear
         if sections is None:
             continue
-        away = np.array([parts.x[end] - parts.x[start], parts.y[end] - parts.y[start]])
-        whole = float(np.hypot(*away))
-        axis = away / whole
-        normal = np.array([axis[1], -axis[0]])
-        rigid = rigid_lengths(frame, name)
-        length = whole - sum(rigid)
-        upright = abs(axis[1]) > abs(axis[0])
-        turns = [turn[:, node] for node in (start, end)]
-        if not upright:
-            # Rotations of nodes are those of their columns.
-            names = (parts.nodes[start], parts.nodes[end])
-            turns = [one - panels.get(node, 0.0) for one, node in zip(turns, names, strict=True)]
-        across = [x[:, node] * normal[0] + y[:, node] * normal[1] for node in (start, end)]
-        chord = (across[1] - turns[1] * rigid[1] - across[0] - turns[0] * rigid[0]) / length
-        sway = (first[:, i] + last[:, i]) / length
-        # The load of the clear span; it pulls down, on the right of the way where that goes right.
-        hung = 0.5 * frame.load_of(name) * abs(float(axis[0])) * length * float(np.sign(axis[0]))
-        for j, moments in enumerate((first[:, i], last[:, i])):
-            rotation = turns[j] - chord
-            shear = np.abs(sway + (hung if j else -hung))
+        axial, turned = of(result.member_axial[:, i])[:, 0], of(result.chord_rotation[:, i])
+        ends = of(np.column_stack((result.moment_from[:, i], result.moment_to[:, i]))).T
+        sway = ends.sum(axis=0) / length
+        for j, moments in enumerate(ends):
+            rotation, shear = turned[:, j], np.abs(one.shear(ends[0], ends[1], float(j)))
             for side in (1.0, -1.0):
                 row = int((side * rotation).argmax())
                 if side * rotation[row] <= 0:
@@ -159,8 +137,8 @@ def demands(result: FrameResult, rows: Array) -> list[_Demand]:
                 moved = abs(float(moments[row])) / max(abs(float(sway[row])), 1e-9)
                 found.append(
                     _Demand(
-                        name, ("start", "end")[j], upright, length, near, far,
-                        float(axial[row, i]), abs(float(moments[row])), float(shear.max()),
+                        name, ("start", "end")[j], one.upright, length, near, far,
+                        float(axial[row]), abs(float(moments[row])), float(shear.max()),
                         abs(float(rotation[row])), min(max(moved, most), max(length, most)),
                     )
                 )  # fmt: skip

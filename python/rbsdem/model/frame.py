@@ -345,6 +345,68 @@ class FrameParts:
         return [spring for spring in self.springs if spring.group in groups]
 
 
+@dataclass(frozen=True)
+class MemberGeometry:
+    """Where a member is, between the rigid lengths at its nodes.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    start, end : int
+        Numbers of its nodes, from 0.
+    axis : ndarray, shape (2,)
+        Direction from its start to its end.
+    rigid : tuple of float
+        Rigid lengths at its start and at its end [m].
+    clear : float
+        Clear length between them [m].
+    foot : ndarray, shape (2,)
+        Where the clear length begins [m].
+    load : float
+        Dead load on it, downward, per length along x [N/m].
+    """
+
+    name: str
+    start: int
+    end: int
+    axis: Array
+    rigid: tuple[float, float]
+    clear: float
+    foot: Array
+    load: float
+
+    @property
+    def normal(self) -> Array:
+        """To the right of one who goes from its start to its end: a clockwise turn from `axis`."""
+        return np.array([self.axis[1], -self.axis[0]])
+
+    @property
+    def upright(self) -> bool:
+        """Whether it is rather a column than a beam."""
+        return bool(abs(self.axis[1]) > abs(self.axis[0]))
+
+    @property
+    def across_load(self) -> float:
+        """Its load along `normal`, per clear length [N/m]."""
+        return self.load * float(abs(self.axis[0]) * self.axis[0])
+
+    def moment(self, first: ArrayLike, last: ArrayLike, shares: ArrayLike) -> Array:
+        """Return moments along the clear length, positive with tension on the side of `normal`.
+
+        `first` and `last` are the moments of its ends, clockwise on the member [N m]; `shares` are
+        places from 0 to 1.
+        """
+        s, hung = np.asarray(shares, float), 0.5 * self.across_load * self.clear**2
+        one, two = np.asarray(first, float), np.asarray(last, float)
+        return np.asarray(one * (1 - s) - two * s + hung * s * (1 - s))
+
+    def shear(self, first: ArrayLike, last: ArrayLike, shares: ArrayLike) -> Array:
+        """Return what the moments lose per length on the way from start to end [N]."""
+        s, sway = np.asarray(shares, float), (np.asarray(first) + np.asarray(last)) / self.clear
+        return np.asarray(sway + self.across_load * self.clear * (s - 0.5))
+
+
 @dataclass(frozen=True, repr=False)
 class Frame:
     """A planar frame: a grid of storeys and bays, single nodes and members, or both.
@@ -508,6 +570,37 @@ class Frame:
             ),
             float(mass[0]),
         )
+
+    @cached_property
+    def geometry(self) -> dict[str, MemberGeometry]:
+        """Where each member is, by its name, in the order of the columns of a result."""
+        parts, own = self.parts, {member.name: member for member in self.members}
+        nodes, found = np.column_stack((parts.x, parts.y)), {}
+        for name, (start, end) in zip(parts.members, parts.ends.tolist(), strict=True):
+            rigid: Any = own[name].panel if name in own else self.kind_of(name).panel
+            if not isinstance(rigid, tuple):
+                foot = name.startswith("C") and name.endswith("-1")
+                rigid = (0.0 if foot else rigid, rigid)
+            length = float(np.hypot(*(nodes[end] - nodes[start])))
+            axis = (nodes[end] - nodes[start]) / length
+            begin = nodes[start] + rigid[0] * axis
+            found[name] = MemberGeometry(
+                name, start, end, axis, rigid, length - sum(rigid), begin, self.load_of(name)
+            )
+        return found
+
+    @cached_property
+    def supports(self) -> dict[str, str]:
+        """Nodes that are held: "roller", "pinned", "fixed", or "springs" from the ground."""
+        parts = self.parts
+        held: dict[str, str] = {
+            name: self.base for name, i in zip(parts.nodes, parts.floor, strict=True) if i == 0
+        }
+        for node in self.nodes:
+            how = node.support or held.get(node.name, "free")
+            sprung = any((node.shear, node.axial_spring, node.flexure))
+            held[node.name] = "springs" if how == "free" and sprung else how
+        return {name: how for name, how in held.items() if how != "free"}
 
     @property
     def height(self) -> float:

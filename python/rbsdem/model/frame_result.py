@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
 from rbsdem import _core
 from rbsdem._types import Array
 from rbsdem.errors import InputError
-from rbsdem.model.frame import HONESTY, Frame, FrameSpring, place_of
+from rbsdem.model.frame import HONESTY, Frame, FrameSpring, MemberGeometry, place_of
 from rbsdem.model.rows import ENERGIES, Rows
 from rbsdem.model.springs import Landmark, Layered
-
-if TYPE_CHECKING:
-    pass
 
 #: Names of the springs' deformations and forces in rows, by group.
 _CHANNELS = {
@@ -83,9 +80,13 @@ class MemberHistory:
         Axial force, compression positive [N].
     moment : ndarray, shape (rows, 2)
         Moments at the ends of its clear length, clockwise on the member positive [N m].
-    shear : ndarray, shape (rows,)
-        Change of the moment along the clear length, (M_a + M_b)/L, without the share of a load on
-        the member [N].
+    shear : ndarray, shape (rows, 2)
+        Shear forces at the ends, (M_a + M_b)/L with the share of a load on the member [N].
+    chord_rotation, plastic_rotation : ndarray, shape (rows, 2)
+        Clockwise rotations of the faces of the ends against the chord of the clear length [rad],
+        and what is beyond that at which the end yielded first to the side.
+    geometry : MemberGeometry
+        Where it is; its `moment` and `shear` give forces between the ends.
     springs : tuple of FrameSpring
         Its springs.
     deformation, force : ndarray, shape (rows, springs)
@@ -99,6 +100,9 @@ class MemberHistory:
     axial: Array
     moment: Array
     shear: Array
+    chord_rotation: Array
+    plastic_rotation: Array
+    geometry: MemberGeometry
     springs: tuple[FrameSpring, ...]
     deformation: Array
     force: Array
@@ -204,6 +208,135 @@ class FrameResult(Rows):
         """Storey drifts in the last row, shape (storeys,)."""
         return np.asarray(self.storey_drift[-1])
 
+    @cached_property
+    def chord_rotation(self) -> Array:
+        """Rotations of members' ends against the chord, shape (rows, members, 2) [rad].
+
+        Clockwise rotations of the faces against the line between the ends of the clear length.
+        """
+        parts = self.frame.parts
+        found = np.empty((self.time.size, len(parts.members), 2))
+        # Rotations of nodes are those of their columns.
+        panels = {
+            one.member: self.springs["rotation"][:, i]
+            for i, one in enumerate(parts.springs_of("flexure"))
+            if one.group == "panel"
+        }
+        for i, one in enumerate(self.frame.geometry.values()):
+            for j, node in enumerate((one.start, one.end)):
+                beside = 0.0 if one.upright else panels.get(parts.nodes[node], 0.0)
+                found[:, i, j] = self.turn[:, node] - beside
+            found[:, i] -= self._chord(one, found[:, i])[:, None]
+        return found
+
+    def _chord(self, one: MemberGeometry, turned: Array | None = None) -> Array:
+        """Return the clockwise rotation of the chord of a member [rad]."""
+        nodes = [one.start, one.end]
+        turned = self.turn[:, nodes] if turned is None else turned
+        across = self.x[:, nodes] * one.normal[0] + self.y[:, nodes] * one.normal[1]
+        return np.asarray((np.diff(across)[:, 0] - turned @ np.array(one.rigid)) / one.clear)
+
+    def _end_forces(self, one: MemberGeometry, at: int) -> tuple[Array, Array]:
+        """Return the forces of a member on the nodes at its two ends, each shape (rows, 3).
+
+        Along x and upward [N], and clockwise [N m], in equilibrium with the loads on the member,
+        with the second-order work of its axial force under the dead load.
+        """
+        ends = self.moment_from[:, at], self.moment_to[:, at]
+        lean = np.zeros(self.time.size)
+        if self.frame.kinematics == "pdelta":
+            lean = self.frame.parts.compression[at] * self._chord(one)
+        if self.lost is not None:
+            lean = np.where(self.lost[:, at] > 0, 0.0, lean)
+        found = []
+        for j, sign in enumerate((1.0, -1.0)):
+            across = -sign * (one.shear(*ends, float(j)) + lean)
+            # The load of the rigid length is carried by the node.
+            node = (
+                self.member_axial[:, at, None] * (-sign * one.axis) + across[:, None] * one.normal
+            )
+            node[:, 1] -= one.load * abs(one.axis[0]) * one.rigid[j]
+            found.append(np.column_stack((node, -ends[j] + across * one.rigid[j] * sign)))
+        return found[0], found[1]
+
+    @cached_property
+    def reactions(self) -> dict[str, Array]:
+        """Forces of supports and springs of the ground on the nodes, each shape (rows, 3).
+
+        Along x and upward [N], and clockwise [N m], by the forces of the members that end in a
+        node and its loads; in time without forces of damping.
+        """
+        frame, parts = self.frame, self.frame.parts
+        found = {name: np.zeros((self.time.size, 3)) for name in frame.supports}
+        own = {node.name: node for node in frame.nodes}
+        for name in found.keys() & own.keys():
+            node = own[name]
+            found[name] -= np.array([node.load_x, node.load_y, node.load_moment])
+        for at, one in enumerate(frame.geometry.values()):
+            for i, force in zip((one.start, one.end), self._end_forces(one, at), strict=True):
+                if parts.nodes[i] in found:
+                    found[parts.nodes[i]] -= force
+        return found
+
+    @cached_property
+    def base_moment(self) -> Array:
+        """Overturning moment of the reactions, clockwise on the ground, shape (rows,) [N m].
+
+        About the ground below the resultant of the dead load, with the second-order moment.
+        """
+        parts, own = self.frame.parts, {node.name: node for node in self.frame.nodes}
+        weights = [
+            (one.load * abs(parts.x[one.end] - parts.x[one.start]), one)
+            for one in self.frame.geometry.values()
+        ]
+        loads = [(w, 0.5 * (parts.x[one.start] + parts.x[one.end])) for w, one in weights]
+        loads += [
+            (-own[n].load_y, x) for n, x in zip(parts.nodes, parts.x, strict=True) if n in own
+        ]
+        total = sum(load for load, _ in loads)
+        about = sum(load * x for load, x in loads) / total if total else float(parts.x.mean())
+        low, moment = float(parts.y.min()), np.zeros(self.time.size)
+        for name, force in self.reactions.items():
+            i = parts.nodes.index(name)
+            moment -= force[:, 2] - (parts.x[i] - about) * force[:, 1]
+            moment -= (parts.y[i] - low) * force[:, 0]
+        return moment
+
+    @cached_property
+    def storey_shear(self) -> Array:
+        """What the members just above each floor carry along x, shape (rows, storeys) [N].
+
+        With the second-order work of their axial forces: on a static path the sum of the lateral
+        loads above.
+        """
+        return self._above_floors()[0]
+
+    @property
+    def stability_coefficient(self) -> Array:
+        """P-Delta coefficients of the storeys, theta = P d/(V h), shape (rows, storeys).
+
+        P is the dead load above, d/h the storey drift, V the storey shear (EN 1998-1, 4.4.2.2).
+        """
+        shear, weight = self._above_floors()
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(weight * self.storey_drift / shear)
+
+    def _above_floors(self) -> tuple[Array, Array]:
+        """Return storey shears, (rows, storeys), and dead loads above, (storeys,) [N]."""
+        count, parts = len(self._storeys()), self.frame.parts
+        level = np.array([parts.y[parts.floor == i].mean() for i in range(count + 1)])
+        cuts = level[:-1] + 1e-3 * np.diff(level)
+        shear, weight = np.zeros((self.time.size, count)), np.zeros(count)
+        for at, one in enumerate(self.frame.geometry.values()):
+            upward = parts.y[one.start] < parts.y[one.end]
+            low, high = sorted((parts.y[one.start], parts.y[one.end]))
+            through = (low < cuts) & (cuts < high)
+            if through.any():
+                lower = self._end_forces(one, at)[0 if upward else 1]
+                shear[:, through] += lower[:, :1]
+                weight[through] += parts.compression[at] * abs(one.axis[1])
+        return shear, weight
+
     def _storeys(self) -> tuple[float, ...]:
         storeys: Any = self.frame.storeys
         if not storeys:
@@ -243,21 +376,37 @@ class FrameResult(Rows):
             yields = [point.deformation for point in points if point.name == "yield"]
             largest = float(np.abs(kept).max(initial=0.0))
             ductility.append(largest / min(yields) if yields else np.nan)
-        start, end = parts.ends[at]
-        length = float(np.hypot(parts.x[end] - parts.x[start], parts.y[end] - parts.y[start]))
-        moment = np.column_stack((self.moment_from[:, at], self.moment_to[:, at]))
-        clear = length - sum(rigid_lengths(self.frame, name))
+        ends, where = (self.moment_from[:, at], self.moment_to[:, at]), self.frame.geometry[name]
         rows = (self.time.size, 0)
         return MemberHistory(
             name,
             self.member_axial[:, at],
-            moment,
-            moment.sum(axis=1) / clear,
+            np.column_stack(ends),
+            np.column_stack([where.shear(*ends, share) for share in (0.0, 1.0)]),
+            self.chord_rotation[:, at],
+            self._plastic(name, self.chord_rotation[:, at]),
+            where,
             tuple(springs),
             np.column_stack(deformation) if springs else np.empty(rows),
             np.column_stack(force) if springs else np.empty(rows),
             np.array(ductility),
         )
+
+    def _plastic(self, name: str, turned: Array) -> Array:
+        """Return rotations beyond those at the first yield of an end to each side."""
+        found = np.zeros_like(turned)
+        for spring, values, _ in self._springs():
+            if spring.member != name or spring.group != "flexure" or spring.place not in (0.0, 1.0):
+                continue
+            points = [(one, self._reached(one, values)) for one in landmarks_of(self.frame, spring)]
+            for point, row in [*points, *self._yields(spring, values)]:
+                if point.name == "yield" and row is not None:
+                    end = int(spring.place)
+                    way = np.sign(turned[row, end])
+                    beyond = np.maximum(way * (turned[:, end] - turned[row, end]), 0.0)
+                    beyond[:row] = 0.0
+                    found[:, end] += way * beyond
+        return found
 
     def _springs(self) -> list[tuple[FrameSpring, Array, Array]]:
         found = []
@@ -354,13 +503,7 @@ class FrameResult(Rows):
             kind = self.frame.kind_of(name)
             if kind.failure_drift is None or kind.failure_load is None:
                 continue
-            (start, end), rigid = parts.ends[at], rigid_lengths(self.frame, name)
-            way = np.array([parts.y[end] - parts.y[start], parts.x[start] - parts.x[end]])
-            length = float(np.hypot(*way))
-            moved = np.stack((self.x[:, [start, end]], self.y[:, [start, end]]))
-            across = np.tensordot(way / length, np.diff(moved, axis=2)[..., 0], 1)
-            arms = rigid[0] * self.turn[:, start] + rigid[1] * self.turn[:, end]
-            drift = np.abs(across - arms) / (length - sum(rigid))
+            drift = np.abs(self._chord(self.frame.geometry[name]))
             failed = drift >= (np.inf if kind.shear_drift is None else kind.shear_drift)
             for spring, values, _ in self._springs():
                 if spring.member == name and spring.group == "shear":
@@ -466,30 +609,23 @@ def span_note(result: FrameResult) -> str:
             bent.setdefault(spring.member, []).append((spring, largest))
     found: list[tuple[float, str, float, float]] = []
     for name, all_springs in bent.items():
-        load, at = frame.load_of(name), parts.members.index(name)
-        if not load:
+        where, at = frame.geometry[name], parts.members.index(name)
+        if not where.load:
             continue
         # Beside joints of layers stand springs that never yield.
         layered = [own for own in all_springs if own[0].rule == "layered"]
         springs, over = (layered, _OVER_LAYERS) if layered else (all_springs, _OVER_YIELD)
-        start, end = parts.ends[at]
-        axis = np.array([parts.x[end] - parts.x[start], parts.y[end] - parts.y[start]])
-        clear = float(np.linalg.norm(axis)) - sum(rigid_lengths(frame, name))
-        cosine = axis[0] / np.linalg.norm(axis)
-        across = load * abs(cosine) * cosine * clear**2
         first, last = result.moment_from[:, at], result.moment_to[:, at]
-        place = 0.5 - (first + last) / across
-        moment = np.where(
-            (place > 0) & (place < 1), first - (first + last) * place
-            + 0.5 * across * place * (1 - place), 0.0,
-        )  # fmt: skip
+        shares = 0.5 - (first + last) / (where.across_load * where.clear**2)
+        inside = (shares > 0) & (shares < 1)
+        moment = np.where(inside, where.moment(first, last, shares), 0.0)
         row = int(np.abs(moment).argmax()) if moment.size else 0
         known = max(largest for _, largest in springs)
         if moment.size and abs(moment[row]) > over * known:
             known = max(known, *(_yield_moment(frame, spring) for spring, _ in springs))
         if moment.size and abs(moment[row]) > over * known:
             ratio = float(abs(moment[row]) / known) if known else np.inf
-            found.append((ratio, name, float(abs(moment[row])), float(place[row])))
+            found.append((ratio, name, float(abs(moment[row])), float(shares[row])))
     if not found:
         return ""
     ratio, name, largest, place = max(found)
@@ -517,18 +653,6 @@ def _yield_moment(frame: Frame, spring: FrameSpring) -> float:
     if own is None:
         return spring.stiffness * max(turned)
     return max(float(abs(own.response([turn])[-1])) for turn in turned)
-
-
-def rigid_lengths(frame: Frame, member: str) -> tuple[float, float]:
-    """Return the rigid lengths at the two ends of a member [m]."""
-    for own in frame.members:
-        if own.name == member:
-            return own.panel
-    panel = frame.kind_of(member).panel
-    if isinstance(panel, tuple):
-        return panel
-    at_base = member.startswith("C") and member.endswith("-1")
-    return 0.0 if at_base else panel, panel
 
 
 def frame_result_of(

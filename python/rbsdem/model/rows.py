@@ -131,16 +131,20 @@ class Rows:
         """Displacement of the top over the height, shape (rows,)."""
         return self.displacement / self.structure.height
 
-    def at(self, time: float) -> dict[str, Any]:
-        """Return the state at a time, or at a point of a static path, linear between rows.
+    def at(
+        self, time: float | Literal["peak"] | None = None, *, drift: float | None = None
+    ) -> dict[str, Any]:
+        """Return the state at a time, at a drift, or at the largest force, linear between rows.
 
         The rows are those of `path`, which of a static path has the events between the points too.
 
         Parameters
         ----------
-        time : float
+        time : float or "peak", optional
             Within `time` [s]; in a static analysis the number of the point, which may lie between
-            two.
+            two. "peak": where the force of the loop is largest in size.
+        drift : float, optional
+            Where the drift of the top reaches this value first; in place of `time`.
 
         Returns
         -------
@@ -151,10 +155,18 @@ class Rows:
         Raises
         ------
         InputError
-            If the time is outside of the rows.
+            If the time is outside of the rows, or the drift is not reached.
         """
-        at = _arguments.number(time, "time")
+        if (time is None) == (drift is None):
+            raise InputError('at: give exactly one of time (or "peak") and drift')
         path, times = self.path, self.path.time
+        if isinstance(time, str):
+            _arguments.choice(time, "time", ("peak",))
+            at = float(times[np.abs(path.loop_force).argmax()])
+        elif drift is None:
+            at = _arguments.number(time, "time")
+        else:
+            at = path._time_of(_arguments.number(drift, "drift"))
         if not times.size or not times[0] <= at <= times[-1]:
             span = f"{times[0]:g} to {times[-1]:g}" if times.size else "nothing"
             raise InputError(f"time = {at:g} is outside of the rows, which hold {span}")
@@ -175,6 +187,21 @@ class Rows:
             if name in _DICTS or (isinstance(value, np.ndarray) and name not in _NO_ROWS)
         }
         return state | {"time": at}
+
+    def _time_of(self, drift: float) -> float:
+        """Return the time at which the drift of the top reaches a value first."""
+        beyond = self.drift - drift
+        crossed = np.flatnonzero(beyond * beyond[:1] <= 0)
+        if not crossed.size:
+            low, high = float(self.drift.min()), float(self.drift.max())
+            raise InputError(
+                f"drift = {drift:g} is not reached; the rows go from {low:g} to {high:g}"
+            )
+        last = int(crossed[0])
+        first = max(last - 1, 0)
+        moved = beyond[first] - beyond[last]
+        share = beyond[first] / moved if moved else 0.0
+        return float(self.time[first] + share * (self.time[last] - self.time[first]))
 
     def envelope(self, side: Literal[1, -1] = 1) -> Envelope:
         """Return the envelope of the loop to one side; see `rbsdem.curves.envelope`."""

@@ -114,11 +114,10 @@ def assessment(found: Assessment, *, ax: Axes | None = None, **line: Any) -> Axe
         frames._draw_supports(drawn, structure, frames._size(structure))
         frames._undeformed(drawn, structure, True)
         places: dict[int, list[Any]] = {}
-        for member in frames._members(structure):
-            start = frames._start(structure, member)
+        for member in structure.geometry.values():
             for end, share in (("start", 0.06), ("end", 0.94)):
                 if (member.name, end) in states:
-                    at = start + share * member.length * member.axis
+                    at = member.foot + share * member.clear * member.axis
                     places.setdefault(states[member.name, end], []).append(at)
         for passed, points in sorted(places.items()):
             face = _NOT_COVERED if passed < 0 else _PASSED[passed]

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._types import Array
 from rbsdem.errors import InputError
-from rbsdem.model.frame import Frame
-from rbsdem.model.frame_result import FrameResult, landmarks_of, rigid_lengths
+from rbsdem.model.frame import Frame, MemberGeometry
+from rbsdem.model.frame_result import FrameResult, landmarks_of
 from rbsdem.output.style import (
     MODEL_LINE,
     TEST_LINE,
@@ -66,38 +66,14 @@ _VERBS |= {"shear failure": "fails in shear"}
 _SYMBOL = 0.022
 _BESIDE = 0.016
 
-#: Most members whose names are drawn.
+#: Forces along members, and titles of their figures.
+_FORCES = {
+    "moment": "Moments (kN m)",
+    "shear": "Shear forces (kN)",
+    "axial": "Axial forces (kN)",
+}
+#: Most members whose names and forces are written.
 _NAMED = 60
-
-
-class _Member(NamedTuple):
-    """A member between the rigid lengths at its nodes.
-
-    Attributes
-    ----------
-    name : str
-        Its name.
-    start, end : int
-        Numbers of its nodes.
-    axis : ndarray, shape (2,)
-        Direction from its start to its end.
-    panel : tuple of float
-        Rigid lengths [m].
-    length : float
-        Clear length [m].
-    """
-
-    name: str
-    start: int
-    end: int
-    axis: Array
-    panel: tuple[float, float]
-    length: float
-
-    @property
-    def normal(self) -> Array:
-        """To the right of one who goes from its start to its end: a clockwise turn from `axis`."""
-        return np.array([self.axis[1], -self.axis[0]])
 
 
 def frame(
@@ -152,7 +128,7 @@ def frame(
         if result is not None:
             assert scale is not None
             moved = moved + scale * np.column_stack((result.x[row], result.y[row]))
-            for i, member in enumerate(_members(structure)):
+            for i, member in enumerate(structure.geometry.values()):
                 bent = _deformed(result, member, row, scale)
                 lost = result.lost is not None and result.lost[row, i] > 0
                 line = _MEMBER | (_LOST if lost else {})
@@ -283,20 +259,21 @@ def storey_drift(result: FrameResult, *, ax: Axes | None = None, **line: Any) ->
 
 def member_forces(
     result: FrameResult,
-    force: Literal["moment", "axial"] = "moment",
+    force: Literal["moment", "shear", "axial"] = "moment",
     *,
     row: int = -1,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw moments or axial forces of the members along their axes.
+    """Draw moments, shear forces or axial forces of the members along their axes.
 
     Parameters
     ----------
     result : FrameResult
         Response of a frame.
-    force : {"moment", "axial"}, optional
-        Moments stand on the side in tension: those of the ends, and between them the parabola of
-        a load on the member. Compression is filled, tension is not.
+    force : {"moment", "shear", "axial"}, optional
+        Moments are on the side in tension: those of the ends, and between them the parabola of
+        a load on the member. Shear of a beam is above where it turns the beam clockwise.
+        Compression is filled, tension is not.
     row : int, optional
         Row of the result, the last one by default.
     ax : matplotlib Axes, optional
@@ -305,7 +282,8 @@ def member_forces(
     Returns
     -------
     matplotlib.axes.Axes
-        The axes, in m. The largest force of a beam and of a column is written beside it.
+        The axes, in m. Numbers are at all ends and at the largest moment between them; of frames
+        with more than 60 members only the largest of a column and of a beam.
 
     Raises
     ------
@@ -313,31 +291,52 @@ def member_forces(
         If there is no such row.
     """
     _arguments.instance(result, "plot.member_forces", FrameResult)
-    force = _arguments.choice(force, "plot.member_forces: force", ("moment", "axial"))
+    force = _arguments.choice(force, "plot.member_forces: force", tuple(_FORCES))
     row = _row(result, row)
-    structure = result.frame
-    members = _members(structure)
+    structure, name = result.frame, _FORCES[force]
+    members = list(structure.geometry.values())
     values = [_forces(result, i, members[i], force, row) for i in range(len(members))]
     largest = max(float(np.abs(value).max()) for value in values) or 1.0
-    reach = 0.22 * float(np.median([member.length for member in members]))
-    unit = "kN m" if force == "moment" else "kN"
-    with axes_or_new(ax, _figure_size(structure)) as drawn:
+    reach = 0.22 * float(np.median([member.clear for member in members])) / largest
+    # Room for the numbers.
+    wide, high = _figure_size(structure)
+    with axes_or_new(ax, (1.25 * wide, 1.25 * high)) as drawn:
         _draw_supports(drawn, structure, _size(structure))
         for member, value in zip(members, values, strict=True):
-            start = _start(structure, member)
-            axis = start + np.linspace(0, member.length, value.size)[:, None] * member.axis
-            off = axis + reach / largest * value[:, None] * member.normal
+            axis = member.foot + np.linspace(0, member.clear, value.size)[:, None] * member.axis
+            off = axis + reach * value[:, None] * member.normal
             outline = np.vstack((axis[:1], off, axis[-1:]))
             face = "white" if force == "axial" and value[0] < 0 else "0.85"
             drawn.fill(*outline.T, facecolor=face, edgecolor="none", zorder=1.5)
             drawn.plot(*outline.T, color="black", linewidth=0.5, zorder=2)
-        for upright in (True, False):
-            _write_largest(drawn, structure, members, values, upright)
+        for i, at in _numbered(members, values, force):
+            _write_force(drawn, members[i], values[i], at, reach)
         _undeformed(drawn, structure, True)
-        name = {"moment": "Moments", "axial": "Axial forces"}[force]
-        drawn.set_title(_heading(result, row, f"{name} ({unit})"))
+        drawn.set_title(_heading(result, row, name))
         _dress(drawn, structure)
     return drawn
+
+
+def _numbered(
+    members: list[MemberGeometry], values: list[Array], force: str
+) -> list[tuple[int, int]]:
+    """Return the members and places at which numbers are written."""
+    found = []
+    if len(members) > _NAMED:
+        for upright in (True, False):
+            own = [i for i, one in enumerate(members) if one.upright is upright]
+            i = max(own, key=lambda i: float(np.abs(values[i]).max()), default=-1)
+            found += [(i, int(np.abs(values[i]).argmax()))] if own else []
+        return found
+    for i, value in enumerate(values):
+        places = {0, value.size - 1}
+        if np.ptp(value) <= 1e-9 * abs(value[0]):
+            places = {value.size // 2}
+        elif force == "moment":
+            turns = int(value.argmax()), int(value.argmin())
+            places |= {at for at in turns if 2 < at < value.size - 3}
+        found += [(i, at) for at in sorted(places) if value[at]]
+    return found
 
 
 def _row(result: FrameResult, row: int) -> int:
@@ -346,26 +345,6 @@ def _row(result: FrameResult, row: int) -> int:
     if not -count <= row < count:
         raise InputError(f"row = {row}: the result has {count} rows; give {-count} to {count - 1}")
     return row % count
-
-
-def _members(structure: Frame) -> list[_Member]:
-    parts = structure.parts
-    found = []
-    for name, (start, end) in zip(parts.members, parts.ends, strict=True):
-        between = np.array([parts.x[end] - parts.x[start], parts.y[end] - parts.y[start]])
-        length = float(np.hypot(*between))
-        panel = rigid_lengths(structure, name)
-        found.append(
-            _Member(name, int(start), int(end), between / length, panel, length - sum(panel))
-        )
-    return found
-
-
-def _start(structure: Frame, member: _Member) -> Array:
-    """Return where the clear length of a member begins [m]."""
-    parts = structure.parts
-    node = np.array([parts.x[member.start], parts.y[member.start]])
-    return np.asarray(node + member.panel[0] * member.axis)
 
 
 def _size(structure: Frame) -> float:
@@ -404,7 +383,7 @@ def _hinge_rotations(result: FrameResult, name: str, row: int) -> Array:
     return turned
 
 
-def _panel_rotations(result: FrameResult, member: _Member, row: int) -> Array:
+def _panel_rotations(result: FrameResult, member: MemberGeometry, row: int) -> Array:
     """Return the rotations of the columns against a beam in the nodes that it ends in."""
     turned = np.zeros(2)
     if abs(member.axis[0]) <= abs(member.axis[1]):
@@ -432,7 +411,7 @@ def cubic(across: Array, slopes: Array, shares: Array) -> Array:
 
 
 def _deformed(
-    result: FrameResult, member: _Member, row: int, scale: float, shares: Array | None = None
+    result: FrameResult, member: MemberGeometry, row: int, scale: float, shares: Array | None = None
 ) -> Array:
     """Return points along a member with its displacements times a factor [m]."""
     shares = np.linspace(0, 1, 25) if shares is None else shares
@@ -440,14 +419,14 @@ def _deformed(
     turn = result.turn[row, nodes] - _panel_rotations(result, member, row)
     moved = np.column_stack((result.x[row, nodes], result.y[row, nodes]))
     # The rigid lengths turn with their nodes.
-    moved = moved + np.outer(turn * (member.panel[0], -member.panel[1]), member.normal)
+    moved = moved + np.outer(turn * (member.rigid[0], -member.rigid[1]), member.normal)
     along, across = moved @ member.axis, moved @ member.normal
     hinges = _hinge_rotations(result, member.name, row)
-    slopes = member.length * (turn + hinges * (1, -1))
+    slopes = member.clear * (turn + hinges * (1, -1))
     bent = cubic(across, slopes, shares)
-    way = shares * member.length + scale * (along[0] + shares * np.diff(along))
+    way = shares * member.clear + scale * (along[0] + shares * np.diff(along))
     drawn = np.outer(way, member.axis)
-    return np.asarray(_start(result.frame, member) + drawn + scale * np.outer(bent, member.normal))
+    return np.asarray(member.foot + drawn + scale * np.outer(bent, member.normal))
 
 
 def _draw_hinges(
@@ -460,7 +439,7 @@ def _draw_hinges(
         if event.group != "member" and event.step <= result.time[row]:  # type: ignore[union-attr]
             key = event.member, event.group, event.end
             reached[key] = max(reached.get(key, ""), event.what, key=order.index)
-    members = {member.name: member for member in _members(structure)}
+    members = {member.name: member for member in structure.geometry.values()}
     beside = _BESIDE * _size(structure)
     points: dict[str, list[Array]] = {state: [] for state in _STATES}
     for spring in structure.parts.springs:
@@ -480,10 +459,10 @@ def _draw_hinges(
         # Between the ends only what has been reached: sections there seldom are.
         if not state and 0.0 < spring.place < 1.0 and spring.group == "flexure":
             continue
-        aside = min(beside / member.length, 0.3)
+        aside = min(beside / member.clear, 0.3)
         share = np.array([np.clip(spring.place, aside, 1 - aside)])
         if result is None:
-            at = _start(structure, member) + share * member.length * member.axis
+            at = member.foot + share * member.clear * member.axis
         else:
             at = _deformed(result, member, row, scale, share)[0]
         points[state].append(at)
@@ -507,9 +486,9 @@ def _undeformed(ax: Axes, structure: Frame, strong: bool) -> Array:
     nodes = np.column_stack((parts.x, parts.y))
     for ends in parts.ends:
         ax.plot(*nodes[ends].T, **(_MEMBER if strong else _UNDEFORMED))
-    for member in _members(structure) if strong else ():
+    for member in structure.geometry.values() if strong else ():
         # Rigid lengths are thick.
-        for node, length in ((member.start, member.panel[0]), (member.end, -member.panel[1])):
+        for node, length in ((member.start, member.rigid[0]), (member.end, -member.rigid[1])):
             if length:
                 away = nodes[node] + length * member.axis
                 ax.plot(*np.vstack((nodes[node], away)).T, **_MEMBER | {"linewidth": 2.6})
@@ -519,16 +498,9 @@ def _undeformed(ax: Axes, structure: Frame, strong: bool) -> Array:
 def _draw_supports(ax: Axes, structure: Frame, size: float) -> None:
     """Draw what holds the nodes: a line, a triangle, one on wheels, a square for springs."""
     parts = structure.parts
-    held = dict.fromkeys(np.array(parts.nodes)[parts.floor == 0].tolist(), structure.base)
-    own: set[str] = set()
-    for node in structure.nodes:
-        if node.support:
-            held[node.name] = node.support  # type: ignore[assignment]
-        if any((node.shear, node.axial_spring, node.flexure)):
-            own.add(node.name)
     h = _SYMBOL * size
     for name, x, y in zip(parts.nodes, parts.x, parts.y, strict=True):
-        support: str = held.get(name, "free")
+        support = structure.supports.get(name, "free")
         ground = y
         if support in ("pinned", "roller"):
             ax.fill(
@@ -536,7 +508,7 @@ def _draw_supports(ax: Axes, structure: Frame, size: float) -> None:
                 facecolor="white", edgecolor="black", linewidth=0.7, zorder=2,
             )  # fmt: skip
             ground = y - 1.3 * h
-        elif name in own or (support == "free" and "base" in own and name in held):
+        elif support == "springs":
             ax.plot(x, y, linestyle="none", marker="s", markersize=7.0, markerfacecolor="white",
                     markeredgecolor="black", markeredgewidth=0.6, zorder=2)  # fmt: skip
             continue
@@ -551,9 +523,9 @@ def _draw_supports(ax: Axes, structure: Frame, size: float) -> None:
 
 
 def _write_names(ax: Axes, structure: Frame, size: float) -> None:
-    for member in _members(structure):
-        at = _start(structure, member) + 0.5 * member.length * member.axis
-        upright = abs(member.axis[1]) > abs(member.axis[0])
+    for member in structure.geometry.values():
+        at = member.foot + 0.5 * member.clear * member.axis
+        upright = member.upright
         side = np.array([-1.0, 0.0]) if upright else np.array([0.0, 1.0])
         ax.annotate(
             member.name,
@@ -568,49 +540,32 @@ def _write_names(ax: Axes, structure: Frame, size: float) -> None:
         )
 
 
-def _forces(result: FrameResult, i: int, member: _Member, force: str, row: int) -> Array:
+def _forces(result: FrameResult, i: int, member: MemberGeometry, force: str, row: int) -> Array:
     """Return a force along a member: moments positive with tension on the side of `normal`."""
     if force == "axial":
-        return np.repeat(result.member_axial[row, i], 2)
-    s = np.linspace(0, 1, 21)
-    along = abs(member.axis[0]) * member.axis[0]
-    load = result.frame.load_of(member.name) * along * member.length**2
-    start, end = result.moment_from[row, i], result.moment_to[row, i]
-    return np.asarray(start * (1 - s) - end * s + 0.5 * load * s * (1 - s))
+        return np.repeat(result.member_axial[row, i], 3)
+    along = member.moment if force == "moment" else member.shear
+    ends = result.moment_from[row, i], result.moment_to[row, i]
+    return along(*ends, np.linspace(0, 1, 21))
 
 
-def _write_largest(
-    ax: Axes, structure: Frame, members: list[_Member], values: list[Array], upright: bool
-) -> None:
-    """Write the largest value among the columns, or the beams, beside it."""
-    own = [
-        i
-        for i, member in enumerate(members)
-        if (abs(member.axis[1]) > abs(member.axis[0])) == upright and np.any(values[i])
-    ]
-    if not own:
-        return
-    i = max(own, key=lambda i: float(np.abs(values[i]).max()))
-    at = int(np.abs(values[i]).argmax())
-    share = at / (values[i].size - 1)
-    member, value = members[i], float(values[i][at])
-    reach = 0.22 * float(np.median([one.length for one in members]))
-    largest = max(float(np.abs(one).max()) for one in values)
-    place = _start(structure, member) + share * member.length * member.axis
-    tip = place + reach * value / largest * member.normal
-    outward = np.sign(value) * member.normal
-    axial = values[i].size == 2
+def _write_force(ax: Axes, member: MemberGeometry, values: Array, at: int, reach: float) -> None:
+    """Write a force of a member beside it."""
+    share, value = at / (values.size - 1), float(values[at])
+    tip = member.foot + share * member.clear * member.axis + reach * value * member.normal
+    outward, axial = np.sign(value) * member.normal, values.size == 3
     # Above and below a beam towards its middle, away from the column.
-    side = "left" if (outward[0] > 0.5 if upright else share <= 0.5) else "right"
+    side = "left" if (outward[0] > 0.5 if member.upright else share < 0.5) else "right"
+    inside = 0.3 < share < 0.7 and not member.upright
     ax.annotate(
         f"{abs(1e-3 * value):.0f}{', tension' if axial and value < 0 else ''}",
         tuple(tip),
-        xytext=4.0 * outward,
+        xytext=3.0 * outward + (6.0 * (1 - 2 * share) * member.axis if member.upright else 0.0),
         textcoords="offset points",
-        ha=side,
+        ha="center" if inside else side,
         va="bottom" if outward[1] > 0.5 else "top" if outward[1] < -0.5 else "center",
-        fontsize=7.0,
-        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
+        fontsize=6.0,
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.2, "alpha": 0.7},
         zorder=6,
     )
 
