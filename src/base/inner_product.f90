@@ -1,10 +1,10 @@
-!> The inner product of two arrays.
+!> The inner product of two arrays, and the sum of one.
 module rbs_base_inner_product
    use rbs_base_kinds, only: wp
    implicit none
    private
 
-   public :: inner_product
+   public :: inner_product, total
 
 contains
 
@@ -28,5 +28,18 @@ contains
          inner_product = inner_product + a(i)*b(i)
       end do
    end function inner_product
+
+   !> Sum of an array, its terms in any order.
+   pure real(wp) function total(m, a)
+      integer, intent(in) :: m
+      real(wp), intent(in) :: a(m)
+      integer :: i
+
+      total = 0.0_wp
+      !$omp simd reduction(+:total)
+      do i = 1, m
+         total = total + a(i)
+      end do
+   end function total
 
 end module rbs_base_inner_product

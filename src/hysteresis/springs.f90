@@ -83,6 +83,7 @@ module rbs_hysteresis_springs
       procedure :: move_all
       procedure :: carry_to
       procedure :: stay_on_lines
+      procedure :: find_blocked
       procedure :: nearest_end
       procedure :: go_along
       procedure :: lost_joint
@@ -524,6 +525,38 @@ contains
       end do
    end subroutine advance_all
 
+   !> The direction in which each spring should go but cannot on its line, +1 or -1; 0 if it can.
+   pure subroutine find_blocked(self, rate, blocked)
+      class(spring_array), intent(in) :: self
+      !> Rates of the first springs
+      real(wp), intent(in), contiguous :: rate(:)
+      integer, intent(out) :: blocked(size(rate))
+
+      call find_without_room(size(rate), rate, self%d, self%first, self%last, self%includes_lower_end, &
+                             self%includes_upper_end, self%unload_on_reversal, blocked)
+   end subroutine find_blocked
+
+   pure subroutine find_without_room(n, rate, d, first, last, includes_lower_end, includes_upper_end, &
+                                     unload_on_reversal, blocked)
+      integer, intent(in) :: n, unload_on_reversal(n)
+      real(wp), intent(in) :: rate(n), d(n), first(n), last(n)
+      logical, intent(in) :: includes_lower_end(n), includes_upper_end(n)
+      integer, intent(out) :: blocked(n)
+      integer :: i
+
+      do i = 1, n
+         blocked(i) = 0
+         ! A spring is beyond the last deformation of its line where the end itself does not belong to it.
+         if (rate(i) > 0.0_wp) then
+            if (d(i) > last(i) .or. unload_on_reversal(i) < 0 .or. &
+                (includes_upper_end(i) .and. d(i) >= last(i))) blocked(i) = 1
+         else if (rate(i) < 0.0_wp) then
+            if (d(i) < first(i) .or. unload_on_reversal(i) > 0 .or. &
+                (includes_lower_end(i) .and. d(i) <= first(i))) blocked(i) = -1
+         end if
+      end do
+   end subroutine find_without_room
+
    !> The first end of a line that springs reach from given deformations at constant rates.
    pure subroutine nearest_end(self, q, rate, way, ends)
       class(spring_array), intent(in) :: self
@@ -533,28 +566,45 @@ contains
       real(wp), intent(out) :: way
       !> The spring, 0 for none
       integer, intent(out) :: ends
-      real(wp) :: room
+      real(wp) :: room(size(q))
       integer :: i
 
+      call find_rooms(size(q), q, rate, self%first, self%last, room)
       way = huge(1.0_wp)
       ends = 0
       do i = 1, size(q)
-         room = huge(1.0_wp)
-         if (rate(i) > 0.0_wp) room = distance(self%last(i) - q(i), rate(i))
-         if (rate(i) < 0.0_wp) room = distance(q(i) - self%first(i), -rate(i))
-         if (.not. room < way) cycle
+         if (.not. room(i) < way) cycle
          ! The end itself may lie beyond the last deformation of the line: far beyond, as ways go, where the
          ! rate is next to nothing.
          if (rate(i) > 0.0_wp) then
-            room = distance(self%end_toward(i, 1) - q(i), rate(i))
+            room(i) = distance(self%end_toward(i, 1) - q(i), rate(i))
          else
-            room = distance(q(i) - self%end_toward(i, -1), -rate(i))
+            room(i) = distance(q(i) - self%end_toward(i, -1), -rate(i))
          end if
-         if (.not. room < way) cycle
-         way = room
+         if (.not. room(i) < way) cycle
+         way = room(i)
          ends = i
       end do
    end subroutine nearest_end
+
+   !> How long springs need to the last deformations of their lines.
+   pure subroutine find_rooms(n, q, rate, first, last, room)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: q(n), rate(n), first(n), last(n)
+      real(wp), intent(out) :: room(n)
+      real(wp) :: gap, pace, divisor
+      logical :: ends
+      integer :: i
+
+      !$omp simd
+      do i = 1, n
+         gap = merge(last(i) - q(i), q(i) - first(i), rate(i) > 0.0_wp)
+         pace = abs(rate(i))
+         ends = gap < 0.5_wp*huge(1.0_wp)*min(pace, 1.0_wp)
+         divisor = merge(pace, 1.0_wp, ends)
+         room(i) = merge(max(gap, 0.0_wp)/divisor, huge(1.0_wp), ends)
+      end do
+   end subroutine find_rooms
 
    !> How long a spring needs for a distance; `huge` on a line without end.
    elemental real(wp) function distance(way, rate)
@@ -565,39 +615,44 @@ contains
    end function distance
 
    !> Springs go at constant rates from given deformations, each on its own line and not beyond its end.
-   pure subroutine go_along(self, q, rate, way, slack, near)
+   pure subroutine go_along(self, q, rate, way, slack, near, count)
       class(spring_array), intent(inout) :: self
       !> Deformations of the first springs, rates of these and more; in units of the rates
       real(wp), intent(in), contiguous :: q(:), rate(:)
       real(wp), intent(in) :: way
       !> Springs that come closer than this to the end of their line, in shares of the end, are near it
       real(wp), intent(in) :: slack
-      !> Whether any is near the end that it goes to
-      logical, intent(out) :: near
+      !> The springs near the ends that they go to, and how many they are
+      integer, intent(out) :: near(size(q)), count
 
       call advance_along(size(q), q, rate, way, slack, self%d0, self%f0, self%k, self%unload_on_reversal, &
-                         self%d, self%work, self%first, self%last, near)
+                         self%d, self%work, self%first, self%last, near, count)
    end subroutine go_along
 
    pure subroutine advance_along(n, q, rate, way, slack, d0, f0, k, unload_on_reversal, d, work, first, &
-                                 last, near)
+                                 last, near, count)
       integer, intent(in) :: n, unload_on_reversal(n)
       real(wp), intent(in) :: q(n), rate(n), way, slack, d0(n), f0(n), k(n)
       real(wp), intent(inout) :: d(n), work(n), first(n), last(n)
-      logical, intent(out) :: near
-      real(wp) :: ahead, to
+      integer, intent(out) :: near(n), count
+      real(wp) :: gap(n), to
       integer :: i
 
-      near = .false.
+      !$omp simd
       do i = 1, n
-         ahead = q(i) + rate(i)*way
-         to = min(max(ahead, first(i)), last(i))
+         to = min(max(q(i) + rate(i)*way, first(i)), last(i))
          work(i) = work(i) + (f0(i) + k(i)*(0.5_wp*(to + d(i)) - d0(i)))*(to - d(i))
          d(i) = to
-         if (unload_on_reversal(i) > 0) first(i) = to
-         if (unload_on_reversal(i) < 0) last(i) = to
-         near = near .or. (rate(i) > 0.0_wp .and. last(i) - ahead <= slack*abs(last(i))) .or. &
-                (rate(i) < 0.0_wp .and. ahead - first(i) <= slack*abs(first(i)))
+         first(i) = merge(to, first(i), unload_on_reversal(i) > 0)
+         last(i) = merge(to, last(i), unload_on_reversal(i) < 0)
+         gap(i) = merge(last(i) - (q(i) + rate(i)*way), (q(i) + rate(i)*way) - first(i), rate(i) > 0.0_wp) &
+                  - slack*abs(merge(last(i), first(i), rate(i) > 0.0_wp))
+      end do
+      count = 0
+      do i = 1, n
+         if (gap(i) > 0.0_wp) cycle
+         count = count + 1
+         near(count) = i
       end do
    end subroutine advance_along
 

@@ -43,7 +43,7 @@ contains
       integer, intent(in) :: direction
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
-      integer :: changes, count, fewest, left, i
+      integer :: blocked(path%moving), changes, stopped, fewest, left, i
       logical :: found, may_pass, marked
 
       path%direction = 0
@@ -78,16 +78,16 @@ contains
             call report_no_line(path, target, error)
             return
          end if
-         count = without_room()
-         if (path%springs%pressed) call choose_planes(count)
+         stopped = without_room()
+         if (path%springs%pressed) call choose_planes(stopped)
          if (path%springs%lost_joint() > 0) return
-         if (count == 0) then
+         if (stopped == 0) then
             path%direction = direction
             if (marked) call path%springs%forget_mark()
             return
          end if
-         if (count < fewest) then
-            fewest = count
+         if (stopped < fewest) then
+            fewest = stopped
             left = patience
          else
             left = left - 1
@@ -173,25 +173,20 @@ contains
       end subroutine choose_planes
 
       !> Number of springs that cannot go the way they should on their present lines.
-      pure integer function without_room() result(count)
-         integer :: i
-
-         count = 0
-         do i = 1, path%moving
-            if (barred(path, i) /= 0) count = count + 1
-         end do
+      integer function without_room()
+         call path%springs%find_blocked(path%rate(:path%moving), blocked)
+         without_room = count(blocked /= 0)
       end function without_room
 
       !> Put the springs without room on the lines that follow, all or the first of them.
       subroutine change_lines(all_of_them)
          logical, intent(in) :: all_of_them
-         integer :: i, way
+         integer :: i
 
          do i = 1, path%moving
-            way = barred(path, i)
-            if (way == 0) cycle
+            if (blocked(i) == 0) cycle
             path%changed(i) = path%changed(i) + 1
-            call path%springs%leave(i, way)
+            call path%springs%leave(i, blocked(i))
             if (.not. all_of_them) return
          end do
       end subroutine change_lines
@@ -201,7 +196,7 @@ contains
       !> than can be tried, those come first that the search has changed more than once.
       subroutine try_all_ways()
          integer, allocatable :: tried(:)
-         integer :: trial, i, most, count
+         integer :: trial, i, most
 
          tried = pack([(i, i=1, path%moving)], [(way_out(path%springs, i) /= 0, i=1, path%moving)])
          tried = [pack(tried, path%changed(tried) > 1), pack(tried, path%changed(tried) <= 1)]
@@ -210,9 +205,9 @@ contains
          do trial = 1, 2**size(tried)
             call path%solve_line(direction, found)
             if (found) then
-               count = without_room()
-               if (path%springs%pressed) call choose_planes(count)
-               found = count == 0
+               stopped = without_room()
+               if (path%springs%pressed) call choose_planes(stopped)
+               found = stopped == 0
                if (found) return
             end if
             ! The bit that changes next in the Gray code.
@@ -243,7 +238,7 @@ contains
       real(wp), dimension(path%moving) :: v, gap, edge, k
       !> Whether a spring is virtually back on the line on which it came to the corner
       logical :: is_back(path%moving)
-      integer :: crossed(path%moving), i, m, first, spring, next, way, goes, sense, pivots, trial, ends
+      integer :: crossed(path%moving), blocked(path%moving), i, m, first, spring, next, way, goes, sense, pivots, trial, ends
 
       m = path%moving
       first = findloc(path%arrived(:m) /= 0, .true., dim=1)
@@ -298,6 +293,7 @@ contains
          next_way = 0
          next_at = 0.0_wp
          least = huge(1.0_wp)
+         call path%springs%find_blocked(path%rate(:m), blocked)
          do i = 1, m
             if (is_back(i)) then
                way = merge(1, -1, path%rate(i) > 0.0_wp)
@@ -305,7 +301,7 @@ contains
                at = edge(i)
                if (way /= path%arrived(i)) at = edge(i) + way*gap(i)
             else
-               way = barred(path, i)
+               way = blocked(i)
                if (way == 0) cycle
                at = merge(edge(i), way*gap(i), crossed(i) == -way)
                if (way == path%arrived(i) .and. path%one_way(i)) at = edge(i) - way*gap(i)
@@ -368,24 +364,6 @@ contains
          is_on_closed_end = springs%includes_lower_end(i) .and. springs%d(i) <= springs%first(i)
       end if
    end function is_on_closed_end
-
-   !> The direction in which a spring should go but cannot, 0 if it can.
-   pure integer function barred(path, i)
-      class(static_path), intent(in) :: path
-      integer, intent(in) :: i
-
-      barred = 0
-      associate (springs => path%springs)
-         ! A spring is beyond the last deformation of its line where the end itself does not belong to it.
-         if (path%rate(i) > 0.0_wp) then
-            if (springs%unload_on_reversal(i) < 0 .or. springs%d(i) > springs%last(i) .or. &
-                is_on_closed_end(springs, i, 1)) barred = 1
-         else if (path%rate(i) < 0.0_wp) then
-            if (springs%unload_on_reversal(i) > 0 .or. springs%d(i) < springs%first(i) .or. &
-                is_on_closed_end(springs, i, -1)) barred = -1
-         end if
-      end associate
-   end function barred
 
    !> The way by which a spring can leave its line where it stands, 0 if it cannot.
    pure integer function way_out(springs, i)

@@ -7,6 +7,7 @@
 module rbs_solve_static_path
    use rbs_base_check, only: is_given
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
+   use rbs_base_inner_product, only: total
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
@@ -350,8 +351,7 @@ contains
       type(error_type), allocatable, intent(inout) :: failure
       character(len=:), allocatable :: fault
       type(energy_type) :: energy
-      real(wp) :: there, gap, missing, place, ways, works, term
-      integer :: i
+      real(wp) :: there, gap, missing, place, ways, works
 
       energy = self%energies()
       call see_turn(self)
@@ -366,16 +366,9 @@ contains
                                   abs(energy%axial))
          if (abs(self%displacement) > check%farthest .or. wrong() > 0) then
             check%farthest = max(check%farthest, abs(self%displacement))
-            ways = 0.0_wp
-            works = 0.0_wp
-            do i = 1, springs%count
-               if (.not. check%share(i) > 0.0_wp) cycle
-               ways = ways + abs(self%structure%arm(i)*springs%d(i))
-               check%largest_force = max(check%largest_force, abs(springs%force(i))*check%share(i))
-               term = self%structure%initial_stiffness(i)*abs(springs%d(i))
-               check%stiff_force = max(check%stiff_force, term*check%share(i))
-               works = works + term*abs(springs%d(i))
-            end do
+            call measure_springs(springs%count, self%structure%arm, self%structure%initial_stiffness, &
+                                 check%share, springs%d, springs%d0, springs%f0, springs%k, ways, &
+                                 check%largest_force, check%stiff_force, works)
             if (wrong() > 0) call see_parts(check, self%structure, springs)
             check%largest_place = max(check%largest_place, ways)
             check%stiff_work = max(check%stiff_work, works)
@@ -414,6 +407,27 @@ contains
       end function wrong
 
    end subroutine look
+
+   !> What springs move the top by, and their works, in size; their largest forces, which grow.
+   pure subroutine measure_springs(n, arm, initial, share, d, d0, f0, k, ways, force, stiff_force, works)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: arm(n), initial(n), share(n), d(n), d0(n), f0(n), k(n)
+      real(wp), intent(out) :: ways, works
+      real(wp), intent(inout) :: force, stiff_force
+      real(wp) :: term
+      integer :: i
+
+      ways = 0.0_wp
+      works = 0.0_wp
+      !$omp simd reduction(+:ways, works) reduction(max:force, stiff_force) private(term)
+      do i = 1, n
+         term = initial(i)*abs(d(i))
+         force = max(force, abs(f0(i) + k(i)*(d(i) - d0(i)))*share(i))
+         stiff_force = max(stiff_force, term*share(i))
+         ways = ways + merge(abs(arm(i)*d(i)), 0.0_wp, share(i) > 0.0_wp)
+         works = works + merge(term*abs(d(i)), 0.0_wp, share(i) > 0.0_wp)
+      end do
+   end subroutine measure_springs
 
    !> The path is at a corner, a share of the way to the present target: its figures belong to the summary,
    !> and its row to those who keep every corner.
@@ -511,7 +525,7 @@ contains
       class(static_path), intent(in) :: self
 
       energy%input = self%work
-      energy%spring = sum(self%springs%work)
+      energy%spring = total(self%springs%count, self%springs%work)
       energy%damping = self%damped_before
       energy%axial = self%steady%potential_energy(self%springs%d) + self%load_work
       energy%residual = self%work + self%at_begin - energy%spring - energy%damping - energy%axial

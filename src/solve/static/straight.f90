@@ -3,6 +3,7 @@
 !> increments.
 module rbs_solve_static_straight
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
+   use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
@@ -182,26 +183,15 @@ contains
    subroutine begin_line(self, direction)
       class(straight_path), intent(inout) :: self
       integer, intent(in) :: direction
-      real(wp) :: way, missing, least, most
-      integer :: i
+      real(wp) :: way, missing
 
       self%arrived = 0
       self%start = self%control
       self%displacement_start = self%displacement
       self%force_start = self%force + self%equilibrium%force_correction
-      do i = 1, self%moving
-         ! Round-off of the equilibrium is corrected in full, off the rear end of a line too, or what is left
-         ! out would be missing at the next corner. More than round-off moves no spring off its line.
-         self%q(i) = self%springs%d(i) + self%equilibrium%correction(i)
-         least = self%springs%first(i)
-         most = self%springs%last(i)
-         if (abs(self%equilibrium%correction(i)) <= round_off*abs(self%springs%d(i))) then
-            if (self%rate(i) > 0.0_wp) least = self%q(i)
-            if (self%rate(i) < 0.0_wp) most = self%q(i)
-         end if
-         self%q(i) = min(max(self%q(i), least), most)
-      end do
-      missing = self%displacement - sum(self%structure%arm(:self%moving)*self%q)
+      call correct_within(self%moving, self%springs%d, self%equilibrium%correction, self%rate, &
+                          self%springs%first, self%springs%last, self%q)
+      missing = self%displacement - inner_product(self%moving, self%structure%arm, self%q)
       if (self%by_force) then
          self%displacement_start = self%displacement - missing
       else if (abs(missing) > 0.0_wp) then
@@ -213,21 +203,38 @@ contains
       if (self%ends > 0) self%finish = self%start + direction*way
    end subroutine begin_line
 
+   !> Round-off of the equilibrium is corrected in full, off the rear end of a line too, or what is left out
+   !> would be missing at the next corner. More than round-off moves no spring off its line.
+   pure subroutine correct_within(n, d, correction, rate, first, last, q)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: d(n), correction(n), rate(n), first(n), last(n)
+      real(wp), intent(out) :: q(n)
+      logical :: is_small
+      integer :: i
+
+      !$omp simd
+      do i = 1, n
+         q(i) = d(i) + correction(i)
+         is_small = abs(correction(i)) <= round_off*abs(d(i))
+         q(i) = min(max(q(i), merge(q(i), first(i), is_small .and. rate(i) > 0.0_wp)), &
+                    merge(q(i), last(i), is_small .and. rate(i) < 0.0_wp))
+      end do
+   end subroutine correct_within
+
    !> Go along the line; each spring moves on its own line.
    subroutine go(self, control)
       class(straight_path), intent(inout) :: self
       real(wp), intent(in) :: control
       real(wp) :: change, force, displacement, d
-      integer :: i
-      logical :: near
+      integer :: near(self%moving), count, j
 
       change = control - self%start
-      call self%springs%go_along(self%q, self%rate, abs(change), nearly, near)
-      do i = 1, merge(self%moving, 0, near)
-         d = self%q(i) + self%rate(i)*abs(change)
-         if (is_on_end(self%springs, i, d, self%rate(i))) then
-            call arrive(self, i)
-         end if
+      call self%springs%go_along(self%q, self%rate, abs(change), nearly, near, count)
+      do j = 1, count
+         associate (i => near(j))
+            d = self%q(i) + self%rate(i)*abs(change)
+            if (is_on_end(self%springs, i, d, self%rate(i))) call arrive(self, i)
+         end associate
       end do
       associate (line => self%equilibrium)
          force = self%force_start + line%force_rate*change
