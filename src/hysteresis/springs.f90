@@ -21,6 +21,9 @@ module rbs_hysteresis_springs
    !> of the rule. The longest correct move closes all open inner loops that a rule remembers.
    integer, parameter :: most_lines = 10000
 
+   !> Ways beyond this, in units of the rates, have no end.
+   real(wp), parameter :: farthest = 1.0e100_wp
+
    !> `count` springs in their present state. Assignment copies everything.
    type :: spring_array
       !> Number of springs
@@ -525,35 +528,40 @@ contains
       end do
    end subroutine advance_all
 
-   !> The direction in which each spring should go but cannot on its line, +1 or -1; 0 if it can.
-   pure subroutine find_blocked(self, rate, blocked)
+   !> Springs that cannot go the way they should on their lines.
+   pure subroutine find_blocked(self, rate, blocked, count)
       class(spring_array), intent(in) :: self
       !> Rates of the first springs
       real(wp), intent(in), contiguous :: rate(:)
-      integer, intent(out) :: blocked(size(rate))
+      !> The springs, and how many they are
+      integer, intent(out) :: blocked(size(rate)), count
 
       call find_without_room(size(rate), rate, self%d, self%first, self%last, self%includes_lower_end, &
-                             self%includes_upper_end, self%unload_on_reversal, blocked)
+                             self%includes_upper_end, self%unload_on_reversal, blocked, count)
    end subroutine find_blocked
 
    pure subroutine find_without_room(n, rate, d, first, last, includes_lower_end, includes_upper_end, &
-                                     unload_on_reversal, blocked)
+                                     unload_on_reversal, blocked, count)
       integer, intent(in) :: n, unload_on_reversal(n)
       real(wp), intent(in) :: rate(n), d(n), first(n), last(n)
       logical, intent(in) :: includes_lower_end(n), includes_upper_end(n)
-      integer, intent(out) :: blocked(n)
+      integer, intent(out) :: blocked(n), count
       integer :: i
 
+      count = 0
       do i = 1, n
-         blocked(i) = 0
          ! A spring is beyond the last deformation of its line where the end itself does not belong to it.
          if (rate(i) > 0.0_wp) then
-            if (d(i) > last(i) .or. unload_on_reversal(i) < 0 .or. &
-                (includes_upper_end(i) .and. d(i) >= last(i))) blocked(i) = 1
+            if (d(i) < last(i) .and. unload_on_reversal(i) >= 0) cycle
+            if (.not. (d(i) > last(i) .or. unload_on_reversal(i) < 0 .or. includes_upper_end(i))) cycle
          else if (rate(i) < 0.0_wp) then
-            if (d(i) < first(i) .or. unload_on_reversal(i) > 0 .or. &
-                (includes_lower_end(i) .and. d(i) <= first(i))) blocked(i) = -1
+            if (d(i) > first(i) .and. unload_on_reversal(i) <= 0) cycle
+            if (.not. (d(i) < first(i) .or. unload_on_reversal(i) > 0 .or. includes_lower_end(i))) cycle
+         else
+            cycle
          end if
+         count = count + 1
+         blocked(count) = i
       end do
    end subroutine find_without_room
 
@@ -566,45 +574,40 @@ contains
       real(wp), intent(out) :: way
       !> The spring, 0 for none
       integer, intent(out) :: ends
-      real(wp) :: room(size(q))
+
+      call find_first_end(self, size(q), q, rate, self%first, self%last, way, ends)
+   end subroutine nearest_end
+
+   pure subroutine find_first_end(springs, n, q, rate, first, last, way, ends)
+      type(spring_array), intent(in) :: springs
+      integer, intent(in) :: n
+      real(wp), intent(in) :: q(n), rate(n), first(n), last(n)
+      real(wp), intent(out) :: way
+      integer, intent(out) :: ends
+      real(wp) :: room, most
       integer :: i
 
-      call find_rooms(size(q), q, rate, self%first, self%last, room)
       way = huge(1.0_wp)
+      most = farthest
       ends = 0
-      do i = 1, size(q)
-         if (.not. room(i) < way) cycle
+      do i = 1, n
          ! The end itself may lie beyond the last deformation of the line: far beyond, as ways go, where the
          ! rate is next to nothing.
          if (rate(i) > 0.0_wp) then
-            room(i) = distance(self%end_toward(i, 1) - q(i), rate(i))
+            if (last(i) - q(i) > most*rate(i)) cycle
+            room = distance(springs%end_toward(i, 1) - q(i), rate(i))
+         else if (rate(i) < 0.0_wp) then
+            if (q(i) - first(i) > -most*rate(i)) cycle
+            room = distance(q(i) - springs%end_toward(i, -1), -rate(i))
          else
-            room(i) = distance(q(i) - self%end_toward(i, -1), -rate(i))
+            cycle
          end if
-         if (.not. room(i) < way) cycle
-         way = room(i)
+         if (.not. room < way) cycle
+         way = room
+         most = min(way, farthest)
          ends = i
       end do
-   end subroutine nearest_end
-
-   !> How long springs need to the last deformations of their lines.
-   pure subroutine find_rooms(n, q, rate, first, last, room)
-      integer, intent(in) :: n
-      real(wp), intent(in) :: q(n), rate(n), first(n), last(n)
-      real(wp), intent(out) :: room(n)
-      real(wp) :: gap, pace, divisor
-      logical :: ends
-      integer :: i
-
-      !$omp simd
-      do i = 1, n
-         gap = merge(last(i) - q(i), q(i) - first(i), rate(i) > 0.0_wp)
-         pace = abs(rate(i))
-         ends = gap < 0.5_wp*huge(1.0_wp)*min(pace, 1.0_wp)
-         divisor = merge(pace, 1.0_wp, ends)
-         room(i) = merge(max(gap, 0.0_wp)/divisor, huge(1.0_wp), ends)
-      end do
-   end subroutine find_rooms
+   end subroutine find_first_end
 
    !> How long a spring needs for a distance; `huge` on a line without end.
    elemental real(wp) function distance(way, rate)
@@ -635,7 +638,7 @@ contains
       real(wp), intent(in) :: q(n), rate(n), way, slack, d0(n), f0(n), k(n)
       real(wp), intent(inout) :: d(n), work(n), first(n), last(n)
       integer, intent(out) :: near(n), count
-      real(wp) :: gap(n), to
+      real(wp) :: to
       integer :: i
 
       !$omp simd
@@ -643,14 +646,16 @@ contains
          to = min(max(q(i) + rate(i)*way, first(i)), last(i))
          work(i) = work(i) + (f0(i) + k(i)*(0.5_wp*(to + d(i)) - d0(i)))*(to - d(i))
          d(i) = to
-         first(i) = merge(to, first(i), unload_on_reversal(i) > 0)
-         last(i) = merge(to, last(i), unload_on_reversal(i) < 0)
-         gap(i) = merge(last(i) - (q(i) + rate(i)*way), (q(i) + rate(i)*way) - first(i), rate(i) > 0.0_wp) &
-                  - slack*abs(merge(last(i), first(i), rate(i) > 0.0_wp))
       end do
       count = 0
       do i = 1, n
-         if (gap(i) > 0.0_wp) cycle
+         if (unload_on_reversal(i) > 0) first(i) = d(i)
+         if (unload_on_reversal(i) < 0) last(i) = d(i)
+         if (rate(i) > 0.0_wp) then
+            if (last(i) - d(i) > slack*abs(last(i))) cycle
+         else
+            if (d(i) - first(i) > slack*abs(first(i))) cycle
+         end if
          count = count + 1
          near(count) = i
       end do

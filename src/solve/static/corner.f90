@@ -43,7 +43,9 @@ contains
       integer, intent(in) :: direction
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
-      integer :: blocked(path%moving), changes, stopped, fewest, left, i
+      !> Springs that cannot go the way they should on their lines, their number, and that with planes
+      integer :: blocked(path%moving), springs_blocked, stopped
+      integer :: changes, fewest, left, i
       logical :: found, may_pass, marked
 
       path%direction = 0
@@ -78,7 +80,8 @@ contains
             call report_no_line(path, target, error)
             return
          end if
-         stopped = without_room()
+         call path%springs%find_blocked(path%rate(:path%moving), blocked, springs_blocked)
+         stopped = springs_blocked
          if (path%springs%pressed) call choose_planes(stopped)
          if (path%springs%lost_joint() > 0) return
          if (stopped == 0) then
@@ -172,22 +175,16 @@ contains
          end do
       end subroutine choose_planes
 
-      !> Number of springs that cannot go the way they should on their present lines.
-      integer function without_room()
-         call path%springs%find_blocked(path%rate(:path%moving), blocked)
-         without_room = count(blocked /= 0)
-      end function without_room
-
       !> Put the springs without room on the lines that follow, all or the first of them.
       subroutine change_lines(all_of_them)
          logical, intent(in) :: all_of_them
-         integer :: i
+         integer :: j
 
-         do i = 1, path%moving
-            if (blocked(i) == 0) cycle
-            path%changed(i) = path%changed(i) + 1
-            call path%springs%leave(i, blocked(i))
-            if (.not. all_of_them) return
+         do j = 1, merge(springs_blocked, 1, all_of_them)
+            associate (i => blocked(j))
+               path%changed(i) = path%changed(i) + 1
+               call path%springs%leave(i, merge(1, -1, path%rate(i) > 0.0_wp))
+            end associate
          end do
       end subroutine change_lines
 
@@ -205,7 +202,8 @@ contains
          do trial = 1, 2**size(tried)
             call path%solve_line(direction, found)
             if (found) then
-               stopped = without_room()
+               call path%springs%find_blocked(path%rate(:path%moving), blocked, springs_blocked)
+         stopped = springs_blocked
                if (path%springs%pressed) call choose_planes(stopped)
                found = stopped == 0
                if (found) return
@@ -238,7 +236,7 @@ contains
       real(wp), dimension(path%moving) :: v, gap, edge, k
       !> Whether a spring is virtually back on the line on which it came to the corner
       logical :: is_back(path%moving)
-      integer :: crossed(path%moving), blocked(path%moving), i, m, first, spring, next, way, goes, sense, pivots, trial, ends
+      integer :: crossed(path%moving), i, m, first, spring, next, way, goes, sense, pivots, trial, ends
 
       m = path%moving
       first = findloc(path%arrived(:m) /= 0, .true., dim=1)
@@ -287,13 +285,16 @@ contains
       !> The spring that is blocked first, and its change of lines; 0: none is.
       subroutine find_next()
          real(wp) :: at, room, least, next_at
-         integer :: next_way
+         logical :: is_blocked(m)
+         integer :: blocked(m), count, next_way
 
          next = 0
          next_way = 0
          next_at = 0.0_wp
          least = huge(1.0_wp)
-         call path%springs%find_blocked(path%rate(:m), blocked)
+         call path%springs%find_blocked(path%rate(:m), blocked, count)
+         is_blocked = .false.
+         is_blocked(blocked(:count)) = .true.
          do i = 1, m
             if (is_back(i)) then
                way = merge(1, -1, path%rate(i) > 0.0_wp)
@@ -301,8 +302,8 @@ contains
                at = edge(i)
                if (way /= path%arrived(i)) at = edge(i) + way*gap(i)
             else
-               way = blocked(i)
-               if (way == 0) cycle
+               if (.not. is_blocked(i)) cycle
+               way = merge(1, -1, path%rate(i) > 0.0_wp)
                at = merge(edge(i), way*gap(i), crossed(i) == -way)
                if (way == path%arrived(i) .and. path%one_way(i)) at = edge(i) - way*gap(i)
             end if

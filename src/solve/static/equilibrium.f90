@@ -211,7 +211,7 @@ contains
          rate = self%moved(:m, 1)
          if (.not. self%refines) then
             call structure%drop_round_off(self%tangent, self%change(:, 1), rate)
-            rate = rate + y(1)*self%inner_load
+            if (self%of_dead_load) rate = rate + y(1)*self%inner_load
          end if
          self%force_rate = y(1)
          self%displacement_rate = 1.0_wp
@@ -224,8 +224,12 @@ contains
             y(2) = 0.0_wp
          end if
          self%force_correction = y(2)
-         self%correction(:) = self%moved(:m, 2)
-         if (.not. self%refines) self%correction(:) = self%correction + (self%inner + y(2)*self%inner_load)
+         if (self%refines) then
+            self%correction(:) = self%moved(:m, 2)
+         else
+            self%correction(:) = self%moved(:m, 2) + self%inner
+            if (self%of_dead_load) self%correction(:) = self%correction + y(2)*self%inner_load
+         end if
       end associate
 
    contains

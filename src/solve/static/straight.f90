@@ -209,15 +209,16 @@ contains
       integer, intent(in) :: n
       real(wp), intent(in) :: d(n), correction(n), rate(n), first(n), last(n)
       real(wp), intent(out) :: q(n)
-      logical :: is_small
       integer :: i
 
-      !$omp simd
       do i = 1, n
          q(i) = d(i) + correction(i)
-         is_small = abs(correction(i)) <= round_off*abs(d(i))
-         q(i) = min(max(q(i), merge(q(i), first(i), is_small .and. rate(i) > 0.0_wp)), &
-                    merge(q(i), last(i), is_small .and. rate(i) < 0.0_wp))
+         if (abs(correction(i)) > round_off*abs(d(i))) then
+            q(i) = min(max(q(i), first(i)), last(i))
+         else
+            if (.not. rate(i) > 0.0_wp) q(i) = max(q(i), first(i))
+            if (.not. rate(i) < 0.0_wp) q(i) = min(q(i), last(i))
+         end if
       end do
    end subroutine correct_within
 

@@ -10,10 +10,10 @@ module rbs_structure_frame_frame
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_channel, only: channel_type, response_type, row_contents
-   use rbs_structure_frame_element, only: frame_element, find_forces, find_rates, find_tangent, &
-                                          joint_motion, layered_forces, layered_rates, layered_tangent, &
-                                          tangent_size
+   use rbs_structure_frame_element, only: frame_element, find_forces, find_rates, find_tangent, tangent_size
    use rbs_structure_frame_frame_record, only: name_length
+   use rbs_structure_frame_layered, only: drop_small_rates, joint_motion, layered_forces, layered_rates, &
+                                          layered_tangent
    use rbs_structure_spring_place, only: shear, flexure, axial
    use rbs_structure_structure, only: structure_type, motion_result, lateral, horizontal, signals, top_axial
    implicit none
@@ -181,8 +181,15 @@ contains
       pure logical function is_of(springs, known, k, k0)
          integer, intent(in) :: springs
          real(wp), intent(in) :: known(springs), k(springs), k0(springs)
+         real(wp) :: most
+         integer :: j
 
-         is_of = springs > 0 .and. .not. any(abs(known - (k + k0)) > 0.0_wp)
+         most = 0.0_wp
+         !$omp simd reduction(max:most)
+         do j = 1, springs
+            most = max(most, abs(known(j) - (k(j) + k0(j))))
+         end do
+         is_of = springs > 0 .and. .not. most > 0.0_wp
       end function is_of
 
       pure subroutine remember(springs, known, k, k0)
@@ -505,7 +512,7 @@ contains
 
       associate (first => e%before + 1, last => e%before + e%bending + e%opening)
          if (e%layered) then
-            call layered_rates(e, size(e%y), tangent(e%at), tangent(e%at + 9), q, dd(first:last), .false.)
+            call layered_rates(e, size(e%y), tangent(e%at), tangent(e%at + 9), q, dd(first:last))
          else
             call find_rates(e%bending + e%opening, tangent(e%at + 9), q, dd(first:last))
          end if
@@ -586,20 +593,19 @@ contains
       integer, intent(in) :: springs, numbers
       real(wp), intent(in) :: tangent(numbers), size_of(3)
       real(wp), intent(inout) :: dd(springs)
-      real(wp) :: terms(e%bending + e%opening)
       integer :: at, j
 
-      if (e%layered) then
-         call layered_rates(e, size(terms), tangent(e%at), tangent(e%at + 9), size_of, terms, .true.)
-      else
-         do j = 1, size(terms)
-            at = e%at + 6 + 3*j
-            terms(j) = sum(abs(tangent(at:at + 2))*size_of)
+      associate (first => e%before + 1, last => e%before + e%bending + e%opening)
+         if (e%layered) then
+            call drop_small_rates(e, size(e%y), tangent(e%at), tangent(e%at + 9), size_of, round_off, &
+                                  dd(first:last))
+            return
+         end if
+         do j = first, last
+            at = e%at + 6 + 3*(j - e%before)
+            if (abs(dd(j)) < round_off*sum(abs(tangent(at:at + 2))*size_of)) dd(j) = 0.0_wp
          end do
-      end if
-      do j = 1, size(terms)
-         if (abs(dd(e%before + j)) < round_off*terms(j)) dd(e%before + j) = 0.0_wp
-      end do
+      end associate
    end subroutine drop_small
 
    pure subroutine unknown_rates(self, dd, dx)
