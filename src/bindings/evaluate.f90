@@ -257,7 +257,7 @@ contains
       answer%text = text%text(:text%length)
       answer%value = [frame%x, frame%y, real(frame%storey, c_double), &
                       (real(frame%element(i)%node, c_double), i=1, frame%members), &
-                      frame%compression(:frame%members), place, stiffness, &
+                      frame%element(:frame%members)%compression, place, stiffness, &
                       -sum(frame%pattern(horizontal)%force)]
 
    contains

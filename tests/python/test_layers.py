@@ -107,7 +107,8 @@ def faults(name: str, code: list[str]) -> Iterator[str]:
 
 def faults_of_module(name: str, code: list[str]) -> Iterator[str]:
     """Yield what is wrong with a module: its name, and state that outlives a call."""
-    modules = [m[1] for s in code if (m := re.match(r"module +(?!procedure\b)(\w+)$", s))]
+    kind = r"(?:sub)?module *(?:\(\w+\))? +(?!procedure\b)(\w+)$"
+    modules = [m[1] for s in code if (m := re.match(kind, s))]
     expected = "rbs_" + name.removesuffix(".f90").replace("/", "_")
     if modules != [expected]:
         yield f"holds {modules}, its path asks for {expected}"

@@ -114,15 +114,17 @@ contains
       if (matrix%positive .and. maxval(matrix%triangle(1, :)) < most_lost) return
       ! Members of like stiffness tell a mechanism from round-off.
       do i = 1, frame%members
-         associate (at_element => frame%element(i)%at, length => frame%lengths(3, i))
+         associate (at_element => frame%element(i)%layout%stiffness, length => frame%element(i)%length)
             stiffness(i) = max(tangent(at_element), tangent(at_element + 4)/length**2, &
                                tangent(at_element + 8)/length**2)
          end associate
       end do
       softest = minval(stiffness, mask=stiffness > 0.0_wp)
       do i = 1, frame%members
-         associate (of => tangent(frame%element(i)%at:frame%element(i)%at + 8))
-            if (stiffness(i) > like_stiffness*softest) of = of*(like_stiffness*softest/stiffness(i))
+         associate (at => frame%element(i)%layout%stiffness)
+            if (stiffness(i) > like_stiffness*softest) then
+               tangent(at:at + 8) = tangent(at:at + 8)*(like_stiffness*softest/stiffness(i))
+            end if
          end associate
       end do
       call factor_stiffness()

@@ -39,13 +39,13 @@ contains
       ! The axial forces that do second-order work are those which the load has on the path with their work.
       change = huge(1.0_wp)
       do round = 1, most_rounds
-         before = frame%compression(:frame%members)
+         before = frame%element(:frame%members)%compression
          call load_once(frame, state, error)
          if (.not. allocated(error)) call check_members(frame, error)
          if (allocated(error)) call check_stability(frame, error)
          if (allocated(error) .or. .not. frame%axially_loaded) exit
          last = change
-         change = maxval(abs(frame%compression(:frame%members) - before))
+         change = maxval(abs(frame%element(:frame%members)%compression - before))
          if (change <= same_force*maxval(abs(before))) exit
          if (change <= nearly_same*maxval(abs(before)) .and. change > 0.5_wp*last) exit
       end do
@@ -63,7 +63,7 @@ contains
       real(wp) :: tangent(frame%tangent_numbers), low, high, share
       integer :: i, trial, unstable
 
-      if (.not. frame%axially_loaded .or. .not. any(frame%compression > 0.0_wp)) return
+      if (.not. frame%axially_loaded .or. .not. any(frame%element%compression > 0.0_wp)) return
       loaded = frame
       call matrix%create(frame%unknowns, frame%half_width)
       low = 0.0_wp
@@ -71,13 +71,13 @@ contains
       share = high
       do trial = 1, most_halvings
          do i = 1, frame%members
-            call loaded%press(i, share*frame%compression(i))
+            call loaded%press(i, share*frame%element(i)%compression)
          end do
          tangent = 0.0_wp
          call loaded%linearise(loaded%initial_stiffness, tangent, unstable)
          matrix%band = 0.0_wp
          call loaded%add_stiffness(loaded%initial_stiffness, tangent, matrix%band)
-         call loaded%add_geometric(loaded%compression, matrix%band)
+         call loaded%add_geometric(loaded%element%compression, matrix%band)
          call matrix%factor()
          if (matrix%negative == 0 .and. unstable == 0) then
             if (trial == 1) return
@@ -100,10 +100,11 @@ contains
 
       if (.not. frame%axially_loaded) return
       do i = 1, frame%members
-         if (.not. frame%element(i)%buckles(frame%compression(i))) cycle
+         if (.not. frame%element(i)%buckles(frame%element(i)%compression)) cycle
          call fatal_error(error, analysis_failed, 'row 1: member '//trim(frame%member_name(i))// &
-                          ' buckles between its ends: its compression of '//to_text(frame%compression(i))// &
-                          ' N is more than 4 pi^2 E I/l^2; give it more stiffness, or less load')
+                          ' buckles between its ends: its compression of '// &
+                          to_text(frame%element(i)%compression)//' N is more than '// &
+                          '4 pi^2 E I/l^2; give it more stiffness, or less load')
          return
       end do
    end subroutine check_members

@@ -33,7 +33,7 @@ module rbs_structure_frame_element
    implicit none
    private
 
-   public :: frame_element, tangent_size, find_tangent, find_forces, find_rates
+   public :: frame_element, find_tangent, find_forces, find_rates
    public :: shared, of_joint
 
    !> Springs without stiffness share a motion as if each had this part of its initial one.
@@ -44,6 +44,18 @@ module rbs_structure_frame_element
 
    !> Below the first the series of c is exact, below the second compression does nothing.
    real(wp), parameter :: small_x = 0.05_wp, no_compression = 1.0e-10_wp
+
+   !> Where the numbers of an element begin in the work array of all tangents of a frame.
+   type :: tangent_layout
+      !> K (3, 3)
+      integer :: stiffness = 1
+      !> Deformations per motion of the ends, dd/dq (3, springs); of layers compliances (3, joints)
+      integer :: rate = 1
+      !> H of springs that bend, and of those that open
+      integer :: bent = 1, opened = 1
+      !> Stiffness of the springs that the tangent belongs to, each with its initial one (springs)
+      integer :: branch = 1
+   end type tangent_layout
 
    type :: frame_element
       !> The nodes at its ends
@@ -68,8 +80,15 @@ module rbs_structure_frame_element
       !> Whether springs have this flexibility
       real(wp) :: flexural_rigidity = 0.0_wp, shear_rigidity = 0.0_wp, length = 0.0_wp
       logical :: lumped = .false.
-      !> Where its tangent begins in the work array of the frame
-      integer :: at = 1
+      !> Lengths of its rigid ends [m]
+      real(wp) :: rigid(2) = 0.0_wp
+      !> Compression under dead load [N]
+      real(wp) :: compression = 0.0_wp
+      !> Dead load across it [N/m], and rotations of the ends of the elastic rest under it
+      real(wp) :: load_across = 0.0_wp, dead_rotation(2) = 0.0_wp
+      !> Whether it is the panel of a node: one spring that deforms by the rotation of columns against beams
+      logical :: is_panel = .false.
+      type(tangent_layout) :: layout
       !> Joints, if some are of layers: first spring of each in the element, and one more (joints + 1); what
       !> axial force and end moments do on w and theta of each (3, 2, joints); distances of the layers
       !> (springs) [m]
@@ -80,6 +99,7 @@ module rbs_structure_frame_element
       real(wp), allocatable :: arm(:, :, :), y(:)
    contains
       procedure :: leave_out_supports
+      procedure :: lay_out
       procedure :: set_rest
       procedure :: buckles
    end type frame_element
@@ -106,15 +126,13 @@ contains
 
    !> The elastic rest under compression: it bends as a beam on two supports, with end moments alike or
    !> against each other.
-   pure subroutine set_rest(self, compression, load, turned)
+   pure subroutine set_rest(self, compression)
       class(frame_element), intent(inout) :: self
-      !> Axial force that does second-order work, compression positive [N]; load across the member [N/m]
-      real(wp), intent(in) :: compression, load
-      !> Rotations of the ends of the rest under the load
-      real(wp), intent(out) :: turned(2)
+      !> Axial force that does second-order work, compression positive [N]
+      real(wp), intent(in) :: compression
       real(wp) :: springs(2, self%bending), c, x, flexible(2), added
 
-      turned = 0.0_wp
+      self%dead_rotation = 0.0_wp
       springs = self%share(:, :self%bending)
       self%share = springs
       if (allocated(self%rest)) deallocate (self%rest)
@@ -132,7 +150,7 @@ contains
       flexible = flexible*self%length/self%flexural_rigidity
       if (self%shear_rigidity > 0.0_wp) flexible(1) = flexible(1) + 1.0_wp/(self%length*self%shear_rigidity)
       self%rest = 1.0_wp/flexible
-      turned = [1.0_wp, -1.0_wp]*added*load*self%length**3/self%flexural_rigidity
+      self%dead_rotation = [1.0_wp, -1.0_wp]*added*self%load_across*self%length**3/self%flexural_rigidity
       self%share = reshape([springs, 1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp], [2, self%bending + 2])
    end subroutine set_rest
 
@@ -164,16 +182,25 @@ contains
       end if
    end function shape_of
 
-   !> Numbers of a tangent: K (3, 3), dd/dq (3, springs), H of those that bend and of those that open, and the
-   !> stiffness of the springs that it belongs to, each with its initial one.
-   pure integer function tangent_size(element) result(numbers)
-      type(frame_element), intent(in) :: element
+   !> Place the tangent of an element behind others in their work array.
+   pure subroutine lay_out(self, numbers)
+      class(frame_element), intent(inout) :: self
+      !> In the work array, so far and with this element
+      integer, intent(inout) :: numbers
 
-      associate (m => element%bending, n => element%opening)
-         numbers = 9 + 4*(m + n) + m**2 + n**2
-         if (element%layered) numbers = 9 + of_joint*(size(element%first) - 1) + m + n
+      associate (layout => self%layout, m => self%bending, n => self%opening)
+         layout%stiffness = numbers + 1
+         layout%rate = layout%stiffness + 9
+         if (self%layered) then
+            layout%branch = layout%rate + of_joint*(size(self%first) - 1)
+         else
+            layout%bent = layout%rate + 3*(m + n)
+            layout%opened = layout%bent + m**2
+            layout%branch = layout%opened + n**2
+         end if
+         numbers = layout%branch + m + n - 1
       end associate
-   end function tangent_size
+   end subroutine lay_out
 
    !> Stiffness and rates on lines of the springs.
    pure subroutine find_tangent(element, m, n, k, k0, stiffness, rate, bent, opened, stable)

@@ -5,7 +5,7 @@ module rbs_structure_frame_new_frame
    use rbs_base_constants, only: unset
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_spring_record, only: spring_record, add_rules
-   use rbs_structure_frame_element, only: frame_element, tangent_size
+   use rbs_structure_frame_element, only: frame_element
    use rbs_structure_frame_frame, only: frame_type
    use rbs_structure_frame_frame_record, only: name_length
    use rbs_structure_frame_numbering, only: order_nodes
@@ -263,26 +263,24 @@ contains
       type(frame_member), intent(in) :: member(:)
       type(spring_record), intent(inout) :: spring(:)
       real(wp) :: axis(2), across(2), chord(6)
-      integer :: i, j, before, at
+      integer :: i, j, before
 
       associate (elements => size(member) + count(frame%beam_rotation > 0))
          allocate (frame%element(elements))
-         allocate (frame%dead_force(frame%inside), frame%compression(elements), &
-                   frame%load_across(elements), frame%dead_rotation(2, elements), &
-                   frame%lengths(3, elements), source=0.0_wp)
+         allocate (frame%dead_force(frame%inside), source=0.0_wp)
       end associate
       before = 0
-      at = 1
       do i = 1, size(member)
          associate (m => member(i), e => frame%element(i), a => node(member(i)%node(1)), &
                     b => node(member(i)%node(2)))
             axis = [b%x - a%x, b%y - a%y]
             associate (whole => norm2(axis))
                axis = axis/whole
-               frame%lengths(:, i) = [m%rigid, whole - sum(m%rigid)]
+               e%rigid = m%rigid
+               e%length = whole - sum(m%rigid)
             end associate
             across = [axis(2), -axis(1)]
-            associate (clear => frame%lengths(3, i))
+            associate (clear => e%length)
                e%node = m%node
                e%number = numbers_of(frame, node, m)
                e%to_basic(1, :) = [-axis, 0.0_wp, axis, 0.0_wp]
@@ -298,7 +296,6 @@ contains
                e%rest_along = m%axial/clear
                e%flexural_rigidity = m%bending
                e%shear_rigidity = m%sliding
-               e%length = clear
                e%lumped = m%lumped
                allocate (e%share(2, e%bending), source=0.0_wp)
                do j = 1, size(m%kind)
@@ -313,13 +310,11 @@ contains
                if (any(m%kind == layer)) call set_joints(e, m, clear)
                call put_load(frame, m, i, axis, clear)
                call frame%press(i, 0.0_wp)
-               e%at = at
-               at = at + tangent_size(e)
+               call e%lay_out(frame%tangent_numbers)
                before = before + size(m%kind)
             end associate
          end associate
       end do
-      frame%tangent_numbers = at
    end subroutine set_elements
 
    !> A shear spring hears of the work in the nearest flexural spring, or joint of layers, of its member.
@@ -361,8 +356,8 @@ contains
             e%before = at - 1
             e%opening = 1
             allocate (e%share(2, 0))
-            e%at = frame%tangent_numbers
-            frame%tangent_numbers = frame%tangent_numbers + tangent_size(e)
+            e%is_panel = .true.
+            call e%lay_out(frame%tangent_numbers)
          end associate
          spring(at) = node(i)%panel
          frame%spring_place(at) = 0.0_wp
@@ -436,7 +431,7 @@ contains
                                                m%y, m%joint == m%joint(j), frame%element(i)%before)
          if (m%kind(j) == shear) frame%dead_force(at) = down*clear*(0.5_wp - share)
       end do
-      frame%load_across(i) = down
+      frame%element(i)%load_across = down
       do k = 1, 2
          over_node = per_length*m%rigid(k)
          at = frame%number(2, m%node(k))

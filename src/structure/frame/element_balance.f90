@@ -1,0 +1,298 @@
+!> Motion and balance of one element of a frame: the motion of its ends from the unknowns, the forces that
+!> balance its springs, its second-order forces and its elastic energy.
+module rbs_structure_frame_element_balance
+   use rbs_base_kinds, only: wp
+   use rbs_structure_frame_element, only: frame_element, find_forces, find_rates, find_tangent
+   use rbs_structure_frame_layered, only: drop_small_rates, joint_motion, layered_forces, &
+                                          layered_rates, layered_tangent
+   implicit none
+   private
+
+   public :: end_motion, motion_terms, chord_rotation, compatibility_error, set_tangent, balance_ends
+   public :: add_end_forces, add_second_order, add_band, add_geometric_band
+   public :: spring_motion, clear_round_off, energy_of_rest
+
+   !> Share of the terms of a rate that it is round-off below.
+   real(wp), parameter :: round_off = 1.0e-12_wp
+
+contains
+
+   !> Elongation of an element and rotations of its ends against the chord from the unknowns, or changes of
+   !> them; of a panel, the rotation of its columns against its beams.
+   pure function end_motion(e, x) result(q)
+      type(frame_element), intent(in) :: e
+      !> (unknowns)
+      real(wp), intent(in), contiguous :: x(:)
+      real(wp) :: q(3)
+
+      associate (b => e%from_unknowns, at => e%unknown)
+         if (e%is_panel) then
+            q = [b(1, 3)*x(at(3)) + b(1, 6)*x(at(6)), 0.0_wp, 0.0_wp]
+         else
+            q = b(:, 1)*x(at(1)) + b(:, 2)*x(at(2)) + b(:, 3)*x(at(3)) &
+                + b(:, 4)*x(at(4)) + b(:, 5)*x(at(5)) + b(:, 6)*x(at(6))
+         end if
+      end associate
+   end function end_motion
+
+   !> Sizes of the terms that elongation and rotations of an element are sums of.
+   pure function motion_terms(e, x) result(terms)
+      type(frame_element), intent(in) :: e
+      !> Displacements of the nodes (unknowns)
+      real(wp), intent(in) :: x(:)
+      real(wp) :: terms(3)
+      integer :: k
+
+      terms = 0.0_wp
+      do k = 1, 6
+         if (e%number(k) > 0) terms = terms + abs(e%to_basic(:, k)*x(e%number(k)))
+      end do
+   end function motion_terms
+
+   !> Rotation of the chord [rad].
+   pure real(wp) function chord_rotation(e, x) result(rotation)
+      type(frame_element), intent(in) :: e
+      real(wp), intent(in), contiguous :: x(:)
+      integer :: j
+
+      rotation = 0.0_wp
+      do j = 1, 6
+         rotation = rotation + e%chord(j)*x(e%unknown(j))
+      end do
+   end function chord_rotation
+
+   !> Motion of the ends of an element less that which its springs and its dead load make: what its elastic
+   !> rest has to follow.
+   pure function compatibility_error(e, q, d, dead) result(gap)
+      type(frame_element), intent(in) :: e
+      !> Motion of the ends; deformations of all springs; share of the dead load that acts
+      real(wp), intent(in) :: q(3), dead
+      real(wp), intent(in), contiguous :: d(:)
+      real(wp) :: gap(3)
+      real(wp) :: z(2)
+      integer :: j
+
+      gap = q
+      gap(2:) = gap(2:) - dead*e%dead_rotation
+      if (e%layered) then
+         do j = 1, size(e%first) - 1
+            z = joint_motion(e, j, size(e%y), d(e%before + 1:e%before + size(e%y)))
+            gap = gap - (e%arm(:, 1, j)*z(1) + e%arm(:, 2, j)*z(2))
+         end do
+         return
+      end if
+      do j = 1, e%bending
+         gap(2) = gap(2) - e%share(1, j)*d(e%before + j)
+         gap(3) = gap(3) - e%share(2, j)*d(e%before + j)
+      end do
+      do j = e%bending + 1, e%bending + e%opening
+         gap(1) = gap(1) - d(e%before + j)
+      end do
+   end function compatibility_error
+
+   !> Tangent of an element on the present lines of its springs. The springs of the last tangent are kept
+   !> with it, so that it is only found again where their stiffness has changed.
+   pure subroutine set_tangent(e, springs, numbers, k, k0, tangent, stable)
+      type(frame_element), intent(in) :: e
+      !> Number of springs of the element, and of numbers in all tangents
+      integer, intent(in) :: springs, numbers
+      !> Present and initial stiffness of its springs
+      real(wp), intent(in) :: k(springs), k0(springs)
+      real(wp), intent(inout) :: tangent(numbers)
+      !> Whether the motion of the ends determines that inside
+      logical, intent(out) :: stable
+      real(wp) :: change
+      integer :: j
+
+      stable = .true.
+      associate (layout => e%layout, m => e%bending, n => e%opening)
+         associate (known => tangent(layout%branch:layout%branch + springs - 1))
+            ! With the initial stiffness an array of zeros belongs to no branch.
+            change = 0.0_wp
+            !$omp simd reduction(max:change)
+            do j = 1, springs
+               change = max(change, abs(tangent(layout%branch + j - 1) - (k(j) + k0(j))))
+            end do
+            if (springs > 0 .and. .not. change > 0.0_wp) return
+            if (e%is_panel) then
+               tangent(layout%stiffness:layout%branch - 1) = 0.0_wp
+               tangent(layout%stiffness) = k(1)
+               tangent(layout%rate) = 1.0_wp
+            else if (e%layered) then
+               call layered_tangent(e, springs, k, k0, tangent(layout%stiffness), tangent(layout%rate), &
+                                    stable)
+            else
+               call find_tangent(e, m, n, k, k0, tangent(layout%stiffness), tangent(layout%rate), &
+                                 tangent(layout%bent), tangent(layout%opened), stable)
+            end if
+            known = k + k0
+            ! That it snaps back is to be found again.
+            if (.not. stable .and. springs > 0) known(1) = huge(1.0_wp)
+         end associate
+      end associate
+   end subroutine set_tangent
+
+   !> Forces of the ends of an element in equilibrium with its springs, and the corrections of their
+   !> deformations that this needs.
+   pure subroutine balance_ends(e, springs, numbers, gap, dead, dead_force, d, f, tangent, s, correction)
+      type(frame_element), intent(in) :: e
+      !> Numbers of springs in the frame, and of numbers in all tangents
+      integer, intent(in) :: springs, numbers
+      !> Of `compatibility_error`; share of the dead load that acts; forces that all of it makes in springs
+      real(wp), intent(in) :: gap(3), dead, dead_force(springs)
+      !> Deformations and forces of all springs
+      real(wp), intent(in) :: d(springs), f(springs), tangent(numbers)
+      real(wp), intent(out) :: s(3)
+      real(wp), intent(inout) :: correction(springs)
+
+      associate (layout => e%layout, m => e%bending, n => e%opening, first => e%before + 1)
+         if (e%layered) then
+            call layered_forces(e, m + n, tangent(layout%stiffness), tangent(layout%rate), gap, d(first), &
+                                f(first), dead, dead_force(first), s, correction(first))
+         else
+            call find_forces(m, n, tangent(layout%stiffness), tangent(layout%rate), tangent(layout%bent), &
+                             tangent(layout%opened), gap, f(first), dead, dead_force(first), s, &
+                             correction(first))
+         end if
+      end associate
+   end subroutine balance_ends
+
+   !> Add what axial force and moments of the ends of an element do on the unknowns.
+   pure subroutine add_end_forces(e, s, g)
+      type(frame_element), intent(in) :: e
+      real(wp), intent(in) :: s(3)
+      !> (unknowns)
+      real(wp), intent(inout) :: g(:)
+      integer :: k
+
+      if (e%is_panel) then
+         g(e%unknown(3)) = g(e%unknown(3)) + s(1)*e%from_unknowns(1, 3)
+         g(e%unknown(6)) = g(e%unknown(6)) + s(1)*e%from_unknowns(1, 6)
+         return
+      end if
+      do k = 1, 6
+         g(e%unknown(k)) = g(e%unknown(k)) + (s(1)*e%from_unknowns(1, k) + s(2)*e%from_unknowns(2, k) &
+                                              + s(3)*e%from_unknowns(3, k))
+      end do
+   end subroutine add_end_forces
+
+   !> Second-order forces of the compression of an element, N sum l r (r . x): rows r are the rotations of its
+   !> rigid ends and of its chord. What bends off the chord is in the elastic rest.
+   pure subroutine add_second_order(e, x, g)
+      type(frame_element), intent(in) :: e
+      real(wp), intent(in), contiguous :: x(:)
+      real(wp), intent(inout), contiguous :: g(:)
+      real(wp) :: turn
+      integer :: j
+
+      do j = 1, 2
+         associate (at => e%number(3*j))
+            if (e%rigid(j) > 0.0_wp .and. at > 0) g(at) = g(at) + e%compression*e%rigid(j)*x(at)
+         end associate
+      end do
+      turn = e%compression*e%length*chord_rotation(e, x)
+      do j = 1, 6
+         g(e%unknown(j)) = g(e%unknown(j)) + turn*e%chord(j)
+      end do
+   end subroutine add_second_order
+
+   !> Add B' A B of an element to a lower band, B its elongation and rotations per unknown.
+   pure subroutine add_band(e, a, band)
+      type(frame_element), intent(in) :: e
+      real(wp), intent(in) :: a(3, 3)
+      !> (half_width + 1, unknowns)
+      real(wp), intent(inout), contiguous :: band(:, :)
+      real(wp) :: row(3)
+      integer :: i, j
+
+      do j = 1, 6
+         associate (column => e%number(j))
+            if (column == 0) cycle
+            row = a(:, 1)*e%to_basic(1, j) + a(:, 2)*e%to_basic(2, j) + a(:, 3)*e%to_basic(3, j)
+            do i = 1, 6
+               if (e%number(i) < column) cycle
+               associate (entry => band(1 + e%number(i) - column, column))
+                  entry = entry + sum(e%to_basic(:, i)*row)
+               end associate
+            end do
+         end associate
+      end do
+   end subroutine add_band
+
+   !> Add the derivatives of the second-order forces of an axial force, with their sign turned.
+   pure subroutine add_geometric_band(e, compression, band)
+      type(frame_element), intent(in) :: e
+      real(wp), intent(in) :: compression
+      real(wp), intent(inout), contiguous :: band(:, :)
+      integer :: i, j
+
+      do j = 1, 2
+         associate (at => e%number(3*j))
+            if (at > 0) band(1, at) = band(1, at) - compression*e%rigid(j)
+         end associate
+      end do
+      do j = 1, 6
+         associate (column => e%number(j))
+            if (column == 0) cycle
+            do i = 1, 6
+               if (e%number(i) < column) cycle
+               associate (entry => band(1 + e%number(i) - column, column))
+                  entry = entry - compression*e%length*e%chord(i)*e%chord(j)
+               end associate
+            end do
+         end associate
+      end do
+   end subroutine add_geometric_band
+
+   !> Changes of the deformations of springs with those of the ends of their element.
+   pure subroutine spring_motion(e, springs, numbers, tangent, q, dd)
+      type(frame_element), intent(in) :: e
+      integer, intent(in) :: springs, numbers
+      real(wp), intent(in) :: tangent(numbers), q(3)
+      real(wp), intent(inout) :: dd(springs)
+
+      associate (layout => e%layout, m => e%bending + e%opening, first => e%before + 1)
+         if (e%layered) then
+            call layered_rates(e, m, tangent(layout%stiffness), tangent(layout%rate), q, dd(first))
+         else
+            call find_rates(m, tangent(layout%rate), q, dd(first))
+         end if
+      end associate
+   end subroutine spring_motion
+
+   !> Take rates that are round-off of their terms for zero.
+   pure subroutine clear_round_off(e, springs, numbers, tangent, size_of, dd)
+      type(frame_element), intent(in) :: e
+      integer, intent(in) :: springs, numbers
+      !> Sizes of the motion of the ends, see `motion_terms`
+      real(wp), intent(in) :: tangent(numbers), size_of(3)
+      real(wp), intent(inout) :: dd(springs)
+      integer :: at, j
+
+      associate (layout => e%layout, m => e%bending + e%opening, first => e%before + 1)
+         if (e%layered) then
+            call drop_small_rates(e, m, tangent(layout%stiffness), tangent(layout%rate), size_of, &
+                                            round_off, dd(first))
+            return
+         end if
+         do j = 1, m
+            at = layout%rate + 3*(j - 1)
+            associate (rate => dd(e%before + j))
+               if (abs(rate) < round_off*sum(abs(tangent(at:at + 2))*size_of)) rate = 0.0_wp
+            end associate
+         end do
+      end associate
+   end subroutine clear_round_off
+
+   !> Energy of the elastic rest of an element [J].
+   pure real(wp) function energy_of_rest(e, gap) result(energy)
+      type(frame_element), intent(in) :: e
+      !> Its elongation and rotations
+      real(wp), intent(in) :: gap(3)
+
+      energy = 0.5_wp*e%rest_along*gap(1)**2
+      if (allocated(e%rest)) energy = energy + 0.125_wp*(e%rest(1)*(gap(2) + gap(3))**2 &
+                                                         + e%rest(2)*(gap(2) - gap(3))**2)
+   end function energy_of_rest
+
+end module rbs_structure_frame_element_balance

@@ -1,0 +1,82 @@
+!> Dead load of a frame: the compression of its members, its work, and the energy of what is elastic.
+submodule (rbs_structure_frame_frame) rbs_structure_frame_frame_load
+   use rbs_structure_frame_element_balance, only: energy_of_rest
+   implicit none
+
+contains
+
+   module procedure is_loaded
+      integer :: i
+
+      is_loaded = any(abs(self%dead) > 0.0_wp) .or. any(abs(self%dead_force) > 0.0_wp) .or. &
+                  any([(any(abs(self%element(i)%dead_rotation) > 0.0_wp), i=1, self%members)])
+   end procedure is_loaded
+
+   module procedure take_load_off
+      integer :: i
+
+      self%dead = 0.0_wp
+      self%dead_force = 0.0_wp
+      do i = 1, self%members
+         self%element(i)%dead_rotation = 0.0_wp
+      end do
+   end procedure take_load_off
+
+   module procedure set_compression
+      real(wp) :: s(3)
+      integer :: i
+
+      do i = 1, self%members
+         call self%member_forces(i, d, f, s)
+         call self%press(i, -s(1))
+         ! Springs that open carry it by the path, not from its begin on.
+         associate (e => self%element(i))
+            self%constant_axial(e%before + 1:e%before + e%bending) = -s(1)
+         end associate
+      end do
+      self%initial_tangent = 0.0_wp
+      call self%linearise(self%initial_stiffness, self%initial_tangent, i)
+   end procedure set_compression
+
+   module procedure press
+
+      self%element(element)%compression = compression
+      call self%element(element)%set_rest(merge(compression, 0.0_wp, self%axially_loaded))
+   end procedure press
+
+   module procedure work_of_dead_load
+      real(wp) :: gap(3), turned(2)
+      integer :: i
+
+      associate (x => d(self%inside + 1:))
+         work = sum(self%dead*x) + sum(self%dead_force*d(:self%inside))
+         do i = 1, size(self%element)
+            associate (e => self%element(i))
+               if (.not. allocated(e%rest)) cycle
+               gap = compatibility_error(e, end_motion(e, x), d, 0.0_wp)
+               turned = e%dead_rotation
+               work = work + 0.25_wp*(e%rest(1)*sum(turned)*sum(gap(2:)) &
+                                    + e%rest(2)*(turned(1) - turned(2))*(gap(2) - gap(3)))
+            end associate
+         end do
+      end associate
+   end procedure work_of_dead_load
+
+   module procedure potential_energy
+      real(wp) :: g(self%unknowns)
+      integer :: i
+
+      associate (x => d(self%inside + 1:))
+         g = 0.0_wp
+         energy = -sum(self%dead*x) - sum(self%dead_force*d(:self%inside))
+         do i = 1, self%members
+            associate (e => self%element(i))
+               energy = energy + energy_of_rest(e, compatibility_error(e, end_motion(e, x), d, 1.0_wp))
+               if (self%axially_loaded) call add_second_order(e, x, g)
+            end associate
+         end do
+         energy = energy - 0.5_wp*sum(g*x)
+      end associate
+   end procedure potential_energy
+
+end submodule rbs_structure_frame_frame_load

@@ -1,0 +1,112 @@
+!> Members of a frame that fail in shear, lose their axial load or are removed, and collapse after that.
+submodule (rbs_structure_frame_frame) rbs_structure_frame_frame_loss
+   use rbs_base_check, only: is_given
+   use rbs_structure_frame_element_balance, only: energy_of_rest
+   use rbs_structure_spring_place, only: shear, flexure
+   implicit none
+
+   !> Share of the height of a storey that a node may sink.
+   real(wp), parameter :: deepest = 0.1_wp
+
+   !> A rotation that no hinge of a frame has [rad].
+   real(wp), parameter :: farthest = 10.0_wp
+
+   !> Times that differ by less than this share are the same.
+   real(wp), parameter :: same_time = 1.0e-9_wp
+
+contains
+
+   module procedure is_lost
+
+      associate (e => self%element(member))
+         is_lost = e%bending + e%opening > 0
+         if (is_lost) is_lost = springs%is_released(e%before + 1)
+      end associate
+   end procedure is_lost
+
+   module procedure find_lost
+      integer :: i
+
+      member = 0
+      if (.not. self%may_lose) return
+      do i = 1, self%members
+         if (self%is_lost(i, springs)) cycle
+         if (present(time) .and. is_given(self%lost_at(i))) then
+            if (time - self%lost_at(i) >= -same_time*abs(self%lost_at(i))) member = i
+         end if
+         if (is_given(self%failure_drift(i))) then
+            if (has_failed(self, i, springs)) member = i
+         end if
+         if (member > 0) return
+      end do
+   end procedure find_lost
+
+   logical function has_failed(frame, member, springs)
+      type(frame_type), intent(in) :: frame
+      integer, intent(in) :: member
+      type(spring_array), intent(in) :: springs
+      real(wp) :: drift, s(3)
+      integer :: i
+
+      associate (e => frame%element(member), x => springs%d(frame%inside + 1:))
+         drift = abs(sum(e%chord*x(e%unknown)))
+         has_failed = is_given(frame%shear_drift(member)) .and. drift >= abs(frame%shear_drift(member))
+         do i = e%before + 1, e%before + e%bending
+            if (frame%place(i)%kind /= shear) cycle
+            if (springs%rules%list(springs%rules%of(i))%rule%has_yielded(springs%slot(i)%memory)) has_failed &
+               = .true.
+         end do
+         if (.not. has_failed) return
+         call frame%member_forces(member, springs%d, springs%f0 + springs%k*(springs%d - springs%d0), s)
+         ! Tension, or no load, does not fall.
+         has_failed = s(1) < 0.0_wp .and. &
+                      drift*(1.0_wp - s(1)/frame%failure_load(member)) >= frame%failure_drift(member)
+      end associate
+   end function has_failed
+
+   module procedure let_go
+      real(wp) :: tangent(self%tangent_numbers), correction(springs%count), s(3), q(3), energy
+      integer :: i, unstable
+
+      tangent = 0.0_wp
+      correction = 0.0_wp
+      associate (e => self%element(member))
+         q = end_motion(e, springs%d(self%inside + 1:))
+         energy = energy_of_rest(e, compatibility_error(e, q, springs%d, 1.0_wp))
+         do i = e%before + 1, e%before + e%bending + e%opening
+            call springs%let_go(i, self%dead_force(i))
+         end do
+         call self%linearise(springs%k, tangent, unstable)
+         call balance_ends(e, springs%count, size(tangent), compatibility_error(e, q, springs%d, 1.0_wp), &
+                           1.0_wp, self%dead_force, springs%d, &
+                           springs%f0 + springs%k*(springs%d - springs%d0), tangent, s, correction)
+         do i = e%before + 1, e%before + e%bending + e%opening
+            call springs%advance_on_branch(i, springs%d(i) + correction(i))
+         end do
+         energy = energy - energy_of_rest(e, compatibility_error(e, q, springs%d, 1.0_wp))
+         springs%work(e%before + 1) = springs%work(e%before + 1) + energy
+      end associate
+   end procedure let_go
+
+   module procedure has_fallen
+      integer :: i
+
+      has_fallen = .false.
+      if (.not. self%may_lose) return
+      do i = 1, self%n
+         if (self%number(2, i) == 0) cycle
+         has_fallen = has_fallen .or. &
+                      d(self%inside + self%number(2, i)) < -deepest*self%height/max(self%storeys, 1)
+      end do
+   end procedure has_fallen
+
+   module procedure find_runaway
+
+      do spring = 1, self%inside
+         if (abs(d(spring)) < min(self%height, farthest)) cycle
+         if (abs(d(spring)) > merge(farthest, self%height, self%place(spring)%kind == flexure)) return
+      end do
+      spring = 0
+   end procedure find_runaway
+
+end submodule rbs_structure_frame_frame_loss

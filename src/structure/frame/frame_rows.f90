@@ -1,0 +1,128 @@
+!> Rows of results of a frame: its channels and their values.
+submodule (rbs_structure_frame_frame) rbs_structure_frame_frame_rows
+   use rbs_structure_frame_element_balance, only: chord_rotation
+   use rbs_structure_frame_layered, only: joint_motion
+   use rbs_structure_spring_place, only: shear, axial
+   implicit none
+
+contains
+
+   module procedure channels
+      logical :: held(size(frame_channel))
+      integer :: kind, m
+
+      m = self%members
+      held = .true.
+      held(14:15) = contents%motion
+      held(16) = self%may_lose
+      channel = frame_channel
+      channel(2:4)%count = self%n
+      channel(5:7)%count = m
+      do kind = 1, 3
+         held(6 + 2*kind:7 + 2*kind) = size(self%listed(kind)%spring) > 0
+         channel(6 + 2*kind:7 + 2*kind)%count = size(self%listed(kind)%spring)
+      end do
+      channel(14)%count = self%n
+      channel(16)%count = m
+      channel = pack(channel, held)
+   end procedure channels
+
+   module procedure fill_row
+      real(wp) :: f(size(d)), s(3)
+      integer :: at, i, j, kind, m
+
+      f = springs%f0 + springs%k*(d - springs%d0)
+      row(1) = self%base_force(d, f)
+      if (contents%in_time .and. self%damped) row(1) = response%base_shear
+      row(2:3*self%n + 1) = 0.0_wp
+      do i = 1, self%n
+         do j = 1, 3
+            if (self%number(j, i) > 0) row(1 + (j - 1)*self%n + i) = d(self%inside + self%number(j, i))
+         end do
+      end do
+      at = 1 + 3*self%n
+      m = self%members
+      do i = 1, m
+         call self%member_forces(i, d, f, s)
+         ! Compression is positive, as everywhere.
+         row(at + i) = -s(1)
+         row(at + m + i) = s(2)
+         row(at + 2*m + i) = s(3)
+      end do
+      at = at + 3*m
+      do kind = 1, 3
+         associate (of => self%listed(kind)%spring)
+            do j = 1, size(of)
+               call tell_spring(self, kind, of(j), d, f, row(at + j), row(at + size(of) + j))
+            end do
+            at = at + 2*size(of)
+         end associate
+      end do
+      if (contents%motion) then
+         row(at + 1:at + self%n) = 0.0_wp
+         do i = 1, self%n
+            if (self%number(1, i) > 0) row(at + i) = response%a(self%inside + self%number(1, i))
+         end do
+         at = at + self%n + 1
+         row(at) = response%ground
+      end if
+      if (.not. self%may_lose) return
+      do i = 1, m
+         row(at + i) = merge(1.0_wp, 0.0_wp, self%is_lost(i, springs))
+      end do
+   end procedure fill_row
+
+   !> Deformation and force of a spring; of a joint of layers rotation and moment, or opening and axial force.
+   pure subroutine tell_spring(self, kind, spring, d, f, deformation, force)
+      type(frame_type), intent(in) :: self
+      !> Kind that is told, and the spring, of a joint its first layer
+      integer, intent(in) :: kind, spring
+      real(wp), intent(in), contiguous :: d(:), f(:)
+      real(wp), intent(out) :: deformation, force
+      real(wp) :: z(2)
+      integer :: j, last
+
+      deformation = d(spring)
+      force = f(spring)
+      if (.not. self%heads(spring)) return
+      associate (e => self%element(self%place(spring)%member), joint => self%place(spring)%joint)
+         z = joint_motion(e, joint, size(e%y), d(e%before + 1:e%before + size(e%y)))
+         last = e%before + e%first(joint + 1) - 1
+         if (kind == axial) then
+            deformation = z(1)
+            force = sum(f(spring:last))
+         else
+            deformation = z(2)
+            j = spring - e%before
+            force = sum(f(spring:last)*e%y(j:j + last - spring))
+         end if
+      end associate
+   end subroutine tell_spring
+
+   module procedure base_force
+      real(wp) :: s(3)
+      integer :: i, j
+
+      force = 0.0_wp
+      do i = 1, self%members
+         associate (e => self%element(i))
+            if (all(self%number(1, e%node) > 0)) cycle
+            call self%member_forces(i, d, f, s)
+            do j = 1, 2
+               if (self%number(1, e%node(j)) > 0) cycle
+               force = force - sum(s*e%to_basic(:, 3*j - 2))
+               ! A chord that leans presses the support aside; a rotation against it has the opposite sign.
+               if (self%axially_loaded) then
+                  force = force - e%compression*e%length &
+                          *chord_rotation(e, d(self%inside + 1:))*e%to_basic(2, 3*j - 2)
+               end if
+            end do
+         end associate
+      end do
+      ! A spring of no account carries nothing that counts.
+      do i = self%inside + 1, size(d)
+         if (self%place(i)%kind == shear) force = force + f(i)
+      end do
+   end procedure base_force
+
+end submodule rbs_structure_frame_frame_rows
