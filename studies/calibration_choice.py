@@ -64,13 +64,13 @@ def begin(folder: str, choice: slice) -> None:
 
 def made(column: Any, factors: dict[str, float]) -> Any:
     """Return the column with factors on its parameters; what a column limits is limited."""
-    recipe = column.recipe
-    values = dict(recipe.parameters.values)
+    drawing = column.drawing
+    values = dict(drawing.parameters.values)
     for name, factor in factors.items():
         for one, way in TOGETHER.get(name, {name: 1}).items():
             values[one] *= factor**way
-    other = replace(recipe, parameters=recipe.parameters.with_values(**values))
-    return replace(column, recipe=other, **other.made)
+    other = replace(drawing, parameters=drawing.parameters.with_values(**values))
+    return replace(column, drawing=other, **other.made)
 
 
 def fit(task: tuple[int, dict[str, float], tuple[str, ...], int]) -> tuple[float, dict[str, float]]:

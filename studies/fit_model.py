@@ -97,8 +97,8 @@ class Case:
         """Return the errors with some parameters."""
         try:
             # The section is drawn once; the parameters change nothing in it.
-            recipe = replace(self.column.recipe, parameters=given)
-            column = replace(self.column, recipe=recipe, **recipe.made)
+            drawing = replace(self.column.drawing, parameters=given)
+            column = replace(self.column, drawing=drawing, **drawing.made)
             force, _ = reached_force(column, self.target.displacement)
         except RbsdemError:
             force = np.empty(0)

@@ -38,7 +38,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
 import rbsdem
-from rbsdem.frames import Frame, FrameMember, FrameNode, Member, Panel
+from rbsdem.frames import Frame, FrameMember, FrameNode, JointPanel, Member
 from rbsdem.output import style
 from rbsdem.springs import Elastic
 
@@ -270,7 +270,7 @@ def cruciform(ends: str) -> Drawing:
     )  # fmt: skip
     # R12 and R8, five sets at 75 mm: two legs of each as three of 12 mm, nearly.
     hoops = rbsdem.Ties(0.012, 0.075, rbsdem.Steel(283e6), legs=2 + 2 * (8 / 12) ** 2)
-    panel = Panel(column, beam, hoops=hoops, beam_length=2.119, column_height=2.473)
+    panel = JointPanel(column, beam, hoops=hoops, beam_length=2.119, column_height=2.473)
     up, side = inner(ends, column, 1, beam, 0.0)
     nodes = (
         FrameNode("foot", 0.0, -1.2365, "pinned"),

@@ -39,7 +39,7 @@ from frames_measured import (
 )
 
 import rbsdem
-from rbsdem.frames import FrameMember, FrameNode, Panel
+from rbsdem.frames import FrameMember, FrameNode, JointPanel
 from rbsdem.springs import Layered, Pinching, SteelSpring
 
 #: How bars of columns grow stronger with their range of strain, and wear.
@@ -127,7 +127,7 @@ def panels_with_ties(drawing: Drawing) -> Drawing:
     def change(node: FrameNode, _: Pinching | None) -> Pinching | None:
         if not node.y:
             return None
-        return Panel(
+        return JointPanel(
             column.section, beam.section, "knee" if node.y == top else "exterior",
             hoops=column.section.ties, axial_load=column.load,
         ).spring()  # fmt: skip

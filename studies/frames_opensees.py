@@ -161,7 +161,7 @@ def portal_of_fibres(storeys: int, bays: int, load: float) -> rbsdem.Frame:
             return Layered(layers)
 
         sections = {0.0: joint(1 / 6), 0.5: joint(2 / 3), 1.0: joint(1 / 6)}
-        return rbsdem.FrameMember(E, 1e12, 1.0, flexure=sections, between="rigid")
+        return rbsdem.FrameMember(E, 1e12, 1.0, flexure=sections, interior="rigid")
 
     nodes = [
         FrameNode(f"N-{line + 1}-{floor + 1}", load_y=-load)

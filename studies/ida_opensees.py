@@ -103,7 +103,7 @@ def main(number: int) -> None:
         column(),
         records,
         intensity="pga",
-        levels=fragility.Hunt(resolution=RESOLUTION, points=1),
+        levels=fragility.CollapseSearch(resolution=RESOLUTION, points=1),
         refine=[],
         method="newmark",
         dt=STEP,

@@ -24,7 +24,7 @@ import rbsdem
 from rbsdem import fragility, motions
 from rbsdem.springs import Elastic, PeakOriented
 
-HUNT = fragility.Hunt(resolution=5e-4, points=1)
+HUNT = fragility.CollapseSearch(resolution=5e-4, points=1)
 SETTINGS = [
     ("newmark", 0.01),
     ("newmark", 0.005),

@@ -253,10 +253,10 @@ def write_csv(path: Path, parts: dict[tuple[str, str], dict[str, Run]]) -> None:
     partial.replace(path)
 
 
-def panel(run: Run) -> plot.Panel:
+def panel(run: Run) -> plot.Subplot:
     """Return the panel of a run: model over test."""
     section, rows = rbsdem.peer.paper_sections()[run.drive.key], run.drive.rows
-    return plot.Panel(
+    return plot.Subplot(
         title=section.specimen,
         model=run.curve,
         test=(run.drive.displacement[rows], run.drive.force[rows]),

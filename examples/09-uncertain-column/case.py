@@ -73,9 +73,9 @@ def variances(capacity: np.ndarray) -> dict[str, float]:
 records = motions.synthetic(RECORDS)
 settings = {"method": "newmark", "dt": 0.005, "period": period, "collapse_drift": 0.05}
 
-hunt = fragility.Hunt(points=1)
-found = rbsdem.ida(columns, records, levels=hunt, refine=[], **settings)
-alone = rbsdem.ida(median, records, levels=hunt, refine=[], **settings)
+search = fragility.CollapseSearch(points=1)
+found = rbsdem.ida(columns, records, levels=search, refine=[], **settings)
+alone = rbsdem.ida(median, records, levels=search, refine=[], **settings)
 print(f"{COLUMNS} columns, {RECORDS} records, {len(found.runs)} runs, Sa({period:.2f} s)")
 for name, variance in variances(found.collapse_intensity).items():
     print(f"beta of {name:9s} {np.sqrt(variance):.2f}")

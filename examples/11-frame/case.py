@@ -11,9 +11,11 @@ import rbsdem
 from rbsdem import FrameMember, plot
 
 column = FrameMember(
-    30e9, area=0.16, inertia=2.1e-3, yield_moment=250e3, hardening=0.01, panel=0.25
+    30e9, area=0.16, inertia=2.1e-3, yield_moment=250e3, hardening=0.01, rigid_end=0.25
 )
-beam = FrameMember(30e9, area=0.15, inertia=2.0e-3, yield_moment=200e3, hardening=0.01, panel=0.20)
+beam = FrameMember(
+    30e9, area=0.15, inertia=2.0e-3, yield_moment=200e3, hardening=0.01, rigid_end=0.20
+)
 frame = rbsdem.Frame.grid(
     storeys=[3.2] * 3,
     bays=[6.0] * 3,

@@ -339,16 +339,16 @@ def time_history(
     initial: Array | None,
     opening_given: bool,
     before: Array | None,
-    watches: Array,
+    thresholds: Array,
     tell: Callable[[str], None],
 ) -> tuple[Run, Array]:
-    """March through time; return the run, and where each watch is reached, shape (watches, 2).
+    """March through time; return the run, and where thresholds are reached, shape (m, 2).
 
-    `tell` is called with a note before a long run starts. `watches` are of shape (watches, 6), see
-    `run_ensemble`; of each the time [s] and the displacement of the top [m] are returned, NaN where
+    `tell` is called with a note before a long run starts. `thresholds` are of shape (m, 6), see
+    `batch`; of each the time [s] and the displacement of the top [m] are returned, NaN where
     it is not reached.
     """
-    given: dict[str, Any] = {"time": time, "watches": watches, "initial": initial}
+    given: dict[str, Any] = {"time": time, "watches": thresholds, "initial": initial}
     given |= {"opening_given": opening_given, "before": before, **loads}
     told = False
     while True:
@@ -358,7 +358,7 @@ def time_history(
             break
         tell(answer.text)
         told = True
-    count = len(watches)
+    count = len(thresholds)
     run = _finish(answer, answer.values[2 * count :])
     return run, answer.values[: 2 * count].reshape(2, count).T
 
@@ -390,25 +390,25 @@ _AFTER, _AFTER_NUMBER = "\x1e", "\x1f"
 def batch(
     columns: Sequence[Statement],
     settings: Statement,
-    watches: Sequence[Array],
+    thresholds: Sequence[Array],
     before: Sequence[Array],
     motions: Motions,
 ) -> dict[str, Any]:
     """Return columns and motions in one: all statements, and how many of everything each has.
 
-    `watches` are those of each column, of shape (watches, 6): number of the limit state, joint,
+    `thresholds` are those of each column, of shape (m, 6): number of the limit state, joint,
     factors of slip, rotation and opening, threshold; at least one. `before` are the states that the
     runs of each column begin in; an empty one is at rest.
     """
     statements = [column + settings for column in columns]
-    sizes = zip(statements, watches, before, strict=True)
+    sizes = zip(statements, thresholds, before, strict=True)
     return {
         "statement": Statement(
             "".join(statement.text + _AFTER for statement in statements),
             [number for statement in statements for number in statement.numbers],
         ),
         "counts": [(len(own.numbers), len(watch), len(state)) for own, watch, state in sizes],
-        "watches": np.concatenate(watches),
+        "watches": np.concatenate(thresholds),
         "before": np.concatenate(before),
         "time": np.concatenate([time for time, _ in motions]),
         "acceleration": np.concatenate([acceleration for _, acceleration in motions]),

@@ -9,7 +9,7 @@ from rbsdem.many.fragility import Fragility as Fragility
 from rbsdem.many.fragility import Hazard as Hazard
 from rbsdem.many.fragility import fit_fragility as fit_fragility
 from rbsdem.many.ida import IDA as IDA
-from rbsdem.many.ida import Hunt as Hunt
+from rbsdem.many.ida import CollapseSearch as CollapseSearch
 from rbsdem.many.ida import Stripes as Stripes
 from rbsdem.many.ida import stripes as stripes
 from rbsdem.many.inputs import LIMIT_STATES as LIMIT_STATES

@@ -12,5 +12,5 @@ from rbsdem.model.frame_result import MemberHistory as MemberHistory
 from rbsdem.model.shape import TeeSection as TeeSection
 from rbsdem.run.analysis import FrameModes as FrameModes
 from rbsdem.section.building import Frame as Frame
-from rbsdem.section.panel import Panel as Panel
+from rbsdem.section.panel import JointPanel as JointPanel
 from rbsdem.section.panel import panel_strength as panel_strength

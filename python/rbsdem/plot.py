@@ -11,7 +11,7 @@ from rbsdem.output.frames import frame as frame
 from rbsdem.output.frames import member_forces as member_forces
 from rbsdem.output.frames import pushover as pushover
 from rbsdem.output.frames import storey_drift as storey_drift
-from rbsdem.output.loops import Panel as Panel
+from rbsdem.output.loops import Subplot as Subplot
 from rbsdem.output.loops import calibration as calibration
 from rbsdem.output.loops import code_comparison as code_comparison
 from rbsdem.output.loops import comparison as comparison

@@ -270,7 +270,7 @@ def accepted(make: Callable[[], rbsdem.Column]) -> rbsdem.Column:
     """Return the first of some columns that is accepted: a few are too weak for their load."""
     for _ in range(100):
         try:
-            with rbsdem.model.column.without_notes():
+            with rbsdem.model.column.notes_off():
                 return make()
         except rbsdem.InputError:
             continue

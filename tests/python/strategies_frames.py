@@ -41,7 +41,7 @@ def kind(rng: Rng, family: str, moment: float, *, panels: bool = True) -> FrameM
     stiffness = moment * between(rng, 60, 400)
     area = stiffness / MODULUS * between(rng, 30, 200)
     given: dict[str, Any] = {"modulus": MODULUS, "area": area, "inertia": stiffness / MODULUS}
-    given["panel"] = float(rng.choice([0.0, 0.2])) if panels else 0.0
+    given["rigid_end"] = float(rng.choice([0.0, 0.2])) if panels else 0.0
     drawn = rng.random()
     if drawn < 0.15:
         return FrameMember(**given, shear_rigidity=float(rng.choice([0.0, 0.3 * MODULUS * area])))
@@ -52,7 +52,7 @@ def kind(rng: Rng, family: str, moment: float, *, panels: bool = True) -> FrameM
     ends = [end(rng, family, moment) for _ in "ab"]
     if drawn > 0.7:
         inner = {0.0: ends[0], 0.5: ends[1], 1.0: ends[0]}
-        return FrameMember(**given, flexure=inner, between="rigid")
+        return FrameMember(**given, flexure=inner, interior="rigid")
     return FrameMember(**given, flexure=ends)
 
 

@@ -41,10 +41,12 @@ def test_a_drawn_frame_is_one_of_members_by_hand(drawn):
             # 1 % of f'c A_g is the step of the axial loads.
             carried = elastic.compression[elastic.members.index(f"C-{line}-{storey}")]
             load = max(round(carried / 40e3), 1) * 40e3
-            panel = (0.0 if storey == 1 else 0.25), 0.25
-            kinds[line, storey] = rbsdem.section.member(C, clear, axial_load=load, panel=panel)
+            rigid = (0.0 if storey == 1 else 0.25), 0.25
+            kinds[line, storey] = rbsdem.section.member(C, clear, axial_load=load, rigid_end=rigid)
     beams = {
-        (bay, 0): rbsdem.section.member(B.mirrored, width - 0.4, panel=(0.2, 0.2), under_load=True)
+        (bay, 0): rbsdem.section.member(
+            B.mirrored, width - 0.4, rigid_end=(0.2, 0.2), under_load=True
+        )
         for bay, width in ((1, 5.6), (2, 4.0))
     }
     hand = rbsdem.Frame.grid(
@@ -93,11 +95,14 @@ def test_rigid_ends_by_strength():
         cover=0.03,
     )  # fmt: skip
     weak = rbsdem.Frame.grid([3.2] * 2, [5.6], columns=C, beams=strong, dead_load=20e3)
-    assert weak.beams[1, 1].panel == (0.2, 0.2)
-    assert weak.columns[1, 2].panel == (0.0, 0.0)
+    assert weak.beams[1, 1].rigid_end == (0.2, 0.2)
+    assert weak.columns[1, 2].rigid_end == (0.0, 0.0)
     stiff = rbsdem.Frame.grid([3.2] * 2, [5.6], columns=strong, beams=B, dead_load=20e3)
-    assert stiff.beams[1, 1].panel == (0.0, 0.0)
-    assert (stiff.columns[1, 1].panel, stiff.columns[1, 2].panel) == ((0.0, 0.25), (0.25, 0.25))
+    assert stiff.beams[1, 1].rigid_end == (0.0, 0.0)
+    assert (stiff.columns[1, 1].rigid_end, stiff.columns[1, 2].rigid_end) == (
+        (0.0, 0.25),
+        (0.25, 0.25),
+    )
 
 
 def test_unlike_halves():
@@ -132,11 +137,11 @@ def test_springs_in_nodes():
     frame = rbsdem.Frame.grid([3.2] * 2, [5.6] * 2, columns=C, beams=B, panel_hoops="none", **MORE)
     springs = {node.name: node.panel for node in frame.nodes}
     assert set(springs) == {f"N-{i}-{k}" for i in (1, 2, 3) for k in (1, 2)}
-    panel = rbsdem.frames.Panel(C, B, "interior")
+    panel = rbsdem.frames.JointPanel(C, B, "interior")
     assert springs["N-2-1"] == panel.spring()
-    assert springs["N-1-2"] == rbsdem.frames.Panel(C, B, "knee").spring()
-    assert springs["N-1-1"] == rbsdem.frames.Panel(C, B, "exterior").spring()
-    assert frame.beams[1, 1].panel == (0.2, 0.2)
+    assert springs["N-1-2"] == rbsdem.frames.JointPanel(C, B, "knee").spring()
+    assert springs["N-1-1"] == rbsdem.frames.JointPanel(C, B, "exterior").spring()
+    assert frame.beams[1, 1].rigid_end == (0.2, 0.2)
 
 
 @pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")

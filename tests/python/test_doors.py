@@ -317,9 +317,9 @@ def test_a_drawing_comes_back(tmp_path, run_cli, read_csv, seed):
         back = read_back(tmp_path, case.to_namelist())
         assert back == case
         assert back.to_namelist() == case.to_namelist()
-        section = column.recipe.section
+        section = column.drawing.section
         thicker = {"cover": 1.05 * section.cover}
-        assert replace(back.column.recipe.section, **thicker) == replace(section, **thicker)
+        assert replace(back.column.drawing.section, **thicker) == replace(section, **thicker)
         one, other = back.run(openings=True), case.run(openings=True)
         assert list(one.limit_states()) == list(other.limit_states())
         reached |= set(one.limit_states().names())

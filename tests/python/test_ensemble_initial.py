@@ -11,7 +11,7 @@ from test_ensembles import column, motion, same_as_alone
 
 import rbsdem
 from rbsdem import InputError, motions
-from rbsdem.many.ida import Hunt
+from rbsdem.many.ida import CollapseSearch
 from rbsdem.springs import Elastic
 
 NEWMARK = {"method": "newmark"}
@@ -98,7 +98,7 @@ def test_ida_of_a_damaged_column() -> None:
     The elastic column adds them: without motion its drift is that of the push that is let go.
     """
     records = motions.synthetic(2)
-    given = {"levels": Hunt(points=2, resolution=0.2), "method": "newmark", "dt": 0.01}
+    given = {"levels": CollapseSearch(points=2, resolution=0.2), "method": "newmark", "dt": 0.01}
     elastic = rbsdem.Column(2.0, 1e3, Elastic(4e5), Elastic(4e9))
     rest = rbsdem.cyclic(elastic, displacement=[0.0])
     virgin, same = (rbsdem.ida(elastic, records, initial=state, **given) for state in (None, rest))

@@ -404,7 +404,7 @@ def test_members_of_a_frame_bend_as_the_figures_of_python_have_them():
     """A cubic line with kinks where sections yielded, here for all rows at once."""
     frame = frames.frame_of(frames.DEFAULT, Faults())
     push = rbsdem.pushover(frame, drift=0.03, points=40)
-    answer = frames.pushed(frames.DEFAULT)
+    answer = frames.pushover_json(frames.DEFAULT)
     for i, member in enumerate(frame.geometry.values()):
         row = answer["pictures"][-1]
         line = figures_of_frames._deformed(push, member, row, 1.0, np.linspace(0, 1, 7))

@@ -162,7 +162,7 @@ def test_in_a_column_and_its_case_file(tmp_path):
     text = column.to_namelist() + "&loading drive = 'displacement', values = 0.01 /\n"
     (tmp_path / "case.nml").write_text(text)
     assert rbsdem.read_case(tmp_path / "case.nml").column == column
-    assert column.recipe.section == TEE
+    assert column.drawing.section == TEE
     assert "with a flange of 1200 x 120 mm" in str(TEE)
     with pytest.raises(InputError, match="this section has a flange"):
         rbsdem.codes.code_values(TEE, 2.0, 50e3)
@@ -172,7 +172,7 @@ def test_in_a_column_and_its_case_file(tmp_path):
 
 def test_a_slab_pushed_in_a_frame():
     """The moments of the beam are those of its faces: y > 0 is above."""
-    beam = rbsdem.section.member(TEE.mirrored, 5.6, panel=0.2)
+    beam = rbsdem.section.member(TEE.mirrored, 5.6, rigid_end=0.2)
     column = rbsdem.FrameMember(modulus=30e9, area=0.16, inertia=0.1)
     frame = rbsdem.Frame.grid([3.2], [6.0], columns=column, beams=beam, base="pinned")
     push = rbsdem.pushover(frame, drift=0.02)

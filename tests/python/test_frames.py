@@ -40,8 +40,8 @@ def random_kind(rng, names, moment) -> FrameMember:
     ends = [spring(rng, str(rng.choice(names)), moment, between(rng, 1e-3, 8e-3)) for _ in "ab"]
     if rng.random() < 0.3:
         inner = {0.0: ends[0], 0.5: ends[1], 1.0: ends[0]}
-        return FrameMember(**given, flexure=inner, between="rigid")
-    return FrameMember(**given, flexure=ends, panel=float(rng.choice([0.0, 0.2])))
+        return FrameMember(**given, flexure=inner, interior="rigid")
+    return FrameMember(**given, flexure=ends, rigid_end=float(rng.choice([0.0, 0.2])))
 
 
 def random_panel(rng, names) -> Spring | None:
@@ -125,7 +125,7 @@ def test_reactions_are_the_loads(seed, kinematics):
     def kind() -> FrameMember:
         flexure = Bilinear(k=between(rng, 5e6, 5e7), d_y=1.0, k_post=1e5)
         springs = {} if rng.random() < 0.5 else {"flexure": flexure}
-        return FrameMember(E, A, INERTIA, panel=float(rng.uniform(0, 0.8)), **springs)
+        return FrameMember(E, A, INERTIA, rigid_end=float(rng.uniform(0, 0.8)), **springs)
 
     heights = [between(rng, 2.5, 4.5) for _ in range(rng.integers(1, 4))]
     widths = [between(rng, 3, 8) for _ in range(rng.integers(1, 4))]
@@ -370,7 +370,7 @@ def test_a_panel_between_columns_and_beams(ends):
         d_c=1e-3, f_c=k * 1e-3, d_y=6e-3, f_y=strength, d_cap=0.02, f_cap=strength, d_pc=0.2
     )
     members = [
-        Member(name, "node", name, FrameMember(E, 1.0, INERTIA), panel=(ends, 0.0))
+        Member(name, "node", name, FrameMember(E, 1.0, INERTIA), rigid_end=(ends, 0.0))
         for name in names
     ]
 
@@ -423,7 +423,7 @@ def test_a_column_as_a_frame(rule):
     members = [
         Member(
             f"body {i + 1}", f"{i}", f"{i + 1}",
-            FrameMember(E, 1e3, INERTIA, flexure={0.0: turns[i]}, shear=slips, between="rigid"),
+            FrameMember(E, 1e3, INERTIA, flexure={0.0: turns[i]}, shear=slips, interior="rigid"),
         )
         for i in range(n)
     ]  # fmt: skip
@@ -454,7 +454,7 @@ def test_a_column_of_layers_as_a_frame():
     hinge, above = column.joints("flexure")
     place = bodies(column)[0][0] / column.height
     kind = FrameMember(
-        E, 1e3, INERTIA, flexure={0.0: hinge, place: above}, shear=Elastic(k=5e8), between="rigid"
+        E, 1e3, INERTIA, flexure={0.0: hinge, place: above}, shear=Elastic(k=5e8), interior="rigid"
     )
     nodes = [FrameNode("foot", 0, 0, "fixed"), FrameNode("top", 0, 1.6, load_y=-700e3)]
     frame = Frame(nodes=nodes, members=[Member("C", "foot", "top", kind)], pattern="uniform")
@@ -578,8 +578,8 @@ def test_a_drawn_beam_under_load_yields_in_its_span():
 
 def test_a_frame_of_drawings():
     """Cracked beams lengthen and press the columns: paths balance, more points change no bit."""
-    column = rbsdem.section.member(drawn(0.4), 2.95, axial_load=400e3, panel=0.25)
-    beam = rbsdem.section.member(drawn(0.5), 5.6, panel=0.2)
+    column = rbsdem.section.member(drawn(0.4), 2.95, axial_load=400e3, rigid_end=0.25)
+    beam = rbsdem.section.member(drawn(0.5), 5.6, rigid_end=0.2)
     frame = Frame.grid(
         [3.2], [6.0], columns=column, beams=beam, beam_load=20e3, floor_mass=40e3,
         kinematics="pdelta",
@@ -604,7 +604,7 @@ def test_a_frame_of_drawings():
 
 def test_a_kind_is_refused_for_another_length():
     """Springs are made for a clear length; 1 % is what rounding of a drawing comes to."""
-    kind = rbsdem.section.member(drawn(0.4), 2.7, panel=0.25)
+    kind = rbsdem.section.member(drawn(0.4), 2.7, rigid_end=0.25)
     beam = FrameMember(E, A, INERTIA)
     assert Frame.grid([2.97, 3.19], columns={(0, 1): kind, (0, 2): kind}).parts.members
     told = "member C-1-1: its clear length is 2.95 m, and the springs of member_kind 'kind-1' were "
@@ -1095,7 +1095,7 @@ def test_sudden_loss_of_a_column(moment):
 #: A column between two others, that fails in shear.
 SHEAR = PeakOriented(d_y=2e-3, f_y=60e3, d_cap=0.01, f_cap=61e3, d_pc=0.1)
 BRITTLE = FrameMember(
-    E, A, INERTIA, flexure=Bilinear(k=1e8, d_y=2.5e-3, k_post=1e6), shear=SHEAR, between="rigid",
+    E, A, INERTIA, flexure=Bilinear(k=1e8, d_y=2.5e-3, k_post=1e6), shear=SHEAR, interior="rigid",
     failure_drift=0.1, failure_load=200e3,
 )  # fmt: skip
 
@@ -1214,7 +1214,7 @@ def test_a_beam_that_cannot_carry_its_load_any_more_is_told():
     slips = PeakOriented(d_y=1e-3, f_y=65e3, d_cap=5e-3, f_cap=66e3, d_pc=5e-3)
     turns = Bilinear(k=1e8, d_y=1.2e-3, k_post=1e6)
     beam = FrameMember(
-        E, A, INERTIA, flexure=turns, shear={0.0: slips, 1.0: slips}, between="rigid"
+        E, A, INERTIA, flexure=turns, shear={0.0: slips, 1.0: slips}, interior="rigid"
     )
     frame = Frame.grid(
         [3.0], [6.0], columns=COLUMN, beams=beam, beam_load=20e3, floor_mass=40e3,
@@ -1288,7 +1288,7 @@ def test_a_beam_whose_joints_soften_between_nodes_that_stand_still_falls():
             cover=0.03,
         )
 
-    column = rbsdem.section.member(section(0.3, 0.022), 2.8, axial_load=540e3, panel=0.2)
+    column = rbsdem.section.member(section(0.3, 0.022), 2.8, axial_load=540e3, rigid_end=0.2)
     beam = rbsdem.section.member(section(0.4, 0.014), 8.0)
     share = [0.5, 1.0, 0.5]
     nodes = [
@@ -1361,7 +1361,7 @@ def test_shear_springs_of_members_hear_the_nearest_hinge(rule):
     column = rbsdem.Column(1.5, 1.0, slips, turns)
     kind = FrameMember(
         E, 1e3, INERTIA, flexure={0.0: turns, 1.0: Elastic(k=1e15)}, shear={0.0: slips},
-        between="rigid",
+        interior="rigid",
     )  # fmt: skip
     nodes = [FrameNode("foot", 0, 0, "fixed"), FrameNode("top", 0, 1.5, push_x=1.0)]
     frame = Frame(nodes=nodes, members=[Member("C", "foot", "top", kind)], pattern="nodes")

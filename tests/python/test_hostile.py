@@ -156,11 +156,12 @@ rbsdem.section.moment_curvature rbsdem.section.shear_diagram rbsdem.section.shea
 rbsdem.section.springs rbsdem.section.strains calibration.free_names calibration.undetermined
 curves.displacement_metrics curves.energy curves.envelope curves.half_cycles curves.resample
 curves.secant_stiffness curves.strength_loss curves.summarise curves.turning_points
-fragility.Hazard fragility.Hunt fragility.fit_fragility fragility.stripes motions.corrected
-motions.read_motion motions.read_motions motions.resampled motions.sequence motions.synthetic
-peer.net_force peer.paper_columns peer.read_peer peer.read_specimens objects.bilinear.response
-objects.bilinear.split objects.case.joints objects.case.place_of objects.case.double_curvature
-objects.concrete.stress objects.curve.idealise objects.damping.rayleigh objects.ensemble.history
+fragility.Hazard fragility.CollapseSearch fragility.fit_fragility fragility.stripes
+motions.corrected motions.read_motion motions.read_motions motions.resampled motions.sequence
+motions.synthetic peer.net_force peer.paper_columns peer.read_peer peer.read_specimens
+objects.bilinear.response objects.bilinear.split objects.case.joints objects.case.place_of
+objects.case.double_curvature objects.concrete.stress objects.curve.idealise
+objects.damping.rayleigh objects.ensemble.history
 objects.fragility.band objects.fragility.mean_annual_frequency objects.fragility.probability
 objects.fragility.samples objects.hazard.exceeded objects.hazard.frequency_of
 objects.layered.layer_deformation objects.layered.strains objects.motion.duration objects.motion.sa

@@ -11,7 +11,7 @@ import pytest
 
 import rbsdem
 from rbsdem import InputError, motions
-from rbsdem.many.ida import Hunt
+from rbsdem.many.ida import CollapseSearch
 from rbsdem.springs import Elastic, PeakOriented
 
 HEIGHT = 2.0
@@ -116,7 +116,12 @@ def test_levels_that_end_below_the_collapse_leave_it_open(column, records, omega
 def test_other_intensities_scatter(column, records, omega, intensity):
     """Each record reaches Sa = w^2 d h at its own PGA, or at its own mean of Sa."""
     found = rbsdem.ida(
-        column, records, intensity=intensity, collapse_drift=0.05, levels=Hunt(points=1), **SETTINGS
+        column,
+        records,
+        intensity=intensity,
+        collapse_drift=0.05,
+        levels=CollapseSearch(points=1),
+        **SETTINGS,
     )
     period = 2 * np.pi / omega
     own = [
@@ -130,7 +135,9 @@ def test_other_intensities_scatter(column, records, omega, intensity):
 
 def test_a_softening_column_is_hunted_down(records):
     """Every bracket holds: a run without collapse below, one with a collapse above."""
-    found = rbsdem.ida(softening(), records, method="newmark", levels=Hunt(resolution=0.05))
+    found = rbsdem.ida(
+        softening(), records, method="newmark", levels=CollapseSearch(resolution=0.05)
+    )
     assert (found.upper <= found.lower / 0.95 * (1 + 1e-12)).all()
     for motion in range(6):
         own = found.runs.motion == motion
@@ -147,7 +154,12 @@ def test_several_columns_split_the_variance(records):
     columns = {f"{k:g}": oscillator(k) for k in (4e5, 5e5)}
     period = 1 / float(rbsdem.modes(columns["400000"]).frequency[0])
     found = rbsdem.ida(
-        columns, records, period=period, collapse_drift=0.05, levels=Hunt(points=1), **SETTINGS
+        columns,
+        records,
+        period=period,
+        collapse_drift=0.05,
+        levels=CollapseSearch(points=1),
+        **SETTINGS,
     )
     for i, column in enumerate(columns.values()):
         own = rbsdem.modes(column).omega[0]
@@ -159,7 +171,7 @@ def test_several_columns_split_the_variance(records):
 def test_limit_states_are_bracketed(records):
     """The base is at its yield and at its cap where its rotation is that, within 5 %."""
     rotations = {"first_yield": 0.004, "cap": 0.03}
-    few, names = Hunt(points=3), list(rotations)
+    few, names = CollapseSearch(points=3), list(rotations)
     found = rbsdem.ida(softening(), records, method="newmark", levels=few, refine=names)
     for name, rotation in rotations.items():
         data = found.capacities(name)
@@ -189,7 +201,11 @@ def test_the_scale_of_the_records_does_not_matter(column, records, hunted):
 def test_a_hunt_goes_on_from_its_store(column, records, tmp_path, monkeypatch):
     """The second start asks for the same runs, and the store has them all."""
     pytest.importorskip("pyarrow")
-    options = {"levels": Hunt(points=2), "collapse_drift": 0.05, "store": tmp_path / "store"}
+    options = {
+        "levels": CollapseSearch(points=2),
+        "collapse_drift": 0.05,
+        "store": tmp_path / "store",
+    }
     first = rbsdem.ida(column, records[:2], **options, **SETTINGS)
     more = rbsdem.ida(column, records[:3], **options, **SETTINGS)
     assert np.array_equal(more.upper[:, :2], first.upper)
@@ -229,7 +245,9 @@ def test_stripes_with_records_of_their_own(column, records, omega):
 def test_stripes_and_ida_tell_the_same_of_a_softening_column(records):
     """The same runs: a stripe counts the records whose collapse lies below its level."""
     settings = {"method": "newmark"}
-    hunted = rbsdem.ida(softening(), records, levels=Hunt(resolution=0.01, points=1), **settings)
+    hunted = rbsdem.ida(
+        softening(), records, levels=CollapseSearch(resolution=0.01, points=1), **settings
+    )
     levels = np.quantile(hunted.collapse_intensity, [0.1, 0.5, 0.7, 0.9])
     found = rbsdem.fragility.stripes(softening(), records, levels, **settings)
     below = (hunted.collapse_intensity[0] < levels[:, None]).sum(axis=1)

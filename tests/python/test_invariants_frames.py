@@ -248,7 +248,7 @@ def gaps(run: FrameResult) -> float:
             else:
                 along = along - values
         a, b = run.moment_from[:, at], run.moment_to[:, at]
-        if own.yield_moment is None and own.between == "elastic":
+        if own.yield_moment is None and own.interior == "elastic":
             soft, load = m.clear / (own.modulus * own.inertia), m.load * m.clear**2
             bend = bend - soft * ((b - a) / 2 - load / 12)
             away = away - soft * m.clear * (b / 6 - a / 3 - load / 24)
@@ -344,7 +344,7 @@ def explicit(rng: Rng, made: Frame, x: float, y: float) -> Frame:
     members = [
         Member(
             f"member {i}", *(names[parts.nodes[at]] for at in parts.ends[i]),
-            kind=remade(made.kind_of(name), panel=0.0), panel=made.geometry[name].rigid,
+            kind=remade(made.kind_of(name), rigid_end=0.0), rigid_end=made.geometry[name].rigid,
             load=made.load_of(name),
         )
         for i, name in enumerate(parts.members)
@@ -412,7 +412,7 @@ def test_elastic_members_are_sections_that_do_not_yield(rng: Rng) -> float:
     made = replace(frame(rng, any_family(rng)), kinematics="small")
     stiff = {name: getattr(made, name)[0, 0] for name in ("columns", "beams")}
     which = str(rng.choice(["columns", "beams"]))
-    plain = remade(stiff[which], flexure=None, yield_moment=None, hardening=0.0, between="elastic")
+    plain = remade(stiff[which], flexure=None, yield_moment=None, hardening=0.0, interior="elastic")
     three = remade(plain, yield_moment=1e30)
     path = drifts(rng, made, 0.01)
     try:
@@ -442,7 +442,7 @@ def test_a_column_as_a_frame_with_second_order_work(rng: Rng) -> float:
     ]
     members = [
         Member(f"{i}", f"{i}", f"{i + 1}",
-               FrameMember(MODULUS, 1e4, 1.0, flexure={0.0: own}, shear=slip, between="rigid"))
+               FrameMember(MODULUS, 1e4, 1.0, flexure={0.0: own}, shear=slip, interior="rigid"))
         for i, own in enumerate(turns)
     ]  # fmt: skip
     made = Frame(nodes=nodes, members=members, pattern="nodes", kinematics="pdelta")
@@ -539,7 +539,7 @@ def in_units(made: Frame, length: float, mass: float, time: float) -> Frame:
         flexure = own.flexure and {place: of(one) for place, one in own.flexure}
         return remade(
             own, modulus=own.modulus * force / length**2, area=own.area * length**2,
-            inertia=own.inertia * length**4, flexure=flexure, panel=own.panel * length,
+            inertia=own.inertia * length**4, flexure=flexure, rigid_end=own.rigid_end * length,
             yield_moment=own.yield_moment and own.yield_moment * force * length,
             shear_rigidity=own.shear_rigidity * force,
         )  # fmt: skip

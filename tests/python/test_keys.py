@@ -100,7 +100,7 @@ def test_fields_of_a_column_are_the_keys_of_its_group():
     column["model"] = column["model"] | {"default": ""}  # no text is an empty one
     footing = {name: column.pop(f"footing_{name}") for name in ("mass", "inertia", "height")}
     springs = {"shear", "flexure", "axial_spring"}
-    agree(rbsdem.Column, column, springs | {"damping", "recipe", "footing"})
+    agree(rbsdem.Column, column, springs | {"damping", "drawing", "footing"})
     agree(rbsdem.Footing, footing, springs)
 
 

@@ -48,7 +48,7 @@ def test_elastic_stiffness_of_the_layered_model_in_closed_form(n):
     """1/k = (L - l)^3/3EI + (L/k_hinge) L + 1/k_shear, without axial load."""
     bare = replace(SPECIMEN, axial_load=0.0)
     column = peer.column(bare, "layered", n=n)
-    joint = column.recipe.joint
+    joint = column.drawing.joint
     d = 1e-7
     foot = joint.spring.response([d])[0] / d
     length, above = bare.length, bare.length - joint.length
@@ -76,7 +76,7 @@ def test_strength_of_the_hinge_is_that_of_the_section():
 
 def test_numbers_to_fit_stand_between_their_bounds_and_come_back():
     column = peer.column(SPECIMEN)
-    before = column.recipe.parameters.values
+    before = column.drawing.parameters.values
     for name, number in column.parameters.items():
         assert number.low < number.value < number.high, name
         middle = math.sqrt(number.low * number.high)
@@ -84,7 +84,7 @@ def test_numbers_to_fit_stand_between_their_bounds_and_come_back():
         # A factor has become one on the values that it has changed.
         assert other.parameters[name].value == pytest.approx(1.0 if name in FACTORS else middle)
         for one in FACTORS[name][0] if name in FACTORS else ():
-            assert other.recipe.parameters.values[one] / before[one] == pytest.approx(middle), one
+            assert other.drawing.parameters.values[one] / before[one] == pytest.approx(middle), one
         assert other.n == column.n
 
 
@@ -94,8 +94,8 @@ def test_the_column_above_cracks_as_a_continuous_one(n, error):
     share = 0.4
     given = parameters().with_values(cracked_above=share)
     column = peer.column(SPECIMEN, n=n, model_parameters=given)
-    above = column.height - column.recipe.joint.length
-    bending = column.recipe.joint.flexural_stiffness
+    above = column.height - column.drawing.joint.length
+    bending = column.drawing.joint.flexural_stiffness
     tensile = 0.6e6 * math.sqrt(40) + 1.2e6 / 0.16
     m_c = tensile * 0.4**3 / 6
     # Foot moment 4 M_c above the hinge: the quarter at the top has not cracked.
@@ -137,7 +137,7 @@ def test_parameters_of_another_fit_name_themselves():
     own = replace(parameters().with_values(steel_strength=1.3, stiffness=3.0), version="2099.1")
     column = rbsdem.section.column(SECTION, 1.6, axial_load=1.2e6, model_parameters=own)
     assert (column.version, column.model) == ("2099.1", "layered 2099.1")
-    assert len(column.recipe.parameters.own) == len(table())
+    assert len(column.drawing.parameters.own) == len(table())
 
 
 def test_the_table_of_parameters():
@@ -188,13 +188,13 @@ KEPT = {
     "footing": {"footing": rbsdem.Footing(Elastic(1e9), Elastic(1e9))},
 }
 # With the height and the number of bodies the springs are others; joints that open have no layers.
-OTHERS = {"height", "n", "recipe", "axial_spring", "top"}
+OTHERS = {"height", "n", "drawing", "axial_spring", "top"}
 
 
 def test_other_parameters_keep_what_was_replaced():
     """Also springs and lengths that are not the model's any more; the others are made anew."""
     assert {field.name for field in fields(LAYERED) if field.init} == set(KEPT) | OTHERS
-    made = {"shear", "flexure", "lengths", "model", "recipe"}
+    made = {"shear", "flexure", "lengths", "model", "drawing"}
     for name, changes in KEPT.items():
         column = replace(LAYERED, **changes)
         assert column.with_parameters() == column
@@ -244,7 +244,7 @@ def test_each_parameter_has_its_say_up_to_its_bounds(column):
             nearer, further = one.at(place), one.at(place + 0.1)
             assert springs(**{name: nearer}) != springs(**{name: further}), (name, place)
     beyond = 0
-    for name, (least, most) in column.recipe.limits.items():
+    for name, (least, most) in column.drawing.limits.items():
         if math.isfinite(most):
             column.with_parameters(**{name: most})
             with pytest.raises(InputError, match=f"{name} = .* is above .* changes nothing"):
@@ -273,8 +273,8 @@ def test_a_parameter_beyond_its_limit_starts_at_the_limit():
     with pytest.warns(rbsdem.errors.AccuracyWarning, match="axial load ratio"):
         column = rbsdem.section.column(SECTION, 1.6, axial_load=5e6)
     stiffness = column.parameters["stiffness"]
-    assert column.recipe.parameters.stiffness > column.recipe.limits["stiffness"][1]
-    assert stiffness.value == stiffness.high == column.recipe.limits["stiffness"][1]
+    assert column.drawing.parameters.stiffness > column.drawing.limits["stiffness"][1]
+    assert stiffness.value == stiffness.high == column.drawing.limits["stiffness"][1]
     same = column.with_parameters(stiffness=stiffness.value)
     assert same.flexure[1].k_c == pytest.approx(column.joints("flexure")[1].k_c)
 
@@ -287,7 +287,7 @@ def test_another_axial_load_draws_the_springs_again():
     )
     again = replace(column, axial_load=1.0e6)
     assert again == other
-    assert again.recipe == other.recipe
+    assert again.drawing == other.drawing
     assert replace(replace(column, damping=0.02), axial_load=1.0e6) == replace(other, damping=0.02)
     # Springs of the user's own stay as they are.
     own = Elastic(1e9)

@@ -88,9 +88,9 @@ FRAMED = """\
 &frame storeys = 3.2, 3.2, bays = 6.0, 5.0, kinematics = 'pdelta' /
 &floor mass = 4e4, load = 2e4 /
 &member_kind name = 'C', modulus = 3e10, area = 0.16, inertia = 2e-3, yield_moment = 2.5e5 /
-&member_kind name = 'B', modulus = 3e10, area = 0.15, inertia = 2e-3, between = 'rigid' /
+&member_kind name = 'B', modulus = 3e10, area = 0.15, inertia = 2e-3, interior = 'rigid' /
 &flexure kind = 'B', place = 0, 0.5, 1, rule = 'bilinear', k = 6e7, d_y = 4e-3, k_post = 1e5 /
-&column_of kind = 'C', panel = 0.3 /
+&column_of kind = 'C', rigid_end = 0.3 /
 &beam_of kind = 'B' /
 &node name = 'A', x = 14.0, y = 3.2, support = 'roller' /
 &member name = 'M', from = 'N-3-1', to = 'A', kind = 'C' /

@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 
 import rbsdem
 from rbsdem import motions
-from rbsdem.many.ida import Hunt
+from rbsdem.many.ida import CollapseSearch
 from rbsdem.springs import Bilinear, Elastic
 
 MASS, HEIGHT, DAMPING = 1e4, 3.0, 0.05
@@ -188,7 +188,7 @@ def test_collapse_intensity_against_scipy():
         softening(),
         chosen,
         intensity="pga",
-        levels=Hunt(resolution=0.005, points=1),
+        levels=CollapseSearch(resolution=0.005, points=1),
         refine=[],
         method="newmark",
         dt=0.001,

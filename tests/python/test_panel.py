@@ -8,13 +8,13 @@ from dataclasses import replace
 import pytest
 
 import rbsdem
-from rbsdem.frames import Panel, panel_strength
+from rbsdem.frames import JointPanel, panel_strength
 
 STEEL = rbsdem.Steel(450e6)
 HOOPS = rbsdem.Ties(0.010, 0.10, STEEL, legs=3)
 COLUMN = rbsdem.RectangularSection(0.40, 0.45, rbsdem.Concrete(30e6))
 BEAM = rbsdem.RectangularSection(0.30, 0.50, rbsdem.Concrete(30e6))
-NODE = Panel(COLUMN, BEAM, hoops=HOOPS, axial_load=500e3)
+NODE = JointPanel(COLUMN, BEAM, hoops=HOOPS, axial_load=500e3)
 
 
 def principal_tension(shear, vertical, area) -> float:

@@ -241,7 +241,7 @@ def test_four_panels_are_lettered_symmetric_and_written(tmp_path):
     for key, section in rbsdem.peer.paper_sections().items():
         points = rbsdem.peer.shipped_reversals(key)
         half = (0.5 * points.displacement, points.force)
-        panels.append(plot.Panel(section.specimen, half, points, section.length, True))
+        panels.append(plot.Subplot(section.specimen, half, points, section.length, True))
     before = dict(mpl.rcParams)
     grid = plot.four_panels(panels)
     figure = grid[0].figure
@@ -398,7 +398,7 @@ def test_shape_and_moments_of_a_frame(figures):
     assert {f"{abs(1e-3 * along[at]):.0f}" for at in (0, 20)} <= numbers
     assert along[[0, 10, 20]] == pytest.approx(-pushed.member("B-1-1").force[-1])
     rigid = rbsdem.FrameMember(
-        30e9, 0.16, 2.1e-3, flexure=rbsdem.springs.Bilinear(5e7, 4e-3, 5e5), between="rigid"
+        30e9, 0.16, 2.1e-3, flexure=rbsdem.springs.Bilinear(5e7, 4e-3, 5e5), interior="rigid"
     )
     bent = rbsdem.Frame.grid([3.0], [6.0], columns=rigid, beams=rigid, base="pinned")
     swayed = rbsdem.pushover(bent, drift=0.03, points=3)

@@ -67,8 +67,8 @@ def column(**given: float) -> rbsdem.section.layered.LayeredColumn:
 
 def predicted(made: rbsdem.section.layered.LayeredColumn) -> dict[str, float]:
     """Return strengths, stiffnesses and springs of a column."""
-    recipe, shear = made.recipe, made.shear[0]
-    section, joint, place = recipe.section, recipe.joint, (recipe.height, made.axial_load)
+    drawing, shear = made.drawing, made.shear[0]
+    section, joint, place = drawing.section, drawing.joint, (drawing.height, made.axial_load)
     found = {}
     for field in fields(shear):
         value = getattr(shear, field.name)
@@ -165,7 +165,7 @@ def test_a_column_drawn_upside_down(height, top):
         np.testing.assert_allclose(back, -loop, atol=1e-5 * abs(loop).max())
         assert columns[0].gauge(columns[0].n + 1) is not None
         # It is still the column of its drawing, whose parameters can be changed.
-        assert columns[0].with_parameters(r0=columns[0].recipe.parameters.r0) == columns[0]
+        assert columns[0].with_parameters(r0=columns[0].drawing.parameters.r0) == columns[0]
     shear = columns[0].shear[0]
     strengths = []
     for one in (up, down):

@@ -135,7 +135,7 @@ def test_a_slender_column_does_not_know_of_shear_failure():
     force = rbsdem.cyclic(column, displacement=d).force
     assert np.max(np.abs(force)) < 0.7 * column.joints("shear")[0].f_y
     other = column.with_parameters(shear_endurance=10.0, shear_pinch_force=0.05)
-    assert other.recipe.parameters.shear_endurance == 10.0
+    assert other.drawing.parameters.shear_endurance == 10.0
     assert np.array_equal(rbsdem.cyclic(other, displacement=d).force, force)
 
 

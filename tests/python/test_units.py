@@ -101,7 +101,7 @@ FRAME = """
 &floor mass = 80e3, load = 25e3 /
 &member_kind name = 'all', modulus = 30e9, area = 0.16, inertia = 2.1e-3, shear_rigidity = 1e9 /
 &flexure kind = 'all', rule = 'bilinear', k = 4e7, d_y = 6e-3, k_post = 4e5 /
-&column_of kind = 'all', panel = 0.25 /
+&column_of kind = 'all', rigid_end = 0.25 /
 &beam_of kind = 'all' /
 &node name = 'N-1-2', load_x = 1e3, load_y = -5e4, load_moment = 2e3, mass = 1e3, inertia = 10.0 /
 &loading drive = 'displacement', values = 0.1, -0.1 /

@@ -1,7 +1,7 @@
 """Fit parameters of a column to a measured loop, and report how well the test determines them.
 
 The parameters are paths into the column, such as ``flexure.k_y``, or those that a column made from
-a recipe offers.
+a drawing offers.
 """
 
 from rbsdem.calibration.fit import calibrate as calibrate
@@ -10,4 +10,4 @@ from rbsdem.calibration.fit import undetermined as undetermined
 from rbsdem.calibration.outcome import Calibration as Calibration
 from rbsdem.calibration.outcome import Fitted as Fitted
 from rbsdem.model.column import Parameter as Parameter
-from rbsdem.model.column import Recipe as Recipe
+from rbsdem.model.column import WithParameters as WithParameters

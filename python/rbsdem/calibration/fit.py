@@ -104,7 +104,7 @@ def calibrate(
     Parameters
     ----------
     column : Column
-        The column to start from. A column made from a recipe offers its parameters as `parameters`
+        The column to start from. A column made from a drawing offers its parameters as `parameters`
         and changes them by `with_parameters`; in any other column the names are paths.
     test : MeasuredTest, PeerTest, or pair of array_like of shape (m,)
         The measured loop: displacement [m] and net horizontal force [N], as for `rbsdem.compare`.

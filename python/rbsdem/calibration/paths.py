@@ -17,7 +17,7 @@ from typing import Any
 
 from rbsdem import _arguments, _core
 from rbsdem.errors import InputError
-from rbsdem.model.column import Column, Parameter, checked_column, is_recipe
+from rbsdem.model.column import Column, Parameter, checked_column, has_parameters
 from rbsdem.model.springs import Spring
 
 #: Parameters of springs are searched within this factor, unless their rule sets other bounds.
@@ -41,57 +41,59 @@ _NORMAL = {"stiffness": "N/m", "deformation": "m", "force": "N"}
 _TURNING = {"stiffness": "N m/rad", "deformation": "rad", "force": "N m"}
 _UNITS = {"shear": _NORMAL, "flexure": _TURNING, "axial_spring": _NORMAL}
 
-#: Way to a parameter: names of fields and indices of tuples; ``None`` stands for all indices.
-Way = tuple[str | int | None, ...]
+#: The path to a parameter: names of fields and indices of tuples; ``None`` stands for all indices.
+ParameterPath = tuple[str | int | None, ...]
 
 
-def paths(column: Column) -> dict[str, Way]:
+def paths(column: Column) -> dict[str, ParameterPath]:
     """Return the names of all parameters of a column that its static path may depend on."""
-    found: dict[str, Way] = {name: (name,) for name in _PLAIN}
+    found: dict[str, ParameterPath] = {name: (name,) for name in _PLAIN}
     for kind in _UNITS:
         springs = getattr(column, kind)
         if springs is not None:
-            found |= {f"{kind}{name}": (kind, *way) for name, way in _below(springs)}
+            found |= {f"{kind}{name}": (kind, *path) for name, path in _below(springs)}
         joints = column.joint_numbers[-1]
         if isinstance(springs, Spring) and joints > 1:
             # Joints with the same spring may get different ones.
             several = (springs,) * joints
-            found |= {f"{kind}{name}": (kind, *way) for name, way in _below(several)}
+            found |= {f"{kind}{name}": (kind, *path) for name, path in _below(several)}
     return found
 
 
-def parameter(column: Column, name: str, way: Way) -> Parameter | None:
+def parameter(column: Column, name: str, path: ParameterPath) -> Parameter | None:
     """Return the parameter at a path with its default bounds; None if they must be given."""
-    value = value_at(column, way)
-    bounds = default_bounds("" if None in way else str(way[-1]), value, len(way) == 1)
+    value = value_at(column, path)
+    bounds = default_bounds("" if None in path else str(path[-1]), value, len(path) == 1)
     if bounds is None:
         return None
-    least, most = ends(column, way)
-    return Parameter(value, max(bounds[0], least), min(bounds[1], most), unit_of(column, way), name)
+    least, most = ends(column, path)
+    return Parameter(
+        value, max(bounds[0], least), min(bounds[1], most), unit_of(column, path), name
+    )
 
 
-def unit_of(column: Column, way: Way) -> str:
+def unit_of(column: Column, path: ParameterPath) -> str:
     """Return the unit of the parameter at a path; empty for a factor."""
-    unit = str(_key(column, way).get("unit") or "")
+    unit = str(_key(column, path).get("unit") or "")
     # Layers of a joint are normal springs.
-    return (_NORMAL if "layers" in way else _UNITS.get(str(way[0]), {})).get(unit, unit)
+    return (_NORMAL if "layers" in path else _UNITS.get(str(path[0]), {})).get(unit, unit)
 
 
-def ends(column: Column, way: Way) -> tuple[float, float]:
+def ends(column: Column, path: ParameterPath) -> tuple[float, float]:
     """Return the least and the largest value that the key of a parameter takes."""
-    key = _key(column, way)
+    key = _key(column, path)
     least, most = key.get("least"), key.get("most")
     return (-math.inf if least is None else float(least), math.inf if most is None else float(most))
 
 
-def _key(column: Column, way: Way) -> dict[str, Any]:
+def _key(column: Column, path: ParameterPath) -> dict[str, Any]:
     """Return the key of the parameter at a path, as `rbsdem keys` has it; empty for a factor."""
-    if None in way:
+    if None in path:
         return {}
     rule = ""
-    for place in range(1, len(way)):
-        rule = getattr(_get(column, way[:place]), "rule", rule)
-    return _keys_of(rule).get(str(way[-1]), {})
+    for place in range(1, len(path)):
+        rule = getattr(_get(column, path[:place]), "rule", rule)
+    return _keys_of(rule).get(str(path[-1]), {})
 
 
 @cache
@@ -116,12 +118,14 @@ def default_bounds(name: str, value: float, measured: bool) -> tuple[float, floa
     return min(ends), max(ends)
 
 
-def value_at(column: Column, way: Way) -> float:
+def value_at(column: Column, path: ParameterPath) -> float:
     """Return the parameter at a path; 1 for a factor on several."""
-    return 1.0 if None in way else _get(column, way)
+    return 1.0 if None in path else _get(column, path)
 
 
-def with_values(column: Column, ways: Mapping[str, Way], values: Mapping[str, float]) -> Column:
+def with_values(
+    column: Column, paths: Mapping[str, ParameterPath], values: Mapping[str, float]
+) -> Column:
     """Return the column with other parameters at some paths.
 
     Raises
@@ -130,28 +134,30 @@ def with_values(column: Column, ways: Mapping[str, Way], values: Mapping[str, fl
         If the column refuses them.
     """
     # Springs check their parameters together, so all parameters of one spring change at once.
-    changes: dict[str, dict[Way, float]] = {}
+    changes: dict[str, dict[ParameterPath, float]] = {}
     for name, value in values.items():
-        way = ways[name]
-        changes.setdefault(str(way[0]), {})[way[1:]] = value
+        path = paths[name]
+        changes.setdefault(str(path[0]), {})[path[1:]] = value
     parts: Any = {
         name: _changed_part(column, getattr(column, name), own) for name, own in changes.items()
     }
     return replace(column, **parts)
 
 
-def _changed_part(column: Column, part: Any, changes: dict[Way, float]) -> Any:
+def _changed_part(column: Column, part: Any, changes: dict[ParameterPath, float]) -> Any:
     """Change a field of the column; joints get springs of their own where they differ."""
-    single = {way: value for way, value in changes.items() if way and not isinstance(way[0], str)}
+    single = {
+        path: value for path, value in changes.items() if path and not isinstance(path[0], str)
+    }
     if isinstance(part, Spring) and single:
-        common = {way: value for way, value in changes.items() if way not in single}
+        common = {path: value for path, value in changes.items() if path not in single}
         spring = _changed(part, common) if common else part
         return _changed((spring,) * column.joint_numbers[-1], single)
     return _changed(part, changes)
 
 
-def _below(part: Any) -> Iterator[tuple[str, Way]]:
-    """Yield names and ways of all parameters in a spring, or in several.
+def _below(part: Any) -> Iterator[tuple[str, ParameterPath]]:
+    """Yield names and paths of all parameters in a spring, or in several.
 
     They are ``.k_y`` in one spring, ``[0].k_y`` in one of several, and ``[*].k_y`` in all that have
     a k_y.
@@ -159,9 +165,9 @@ def _below(part: Any) -> Iterator[tuple[str, Way]]:
     if isinstance(part, tuple):
         several = [list(_below(_spring(item))) for item in part]
         for place, parameters in enumerate(several):
-            yield from ((f"[{place}]{name}", (place, *way)) for name, way in parameters)
-        every = {name: way for parameters in several for name, way in parameters}
-        yield from ((f"[*]{name}", (None, *way)) for name, way in every.items())
+            yield from ((f"[{place}]{name}", (place, *path)) for name, path in parameters)
+        every = {name: path for parameters in several for name, path in parameters}
+        yield from ((f"[*]{name}", (None, *path)) for name, path in every.items())
     elif is_dataclass(part):
         for field in fields(part):
             value = getattr(part, field.name) if field.init else None
@@ -169,7 +175,7 @@ def _below(part: Any) -> Iterator[tuple[str, Way]]:
                 yield f".{field.name}", (field.name,)
             elif is_dataclass(value) or isinstance(value, tuple):
                 yield from (
-                    (f".{field.name}{name}", (field.name, *way)) for name, way in _below(value)
+                    (f".{field.name}{name}", (field.name, *path)) for name, path in _below(value)
                 )
 
 
@@ -178,8 +184,8 @@ def _spring(item: Any) -> Any:
     return item[-1] if isinstance(item, tuple) else item
 
 
-def _get(part: Any, way: Way) -> Any:
-    for step in way:
+def _get(part: Any, path: ParameterPath) -> Any:
+    for step in path:
         if isinstance(step, int):
             # One spring for all joints is the spring of each of them.
             part = part if isinstance(part, Spring) else _spring(part[step])
@@ -188,29 +194,29 @@ def _get(part: Any, way: Way) -> Any:
     return part
 
 
-def _changed(part: Any, changes: Mapping[Way, float]) -> Any:
-    """Return a copy of a spring, or of several, with the parameters at some ways replaced."""
+def _changed(part: Any, changes: Mapping[ParameterPath, float]) -> Any:
+    """Return a copy of a spring, or of several, with the parameters at some paths replaced."""
     if () in changes:
         return changes[()]
     if isinstance(part, tuple):
         return tuple(_changed_item(item, place, changes) for place, item in enumerate(part))
-    steps: dict[str, dict[Way, float]] = {}
-    for way, value in changes.items():
-        steps.setdefault(str(way[0]), {})[way[1:]] = value
+    steps: dict[str, dict[ParameterPath, float]] = {}
+    for path, value in changes.items():
+        steps.setdefault(str(path[0]), {})[path[1:]] = value
     return replace(
         part, **{step: _changed(getattr(part, step), rest) for step, rest in steps.items()}
     )
 
 
-def _changed_item(item: Any, place: int, changes: Mapping[Way, float]) -> Any:
+def _changed_item(item: Any, place: int, changes: Mapping[ParameterPath, float]) -> Any:
     """Change one of several springs: first its own parameters, then factors on all springs."""
     spring = _spring(item)
-    own = {way[1:]: value for way, value in changes.items() if way[0] == place}
-    for way, factor in changes.items():
-        rest = way[1:]
-        if way[0] is None and None in rest:
+    own = {path[1:]: value for path, value in changes.items() if path[0] == place}
+    for path, factor in changes.items():
+        rest = path[1:]
+        if path[0] is None and None in rest:
             own[rest] = own.get(rest, 1.0) * factor
-        elif way[0] is None:
+        elif path[0] is None:
             value = own.get(rest, _get(spring, rest))
             if value is not None:
                 own[rest] = value * factor
@@ -225,38 +231,38 @@ _MANY = 30
 
 
 class Parameters:
-    """The parameters of one column: those of its recipe, or otherwise the paths in it."""
+    """The parameters of one column: those that it offers, or otherwise the paths in it."""
 
     def __init__(self, column: Column) -> None:
-        self.recipe = is_recipe(column)
-        if not self.recipe:
+        self.offered = has_parameters(column)
+        if not self.offered:
             checked_column(column, "calibrate: ")
-        self.column: Any = column  # with `parameters`, if it has a recipe
-        self.ways = {} if self.recipe else paths(column)
+        self.column: Any = column  # with `parameters`, if it offers them
+        self.paths = {} if self.offered else paths(column)
 
     @property
     def names(self) -> list[str]:
         """Names of all parameters."""
-        return list(self.column.parameters) if self.recipe else list(self.ways)
+        return list(self.column.parameters) if self.offered else list(self.paths)
 
     def known(self) -> dict[str, Parameter | None]:
         """Return all parameters by name; None for those whose bounds must be given."""
-        if self.recipe:
+        if self.offered:
             return dict(self.column.parameters)
-        return {name: parameter(self.column, name, way) for name, way in self.ways.items()}
+        return {name: parameter(self.column, name, path) for name, path in self.paths.items()}
 
     def start(self, name: str) -> float:
         """Return the value of a parameter in the column."""
-        if self.recipe:
+        if self.offered:
             return float(self.column.parameters[name].value)
-        return value_at(self.column, self.ways[name])
+        return value_at(self.column, self.paths[name])
 
     def build(self, values: Mapping[str, float]) -> Column:
         """Return the column with other values, or raise `InputError` if it is refused."""
-        if self.recipe:
+        if self.offered:
             changed: Column = self.column.with_parameters(**values)
             return changed
-        return with_values(self.column, self.ways, values)
+        return with_values(self.column, self.paths, values)
 
 
 def free_parameters(
@@ -347,8 +353,8 @@ def _within(
             f"calibrate: bounds of {name}: {pair[0]:g} to {pair[1]:g} leave out the start "
             f"{start:g}; move the bounds, or start from another column"
         )
-    if not parameters.recipe:
-        least, most = ends(parameters.column, parameters.ways[name])
+    if not parameters.offered:
+        least, most = ends(parameters.column, parameters.paths[name])
         if pair[0] < least or pair[1] > most:
             side = f"below {least:g}" if pair[0] < least else f"above {most:g}"
             raise InputError(
@@ -357,7 +363,7 @@ def _within(
             )
     try:
         if one is None:
-            unit = unit_of(parameters.column, parameters.ways[name])
+            unit = unit_of(parameters.column, parameters.paths[name])
             return Parameter(start, *pair, unit, name)
         return replace(one, low=pair[0], high=pair[1])
     except InputError as error:

@@ -440,8 +440,8 @@ def _check_same(q: Quantities, column: Column) -> None:
     if column.kinematics == "small" and load == 0:
         load = q.load  # It does nothing there, and need not be stated.
     found = replace(q, span=1e3 * span, load=load)
-    if isinstance(column, LayeredColumn) and column.recipe is not None:
-        found = quantities(column.recipe.section, span, load)
+    if isinstance(column, LayeredColumn) and column.drawing is not None:
+        found = quantities(column.drawing.section, span, load)
     other = [
         f"{name} = {theirs:g}, here {ours:g}"
         for name, ours in vars(q).items()

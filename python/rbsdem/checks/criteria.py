@@ -158,21 +158,21 @@ def _of_joints(frame: Frame, springs: Sequence[FrameSpring], number: int) -> Ite
                     yield Criterion("first_yield", number, mark.deformation, source, rotation=1.0)
 
 
-def all_watches(column: Structure, openings: bool) -> Array:
+def all_thresholds(column: Structure, openings: bool) -> Array:
     """Return what a run is watched for: all criteria, those of openings only if they are kept.
 
     Each counts for itself. A run without openings is told of the others, but cannot reach them.
     """
     found = criteria(column)
-    numbers = watches(column, found, range(1, len(found) + 1))
+    numbers = thresholds(column, found, range(1, len(found) + 1))
     if not openings:
         numbers[[bool(each.opening) for each in found], 5] = np.finfo(np.float64).max
         numbers[:, 4] = 0.0
     return numbers
 
 
-def watches(column: Structure, found: Sequence[Criterion], states: Iterable[int]) -> Array:
-    """Return criteria in numbers, shape (criteria, 6), as the Fortran part watches for them.
+def thresholds(column: Structure, found: Sequence[Criterion], states: Iterable[int]) -> Array:
+    """Return criteria in numbers, shape (criteria, 6), as the Fortran part takes them.
 
     Parameters
     ----------
@@ -216,8 +216,8 @@ def _of_layers(
     if column.opens:  # Its openings are those of axial springs.
         return
     gauge = column.gauge(joint)
-    if gauge is not None and isinstance(column, LayeredColumn) and column.recipe is not None:
-        section = column.recipe.section
+    if gauge is not None and isinstance(column, LayeredColumn) and column.drawing is not None:
+        section = column.drawing.section
         yield from _of_bars(section, column, joint, (spring, gauge), "bar_buckling" in names)
         if not set(names) <= set(_OF_BARS):
             yield from _of_fibres(section, joint, gauge)

@@ -182,8 +182,8 @@ def _axial_failure(result: Response, first: dict[str, LimitState]) -> list[Limit
     column = result.column
     if "shear_yield" not in first or not isinstance(column, LayeredColumn):
         return []
-    assert column.recipe is not None
-    limit = axial_failure_drift(column.recipe.section, column.axial_load)
+    assert column.drawing is not None
+    limit = axial_failure_drift(column.drawing.section, column.axial_load)
     path = result.path
     drift = np.abs(path.displacement) / column.height
     rows = np.flatnonzero((drift >= limit) & (path.time >= first["shear_yield"].time))

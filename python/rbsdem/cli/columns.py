@@ -263,7 +263,7 @@ def _part(text: str) -> tuple[int, int]:
 @click.argument("records", nargs=-1, required=True, type=FILE, metavar="RECORDS...")
 @_units
 @click.option("--intensity", default="sa_t1", help=f"{', '.join(NAMES)}; default sa_t1")
-@click.option("--levels", default="hunt", metavar="A,B", help="m/s2; default: found by search")
+@click.option("--levels", default="search", metavar="A,B", help="m/s2; default: found by search")
 @click.option(
     "--limit", multiple=True, metavar="NAME[=DRIFT]", help="limit state: repair=0.01, spalling"
 )
@@ -318,7 +318,7 @@ def ida(
     limits = _limits(limit)
     spreads = _spreads(beta, limits)
     site = None if hazard is None else _read_hazard(hazard)
-    example = "intensities in m/s2 separated by commas, or hunt"
+    example = "intensities in m/s2 separated by commas, or search"
     motions = _records(list(map(str, records)), units)
     part = None if shard is None else _part(shard)
     store = None
@@ -332,7 +332,7 @@ def ida(
         motions,
         refine=["first_yield", *watched],
         intensity=intensity,
-        levels=levels if levels == "hunt" else _numbers(levels, "--levels", example),
+        levels=levels if levels == "search" else _numbers(levels, "--levels", example),
         jobs=jobs,
         store=store,
         shard=part,

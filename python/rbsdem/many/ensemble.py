@@ -321,7 +321,7 @@ def _carried_out(
             resumed = kept.read(outcome)
         missing = own[outcome.fates[own] == 0]
         each, lanes = (values[missing] for values in cost)
-        pace = _Pace(each, lanes, threads)
+        pace = _TaskSizer(each, lanes, threads)
         show = stack.enter_context(work.progress_bar(progress, missing.size))
         workers = _Workers(plan.only(missing), client, threads)
         stack.enter_context(workers.executor)
@@ -413,7 +413,7 @@ def _longest(each: Array, lanes: NDArray[np.int32], workers: int) -> float:
     return float(each.sum()) / most
 
 
-class _Pace:
+class _TaskSizer:
     """The expected seconds of the next task, of which a few real ones come."""
 
     def __init__(self, each: Array, lanes: NDArray[np.int32], workers: int) -> None:

@@ -555,7 +555,7 @@ def _undetermined(bounds: Bounds) -> str:
 Curve = TypeVar("Curve", bound=Fragility)
 
 
-class Fragile(Tabular, ABC, Generic[Curve]):
+class WithFragility(Tabular, ABC, Generic[Curve]):
     """Runs that fragility curves can be fitted to, each in its own way."""
 
     runs: Runs

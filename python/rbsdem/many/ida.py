@@ -1,7 +1,7 @@
 """Incremental dynamic analysis, and stripes: the same motions at many intensities.
 
-The intensity at which a column collapses is searched for by hunt and fill (Vamvatsikos and Cornell
-2002), for many motions side by side: the intensity grows until the column collapses, the last step
+The intensity at which a column collapses is searched for (Vamvatsikos and Cornell 2002, "hunt and
+fill"), for many motions side by side: the intensity grows until the column collapses, the last step
 is halved until the collapse is known closely enough, and runs below it fill the largest gaps. A
 multiple-stripe analysis has the same intensities for all records, or records for each intensity.
 """
@@ -21,7 +21,7 @@ from rbsdem._types import Array, ArrayLike, NDArray, Unpack
 from rbsdem.batch.work import progress_bar
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import InputError
-from rbsdem.many.fragility import Capacities, Counts, Fragile, Fragility, fit_fragility
+from rbsdem.many.fragility import Capacities, Counts, Fragility, WithFragility, fit_fragility
 from rbsdem.many.inputs import Measure, is_switch, limit_states, measures_in_a_list
 from rbsdem.many.runs import (
     LOST,
@@ -45,7 +45,7 @@ _WIDTH = 1.05
 
 
 @dataclass(frozen=True)
-class Hunt:
+class CollapseSearch:
     """How collapses are searched for.
 
     Parameters
@@ -82,25 +82,28 @@ class Hunt:
             "highest": (0.0, 1e6),
         }
         for name, (least, most) in bounds.items():
-            value = _arguments.number(getattr(self, name), f"hunt: {name}")
+            value = _arguments.number(getattr(self, name), f"search: {name}")
             object.__setattr__(self, name, value)
             if not least < value <= most:
-                faults.append(f"hunt: {name} = {value:g} must be above {least:g}, at most {most:g}")
-        if _arguments.integer(self.points, "hunt: points") < 1 or self.points > 1000:
-            faults.append(f"hunt: points = {self.points} must be from 1 to 1000")
+                allowed = f"above {least:g}, at most {most:g}"
+                faults.append(f"search: {name} = {value:g} must be {allowed}")
+        if _arguments.integer(self.points, "search: points") < 1 or self.points > 1000:
+            faults.append(f"search: points = {self.points} must be from 1 to 1000")
         if not faults and self.first > self.highest:
-            faults.append(f"hunt: first = {self.first:g} is above highest = {self.highest:g}")
+            faults.append(f"search: first = {self.first:g} is above highest = {self.highest:g}")
         _arguments.raise_faults(faults)
 
 
-def hunt_and_fill(work: Collector, hunt: Hunt, refine: Sequence[str]) -> tuple[Array, Array]:
+def search_collapse(
+    work: Collector, search: CollapseSearch, refine: Sequence[str]
+) -> tuple[Array, Array]:
     """Find the collapses and fill the curves.
 
     Parameters
     ----------
     work : Collector
         Makes the runs and keeps them.
-    hunt : Hunt
+    search : CollapseSearch
         How.
     refine : sequence of str
         Limit states among the measures, each of which is found to within 5 % too.
@@ -112,13 +115,13 @@ def hunt_and_fill(work: Collector, hunt: Hunt, refine: Sequence[str]) -> tuple[A
         infinity where the column did not collapse.
     """
     low, high = np.zeros(work.shape), np.full(work.shape, np.inf)
-    _bracket(work, hunt, low, high)
-    _narrow(work, hunt, low, high)
+    _bracket(work, search, low, high)
+    _narrow(work, search, low, high)
     for _ in range(_MOST_REPAIRS):
-        if not _fill(work, hunt, low, high):
+        if not _fill(work, search, low, high):
             break
         # A gap that was filled held a collapse at a lower intensity.
-        _narrow(work, hunt, low, high)
+        _narrow(work, search, low, high)
     # A column may have no such limit state, as without bars that could fracture.
     measured = (f"measure {name}" for name in refine)
     found = [m for m in measured if any(np.isfinite(part[m]).any() for part in work.parts)]
@@ -126,18 +129,18 @@ def hunt_and_fill(work: Collector, hunt: Hunt, refine: Sequence[str]) -> tuple[A
     return low, high
 
 
-def _bracket(work: Collector, hunt: Hunt, low: Array, high: Array) -> None:
+def _bracket(work: Collector, search: CollapseSearch, low: Array, high: Array) -> None:
     """Let the intensity grow until there is a collapse, or shrink if the first run collapsed."""
-    level = np.full(low.shape, hunt.first)
+    level = np.full(low.shape, search.first)
     while np.isfinite(level).any():
         collapsed = work.run(level[:, :, None])[:, :, 0]
         tried = np.isfinite(level)
         high[tried & collapsed] = level[tried & collapsed]
         low[tried & ~collapsed] = level[tried & ~collapsed]
-        level = np.where(tried & ~collapsed & ~np.isfinite(high), low * hunt.growth, np.nan)
+        level = np.where(tried & ~collapsed & ~np.isfinite(high), low * search.growth, np.nan)
         down = tried & collapsed & (low == 0)
-        level = np.where(down, high / hunt.growth, level)
-        level[level > hunt.highest * (1 + 1e-9)] = np.nan
+        level = np.where(down, high / search.growth, level)
+        level[level > search.highest * (1 + 1e-9)] = np.nan
         if (level[down] < _SMALLEST).any():
             raise InputError(
                 f"ida: the column collapses at {_SMALLEST:g} m/s2 already; check collapse_drift "
@@ -145,10 +148,10 @@ def _bracket(work: Collector, hunt: Hunt, low: Array, high: Array) -> None:
             )
 
 
-def _narrow(work: Collector, hunt: Hunt, low: Array, high: Array) -> None:
+def _narrow(work: Collector, search: CollapseSearch, low: Array, high: Array) -> None:
     """Halve the intervals of the collapses, in the logarithm, until all are narrow enough."""
     while True:
-        wide = np.isfinite(high) & (high - low > hunt.resolution * high)
+        wide = np.isfinite(high) & (high - low > search.resolution * high)
         if not wide.any():
             return
         with np.errstate(invalid="ignore"):
@@ -181,14 +184,14 @@ def _narrow_states(work: Collector, low: Array, states: Sequence[str]) -> None:
         work.run(level)
 
 
-def _fill(work: Collector, hunt: Hunt, low: Array, high: Array) -> bool:
+def _fill(work: Collector, search: CollapseSearch, low: Array, high: Array) -> bool:
     """Add runs in the largest gaps below the collapses; return whether one collapsed."""
     wanted: dict[tuple[int, int], list[float]] = {}
     for column, motion in np.ndindex(low.shape):
         (tried,) = work.tried(column, motion, "intensity")
         own = sorted({0.0, *tried[tried <= low[column, motion]].tolist()})
         added: list[float] = []
-        while len(own) - 1 < hunt.points and low[column, motion] > 0:
+        while len(own) - 1 < search.points and low[column, motion] > 0:
             gap = int(np.argmax(np.diff(own)))
             added.append(0.5 * (own[gap] + own[gap + 1]))
             own.insert(gap + 1, added[-1])
@@ -210,14 +213,14 @@ def _fill(work: Collector, hunt: Hunt, low: Array, high: Array) -> bool:
 
 #: Settings that change nothing in the answer.
 _OF_THE_RUN = ("initial", "jobs", "progress", "store", "shard", "client")
-#: Runs that a search is expected to need for a record, as the hunts of the documentation do.
+#: Runs that a search is expected to need for a record, as the searches of the documentation do.
 _EXPECTED = 16
 #: Percentages of the fractile curves.
 FRACTILES = (16.0, 50.0, 84.0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class IDA(Fragile[Fragility]):
+class IDA(WithFragility[Fragility]):
     """Curves of response over intensity, one for each column and motion.
 
     Attributes
@@ -366,7 +369,7 @@ def ida(
     column: Structure | Sequence[Structure] | Mapping[str, Structure],
     motions: GroundMotion | Sequence[GroundMotion] | Mapping[str, GroundMotion],
     *,
-    levels: ArrayLike | Literal["hunt"] | Hunt = "hunt",
+    levels: ArrayLike | Literal["search"] | CollapseSearch = "search",
     refine: Sequence[str] | None = None,
     **options: Unpack[RunOptions],
 ) -> IDA:
@@ -378,9 +381,9 @@ def ida(
         The column; several are all run with every motion.
     motions : GroundMotion, or sequence or mapping of GroundMotion
         The records, whose own scale does not matter.
-    levels : array_like, "hunt" or Hunt, optional
+    levels : array_like, "search" or CollapseSearch, optional
         Intensities of the runs [m/s2], or a search for the collapse of each record, whose
-        settings are those of `Hunt`.
+        settings are those of `CollapseSearch`.
     refine : sequence of str, optional
         Limit states that the search finds to within 5 % too, as ``["first_yield", "spalling"]``;
         they are then among the measures, with given levels too. The default is "first_yield"
@@ -404,36 +407,36 @@ def ida(
     begin = time.perf_counter()
     if "measures" in options:
         options["measures"] = _with_drift(options["measures"], column)
-    hunt = _hunt(levels)
+    search = _search_of(levels)
     records = own_records(motions_by_name(motions), options)
     work = make_collector("ida", column, records, **options)
     named = {name for name in work.names if isinstance(name, str)}
     refined = _refined(refine, named)
     work.names = [*work.names, *(name for name in refined if name not in named)]
-    work.run_unshaken("ida")
-    at = np.empty(_EXPECTED) if hunt is not None else checked_levels(levels)
+    work.check_unloaded_state("ida")
+    at = np.empty(_EXPECTED) if search is not None else checked_levels(levels)
     wanted = _arguments.boolean(work.settings["progress"], "progress")
     with progress_bar(wanted, at.size * math.prod(work.shape)) as show:
         if wanted:
             work.settings["progress"] = show
-        if hunt is not None:
-            lower, upper = hunt_and_fill(work, hunt, refined)
+        if search is not None:
+            lower, upper = search_collapse(work, search, refined)
         else:
             collapsed = work.run(np.broadcast_to(at, (*work.shape, at.size)).copy())
             lower, upper = _first(at, collapsed)
     own = {n: v for n, v in work.settings.items() if n not in _OF_THE_RUN}
     about = {n: v for n, v in own.items() if v is not None and v is not False}
-    about["levels"] = "hunt" if hunt is not None else "given"
+    about["levels"] = "search" if search is not None else "given"
     return IDA(work.finish(), lower, upper, about, time.perf_counter() - begin)
 
 
-def _hunt(levels: Any) -> Hunt | None:
-    if isinstance(levels, Hunt):
+def _search_of(levels: Any) -> CollapseSearch | None:
+    if isinstance(levels, CollapseSearch):
         return levels
     if isinstance(levels, str):
-        if levels != "hunt":
-            raise InputError(f"levels = {levels!r} must be 'hunt' or intensities in m/s2")
-        return Hunt()
+        if levels != "search":
+            raise InputError(f"levels = {levels!r} must be 'search' or intensities in m/s2")
+        return CollapseSearch()
     return None
 
 
@@ -496,7 +499,7 @@ def _place(key: str | int, names: list[Any], what: str) -> int:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Stripes(Fragile[Fragility]):
+class Stripes(WithFragility[Fragility]):
     """Runs at levels of intensity.
 
     Attributes

@@ -21,10 +21,10 @@ from rbsdem import _core
 from rbsdem._package import code_digest, extra
 from rbsdem._types import Array, NDArray
 from rbsdem.batch.store import PARQUET, Store, digest
-from rbsdem.checks.criteria import criteria, watches
+from rbsdem.checks.criteria import criteria, thresholds
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.many import inputs
-from rbsdem.model.column import Column, without_notes
+from rbsdem.model.column import Column, notes_off
 from rbsdem.model.frame import Structure
 from rbsdem.model.springs import Layered
 from rbsdem.run.result import time_history
@@ -163,10 +163,10 @@ def expected(plan: Plan) -> tuple[Array, Integers, list[tuple[int, str]]]:
     return _core.plan_ensemble(_batch(plan, [_NO_WATCH] * len(plan.columns)))
 
 
-def _batch(plan: Plan, watches: list[Array]) -> dict[str, Any]:
+def _batch(plan: Plan, thresholds: list[Array]) -> dict[str, Any]:
     columns = [column._statement for column in plan.columns]
     motions = [(motion.time, motion.acceleration) for motion in plan.motions]
-    return _core.batch(columns, _core.settings(plan.settings), watches, plan.before, motions)
+    return _core.batch(columns, _core.settings(plan.settings), thresholds, plan.before, motions)
 
 
 def compute(task: Plan, control: Integers | None = None, kernel: int = 0) -> Outcome:
@@ -212,7 +212,7 @@ def _call_functions(
         if fates[run] == _FAILED:
             continue
         try:
-            with without_notes():
+            with notes_off():
                 at, scale = task.column[run], float(task.scale[run])
                 run_of = task.columns[at], task.motions[task.motion[run]], scale
                 result = one_run(*run_of, task.settings, task.before[at])
@@ -250,7 +250,7 @@ def watched(column: Structure, states: tuple[str, ...]) -> Array:
     found = criteria(column, numbers)
     if not found:
         return _NO_WATCH
-    return watches(column, found, [numbers[each.name] for each in found])
+    return thresholds(column, found, [numbers[each.name] for each in found])
 
 
 class RunStore:
@@ -384,9 +384,9 @@ def _column_key(plan: Plan, i: int) -> str:
     column = plan.columns[i]
     statement = column._statement
     # Limit states follow from the drawing, which the statement does not have.
-    watches = watched(column, plan.states).tobytes()
+    thresholds = watched(column, plan.states).tobytes()
     text = f"{statement.text}\0{statement.numbers!r}".encode()
-    return digest(text, watches, plan.initial[i].tobytes())
+    return digest(text, thresholds, plan.initial[i].tobytes())
 
 
 def _source(function: inputs.Measure) -> str:

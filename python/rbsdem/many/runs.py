@@ -337,7 +337,7 @@ class Collector:
             for name in names
         ]
 
-    def run_unshaken(self, who: str) -> None:
+    def check_unloaded_state(self, who: str) -> None:
         """Run without motion, where columns begin in states that other analyses ended in.
 
         These runs are the beginnings of the curves, which else begin in the origin.

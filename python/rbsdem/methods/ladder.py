@@ -17,7 +17,7 @@ from rbsdem.errors import InputError, RbsdemError
 from rbsdem.methods.scene import Attempt, Run, Scene, Setting
 from rbsdem.model.column import Column, Kinematics
 from rbsdem.run.accuracy import common_interval
-from rbsdem.run.analysis import no_watch, time_history
+from rbsdem.run.analysis import no_thresholds, time_history
 from rbsdem.run.solver import IMPLICIT, IN_TIME, METHODS, Solver
 
 #: Levels of kinematics, each with more physics than the one before.
@@ -106,7 +106,7 @@ def probe(scene: Scene) -> Probe:
     level = scene.column.kinematics
     first = _beginning(scene, min(1e-6 * interval, time[1] - time[0]))
     keywords = first.keywords(Setting("rk4", level), scene.column)
-    result = time_history(no_watch, first.column, first.time, **keywords)
+    result = time_history(no_thresholds, first.column, first.time, **keywords)
     limit = float(result.summary["stable_step"])
     steps = min(300.0, (time[-1] - time[0]) / (0.5 * limit))
     short = _beginning(scene, 0.5 * limit * max(steps, 1.0))

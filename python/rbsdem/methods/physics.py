@@ -16,7 +16,7 @@ from rbsdem.errors import InputError
 from rbsdem.methods.ladder import LEVELS, Trials, too_expensive
 from rbsdem.methods.reference import Reference
 from rbsdem.methods.scene import VERTICAL, Run, Scene, Setting
-from rbsdem.model.column import PLACES, Column, bodies, without_notes
+from rbsdem.model.column import PLACES, Column, bodies, notes_off
 from rbsdem.model.damping import Damping
 from rbsdem.model.springs import Spring
 from rbsdem.run.accuracy import errors_of
@@ -247,7 +247,7 @@ def _base(trials: Trials, reference: Reference | None, seconds: float) -> Run | 
 def _effect(trials: Trials, variant: Variant, base: Run, tolerance: float) -> Effect:
     """Return the effect of one change of the model."""
     try:
-        with without_notes():
+        with notes_off():
             column = variant.make()
     except InputError as error:
         return Effect(variant.name, status="refused", reason=str(error))

@@ -16,9 +16,9 @@ from rbsdem import _arguments
 from rbsdem._package import unwarned
 from rbsdem._types import Array, ArrayLike, NDArray
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError
-from rbsdem.model.column import Column, Kinematics, checked_column, without_notes
+from rbsdem.model.column import Column, Kinematics, checked_column, notes_off
 from rbsdem.run.accuracy import Answer, answer_of
-from rbsdem.run.analysis import cyclic, no_watch, time_history
+from rbsdem.run.analysis import cyclic, no_thresholds, time_history
 from rbsdem.run.solver import Solver
 
 #: Least number of times at which histories are compared; a loading with fewer is interpolated.
@@ -169,13 +169,13 @@ class Scene:
         """Return the answer of a setting, for another column if one is given."""
         column = self.column if column is None else column
         if column.kinematics != setting.kinematics:
-            with without_notes():
+            with notes_off():
                 column = dataclasses.replace(column, kinematics=setting.kinematics)
         with unwarned(AccuracyWarning, LongRunWarning):
             if self.static:
                 return self._solve_static(setting, column)
             result: Any = time_history(
-                no_watch, column, self.time, **self.keywords(setting, column)
+                no_thresholds, column, self.time, **self.keywords(setting, column)
             )
         return answer_of(result, self.time)
 

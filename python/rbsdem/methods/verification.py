@@ -13,7 +13,7 @@ from rbsdem._files import Tabular, data_frame
 from rbsdem._types import DataFrame
 from rbsdem.errors import InputError
 from rbsdem.methods.problems import PROBLEMS, Problem
-from rbsdem.model.column import without_notes
+from rbsdem.model.column import notes_off
 
 
 @dataclass(frozen=True)
@@ -149,7 +149,7 @@ def verify(problems: Sequence[str] | None = None) -> Verification:
     found = []
     for problem in wanted:
         printed = problem.printed.split()
-        with without_notes():
+        with notes_off():
             values = np.ravel(problem.solve()).astype(float).tolist()
         if len(values) != len(printed) or not all(map(math.isfinite, values)):
             raise AssertionError(f"{problem.name}: {values} for {problem.printed}")

@@ -93,7 +93,7 @@ class Parameter:
 
 
 @runtime_checkable
-class Recipe(Protocol):
+class WithParameters(Protocol):
     """A column made from few parameters, such as strengths, that a calibration may change."""
 
     @property
@@ -104,9 +104,9 @@ class Recipe(Protocol):
         """Return the column with other values; values that are not named are kept."""
 
 
-def is_recipe(column: Any) -> bool:
+def has_parameters(column: Any) -> bool:
     """Return whether a column offers its own parameters for a calibration."""
-    return isinstance(column, Recipe) and isinstance(column.parameters, Mapping)
+    return isinstance(column, WithParameters) and isinstance(column.parameters, Mapping)
 
 
 @dataclass(frozen=True)
@@ -168,7 +168,7 @@ Kinematics = Literal["small", "pdelta", "finite"]
 Top = Literal["free", "fixed"]
 
 #: Whether notes on new columns and on runs are told. A context variable: threads make them too.
-TELLING: ContextVar[bool] = ContextVar("TELLING", default=True)
+NOTES_ON: ContextVar[bool] = ContextVar("NOTES_ON", default=True)
 
 _KEYS = {key["name"]: key for key in _core.keys()["groups"]["column"]}
 #: Bodies of a column at the most.
@@ -179,13 +179,13 @@ _LISTS = ("lengths", "masses", "rotary_inertia")
 
 
 @contextmanager
-def without_notes() -> Iterator[None]:
+def notes_off() -> Iterator[None]:
     """Make and run columns without a word on them, where it is known or they are some of many."""
-    token = TELLING.set(False)
+    token = NOTES_ON.set(False)
     try:
         yield
     finally:
-        TELLING.reset(token)
+        NOTES_ON.reset(token)
 
 
 @dataclass(frozen=True, repr=False)
@@ -308,7 +308,7 @@ class Column:
         # Once for all analyses, as a frozen column does not change.
         put("_statement", self._state())
         notes = _core.evaluate("check_structure", self._statement).text.splitlines()
-        for note in notes if TELLING.get() else ():
+        for note in notes if NOTES_ON.get() else ():
             warn(note)
 
     def __repr__(self) -> str:

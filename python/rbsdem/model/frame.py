@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from rbsdem import _arguments, _core
 from rbsdem._types import Array
 from rbsdem.errors import InputError, warn
-from rbsdem.model.column import TELLING, Column, checked_column
+from rbsdem.model.column import NOTES_ON, Column, checked_column
 from rbsdem.model.damping import Damping
 from rbsdem.model.shape import Section
 from rbsdem.model.springs import Layered, Spring, layer_springs
@@ -25,7 +25,7 @@ _PLACES = ("shear", "flexure", "axial_spring")
 _SUPPORTS = ("free", "roller", "pinned", "fixed")
 
 #: What a frame is honest about, printed with its results.
-HONESTY = (
+SCOPE_NOTE = (
     "The frame is computed from the properties of its members. Predicted columns carry the error "
     "that tests gave; beams, nodes and slabs are computed, and no frame was fitted."
 )
@@ -56,10 +56,10 @@ class FrameMember:
         Springs that slip, one or by their places.
     axial_spring : Spring, optional
         A spring that opens.
-    between : {"elastic", "rigid"}, optional
+    interior : {"elastic", "rigid"}, optional
         What is between the springs: the elastic beam, or nothing that bends, where the springs
         hold all of the flexibility.
-    panel : float or pair of float, optional
+    rigid_end : float or pair of float, optional
         Rigid length in each node of a grid that the member ends in, half the depth of the other
         member [m]; not at the base. Two of them are those at its start and at its end.
     failure_drift, failure_load, shear_drift : float, optional
@@ -85,8 +85,8 @@ class FrameMember:
     flexure: Spring | Sequence[Spring] | Mapping[float, Spring] | None = None
     shear: Spring | Mapping[float, Spring] | None = None
     axial_spring: Spring | None = None
-    between: Literal["elastic", "rigid"] = "elastic"
-    panel: float | tuple[float, float] = 0.0
+    interior: Literal["elastic", "rigid"] = "elastic"
+    rigid_end: float | tuple[float, float] = 0.0
     failure_drift: float | None = None
     failure_load: float | None = None
     shear_drift: float | None = None
@@ -96,14 +96,16 @@ class FrameMember:
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "FrameMember")
-        rigid: Any = self.panel
+        rigid: Any = self.rigid_end
         if isinstance(rigid, (tuple, list)):
-            rigid = tuple(_arguments.number(one, "FrameMember: panel") for one in rigid)
+            rigid = tuple(_arguments.number(one, "FrameMember: rigid_end") for one in rigid)
             if len(rigid) != 2:
-                raise InputError(f"FrameMember: panel has {len(rigid)} values; give one, or two")
+                raise InputError(
+                    f"FrameMember: rigid_end has {len(rigid)} values; give one, or two"
+                )
         else:
-            rigid = _arguments.number(rigid, "FrameMember: panel")
-        object.__setattr__(self, "panel", rigid)
+            rigid = _arguments.number(rigid, "FrameMember: rigid_end")
+        object.__setattr__(self, "rigid_end", rigid)
         for name, usual in (("flexure", (0.0, 1.0)), ("shear", (0.5,))):
             object.__setattr__(self, name, _placed(getattr(self, name), name, usual))
 
@@ -133,7 +135,7 @@ class FrameMember:
                 "failure_drift": self.failure_drift,
                 "failure_load": self.failure_load,
                 "shear_drift": self.shear_drift,
-                "between": None if self.between == "elastic" else self.between,
+                "interior": None if self.interior == "elastic" else self.interior,
             },
         )
         for group in ("flexure", "shear"):
@@ -199,8 +201,9 @@ class FrameNode:
         Springs from the ground: along x, upward, and against rotation (soil, braces, bearings).
     panel : Spring, optional
         Rotational spring between the columns and the beams that meet in the node, as
-        `rbsdem.frames.Panel.spring` has it; without it they turn as one. It is positive where the
-        columns turn clockwise against the beams. Rotations of the node are those of its columns.
+        `rbsdem.frames.JointPanel.spring` has it; without it they turn as one. It is positive where
+        the columns turn clockwise against the beams. Rotations of the node are those of its
+        columns.
     """
 
     name: str
@@ -254,7 +257,7 @@ class Member:
         Its name, and those of the nodes that it begins and ends at.
     kind : FrameMember
         What it is of.
-    panel : tuple of float, optional
+    rigid_end : tuple of float, optional
         Rigid lengths at its beginning and at its end [m].
     load : float, optional
         Dead load downward, per length along x [N/m].
@@ -264,7 +267,7 @@ class Member:
     start: str
     end: str
     kind: FrameMember
-    panel: tuple[float, float] = (0.0, 0.0)
+    rigid_end: tuple[float, float] = (0.0, 0.0)
     load: float = 0.0
 
     def __post_init__(self) -> None:
@@ -276,8 +279,8 @@ class Member:
             "from": _core.Text(self.start),
             "to": _core.Text(self.end),
             "kind": _core.Text(kind),
-            "panel_from": float(self.panel[0]) or None,
-            "panel_to": float(self.panel[1]) or None,
+            "rigid_from": float(self.rigid_end[0]) or None,
+            "rigid_to": float(self.rigid_end[1]) or None,
             "load": self.load or None,
         }
         return _core.group("member", values)
@@ -533,7 +536,7 @@ class Frame:
             put("damping", Damping(modal=_arguments.number(self.damping, "frame: damping")))
         put("_statement", self._state())
         notes = _core.evaluate("check_structure", self._statement).text.splitlines()
-        for note in notes if TELLING.get() else ():
+        for note in notes if NOTES_ON.get() else ():
             warn(note)
 
     def __repr__(self) -> str:
@@ -577,7 +580,7 @@ class Frame:
         parts, own = self.parts, {member.name: member for member in self.members}
         nodes, found = np.column_stack((parts.x, parts.y)), {}
         for name, (start, end) in zip(parts.members, parts.ends.tolist(), strict=True):
-            rigid: Any = own[name].panel if name in own else self.kind_of(name).panel
+            rigid: Any = own[name].rigid_end if name in own else self.kind_of(name).rigid_end
             if not isinstance(rigid, tuple):
                 foot = name.startswith("C") and name.endswith("-1")
                 rigid = (0.0 if foot else rigid, rigid)
@@ -695,7 +698,7 @@ class Frame:
         # The same kind may end in nodes of different sizes.
         names: dict[FrameMember, str] = {}
         taken = {own.name for own in self._kinds() if own.name}
-        for own in (with_panel(kind, 0.0) for kind in self._kinds()):
+        for own in (with_rigid_end(kind, 0.0) for kind in self._kinds()):
             if own not in names:
                 number = len(names) + 1
                 while f"kind-{number}" in taken:
@@ -730,12 +733,12 @@ class Frame:
                 values = {
                     key: at or None,
                     "storey": storey or None,
-                    "kind": _core.Text(names[with_panel(cell, 0.0)] if cell else "none"),
-                } | (_rigid(cell.panel) if cell else {})
+                    "kind": _core.Text(names[with_rigid_end(cell, 0.0)] if cell else "none"),
+                } | (_rigid_lengths(cell.rigid_end) if cell else {})
                 parts.append(_core.group(group, values))
         for node in self.nodes:
             parts += node._groups()
-        parts += [member._group(names[with_panel(member.kind, 0.0)]) for member in self.members]
+        parts += [member._group(names[with_rigid_end(member.kind, 0.0)]) for member in self.members]
         parts += [
             _core.group("loss", {"member": _core.Text(member), "time": time})
             for member, time in (self.losses or {}).items()
@@ -801,17 +804,17 @@ def place_of(name: str, names: tuple[str, ...], what: str) -> int:
     return names.index(name)
 
 
-def _rigid(panel: float | tuple[float, float]) -> dict[str, float | None]:
-    if isinstance(panel, tuple):
-        return {"panel_from": panel[0], "panel_to": panel[1]}
-    return {"panel": panel or None}
+def _rigid_lengths(rigid_end: float | tuple[float, float]) -> dict[str, float | None]:
+    if isinstance(rigid_end, tuple):
+        return {"rigid_from": rigid_end[0], "rigid_to": rigid_end[1]}
+    return {"rigid_end": rigid_end or None}
 
 
-def with_panel(kind: FrameMember, panel: float | tuple[float, float]) -> FrameMember:
+def with_rigid_end(kind: FrameMember, rigid_end: float | tuple[float, float]) -> FrameMember:
     """Return a kind of members with other rigid lengths in its nodes."""
-    if kind.panel == panel:
+    if kind.rigid_end == rigid_end:
         return kind
     values = {own.name: getattr(kind, own.name) for own in fields(kind)}
     for name in ("flexure", "shear"):
         values[name] = dict(values[name]) if values[name] else None
-    return FrameMember(**values | {"panel": panel})
+    return FrameMember(**values | {"rigid_end": rigid_end})

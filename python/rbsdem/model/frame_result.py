@@ -11,7 +11,7 @@ import numpy as np
 from rbsdem import _core
 from rbsdem._types import Array
 from rbsdem.errors import InputError
-from rbsdem.model.frame import HONESTY, Frame, FrameSpring, MemberGeometry, place_of
+from rbsdem.model.frame import SCOPE_NOTE, Frame, FrameSpring, MemberGeometry, place_of
 from rbsdem.model.rows import ENERGIES, Rows
 from rbsdem.model.springs import Landmark, Layered
 
@@ -168,7 +168,7 @@ class FrameResult(Rows):
     acceleration: Array | None = None
     state: Array | None = None
     lost: Array | None = None
-    honesty: str = field(default=HONESTY, init=False)
+    scope_note: str = field(default=SCOPE_NOTE, init=False)
     _of_column: ClassVar[bool] = False
 
     @property

@@ -35,7 +35,7 @@ FORMAT_VERSION = 1
 
 
 @runtime_checkable
-class Ended(Protocol):
+class HasEndState(Protocol):
     """What an analysis can begin from: the result of another one."""
 
     @property
@@ -355,7 +355,7 @@ def state_of(initial: Any, call: str) -> Array:
     """
     if isinstance(initial, (str, os.PathLike)):
         return _read_state(_arguments.file(initial, f"{call}: initial"))
-    if isinstance(initial, Ended):
+    if isinstance(initial, HasEndState):
         return last_state(initial)
     if isinstance(initial, np.ndarray):
         # The state of a result, as `Result.call` keeps it.
@@ -367,7 +367,7 @@ def state_of(initial: Any, call: str) -> Array:
     )
 
 
-def last_state(response: Ended) -> Array:
+def last_state(response: HasEndState) -> Array:
     """Return the state that an analysis ended in; `InputError` if it has none."""
     if response.state is None:
         why = {
@@ -403,7 +403,7 @@ def _read_state(path: str) -> Array:
     return state
 
 
-def save_state(result: Ended, path: str | os.PathLike[str]) -> None:
+def save_state(result: HasEndState, path: str | os.PathLike[str]) -> None:
     """Write a state as text: a head, then one number a line, whole or not at all."""
     state = last_state(result)
     head = f"{STATE_HEAD}\n# version: {_core.version()}\n{state.size}\n"

@@ -57,13 +57,13 @@ class Confinement:
     depth: float
 
 
-class _LaidOut(tuple[Bar, ...]):
+class _LayoutBars(tuple[Bar, ...]):
     """Bars that follow from a layout."""
 
     __slots__ = ()
 
 
-class _Parts:
+class _Fields:
     """What every shape has as a field or property of its own."""
 
     if TYPE_CHECKING:
@@ -89,7 +89,7 @@ class _Parts:
 
 
 @dataclass(frozen=True)
-class Section(_Parts, ABC):
+class Section(_Fields, ABC):
     """What a section of any shape is made of.
 
     A new shape is a class with the abstract methods below, beside its type in `src/section`.
@@ -186,13 +186,13 @@ class Section(_Parts, ABC):
     def place_bars(self, bars: Sequence[tuple[float, float]]) -> list[tuple[float, float, float]]:
         """Return x, y and diameter of bars of which y and diameter are given [m]."""
 
-    def _put(self, name: str, value: object) -> None:
+    def _set(self, name: str, value: object) -> None:
         object.__setattr__(self, name, value)
 
-    def _follow(self, name: str, otherwise: float | None) -> None:
+    def _set_default(self, name: str, otherwise: float | None) -> None:
         """Set a size that follows from another unless it is given."""
         if given(getattr(self, name)) is None:
-            self._put(name, None if otherwise is None else Derived(otherwise))
+            self._set(name, None if otherwise is None else Derived(otherwise))
 
     def _check_wall(self, name: str, size: float, what: str, cover: float) -> None:
         """Refuse a wall that leaves no void, or that hoops with their cover fill."""
@@ -217,9 +217,9 @@ class Section(_Parts, ABC):
         self._take_bars(self.cover, self.ties)
         given = {"cover": self.cover, "side_cover": self.side_cover, "strips": self.strips}
         given["bar_diameter"] = self.bar_diameter if self.bars else None
-        self._put("_statement", self._stated(self._sizes() | given, self.bars, {}))
+        self._set("_statement", self._stated(self._sizes() | given, self.bars, {}))
         answer = _core.evaluate("check_section", self._statement)
-        self._put("_figures", _core.named("section", answer.values))
+        self._set("_figures", _core.named("section", answer.values))
 
     def _take_bars(self, cover: float, transverse: Ties | Spiral | None) -> None:
         """Set the bars, from list or layout, and their diameter."""
@@ -227,17 +227,17 @@ class Section(_Parts, ABC):
             raise InputError(f"section: bars = {self.bars!r} must be a list of (y, area, Steel)")
         if self.layout is not None:
             # Those of a section that this one was made from by `dataclasses.replace` are laid anew.
-            if len(self.bars) > 0 and not isinstance(self.bars, _LaidOut):
+            if len(self.bars) > 0 and not isinstance(self.bars, _LayoutBars):
                 raise InputError("section: give bars or layout, not both")
             inset = cover + (transverse.diameter if transverse else 0.0)
-            self._put("bars", _LaidOut(self._lay_out(self.layout, inset)))
+            self._set("bars", _LayoutBars(self._lay_out(self.layout, inset)))
             follows: float | None = self.layout.diameter
         else:
-            self._put("bars", tuple(_bar(bar, i) for i, bar in enumerate(self.bars, 1)))
+            self._set("bars", tuple(_bar(bar, i) for i, bar in enumerate(self.bars, 1)))
             areas = [area for _, area, _ in self.bars if area > 0.0]
             diameters = [math.sqrt(4.0 * area / math.pi) for area in areas]
             follows = np.average(diameters, weights=areas) if areas else None
-        self._follow("bar_diameter", follows)
+        self._set_default("bar_diameter", follows)
 
     def drawing(self) -> _core.Statement:
         """Return the keys of the section as it was given, as groups of a case file."""
@@ -436,9 +436,9 @@ class RectangularSection(Section):
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "section")
-        self._follow("side_cover", self.cover)
+        self._set_default("side_cover", self.cover)
         if self.wall is not None:
-            self._follow("side_wall", self.wall)
+            self._set_default("side_wall", self.wall)
             self._check_wall("wall", self.depth, "depth", self.cover)
             self._check_wall("side_wall", self.width, "width", float(self.side_cover or 0.0))
         elif self.side_wall is not None:

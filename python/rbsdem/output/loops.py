@@ -58,7 +58,7 @@ _DAMAGE = (
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Panel:
+class Subplot:
     """The contents of one panel of `four_panels`.
 
     Attributes
@@ -185,13 +185,13 @@ def loops_over_test(
 
 
 def four_panels(
-    panels: Sequence[Panel], *, test_label: str = "Test", model_label: str = "Model"
+    panels: Sequence[Subplot], *, test_label: str = "Test", model_label: str = "Model"
 ) -> AxesArray:
     """Draw up to four loops over their tests, (a) to (d), in one figure.
 
     Parameters
     ----------
-    panels : sequence of Panel
+    panels : sequence of Subplot
         One to four panels, in the order (a) to (d).
     test_label, model_label : str
         Texts of the legend below the panels.

@@ -341,11 +341,11 @@ def section_state(
         outside of the rows.
     """
     column = result.column
-    if not isinstance(column, LayeredColumn) or column.recipe is None:
+    if not isinstance(column, LayeredColumn) or column.drawing is None:
         raise InputError(
             "section_state: the column was not made from a section; Section.column makes one"
         )
-    section = column.recipe.section
+    section = column.drawing.section
     strains = result.strains(1)
     if not result.time[0] <= time <= result.time[-1]:
         raise InputError(

@@ -12,7 +12,7 @@ import numpy as np
 from rbsdem._package import unwarned
 from rbsdem._types import Array
 from rbsdem.model.response import Response
-from rbsdem.run.analysis import cyclic, no_watch, time_history
+from rbsdem.run.analysis import cyclic, no_thresholds, time_history
 from rbsdem.run.solver import METHODS
 
 #: By how much a tolerance is sharpened, at least to where it and not the stability limits the
@@ -160,7 +160,7 @@ def refined_error(result: Response) -> Errors:
     with unwarned():
         # They were told with the result itself.
         if result.dynamic:
-            finer: Any = time_history(no_watch, result.column, **_finer(result))
+            finer: Any = time_history(no_thresholds, result.column, **_finer(result))
         else:
             finer = cyclic(result.column, **_divided(result))
     driven = "displacement" in result.call

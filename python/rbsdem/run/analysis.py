@@ -13,11 +13,11 @@ import numpy as np
 from rbsdem import _arguments, _core
 from rbsdem._types import Array, ArrayLike, Unpack
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError, warn
-from rbsdem.model.column import TELLING, Column
+from rbsdem.model.column import NOTES_ON, Column
 from rbsdem.model.frame import Frame, Structure, checked_structure
 from rbsdem.model.frame_result import FrameResult, frame_result_of, span_note
 from rbsdem.model.response import Response, response_of
-from rbsdem.model.rows import Ended, settings_of, state_of
+from rbsdem.model.rows import HasEndState, settings_of, state_of
 from rbsdem.motions.motion import GroundMotion, acting
 from rbsdem.run.solver import Solver, checked_solver
 
@@ -31,7 +31,7 @@ _NONE.flags.writeable = False
 _NO_CRITERIA = np.empty((0, 6))
 
 
-def no_watch(column: Structure, openings: bool) -> Array:
+def no_thresholds(column: Structure, openings: bool) -> Array:
     """Watch for nothing."""
     return _NO_CRITERIA
 
@@ -391,21 +391,21 @@ def time_history(
     else:
         begin, state = (_NONE, False), state_of(initial, "time_history")
         kept_initial = _recorded_state(initial)
-    statement, watches = column._statement + settings, watch(column, kept)
+    statement, thresholds = column._statement + settings, watch(column, kept)
     tell = partial(_tell, kind=LongRunWarning)
-    run, reached = _core.time_history(statement, times, loads, *begin, state, watches, tell)
+    run, reached = _core.time_history(statement, times, loads, *begin, state, thresholds, tell)
     call = {"time": times, **loads, "initial": kept_initial, **chosen, "every": every}
     return _return(column, run, {"analysis": "dynamic"}, call, reached)
 
 
 def _tell(note: str, kind: type[Warning] = AccuracyWarning) -> None:
-    if TELLING.get():
+    if NOTES_ON.get():
         warn(note, kind)
 
 
 def _recorded_state(initial: Any) -> Any:
     """Return what a result records of `initial`: a path as text, of a result its state."""
-    if isinstance(initial, Ended):
+    if isinstance(initial, HasEndState):
         return initial.state
     return os.fspath(initial) if isinstance(initial, (str, os.PathLike)) else initial
 

@@ -312,7 +312,7 @@ def band(
         raise InputError(f"samples = {samples} must be {LEAST} to {MOST}; 16 are enough")
     remarks = column.outside
     if scatter is None:
-        scatter, made = scatter_of_tests(), column._recipe.parameters
+        scatter, made = scatter_of_tests(), column._drawing.parameters
         if not has_bands(made.version):
             raise InputError(
                 f"band: no tests were left out of the fit of version {made.version!r}; there are "
@@ -329,7 +329,7 @@ def band(
     sampled = sample(column, d, scatter, number)
     peak = float(np.max(np.abs(force)))
     near = near_shear(column, peak)
-    place = Place(near, slender(column.height, column._recipe.section.depth))
+    place = Place(near, slender(column.height, column._drawing.section.depth))
     up, down = half_band(force, sampled, scatter)
     widen = between(scatter.force, place)
     values = numbers(d, force, column.height)
@@ -365,8 +365,8 @@ def sample(column: LayeredColumn, displacement: Array, scatter: Scatter, number:
     number : int
         How many.
     """
-    recipe = column._recipe
-    for name, made in recipe.made.items():
+    drawing = column._drawing
+    for name, made in drawing.made.items():
         if getattr(column, name) != made:
             raise InputError(
                 f"band: {name} of this column is not that of its model, whose scatter is known; "
@@ -493,11 +493,11 @@ def _interval(
 
 def _degraded(column: LayeredColumn, factor: float) -> Column:
     """Return the column with faster degradation; what a column limits is limited, not refused."""
-    recipe = column._recipe
-    now = recipe.parameters.values
+    drawing = column._drawing
+    now = drawing.parameters.values
     values = {name: now[name] * factor**way for name, way in _DEGRADATION.items()}
-    other = replace(recipe, parameters=recipe.parameters.with_values(**values))
-    return replace(column, recipe=other, **other.made)
+    other = replace(drawing, parameters=drawing.parameters.with_values(**values))
+    return replace(column, drawing=other, **other.made)
 
 
 def path_force(column: Column, displacement: Array) -> Array:

@@ -16,7 +16,7 @@ import numpy as np
 from rbsdem import _core
 from rbsdem._types import Array
 from rbsdem.errors import InputError, SolveError
-from rbsdem.model.column import Column, Footing, without_notes
+from rbsdem.model.column import Column, Footing, notes_off
 from rbsdem.model.damping import Damping
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.model.frame_result import FrameResult
@@ -327,7 +327,7 @@ def _read_npz(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, A
 
 
 def _result(about: dict[str, Any], arrays: dict[str, Any]) -> Result | FrameResult:
-    with without_notes():
+    with notes_off():
         structure = case_of_text(about["column"] + _LOADING).column
         case = None if about["case"] is None else case_of_text(about["case"])
     own: dict[str, Any] = {

@@ -10,7 +10,7 @@ from rbsdem import _core
 from rbsdem.errors import InputError, warn
 from rbsdem.model.column import Column
 from rbsdem.model.damping import Damping
-from rbsdem.model.frame import FrameMember, FrameNode, Member, with_panel
+from rbsdem.model.frame import FrameMember, FrameNode, Member, with_rigid_end
 from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
 from rbsdem.model.springs import SPRINGS, Layered, Spring
@@ -38,12 +38,12 @@ _NO_KEYS = ("rule", "joint", "kind", "node", "panel", "place", "id")
 _PARTS: dict[str, type] = {"layout": Layout, "inner_layout": Layout, "ties": Ties, "spiral": Spiral}
 
 
-def layered_column(recipe: LayeredModel, given: Mapping[str, Any]) -> Column:
+def layered_column(drawing: LayeredModel, given: Mapping[str, Any]) -> Column:
     """Return the column of a case that has its drawing.
 
     Parameters
     ----------
-    recipe : LayeredModel
+    drawing : LayeredModel
         The drawing.
     given : mapping
         The arguments of `rbsdem.Column` that the case gives, with its springs.
@@ -59,21 +59,22 @@ def layered_column(recipe: LayeredModel, given: Mapping[str, Any]) -> Column:
     AccuracyWarning
         Where they are not those that the model draws.
     """
-    column = LayeredColumn(**given, recipe=recipe)
-    if column.recipe != recipe:
+    column = LayeredColumn(**given, drawing=drawing)
+    if column.drawing != drawing:
         warn(
-            f"the springs of the case were drawn for axial_load = {recipe.axial_load:g} N, and its "
-            f"column has {column.axial_load:g} N; it is solved with its own springs, and nothing "
-            "is known of bars and concrete. To draw it again, make the column of its section",
+            f"the springs of the case were drawn for axial_load = {drawing.axial_load:g} N, and "
+            f"its column has {column.axial_load:g} N; it is solved with its own springs, and "
+            "nothing is known of bars and concrete. To draw it again, make the column of its "
+            "section",
         )
         return Column(**given)
     other = column.replaced
     if other:
         warn(
-            f"the case has {' and '.join(other)} other than layered {recipe.parameters.label} "
+            f"the case has {' and '.join(other)} other than layered {drawing.parameters.label} "
             "draws from its section; it is solved with its own springs, and what bars and concrete "
             "undergo is known only for a hinge that is as drawn. To draw the springs anew, make "
-            "the column of case.column.recipe.section",
+            "the column of case.column.drawing.section",
         )
     return column
 
@@ -208,8 +209,10 @@ def frame_of(groups: Groups) -> Frame:
 
 
 def _member(given: Mapping[str, Any], kind: FrameMember) -> Member:
-    panel = given.get("panel_from", 0.0), given.get("panel_to", 0.0)
-    return Member(given["name"], given["from"], given["to"], kind, panel, given.get("load", 0.0))
+    rigid_end = given.get("rigid_from", 0.0), given.get("rigid_to", 0.0)
+    return Member(
+        given["name"], given["from"], given["to"], kind, rigid_end, given.get("load", 0.0)
+    )
 
 
 def _kind(given: dict[str, Any], groups: Groups) -> FrameMember:
@@ -247,10 +250,10 @@ def _cells(
         # The last that fits counts.
         found.pop(pair, None)
         none = given["kind"] == "none"
-        panel = given.get("panel", 0.0)
-        if "panel_from" in given or "panel_to" in given:
-            panel = given.get("panel_from", panel), given.get("panel_to", panel)
-        found[pair] = None if none else with_panel(kinds[given["kind"]], panel)
+        rigid_end = given.get("rigid_end", 0.0)
+        if "rigid_from" in given or "rigid_to" in given:
+            rigid_end = given.get("rigid_from", rigid_end), given.get("rigid_to", rigid_end)
+        found[pair] = None if none else with_rigid_end(kinds[given["kind"]], rigid_end)
     return found or None
 
 

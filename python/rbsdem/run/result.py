@@ -13,7 +13,7 @@ from typing import Any, Concatenate, ParamSpec, Protocol, cast, overload
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem.checks.criteria import all_watches
+from rbsdem.checks.criteria import all_thresholds
 from rbsdem.checks.limit_states import Hinge, LimitStates
 from rbsdem.checks.limit_states import hinge as hinge_of
 from rbsdem.checks.limit_states import limit_states as find_limit_states
@@ -202,8 +202,8 @@ def _public(run: Plain[P], documented: Callable[..., Any]) -> Analysis[P]:
 
 
 def _watched(run: Callable[Concatenate[analysis.Watch, Structure, P], Any]) -> Plain[P]:
-    """Return the analysis in time that watches for the limit states of its column."""
-    return functools.partial(run, all_watches)
+    """Return the analysis in time that watches the limit states of its column."""
+    return functools.partial(run, all_thresholds)
 
 
 def pushover(

@@ -70,7 +70,7 @@ def rigid_ends(
     axial_load: float | Sequence[float] = 0.0,
     share: float | Literal["asce"] = "asce",
 ) -> tuple[float, float]:
-    """Return the rigid lengths of columns and beams in a node, the `panel` of their members [m].
+    """Return the `rigid_end` of the columns and of the beams in a node [m].
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ from rbsdem.model.materials import Ties
 from rbsdem.model.shape import RectangularSection, Section
 from rbsdem.section.beams import rigid_ends
 from rbsdem.section.columns import member
-from rbsdem.section.panel import Panel, PanelClass
+from rbsdem.section.panel import JointPanel, PanelClass
 
 Halves = tuple[Section, Section]
 Drawn = Section | Halves | FrameMember
@@ -108,8 +108,8 @@ class Frame(model.Frame):
             Part of a node that is rigid in columns and beams, or the rule of ASCE 41-17, 10.4.2.2.1
             (`rbsdem.section.rigid_ends`); by default that rule, and 1 with springs in the nodes.
         panel_hoops : Ties or "none", optional
-            Springs in the panels of the nodes (`rbsdem.frames.Panel`) with these hoops, or without
-            hoops; None: the nodes are rigid.
+            Springs in the panels of the nodes (`rbsdem.frames.JointPanel`) with these hoops, or
+            without hoops; None: the nodes are rigid.
         dead_load, live_load : float or sequence of float, optional
             On the beams of all floors, or of each [N/m].
         live_share : float, optional
@@ -377,7 +377,7 @@ class _Grid:
             going = len(columns) + len(beams)
             kind: PanelClass = "interior" if going == 4 else "knee" if going == 2 else "exterior"
             ties = None if hoops == "none" else hoops
-            found[f"N-{i}-{k}"] = Panel(column, beam, kind, hoops=ties).spring()
+            found[f"N-{i}-{k}"] = JointPanel(column, beam, kind, hoops=ties).spring()
         return found
 
 
@@ -438,7 +438,7 @@ def _kind(
         made = _made(_halves(one), clear, load, under_load)
     except InputError as error:
         raise InputError(f"frame: member {name}: {error}") from None
-    return model.with_panel(made, ends)
+    return model.with_rigid_end(made, ends)
 
 
 @lru_cache(maxsize=1024)

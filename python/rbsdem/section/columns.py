@@ -223,7 +223,7 @@ def member(
     axial_load: float = 0.0,
     model_parameters: ModelParameters | None = None,
     restrained: int | None = None,
-    panel: float | tuple[float, float] = 0.0,
+    rigid_end: float | tuple[float, float] = 0.0,
     under_load: bool = False,
     name: str = "",
 ) -> FrameMember:
@@ -253,7 +253,7 @@ def member(
     under_load : bool, optional
         Whether a load acts in its span, as on a beam under a floor: a joint of layers, without
         slip of bars, then stands in the middle too, and the span cracks and yields there.
-    panel, name
+    rigid_end, name
         As for `FrameMember`.
 
     Raises
@@ -299,8 +299,8 @@ def member(
         inertia=area * depth**2 / 12,
         flexure={**joints, near: above, 1 - far: below.mirrored()},
         shear={0.0: fails, 0.5 * near: slips, 1 - 0.5 * far: slides, 1.0: falls.mirrored()},
-        between="rigid",
-        panel=panel,
+        interior="rigid",
+        rigid_end=rigid_end,
         length=length,
         name=name,
         failure_drift=drift,
@@ -340,11 +340,11 @@ def _layered(
     if n == 1:
         raise InputError("n = 1: the layered model needs a joint above the hinge; give 2 or more")
     place = section, height, axial_load, n or 2
-    recipe = LayeredModel(*place, _known(model_parameters), restrained, round_core)
+    drawing = LayeredModel(*place, _known(model_parameters), restrained, round_core)
     if model_parameters is not None and model_parameters.version == VERSION:
         # Those of another version are meant for all columns: what a column limits is limited.
-        recipe.check(model_parameters.own)
-    made = LayeredColumn(height, n=recipe.n, recipe=recipe, **recipe.made, **common)
+        drawing.check(model_parameters.own)
+    made = LayeredColumn(height, n=drawing.n, drawing=drawing, **drawing.made, **common)
     note = axial_load_note(axial_load, section)
     remarks = [note, *made.outside] if note else made.outside
     if remarks:

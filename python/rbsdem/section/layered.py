@@ -14,7 +14,7 @@ from typing import Any
 
 from rbsdem import _arguments, _core
 from rbsdem.errors import InputError, warn
-from rbsdem.model.column import Column, Parameter, without_notes
+from rbsdem.model.column import Column, Parameter, notes_off
 from rbsdem.model.shape import Section
 from rbsdem.model.springs import (
     Elastic,
@@ -129,7 +129,7 @@ class LayeredModel:
 
     @cached_property
     def _made_twice(self) -> dict[str, Any]:
-        with without_notes():
+        with notes_off():
             half = Column(self.height, 1.0, n=self.n, axial_load=self.axial_load, **self.made)
             whole = half.double_curvature(prismatic=not self.section.symmetric)
         return {name: getattr(whole, name) for name in self.made}
@@ -218,33 +218,33 @@ class LayeredColumn(Column):
 
     Attributes
     ----------
-    recipe : LayeredModel
+    drawing : LayeredModel
         Section and parameters that its springs are made from. Change parameters by
         `with_parameters`, which makes the springs anew.
     """
 
-    recipe: LayeredModel | None = None
+    drawing: LayeredModel | None = None
 
     def __post_init__(self) -> None:
-        if not isinstance(self.recipe, LayeredModel):
+        if not isinstance(self.drawing, LayeredModel):
             raise InputError(
                 "a LayeredColumn is made by rbsdem.section.column or rbsdem.peer.column"
             )
         self._check_size()
         load = _arguments.number(self.axial_load, "column: axial_load")
-        if load != self.recipe.axial_load:
+        if load != self.drawing.axial_load:
             self._draw_again(load)
         try:
             super().__post_init__()
         except InputError:
             # What a spring of the model says, which was not asked before, is nearer the fault.
             for name in ("flexure", "shear"):
-                check_springs(self.recipe.made[name])
+                check_springs(self.drawing.made[name])
             raise
 
     def _check_size(self) -> None:
         """Refuse another height or number of bodies for springs that are made for those."""
-        made, halves = self._recipe, 2 if self.top == "fixed" else 1
+        made, halves = self._drawing, 2 if self.top == "fixed" else 1
         sizes = {"height": (made.height, 2 * made.height), "n": (made.n, 2 * made.n - 1)}
         for name, known in sizes.items():
             value = getattr(self, name)
@@ -259,11 +259,11 @@ class LayeredColumn(Column):
         """Make the springs of the model anew for another axial load; others stay."""
         if self._is_other:
             return
-        before, now = self._recipe, replace(self._recipe, axial_load=axial_load)
+        before, now = self._drawing, replace(self._drawing, axial_load=axial_load)
         for name, value in before.ends(self.top).items():
             if getattr(self, name) == value:
                 object.__setattr__(self, name, now.ends(self.top)[name])
-        object.__setattr__(self, "recipe", now)
+        object.__setattr__(self, "drawing", now)
         notes = (axial_load_note(axial_load, now.section), *self.outside)
         if any(notes):
             warn("; ".join(filter(None, notes)))
@@ -271,7 +271,7 @@ class LayeredColumn(Column):
     @property
     def _is_other(self) -> bool:
         """Whether springs of shear and flexure are both not those of the model."""
-        made = self._recipe.made
+        made = self._drawing.made
         return not any(
             spring in _listed(made[name])
             for name in ("shear", "flexure")
@@ -287,7 +287,7 @@ class LayeredColumn(Column):
     @property
     def version(self) -> str:
         """Version of the parameters, as "2026.6", or "2026.6 changed"."""
-        return self._recipe.parameters.label
+        return self._drawing.parameters.label
 
     @property
     def parameters(self) -> dict[str, Parameter]:
@@ -295,7 +295,7 @@ class LayeredColumn(Column):
 
         The bounds end where a value beyond them would change nothing.
         """
-        values, limits = self._recipe.parameters.values, self._recipe.limits
+        values, limits = self._drawing.parameters.values, self._drawing.limits
         found = {}
         for name, (_, what) in FACTORS.items():
             found[name] = Parameter(1.0, *_TOGETHER[name], "-", f"factor of {what}")
@@ -324,7 +324,7 @@ class LayeredColumn(Column):
             If a name is not known, a value is refused or so large that it changes nothing, or if
             the springs it belongs to were replaced by others.
         """
-        recipe = replace(self._recipe, parameters=self._recipe.parameters.with_values(**values))
+        drawing = replace(self._drawing, parameters=self._drawing.parameters.with_values(**values))
         for name in values:
             for field in _made_from(name):
                 if self._kept(field):
@@ -334,14 +334,14 @@ class LayeredColumn(Column):
                     )
         # What a factor makes of several is limited, not refused.
         several = {name: FACTORS[name][0] for name in values if name in FACTORS}
-        recipe.check(set(values).difference(several, *several.values()))
-        ends = recipe.ends(self.top)
+        drawing.check(set(values).difference(several, *several.values()))
+        ends = drawing.ends(self.top)
         made = {name: value for name, value in ends.items() if not self._kept(name)}
-        return replace(self, recipe=recipe, **made)
+        return replace(self, drawing=drawing, **made)
 
     def gauge(self, joint: int) -> Gauge | None:
         """Return what the layers of a joint stand for; None unless it is the hinge of the model."""
-        hinge = self._recipe.joint
+        hinge = self._drawing.joint
         numbers, springs = self.joint_numbers, self.joints("flexure")
         foot = joint == 1 and springs[numbers.index(1)] == hinge.spring
         at_top = joint == self.n + 1 and self.top == "fixed"
@@ -376,13 +376,13 @@ class LayeredColumn(Column):
         foot = self.joints("flexure")[self.joint_numbers.index(1)]
         if not isinstance(foot, Layered):
             raise InputError(f"interaction: the joint at the foot is a {type(foot).__name__}")
-        return joint_interaction(foot, _CRUSHED * self._recipe.joint.length, rotation, points)
+        return joint_interaction(foot, _CRUSHED * self._drawing.joint.length, rotation, points)
 
     @property
     def outside(self) -> tuple[str, ...]:
         """Where the column is outside the range of the tests that the model was fitted to."""
-        # The recipe knows the shear span, whatever the ends of the column are.
-        return outside(self._recipe.section, self._recipe.height, self.axial_load)
+        # The drawing knows the shear span, whatever the ends of the column are.
+        return outside(self._drawing.section, self._drawing.height, self.axial_load)
 
     @property
     def replaced(self) -> tuple[str, ...]:
@@ -391,19 +391,19 @@ class LayeredColumn(Column):
 
     @property
     def _prismatic(self) -> bool:
-        return not self._recipe.section.symmetric
+        return not self._drawing.section.symmetric
 
     def _kept(self, field: str) -> bool:
         """Whether what the model made was replaced by something else."""
-        return bool(getattr(self, field) != self._recipe.ends(self.top)[field])
+        return bool(getattr(self, field) != self._drawing.ends(self.top)[field])
 
     def _groups(self) -> _core.Statement:
-        return self._statement + self._recipe.statement()
+        return self._statement + self._drawing.statement()
 
     @property
-    def _recipe(self) -> LayeredModel:
-        assert self.recipe is not None
-        return self.recipe
+    def _drawing(self) -> LayeredModel:
+        assert self.drawing is not None
+        return self.drawing
 
 
 def _listed(springs: Any) -> tuple[Any, ...]:

@@ -77,7 +77,7 @@ def panel_strength(
 
 
 @dataclass(frozen=True)
-class Panel:
+class JointPanel:
     """The panel of a node, from the drawing of the column and the beam that cross in it.
 
     Parameters
@@ -116,8 +116,8 @@ class Panel:
     column_height: float | None = None
 
     def __post_init__(self) -> None:
-        _arguments.convert(self, "Panel")
-        _arguments.choice(self.at, "Panel: at", get_args(PanelClass))
+        _arguments.convert(self, "JointPanel")
+        _arguments.choice(self.at, "JointPanel: at", get_args(PanelClass))
         for name, least in (
             ("beam_length", 0.5 * self.column.depth),
             ("column_height", self.beam.depth),
@@ -125,19 +125,20 @@ class Panel:
             length = getattr(self, name)
             if length is not None and not length > least:
                 raise InputError(
-                    f"Panel: {name} = {length:g} m ends inside the panel, at {least:g} m; it goes "
-                    "to the point of the member without moment"
+                    f"JointPanel: {name} = {length:g} m ends inside the panel, at {least:g} m; it "
+                    "goes to the point of the member without moment"
                 )
         if not 2.0 * abs(self.eccentricity) < self.column.width:
             raise InputError(
-                f"Panel: eccentricity = {self.eccentricity:g} m puts the axis of the beam outside "
-                f"of the column, which is {self.column.width:g} m wide"
+                f"JointPanel: eccentricity = {self.eccentricity:g} m puts the axis of the beam "
+                f"outside of the column, which is {self.column.width:g} m wide"
             )
         if self.hoops is not None:
-            _arguments.instance(self.hoops, "Panel: hoops", Ties)
+            _arguments.instance(self.hoops, "JointPanel: hoops", Ties)
         if not self._tension_left > 0.0:
             raise InputError(
-                f"Panel: axial_load = {self.axial_load:g} N pulls the concrete of the panel apart"
+                f"JointPanel: axial_load = {self.axial_load:g} N pulls the concrete of the "
+                "panel apart"
             )
 
     @property

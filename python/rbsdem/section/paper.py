@@ -11,7 +11,7 @@ from typing import Any
 
 from rbsdem import _package
 from rbsdem.errors import InputError
-from rbsdem.model.column import Column, Kinematics, without_notes
+from rbsdem.model.column import Column, Kinematics, notes_off
 from rbsdem.model.materials import Concrete, Layout, Steel, Ties
 from rbsdem.model.shape import RectangularSection
 from rbsdem.model.springs import Bilinear, Takeda
@@ -183,7 +183,7 @@ def paper_columns(kinematics: Kinematics = "small", **changes: Any) -> dict[str,
             springs[key][row["spring"], row["parameter"]] = float(row[key])
     sections = paper_sections()
     # The axial load waits for other kinematics.
-    with without_notes():
+    with notes_off():
         columns = {key: _column(sections[key], springs[key], kinematics) for key in KEYS}
         try:
             return {key: replace(column, **changes) for key, column in columns.items()}

@@ -146,9 +146,9 @@ class Answers:
                 except RbsdemError as error:
                     faults.add("case", str(error))
             notes = [str(one.message) for one in told]
-            if case is not None and isinstance(case.column, LayeredColumn) and case.column.recipe:
-                recipe = case.column.recipe
-                drawn = Drawn(case.column, recipe.section, recipe.height, 1.0)
+            if case is not None and isinstance(case.column, LayeredColumn) and case.column.drawing:
+                drawing = case.column.drawing
+                drawn = Drawn(case.column, drawing.section, drawing.height, 1.0)
         else:
             case, drawn, notes = drawn_case(given, loading, self.records, faults)
         if case is None:
@@ -287,7 +287,7 @@ class Answers:
         if not isinstance(frame, dict):
             raise RefusedError(400, "frame must be an object")
         try:
-            return frames.pushed(frame)
+            return frames.pushover_json(frame)
         except Exception as error:
             return {"faults": [{"field": "", "text": defect(error)}]}
 

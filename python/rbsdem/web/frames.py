@@ -128,8 +128,8 @@ def _listed(state: Mapping[str, Any], name: str, faults: Faults) -> list[Any]:
     return []
 
 
-def pushed(state: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the frame of a state, pushed to one side: curve, pictures on the way, hinges."""
+def pushover_json(state: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the push-over of a state, pushed to one side: curve, pictures on the way, hinges."""
     faults, stopped = Faults(), ""
     try:
         with recorded() as told:
@@ -161,8 +161,8 @@ def pushed(state: Mapping[str, Any]) -> dict[str, Any]:
         "base_shear": _rounded(result.base_shear),
         "pictures": rows.tolist(),
         "members": list(parts.members),
-        "still": _rounded(_still(frame)),
-        "moved": _rounded(_moved(result, rows)),
+        "still": _rounded(_undeformed(frame)),
+        "moved": _rounded(_deformed(result, rows)),
         "ductility": _ductility(result, rows).tolist(),
         "springs": [[parts.members.index(one.member), one.place] for one in springs],
         "storey_drift": _rounded(np.asarray(result.storey_drift)[rows], 4),
@@ -175,13 +175,13 @@ def pushed(state: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _still(frame: Frame) -> Array:
+def _undeformed(frame: Frame) -> Array:
     """Return points along the members, shape (members, points, 2) [m]."""
     ends = np.column_stack((frame.parts.x, frame.parts.y))[frame.parts.ends]
     return np.asarray(ends[:, :1] + np.einsum("p,mj->mpj", _SHARES, ends[:, 1] - ends[:, 0]))
 
 
-def _moved(result: FrameResult, rows: NDArray[np.intp]) -> Array:
+def _deformed(result: FrameResult, rows: NDArray[np.intp]) -> Array:
     """Return the displacements of points along the members, shape (rows, members, points, 2) [m].
 
     A member is the cubic line between the rotations of its ends; in sections that yield the

@@ -256,8 +256,8 @@ def _column_data(result: Result, case: Case, title: str) -> dict[str, Any]:
     text = case.to_namelist()
     state = {"columns": [{"name": "A", "case": text}], "loading": {"kind": "own"}}
     column, drawn = result.column, None
-    if isinstance(column, LayeredColumn) and column.recipe is not None:
-        drawn = Drawn(column, column.recipe.section, column.recipe.height, 1.0)
+    if isinstance(column, LayeredColumn) and column.drawing is not None:
+        drawn = Drawn(column, column.drawing.section, column.drawing.height, 1.0)
     try:
         result.limit_states()
     except InputError:
@@ -371,7 +371,7 @@ def _of_frame(result: FrameResult) -> Iterator[Sheet]:
         partial(frames.member_forces, result, row=largest),
         partial(frames.member_forces, result, "axial", row=largest),
     )
-    yield Sheet("Frame", f"{result.honesty} {whole}", shapes)
+    yield Sheet("Frame", f"{result.scope_note} {whole}", shapes)
     drawn: list[Callable[[], Any]] = [partial(frames.pushover, result)]
     if result.frame.storeys:
         drawn.append(partial(frames.storey_drift, result))
@@ -425,7 +425,7 @@ def _of_assessment(
     text += "Ends beyond their strength in shear have the colour of the last level. "
     yield Sheet("Members", f"{text}The ten largest ratios follow.", tuple(drawn), found.worst(10))
     yield Sheet("All members", table=found.to_pandas(), beside=True)
-    yield Sheet("Assumed", f"{result.honesty} {_LEFT_OUT}")
+    yield Sheet("Assumed", f"{result.scope_note} {_LEFT_OUT}")
 
 
 @sheets_of.register
@@ -498,10 +498,10 @@ def _of_ida(found: IDA, limits: Mapping[str, Any] | None = None) -> Iterator[She
 
 
 def _of_structure(structure: Structure) -> Sheet:
-    if isinstance(structure, LayeredColumn) and structure.recipe is not None:
+    if isinstance(structure, LayeredColumn) and structure.drawing is not None:
         (own,) = (given for name, given in _core.groups(structure._groups()) if name == "column")
         shown = ("height", "axial_load", "mass", "top_mass", "kinematics")
-        return _drawn(structure.recipe.section, _core.group("column", {n: own[n] for n in shown}))
+        return _drawn(structure.drawing.section, _core.group("column", {n: own[n] for n in shown}))
     given = inputs(structure._groups())
     if not isinstance(structure, Frame):
         return Sheet("Inputs", table=given)

@@ -162,8 +162,8 @@ contains
                   any(softens(record%spring, kind%name))) then
             call messages%add(name//': failure_drift is that after a failure in shear; give shear_drift, '// &
                               "or a shear spring of the rule 'peak_oriented' or 'pinching'")
-         else if (kind%between == 'rigid' .and. .not. most > least) then
-            call messages%add(name//": with between = 'rigid' all bending is in springs; give it two "// &
+         else if (kind%interior == 'rigid' .and. .not. most > least) then
+            call messages%add(name//": with interior = 'rigid' all bending is in springs; give it two "// &
                               'flexural springs or more, at different places')
          end if
       end associate

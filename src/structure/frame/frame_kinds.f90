@@ -50,7 +50,7 @@ contains
          call add_opening(m, clear)
          return
       end if
-      if (kind%between == 'elastic') then
+      if (kind%interior == 'elastic') then
          m%bending = kind%modulus*kind%inertia
          m%sliding = kind%shear_rigidity
       end if

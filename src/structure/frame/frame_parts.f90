@@ -240,10 +240,10 @@ contains
             if (all(cell(j)%line /= [0, line]) .or. all(cell(j)%storey /= [0, storey])) cycle
             member%kind_of = findloc(record%kind%name == cell(j)%kind, .true., dim=1)
             if (cell(j)%kind == 'none') member%kind_of = left_out
-            member%rigid = cell(j)%panel
+            member%rigid = cell(j)%rigid_end
             if (letter == 'C' .and. storey == 1) member%rigid(1) = 0.0_wp
-            if (is_given(cell(j)%panel_from)) member%rigid(1) = cell(j)%panel_from
-            if (is_given(cell(j)%panel_to)) member%rigid(2) = cell(j)%panel_to
+            if (is_given(cell(j)%rigid_from)) member%rigid(1) = cell(j)%rigid_from
+            if (is_given(cell(j)%rigid_to)) member%rigid(2) = cell(j)%rigid_to
          end do
       end subroutine choose
    end subroutine add_cell
@@ -390,7 +390,7 @@ contains
             member%node = [findloc(self%node%name == given%from, .true., dim=1), &
                            findloc(self%node%name == given%to, .true., dim=1)]
             member%kind_of = findloc(record%kind%name == given%kind, .true., dim=1)
-            member%rigid = [given%panel_from, given%panel_to]
+            member%rigid = [given%rigid_from, given%rigid_to]
             member%load = given%load
             call append_member(self, member)
          end associate
@@ -529,7 +529,7 @@ contains
                else if (.not. clear > 0.0_wp) then
                   call messages%add('member '//trim(m%name)//': its rigid ends of '//to_text(sum(m%rigid))// &
                                     ' m leave nothing of its length of '//to_text(whole)// &
-                                    ' m; shorten panel')
+                                    ' m; shorten rigid_end')
                   cycle
                end if
                if (abs(m%load) > 0.0_wp .and. abs(b%x - a%x) <= one_place*whole) then
@@ -562,7 +562,7 @@ contains
       if (.not. told) return
       call messages%add('member '//trim(m%name)//': its clear length is '//to_text(clear)//' m, and the '// &
                         "springs of member_kind '"//trim(kind%name)//"' were made for "// &
-                        to_text(kind%length)//' m; make a kind for this length, or correct panel')
+                        to_text(kind%length)//' m; make a kind for this length, or correct rigid_end')
    end subroutine check_length
 
    !> Nodes at one place, without a member, or all held; members between the same nodes.

@@ -39,7 +39,7 @@ module rbs_structure_frame_frame_record
       real(wp) :: modulus = unset, area = unset, inertia = unset, shear_rigidity = 0.0_wp
       real(wp) :: yield_moment = unset, hardening = 0.0_wp, length = unset
       real(wp) :: failure_drift = unset, failure_load = unset, shear_drift = unset
-      character(len=8) :: between = 'elastic'
+      character(len=8) :: interior = 'elastic'
    contains
       procedure :: visit => visit_kind
    end type kind_record
@@ -50,7 +50,7 @@ module rbs_structure_frame_frame_record
       integer :: line = 0, storey = 0
       character(len=name_length) :: kind = ''
       !> In all nodes, or at the two ends where these are given
-      real(wp) :: panel = 0.0_wp, panel_from = unset, panel_to = unset
+      real(wp) :: rigid_end = 0.0_wp, rigid_from = unset, rigid_to = unset
    contains
       procedure :: visit => visit_cell
    end type cell_record
@@ -71,7 +71,7 @@ module rbs_structure_frame_frame_record
    !> A member between two nodes.
    type, extends(visited_record), public :: member_record
       character(len=name_length) :: name = '', from = '', to = '', kind = ''
-      real(wp) :: panel_from = 0.0_wp, panel_to = 0.0_wp, load = 0.0_wp
+      real(wp) :: rigid_from = 0.0_wp, rigid_to = 0.0_wp, load = 0.0_wp
    contains
       procedure :: visit => visit_member
    end type member_record
@@ -258,7 +258,7 @@ contains
                  'is half of it', optional=.true.)
       call v%key('shear_drift', self%shear_drift, '', above_zero, 'drift at which it counts as failed in '// &
                  'shear, if no shear spring of it has yielded', optional=.true.)
-      call v%word('between', self%between, 'what is between springs that are given one by one', &
+      call v%word('interior', self%interior, 'what is between springs that are given one by one', &
                   'elastic rigid')
    end subroutine visit_kind
 
@@ -275,11 +275,11 @@ contains
       call v%word('kind', self%kind, 'name of the kind of member, ''none'' where there is '// &
                   'none; the last group that fits counts', &
                   required=.true.)
-      call v%key('panel', self%panel, 'm', not_negative, &
+      call v%key('rigid_end', self%rigid_end, 'm', not_negative, &
                  'rigid length in each node that it ends in, not at the base')
-      call v%key('panel_from', self%panel_from, 'm', not_negative, 'rigid length at its beginning, '// &
+      call v%key('rigid_from', self%rigid_from, 'm', not_negative, 'rigid length at its beginning, '// &
                  'if it is another one', optional=.true.)
-      call v%key('panel_to', self%panel_to, 'm', not_negative, 'rigid length at its end, if it is '// &
+      call v%key('rigid_to', self%rigid_to, 'm', not_negative, 'rigid length at its end, if it is '// &
                  'another one', optional=.true.)
    end subroutine visit_cell
 
@@ -311,8 +311,8 @@ contains
       call v%word('from', self%from, 'name of the node that it begins at', required=.true.)
       call v%word('to', self%to, 'name of the node that it ends at', required=.true.)
       call v%word('kind', self%kind, 'name of its kind', required=.true.)
-      call v%key('panel_from', self%panel_from, 'm', not_negative, 'rigid length at its beginning')
-      call v%key('panel_to', self%panel_to, 'm', not_negative, 'rigid length at its end')
+      call v%key('rigid_from', self%rigid_from, 'm', not_negative, 'rigid length at its beginning')
+      call v%key('rigid_to', self%rigid_to, 'm', not_negative, 'rigid length at its end')
       call v%key('load', self%load, 'N/m', any_number, 'dead load downward, per length along x')
    end subroutine visit_member
 
