@@ -61,7 +61,7 @@ contains
                        list_of(shear_values)//line//list_of(profile_values)
       case ('check_spring', 'spring_response')
          call evaluate_spring()
-      case ('check_structure', 'frame_parts', 'modes', 'matrices')
+      case ('check_structure', 'modes', 'matrices')
          call evaluate_structure(request, answer)
       case ('cyclic', 'time_history')
          call run_analysis(request, control, answer)
@@ -136,7 +136,7 @@ contains
 
    end subroutine evaluate
 
-   !> Notes on a structure that is allowed, a line each; its parts; its modes; or its matrices.
+   !> Parts of a frame, and notes on a structure that is allowed, a line each; its modes; or its matrices.
    subroutine evaluate_structure(request, answer)
       type(request_type), intent(in) :: request
       type(answer_type), intent(inout) :: answer
@@ -149,13 +149,13 @@ contains
       if (allocated(answer%error)) return
       select case (request%what)
       case ('check_structure')
-         call structure_notes(case, notes)
-         if (notes%count > 0) answer%text = notes%text
-      case ('frame_parts')
+         answer%text = ''
          select type (structure)
          class is (frame_type)
-            call tell_parts(structure, answer)
+            call list_parts(structure, answer)
          end select
+         call structure_notes(case, notes)
+         if (notes%count > 0) answer%text = answer%text//notes%text
       case ('modes')
          call tell_modes()
       case default
@@ -215,7 +215,7 @@ contains
    !> Names of nodes, of members and of the springs of members ('C-1-1 flexure bilinear'), a line each with
    !> tabs between. Values: for the nodes x, y and floor; for the members numbers of their nodes, compression
    !> under dead load; for the springs place in the clear length and initial stiffness; the mass along x.
-   subroutine tell_parts(frame, answer)
+   subroutine list_parts(frame, answer)
       type(frame_type), intent(in) :: frame
       type(answer_type), intent(inout) :: answer
       character(len=1), parameter :: tab = achar(9), line = new_line('a')
@@ -254,7 +254,7 @@ contains
             call add_spring(kinds(axial), 'layered', of_joint(2))
          end if
       end do
-      answer%text = text%text(:text%length)
+      answer%text = text%text(:text%length)//line
       answer%value = [frame%x, frame%y, real(frame%storey, c_double), &
                       (real(frame%element(i)%node, c_double), i=1, frame%members), &
                       frame%element(:frame%members)%compression, place, stiffness, &
@@ -270,6 +270,6 @@ contains
          place = [place, frame%spring_place(i)]
          stiffness = [stiffness, k]
       end subroutine add_spring
-   end subroutine tell_parts
+   end subroutine list_parts
 
 end module rbs_bindings_evaluate

@@ -34,6 +34,8 @@ module rbs_case_case_record
       type(column_record) :: column
       !> A frame in place of the column, whose damping it has then
       type(frame_record), allocatable :: frame
+      !> Its nodes and members, once it has been validated
+      type(frame_parts), allocatable :: parts
       !> What its springs were drawn from, if that is known
       type(drawing_record), allocatable :: drawing
       !> Number of loadings
@@ -204,9 +206,9 @@ contains
 
       !> What is wrong with the frame, and what belongs to columns alone.
       subroutine validate_frame()
-         type(frame_parts) :: parts
 
-         call parts%find(self%frame, messages)
+         allocate (self%parts)
+         call self%parts%find(self%frame, messages)
          call self%column%damping%check('damping', messages)
          if (allocated(self%drawing)) then
             call messages%add('drawing: a frame has members of several kinds, and no drawing of its own; '// &

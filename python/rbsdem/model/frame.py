@@ -495,6 +495,8 @@ class Frame:
     if TYPE_CHECKING:
         #: Its keys, as the groups of a case file.
         _statement: ClassVar[_core.Statement]
+        #: What Fortran says of it: its parts, and notes.
+        _answer: ClassVar[_core.Answer]
 
     #: Joints of a frame do not open by themselves.
     opens: ClassVar[bool] = True
@@ -535,7 +537,8 @@ class Frame:
         if self.damping is not None and not isinstance(self.damping, Damping):
             put("damping", Damping(modal=_arguments.number(self.damping, "frame: damping")))
         put("_statement", self._state())
-        notes = _core.evaluate("check_structure", self._statement).text.splitlines()
+        put("_answer", _core.evaluate("check_structure", self._statement))
+        notes = self._answer.text.splitlines()[3:]
         for note in notes if NOTES_ON.get() else ():
             warn(note)
 
@@ -553,8 +556,9 @@ class Frame:
     @cached_property
     def parts(self) -> FrameParts:
         """Nodes, members and springs as they were laid out, with the forces of the dead load."""
-        answer = _core.evaluate("frame_parts", self._statement)
-        nodes, members, springs = (tuple(line.split("\t")[:-1]) for line in answer.text.split("\n"))
+        answer = self._answer
+        lines = answer.text.split("\n")[:3]
+        nodes, members, springs = (tuple(line.split("\t")[:-1]) for line in lines)
         n, m, s = len(nodes), len(members), len(springs)
         x, y, floor, ends, compression, place, stiffness, mass = np.split(
             answer.values, np.cumsum([n, n, n, 2 * m, m, s, s])

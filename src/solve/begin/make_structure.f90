@@ -11,7 +11,6 @@ module rbs_solve_begin_make_structure
    use rbs_solve_static_dead_load, only: put_dead_load
    use rbs_structure_column_column, only: column_type
    use rbs_structure_frame_frame, only: frame_type
-   use rbs_structure_frame_frame_parts, only: frame_parts
    use rbs_structure_frame_new_frame, only: new_frame
    use rbs_structure_structure, only: structure_type, small, pdelta, lateral, horizontal
    implicit none
@@ -54,17 +53,19 @@ contains
       type(end_state), intent(out) :: before
       type(error_type), allocatable, intent(out) :: error
       type(message_list) :: messages
-      type(frame_parts) :: parts
       type(modes_type) :: modes
       integer :: i, j
 
-      call parts%find(case%frame, messages)
+      if (.not. allocated(case%parts)) then
+         allocate (case%parts)
+         call case%parts%find(case%frame, messages)
+      end if
       call case%column%damping%check('damping', messages)
       call messages%raise(error)
       if (allocated(error)) return
-      call new_frame(frame, parts%node, parts%member, merge(pdelta, small, &
-                     case%frame%kinematics == 'pdelta'), &
-                     parts%top, case%frame%control == 'y')
+      call new_frame(frame, case%parts%node, case%parts%member, &
+                     merge(pdelta, small, case%frame%kinematics == 'pdelta'), case%parts%top, &
+                     case%frame%control == 'y')
       frame%by_storeys = frame%storeys > 0 .and. case%frame%collapse == 'storey'
       associate (damping => case%column%damping)
          frame%mass_damping = damping%mass

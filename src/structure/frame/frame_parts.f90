@@ -26,6 +26,8 @@ module rbs_structure_frame_frame_parts
    type :: frame_parts
       type(frame_node), allocatable :: node(:)
       type(frame_member), allocatable :: member(:)
+      !> Number of members so far; nodes and members of the grid, which come first
+      integer :: members = 0, grid_nodes = 0, grid_members = 0
       !> The node whose displacement is that of the top
       integer :: top = 0
    contains
@@ -44,7 +46,6 @@ contains
       known = messages%count
       call check_values(record, messages)
       if (messages%count > known) return
-      allocate (self%node(0), self%member(0))
       call lay_grid(self, record, messages)
       call put_nodes(self, record, messages)
       call put_members(self, record, messages)
@@ -76,13 +77,14 @@ contains
       if (allocated(record%storeys)) storeys = size(record%storeys)
       if (allocated(record%bays)) bays = size(record%bays)
       call check_cells(record, storeys, bays, messages)
+      lines = bays + 1
+      self%grid_nodes = merge(lines*(storeys + 1), 0, storeys > 0)
+      allocate (self%node(self%grid_nodes + size(record%node)), &
+                self%member(storeys*(lines + bays) + size(record%member)))
       if (storeys == 0) then
          if (bays > 0) call messages%add('frame: bays need storeys; give their heights')
          return
       end if
-      lines = bays + 1
-      deallocate (self%node)
-      allocate (self%node(lines*(storeys + 1)))
       i = 0
       do s = 0, storeys
          do l = 1, lines
@@ -108,10 +110,11 @@ contains
             call add_cell(self, record, 'B', l, s, [s*lines + l, s*lines + l + 1])
          end do
       end do
+      self%grid_members = self%members
       ! A group that is wrong has been told, and names nothing.
       if (messages%count > known) return
-      call check_named(self%member, 'C', '&column_of, with line = 0', messages)
-      call check_named(self%member, 'B', '&beam_of, with bay = 0', messages)
+      call check_named(self%member(:self%members), 'C', '&column_of, with line = 0', messages)
+      call check_named(self%member(:self%members), 'B', '&beam_of, with bay = 0', messages)
    end subroutine lay_grid
 
    !> Columns or beams of the grid that no group names, told once.
@@ -227,7 +230,9 @@ contains
             if (any(record%floor(i)%storey == [0, storey])) member%load = record%floor(i)%load
          end do
       end if
-      if (member%kind_of /= left_out) call append_member(self, member)
+      if (member%kind_of == left_out) return
+      self%members = self%members + 1
+      self%member(self%members) = member
 
    contains
 
@@ -247,19 +252,6 @@ contains
          end do
       end subroutine choose
    end subroutine add_cell
-
-   subroutine append_member(self, member)
-      type(frame_parts), intent(inout) :: self
-      type(frame_member), intent(in) :: member
-      type(frame_member), allocatable :: longer(:)
-      integer :: n
-
-      n = size(self%member)
-      allocate (longer(n + 1))
-      longer(:n) = self%member
-      longer(n + 1) = member
-      call move_alloc(longer, self%member)
-   end subroutine append_member
 
    subroutine hold(node, support)
       type(frame_node), intent(inout) :: node
@@ -283,19 +275,18 @@ contains
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
       type(message_list), intent(inout) :: messages
-      type(frame_node), allocatable :: longer(:)
-      integer :: grid, i, n, number
+      integer :: i, n, nodes, number
 
-      grid = size(self%node)
+      nodes = self%grid_nodes
       do i = 1, size(record%node)
          associate (given => record%node(i))
             number = findloc(self%node%name == given%name, .true., dim=1)
-            if (number > grid) then
+            if (number > self%grid_nodes) then
                call messages%add("node '"//trim(given%name)//"' is given twice; remove one")
                cycle
             else if (number == 0) then
                if (.not. (is_given(given%x) .and. is_given(given%y))) then
-                  if (grid > 0) then
+                  if (self%grid_nodes > 0) then
                      call messages%add("node '"//trim(given%name)//"' is none of the grid, "// &
                                        'whose nodes are '// &
                                        'called N-line-floor, and has no place; give x and y, or one of '// &
@@ -305,11 +296,8 @@ contains
                   end if
                   cycle
                end if
-               n = size(self%node)
-               allocate (longer(n + 1))
-               longer(:n) = self%node
-               call move_alloc(longer, self%node)
-               number = n + 1
+               nodes = nodes + 1
+               number = nodes
                self%node(number)%name = given%name
                self%node(number)%x = given%x
                self%node(number)%y = given%y
@@ -325,6 +313,7 @@ contains
             end associate
          end associate
       end do
+      self%node = self%node(:nodes)
       do i = 1, size(record%node)
          associate (given => record%node(i))
             if (given%moves_with == '') cycle
@@ -372,29 +361,30 @@ contains
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
       type(message_list), intent(inout) :: messages
-      type(frame_member) :: member
       character(len=:), allocatable :: name
       integer :: i
 
       do i = 1, size(record%member)
          associate (given => record%member(i))
             name = "member '"//trim(given%name)//"'"
-            if (any(self%member%name == given%name)) then
+            if (any(self%member(:self%members)%name == given%name)) then
                call messages%add(name//' is given twice; give each a name of its own')
             end if
             call check_reference(given%from, [self%node%name], name//': from', 'node', messages)
             call check_reference(given%to, [self%node%name], name//': to', 'node', messages)
             call check_reference(given%kind, [record%kind%name], name, 'kind', messages)
-            member = frame_member()
-            member%name = given%name
-            member%node = [findloc(self%node%name == given%from, .true., dim=1), &
-                           findloc(self%node%name == given%to, .true., dim=1)]
-            member%kind_of = findloc(record%kind%name == given%kind, .true., dim=1)
-            member%rigid = [given%rigid_from, given%rigid_to]
-            member%load = given%load
-            call append_member(self, member)
+            self%members = self%members + 1
+            associate (member => self%member(self%members))
+               member%name = given%name
+               member%node = [findloc(self%node%name == given%from, .true., dim=1), &
+                              findloc(self%node%name == given%to, .true., dim=1)]
+               member%kind_of = findloc(record%kind%name == given%kind, .true., dim=1)
+               member%rigid = [given%rigid_from, given%rigid_to]
+               member%load = given%load
+            end associate
          end associate
       end do
+      self%member = self%member(:self%members)
    end subroutine put_members
 
    !> Springs between nodes and the ground, where 'base' means all nodes of floor 0, and in panels.
@@ -446,20 +436,22 @@ contains
       type(frame_spring), intent(in) :: given
       type(message_list), intent(inout) :: messages
       logical :: any_node
+      logical :: has_beam(size(self%node)), has_column(size(self%node))
       integer :: i
 
       any_node = .false.
+      has_beam = end_nodes(self, .true.)
+      has_column = end_nodes(self, .false.)
       do i = 1, size(self%node)
          associate (node => self%node(i))
             if (given%panel == 'all') then
-               if (.not. (has_member(self, i, .true.) .and. has_member(self, i, .false.))) cycle
+               if (.not. (has_beam(i) .and. has_column(i))) cycle
             else if (node%name /= given%panel) then
                cycle
-            else if (.not. has_member(self, i, .true.)) then
+            else if (.not. has_beam(i)) then
                call messages%add("the panel of node '"//trim(node%name)//"' does nothing, as no beam "// &
                                  'ends there; remove it')
-            else if (.not. (has_member(self, i, .false.) .or. node%held(3) .or. &
-                            node%ground(3)%rule /= '')) then
+            else if (.not. (has_column(i) .or. node%held(3) .or. node%ground(3)%rule /= '')) then
                call messages%add("the panel of node '"//trim(node%name)//"' does nothing, as no column "// &
                                  'ends there; remove it')
             else if (node%panel%rule /= '') then
@@ -477,21 +469,21 @@ contains
       end if
    end subroutine put_panel
 
-   !> Whether a beam ends in a node, or a column.
-   pure logical function has_member(self, node, beam)
+   !> Nodes that beams end in, or columns.
+   pure function end_nodes(self, beams) result(ends)
       type(frame_parts), intent(in) :: self
-      integer, intent(in) :: node
-      logical, intent(in) :: beam
+      logical, intent(in) :: beams
+      logical :: ends(size(self%node))
       integer :: i
 
-      has_member = .false.
+      ends = .false.
       do i = 1, size(self%member)
-         associate (m => self%member(i))
-            if (all(m%node /= node) .or. any(m%node == 0)) cycle
-            has_member = has_member .or. (is_beam(self%node(m%node(1)), self%node(m%node(2))) .eqv. beam)
+         associate (of => self%member(i)%node)
+            if (any(of == 0)) cycle
+            if (is_beam(self%node(of(1)), self%node(of(2))) .eqv. beams) ends(of) = .true.
          end associate
       end do
-   end function has_member
+   end function end_nodes
 
    !> Members that are lost at a time.
    subroutine put_losses(self, record, messages)
@@ -570,17 +562,20 @@ contains
       type(frame_parts), intent(in) :: self
       type(message_list), intent(inout) :: messages
       real(wp) :: near
+      logical :: has_member(size(self%node))
       integer :: i, j
 
+      has_member = end_nodes(self, .true.) .or. end_nodes(self, .false.)
       near = one_place*(maxval(self%node%x) - minval(self%node%x) + maxval(self%node%y) - minval(self%node%y))
       do i = 1, size(self%node)
          associate (node => self%node(i))
-            do j = 1, i - 1
+            ! Nodes of the grid are apart.
+            do j = 1, merge(i - 1, 0, i > self%grid_nodes)
                if (hypot(node%x - self%node(j)%x, node%y - self%node(j)%y) > near) cycle
                call messages%add('nodes '//trim(self%node(j)%name)//' and '//trim(node%name)// &
                                  ' are at one place; move one of them, or use one in place of both')
             end do
-            if (.not. is_connected(self, i) .and. node%storey /= 0) then
+            if (.not. has_member(i) .and. node%storey /= 0) then
                call messages%add("node '"//trim(node%name)//"' has no member; connect it, or remove it")
             end if
             if (all(node%held) .and. any(abs(node%load) > 0.0_wp)) then
@@ -590,7 +585,7 @@ contains
             end if
          end associate
       end do
-      do i = 1, size(self%member)
+      do i = self%grid_members + 1, size(self%member)
          do j = 1, i - 1
             if (any(self%member(i)%node /= self%member(j)%node) .and. &
                 any(self%member(i)%node([2, 1]) /= self%member(j)%node)) cycle
@@ -609,25 +604,16 @@ contains
    !> Feet of columns that are left out do not move.
    subroutine hold_idle(self)
       type(frame_parts), intent(inout) :: self
+      logical :: has_member(size(self%node))
       integer :: i
 
+      has_member = end_nodes(self, .true.) .or. end_nodes(self, .false.)
       do i = 1, size(self%node)
-         if (self%node(i)%storey /= 0 .or. is_connected(self, i)) cycle
+         if (self%node(i)%storey /= 0 .or. has_member(i)) cycle
          self%node(i)%held = .true.
          self%node(i)%ground%rule = ''
       end do
    end subroutine hold_idle
-
-   pure logical function is_connected(self, node)
-      type(frame_parts), intent(in) :: self
-      integer, intent(in) :: node
-      integer :: i
-
-      is_connected = .false.
-      do i = 1, size(self%member)
-         is_connected = is_connected .or. any(self%member(i)%node == node)
-      end do
-   end function is_connected
 
    !> The node that is controlled, and stands for the top.
    subroutine choose_top(self, record, messages)

@@ -16,12 +16,11 @@ contains
       integer, intent(in) :: pair(:, :)
       !> The nodes one after the other (nodes)
       integer, intent(out) :: order(nodes)
-      integer :: degree(nodes), numbered, i, first, last
+      integer :: degree(nodes), start(nodes + 1), neighbour(2*size(pair, 2)), numbered, i, first, last
       logical :: is_numbered(nodes)
 
-      do i = 1, nodes
-         degree(i) = count(pair == i)
-      end do
+      call list_neighbours(nodes, pair, start, neighbour)
+      degree = start(2:) - start(:nodes)
       is_numbered = .false.
       numbered = 0
       do while (numbered < nodes)
@@ -29,22 +28,48 @@ contains
          ! Twice to the far end of the part.
          do i = 1, 2
             last = numbered
-            call visit(nodes, pair, degree, is_numbered, first, order, last)
+            call visit(nodes, start, neighbour, degree, is_numbered, first, order, last)
             first = order(last)
          end do
-         call visit(nodes, pair, degree, is_numbered, first, order, numbered)
+         call visit(nodes, start, neighbour, degree, is_numbered, first, order, numbered)
          is_numbered(order(:numbered)) = .true.
       end do
       order = order(nodes:1:-1)
    end subroutine order_nodes
 
+   !> The neighbours of each node: those of node i from start(i) on.
+   pure subroutine list_neighbours(nodes, pair, start, neighbour)
+      integer, intent(in) :: nodes, pair(:, :)
+      integer, intent(out) :: start(nodes + 1), neighbour(2*size(pair, 2))
+      integer :: i, j
+
+      start = 0
+      do i = 1, size(pair, 2)
+         do j = 1, 2
+            start(pair(j, i)) = start(pair(j, i)) + 1
+         end do
+      end do
+      start(1) = start(1) + 1
+      do i = 1, nodes
+         start(i + 1) = start(i + 1) + start(i)
+      end do
+      do i = 1, size(pair, 2)
+         do j = 1, 2
+            associate (at => start(pair(j, i)))
+               at = at - 1
+               neighbour(at) = pair(3 - j, i)
+            end associate
+         end do
+      end do
+   end subroutine list_neighbours
+
    !> Add a node and all that it is connected with, the nearest first and of these those with few neighbours.
-   pure subroutine visit(nodes, pair, degree, is_numbered, first, order, last)
-      integer, intent(in) :: nodes, pair(:, :), degree(nodes), first
+   pure subroutine visit(nodes, start, neighbour, degree, is_numbered, first, order, last)
+      integer, intent(in) :: nodes, start(nodes + 1), neighbour(:), degree(nodes), first
       logical, intent(in) :: is_numbered(nodes)
       integer, intent(inout) :: order(nodes), last
-      logical :: is_seen(nodes), is_next(nodes)
-      integer :: at, i
+      logical :: is_seen(nodes)
+      integer :: at, begin, i, j
 
       is_seen = is_numbered
       at = last + 1
@@ -52,21 +77,31 @@ contains
       order(at) = first
       is_seen(first) = .true.
       do while (at <= last)
-         is_next = .false.
-         do i = 1, size(pair, 2)
-            if (pair(1, i) == order(at)) is_next(pair(2, i)) = .true.
-            if (pair(2, i) == order(at)) is_next(pair(1, i)) = .true.
-         end do
-         is_next = is_next .and. .not. is_seen
-         do while (any(is_next))
-            i = minloc(degree, dim=1, mask=is_next)
-            last = last + 1
-            order(last) = i
-            is_seen(i) = .true.
-            is_next(i) = .false.
+         begin = last + 1
+         do i = start(order(at)), start(order(at) + 1) - 1
+            associate (node => neighbour(i))
+               if (is_seen(node)) cycle
+               is_seen(node) = .true.
+               last = last + 1
+               j = last
+               do while (j > begin)
+                  if (.not. comes_before(node, order(j - 1))) exit
+                  order(j) = order(j - 1)
+                  j = j - 1
+               end do
+               order(j) = node
+            end associate
          end do
          at = at + 1
       end do
+
+   contains
+
+      pure logical function comes_before(node, other)
+         integer, intent(in) :: node, other
+
+         comes_before = degree(node) < degree(other) .or. (degree(node) == degree(other) .and. node < other)
+      end function comes_before
    end subroutine visit
 
 end module rbs_structure_frame_numbering
