@@ -1,17 +1,16 @@
 """Change the program in the ways of mutants.csv, one at a time; see which test notices each.
 
-    python scripts/mutants.py [--work DIR] [--results FILE] [--only NAME ...]
-    python scripts/mutants.py --table FILE ...
+    python scripts/mutants.py [--work DIR] [--only NAME ...] [--own] [--table]
 
 Every mutant is a slip that a programmer could make: a factor left out, a sign, a bound, a wrong
 index. The tree is copied once to a working folder and built there. Then each mutant in turn is
-applied, built and tested, first by the suites of unit tests in Fortran, the likely ones first, and,
-if these pass, by the tests in Python. A mutant that no test notices has survived: a behaviour is
-not proved.
+applied, built and tested, first by the suites and files that own the behaviour and, if these pass
+and `--own` is not given, by all suites in Fortran and all tests in Python. A mutant that no test
+notices has survived: a behaviour is not proved.
 
-The results are kept in a json file, so that a run can be stopped and taken up again; remove the
-file (or name another one) to begin anew. `--table` prints such files as a table in Markdown. The
-exit code is 1 if a mutant has survived.
+The results are kept in DIR/results.json, so that a run can be stopped and taken up again; remove
+the file to begin anew. `--table` prints it as a table in Markdown. The exit code is 1 if a mutant
+has survived.
 
 It needs the virtual environment that scripts/test.sh makes, and takes about half an hour.
 """
@@ -73,18 +72,10 @@ class MutantError(Exception):
 
 
 def run(command: list[str], cwd: Path, timeout: float, **environment: str) -> tuple[int, str]:
-    """Run a command and return its exit code and what it said; -1 where it did not end in time."""
+    """Run a command and return its exit code and output; -1 where it did not end in time."""
+    given = {"cwd": cwd, "timeout": timeout, "env": os.environ | environment, "errors": "replace"}
     try:
-        done = subprocess.run(
-            command,
-            cwd=cwd,
-            capture_output=True,
-            text=True,
-            errors="replace",
-            check=False,
-            timeout=timeout,
-            env=os.environ | environment,
-        )
+        done = subprocess.run(command, capture_output=True, text=True, check=False, **given)
     except subprocess.TimeoutExpired:
         return -1, "no end"
     return done.returncode, done.stdout + done.stderr
@@ -119,9 +110,6 @@ class Tree:
             if not target.is_file() or target.read_bytes() != content:
                 target.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy(ROOT / name, target)
-        for path in (self.source / "tests").rglob("*.py"):
-            if str(path.relative_to(self.source)) not in listed:
-                path.unlink()
         if not (self.build / "build.ninja").is_file():
             setup = ["meson", "setup", str(self.build), str(self.source), "-Dpython=enabled"]
             # Built faster; what a test sees is the same.
@@ -131,10 +119,11 @@ class Tree:
         self.make("tests/fortran/unit_tests")
         self.install()
 
-    def _must(self, command: list[str]) -> None:
-        code, text = run(command, self.source, 3600, PATH=self.path)
+    def _must(self, command: list[str], folder: Path | None = None) -> str:
+        code, text = run(command, folder or self.source, 3600, PATH=self.path)
         if code != 0:
             raise MutantError(f"{' '.join(command)}:\n{text[-3000:]}")
+        return text
 
     def make(self, *targets: str) -> None:
         """Build what has changed."""
@@ -147,12 +136,7 @@ class Tree:
         """
         self.make("librbsdem_core.a")
         command = ["ninja", "-C", str(self.build), "-t", "commands", "tests/fortran/unit_tests"]
-        code, text = run(command, self.source, 60, PATH=self.path)
-        if code != 0:
-            raise MutantError(text)
-        code, text = run(["sh", "-c", text.splitlines()[-1]], self.build, 600, PATH=self.path)
-        if code != 0:
-            raise MutantError(text)
+        self._must(["sh", "-c", self._must(command).splitlines()[-1]], self.build)
 
     def install(self) -> None:
         """Put the package where the tests in Python find it."""
@@ -217,20 +201,20 @@ class Tree:
             path.write_text(text, "utf-8")
 
 
-def verdict(tree: Tree, mutant: Mutant) -> dict[str, str]:
+def verdict(tree: Tree, mutant: Mutant, own: bool) -> dict[str, str]:
     """Return which test notices a mutant; both texts are blank if it survives."""
     compiled = mutant.file.startswith("src/")
     with tree.changed(mutant):
         if compiled:
             tree.link_suites()
-        for suite, test in attempts(tree, mutant.tests.split(), compiled):
+        for suite, test in attempts(tree, mutant.tests.split(), compiled, own):
             if suite:
                 return {"suite": suite, "test": test}
     return {"suite": "", "test": ""}
 
 
-def attempts(tree: Tree, likely: list[str], compiled: bool) -> Iterator[tuple[str, str]]:
-    """Yield what fails first in the likely suites and files, in all suites, in all files."""
+def attempts(tree: Tree, likely: list[str], compiled: bool, own: bool) -> Iterator[tuple[str, str]]:
+    """Yield the first failure of the own suites and files, of all suites, of all files."""
     files = [name for name in likely if name.startswith("test_")]
     for suite in likely:
         if suite not in files:
@@ -238,51 +222,37 @@ def attempts(tree: Tree, likely: list[str], compiled: bool) -> Iterator[tuple[st
     if files:
         tree.install()
         yield tree.fails_python(*(f"tests/python/{name}.py" for name in files))
+    if own:
+        return
     if compiled:
         yield tree.fails_suite()
     tree.install()
     yield tree.fails_python("tests/regression", "tests/python")
 
 
-def is_there(found: dict[str, str]) -> bool:
-    """Return whether the test that noticed a mutant still stands in the tree."""
-    suite, name = found["suite"], found["test"].partition("[")[0].replace("'", "''")
-    files = (ROOT / "tests").rglob(suite if suite.endswith(".py") else f"test_{suite}.f90")
-    return not suite or any(name in path.read_text("utf-8") for path in files)
-
-
 def check_unchanged(tree: Tree, results: dict[str, dict[str, str]]) -> None:
     """Refuse results of tests that fail without a mutant too: they have noticed nothing."""
     name, test = tree.fails_suite()
-    if name:
-        raise MutantError(f"without a mutant {name}: {test} fails already")
     tests = set()
     for found in results.values():
-        file, test = found["suite"], found["test"].partition("[")[0]
+        file, failed = found["suite"], found["test"].partition("[")[0]
         if file.endswith(".py"):
-            tests.add(("" if "/" in file else "tests/python/") + f"{file}::{test}")
-    file, test = tree.fails_python(*sorted(tests)) if tests else ("", "")
-    if file:
-        raise MutantError(f"without a mutant {file}: {test} fails already")
+            tests.add(("" if "/" in file else "tests/python/") + f"{file}::{failed}")
+    if not name and tests:
+        name, test = tree.fails_python(*sorted(tests))
+    if name:
+        raise MutantError(f"without a mutant {name}: {test} fails already")
 
 
-def table(files: list[Path]) -> str:
-    """Return results as a table in Markdown, a column for each file."""
-    every = [json.loads(file.read_text("utf-8")) for file in files]
-    names = [""] if len(files) == 1 else [f"{file.stem} " for file in files]
-    heads = "".join(f" noticed {name}by |" for name in names)
-    lines = [f"| mutant | file | breaks |{heads}", "|---|---|---|" + "---|" * len(files)]
+def table(results: dict[str, dict[str, str]]) -> str:
+    """Return the results as a table in Markdown."""
+    lines = ["| mutant | file | breaks | noticed by |", "|---|---|---|---|"]
     for mutant in MUTANTS:
-        cells = [f"`{mutant.name}`", f"`{mutant.file}`", mutant.breaks]
-        for results in every:
-            found = results.get(mutant.name)
-            if found is None:
-                cells.append("not run")
-            elif not found["suite"]:
-                cells.append("**nothing**")
-            else:
-                cells.append(f"{found['suite']}: {found['test']}")
-        lines.append(f"| {' | '.join(cells)} |")
+        found = results.get(mutant.name)
+        noticed = "not run" if found is None else "**nothing**"
+        if found and found["suite"]:
+            noticed = f"{found['suite']}: {found['test']}"
+        lines.append(f"| `{mutant.name}` | `{mutant.file}` | {mutant.breaks} | {noticed} |")
     return "\n".join(lines)
 
 
@@ -293,30 +263,23 @@ def main() -> int:
     )
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "mutants")
     parser.add_argument("--venv", type=Path, default=ROOT / ".venv")
-    parser.add_argument("--results", type=Path, help="json file; by default in the working folder")
     parser.add_argument("--only", nargs="+", metavar="NAME", help="these mutants, done or not")
-    parser.add_argument(
-        "--table", nargs="+", type=Path, metavar="FILE", help="print these results and stop"
-    )
+    parser.add_argument("--own", action="store_true", help="run only the tests named in the csv")
+    parser.add_argument("--table", action="store_true", help="print the results and stop")
     given = parser.parse_args()
-    if given.table:
-        print(table(given.table))
-        return 0
-    file = given.results or given.work / "results.json"
+    file = given.work / "results.json"
     results = json.loads(file.read_text("utf-8")) if file.is_file() else {}
-    results = {name: found for name, found in results.items() if is_there(found)}
-    unknown = set(given.only or ()) - {mutant.name for mutant in MUTANTS}
-    if unknown:
-        print(f"mutants: there is no {', '.join(sorted(unknown))}", file=sys.stderr)
-        return 2
+    if given.table:
+        print(table(results))
+        return 0
     try:
         tree = Tree(given.work.resolve(), given.venv.resolve())
         tree.prepare()
-        check_unchanged(tree, results)
+        check_unchanged(tree, {})
         for mutant in MUTANTS:
             if mutant.name not in given.only if given.only else mutant.name in results:
                 continue
-            results[mutant.name] = found = verdict(tree, mutant)
+            results[mutant.name] = found = verdict(tree, mutant, given.own)
             print(f"{mutant.name}: {found['suite']} {found['test']}".rstrip(": "), flush=True)
             file.write_text(json.dumps(results, indent=1) + "\n", "utf-8")
         tree.link_suites()

@@ -54,7 +54,7 @@ largest = np.abs(quake.storey_drift).max(axis=0)
 floors = np.abs(quake.floor_acceleration).max(axis=0)
 for i, values in enumerate(zip(largest, quake.residual_drift, floors, strict=True), 1):
     print(f"{i:6d}{100 * values[0]:16.2f}{100 * values[1]:17.2f}{values[2]:20.1f}")
-print(quake.honesty)
+print(quake.scope_note)
 
 if "--no-plot" not in sys.argv:
     figures = {
