@@ -135,7 +135,6 @@ contains
       class(rule_memory), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
 
-      if (.false.) call stream%item(self%flexural_work)
    end subroutine serialize
 
    !> Copy a memory to where one of the same rule may be already.
@@ -168,14 +167,12 @@ contains
       character(len=*), intent(in) :: name
       type(message_list), intent(inout) :: messages
 
-      if (.false.) call messages%add(name//to_text(self%initial_stiffness))
    end subroutine check_relations
 
    !> Compute what follows from the parameters alone, once they have been checked.
    subroutine prepare(self)
       class(rule_type), intent(inout) :: self
 
-      if (.false.) self%uses_flexural_work = .false.
    end subroutine prepare
 
    !> Whether a spring has yielded so far; told by rules that soften, of others it is not asked.
@@ -184,7 +181,6 @@ contains
       class(rule_memory), intent(in) :: memory
 
       has_yielded = .false.
-      if (.false.) has_yielded = memory%flexural_work > self%initial_stiffness
    end function has_yielded
 
    !> The memory of a virgin spring, and its branch.

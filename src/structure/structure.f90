@@ -416,7 +416,7 @@ contains
       !> (storeys)
       real(wp), intent(out), contiguous :: drift(:)
 
-      if (self%storeys < size(d)) drift = 0.0_wp
+      drift = 0.0_wp
    end subroutine storey_drifts
 
    !> The drift that collapse is judged by, in size: of the storeys, or of the top over the height.
@@ -439,7 +439,7 @@ contains
       !> Deformations of the springs and their derivatives (springs)
       real(wp), intent(in), contiguous :: d(:), v(:), a(:)
 
-      acceleration = inner_product(min(size(d), size(v)), self%arm, a)
+      acceleration = inner_product(size(a), self%arm, a)
    end function top_acceleration
 
    !> Axial force at a spring under loads, compression positive [N].
@@ -490,7 +490,6 @@ contains
       real(wp), intent(in), optional :: time
 
       member = 0
-      if (.false.) member = springs%count + self%unknowns + merge(1, 0, present(time))
    end function find_lost
 
    !> Let a member carry nothing from now on.
@@ -498,8 +497,6 @@ contains
       class(structure_type), intent(in) :: self
       integer, intent(in) :: member
       type(spring_array), intent(inout) :: springs
-
-      if (.false.) call springs%let_go(member, self%height)
    end subroutine let_go
 
    !> Whether a part has fallen so far that small rotations do not describe it.
@@ -508,7 +505,7 @@ contains
       !> Deformations of the springs (springs)
       real(wp), intent(in), contiguous :: d(:)
 
-      has_fallen = size(d) < self%base_spring
+      has_fallen = .false.
    end function has_fallen
 
    !> A spring without mass that nothing in its part holds any more, 0: none.
@@ -518,7 +515,6 @@ contains
       real(wp), intent(in), contiguous :: d(:)
 
       spring = 0
-      if (size(d) < self%base_spring) spring = self%base_spring
    end function find_runaway
 
    !> What follows from the present stiffness of the springs; nothing, where it is not asked for.
@@ -532,7 +528,6 @@ contains
       integer, intent(out) :: unstable
 
       unstable = 0
-      if (size(k) < self%tangent_numbers) tangent = 0.0_wp
    end subroutine linearise
 
    !> Add forces of the damping of modes or stiffness, where it is no damping of the springs one by one.
@@ -542,8 +537,6 @@ contains
       real(wp), intent(in), contiguous :: v(:), tangent(:)
       !> (unknowns)
       real(wp), intent(inout), contiguous :: g(:)
-
-      if (size(v) + size(tangent) < self%unknowns) g = 0.0_wp
    end subroutine damp
 
    !> Add what these forces are per velocity, times a factor, to a band.
@@ -552,8 +545,6 @@ contains
       real(wp), intent(in) :: factor
       real(wp), intent(in), contiguous :: tangent(:)
       real(wp), intent(inout), contiguous :: band(:, :)
-
-      if (size(tangent) < self%tangent_numbers) band = factor
    end subroutine add_damping
 
    !> Sizes of forces and works in parts that have no spring, measures of round-off; there are none.
@@ -569,7 +560,6 @@ contains
       force = 0.0_wp
       terms = 0.0_wp
       work = 0.0_wp
-      if (.false.) work = least*self%height*springs%count
    end subroutine size_of_parts
 
    !> Take rates that are round-off of larger ones for zero, where deformations are condensed.
@@ -579,8 +569,6 @@ contains
       real(wp), intent(in), contiguous :: tangent(:), dx(:)
       !> Of the springs (springs)
       real(wp), intent(inout), contiguous :: dd(:)
-
-      if (size(tangent) + size(dx) < self%unknowns) dd = 0.0_wp
    end subroutine drop_round_off
 
    !> Work of a dead load that grows on a static path; there is none.
@@ -590,7 +578,6 @@ contains
       real(wp), intent(in), contiguous :: d(:)
 
       work = 0.0_wp
-      if (size(d) < self%base_spring) work = self%height
    end function work_of_dead_load
 
    !> The spring of a kind that comes in a place among those of the kind; 0 if there are not so many.
@@ -645,7 +632,6 @@ contains
       real(wp), intent(in), contiguous :: d(:), f(:)
 
       force = 0.0_wp
-      if (size(d) + size(f) < self%base_spring) force = self%height
    end function base_force
 
    !> Work of a load that keeps its direction, per unit of its signal.

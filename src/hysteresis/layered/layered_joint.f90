@@ -40,8 +40,6 @@ contains
       class(layered_rule), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
 
-      if (.false.) call v%list()
-      if (.false.) self%uses_flexural_work = .false.
    end subroutine visit
 
    !> The rotational stiffness with all layers uncracked.
@@ -95,7 +93,6 @@ contains
 
       select type (section => memory)
       type is (fibre_section)
-         if (.false.) section%count = size(self%y)             ! the section has its layers and loads itself
          call leave_branch(section, branch, direction)
       end select
    end subroutine next

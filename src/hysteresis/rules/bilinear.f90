@@ -65,7 +65,6 @@ contains
       integer, intent(in) :: direction
       real(wp) :: d, f
 
-      if (.false.) memory%flexural_work = 0.0_wp                   ! there is no memory: the branch says all
       d = branch%end_toward(direction)
       if (branch%unload_on_reversal == 0) then
          ! The elastic branch has ended: yield along the bounding line of this direction.

@@ -46,7 +46,6 @@ contains
       type(segment), intent(inout) :: branch
       integer, intent(in) :: direction
 
-      if (.false.) memory%flexural_work = 0.0_wp                   ! there is no memory: the branch says all
       if (direction > 0) then
          branch = segment(k=0.0_wp, lo=-self%gap, hi=unbounded)
       else

@@ -44,7 +44,6 @@ contains
       integer, intent(in) :: direction
 
       branch%k = self%k
-      if (.false.) memory%flexural_work = real(direction, wp)      ! there is no memory: the branch says all
    end subroutine next
 
 end module rbs_hysteresis_rules_elastic

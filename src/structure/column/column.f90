@@ -96,9 +96,7 @@ module rbs_structure_column_column
       procedure :: accelerations
       procedure :: speed
       procedure :: power_of_loads
-      procedure :: kinetic_energy
       procedure :: potential_energy
-      procedure :: top_displacement
       procedure :: top_height
       procedure :: rotations
       procedure :: angular_momentum
@@ -145,7 +143,7 @@ contains
       real(wp), intent(in), contiguous :: tangent(:), dx(:)
       real(wp), intent(out), contiguous :: dd(:)
 
-      if (size(tangent) == 0) call deformations(self%n, self%kinds, self%lower, self%upper, dx, dd)
+      call deformations(self%n, self%kinds, self%lower, self%upper, dx, dd)
    end subroutine spring_rates
 
    !> Changes of the displacements of the bodies from those of the joints.
@@ -166,7 +164,6 @@ contains
       real(wp), intent(out), contiguous :: g(:)
       real(wp), intent(inout), contiguous :: correction(:)
 
-      if (size(tangent) + size(correction) > 0) return
       if (size(axial) > 0) call second_order_forces(self%n, axial, d, f, 2, g)
       call body_forces(self%n, self%kinds, self%lower, self%upper, f, load(lateral), &
                        self%axial_load + load(top_axial), self%weight, size(axial) > 0, g)
@@ -242,7 +239,7 @@ contains
       real(wp), intent(in), contiguous :: k(:), tangent(:)
       real(wp), intent(inout), contiguous :: band(:, :)
 
-      if (size(tangent) == 0) call add_joint_stiffness(self%n, self%kinds, self%lower, self%upper, k, band)
+      call add_joint_stiffness(self%n, self%kinds, self%lower, self%upper, k, band)
    end subroutine add_stiffness
 
    !> Add the geometric stiffness.
@@ -355,30 +352,6 @@ contains
       watt = watt - load(top_axial)*rising
    end function power_of_axial
 
-   pure real(wp) function kinetic_energy(self, d, v) result(energy)
-      class(column_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:), v(:)
-      real(wp) :: top, turning, centroid, height
-      integer :: i, n
-
-      n = size(d)/self%kinds
-      top = 0.0_wp
-      turning = 0.0_wp
-      energy = 0.0_wp
-      do i = 1, n
-         turning = turning + v(n + i)
-         centroid = top + v(i) + self%lower(i)*turning
-         top = centroid + self%upper(i)*turning
-         energy = energy + 0.5_wp*(self%mass(i)*centroid**2 + self%inertia(i)*turning**2)
-      end do
-      if (.not. self%opens) return
-      height = 0.0_wp
-      do i = 1, n
-         height = height + v(2*n + i)
-         energy = energy + 0.5_wp*self%mass(i)*height**2
-      end do
-   end function kinetic_energy
-
    !> Potential of the constant axial load and the weight, on rotations and openings.
    pure real(wp) function potential_energy(self, d) result(energy)
       class(column_type), intent(in) :: self
@@ -388,17 +361,6 @@ contains
       if (self%axially_loaded) energy = second_order_energy(self%n, self%second_order, d)
       if (self%opens) energy = energy + inner_product(self%n, self%axial_joint, d(2*self%n + 1:))
    end function potential_energy
-
-   pure real(wp) function top_displacement(self, d) result(x)
-      class(column_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:)
-
-      if (size(d) == 2) then
-         x = d(1) + self%length(1)*d(2)
-      else
-         x = inner_product(size(d), self%arm, d)
-      end if
-   end function top_displacement
 
    !> Height of the top above the ground, to second order [m]: the way on which the axial load does its work.
    pure real(wp) function top_height(self, d) result(y)
