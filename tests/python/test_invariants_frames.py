@@ -493,11 +493,10 @@ def test_rotations_without_inertia_are_in_equilibrium_in_time(rng: Rng) -> float
     return float(np.abs(missing[:, free(made)[:, 2]]).max() / moment_size(run))
 
 
-@relation(40, judged=0.8, bar=1e-7)
+@relation(40, judged=0.8, bar=1e-8)
 def test_members_fit_between_their_nodes_in_time(rng: Rng) -> float:
-    """Of springs of one line each."""
-    family = str(rng.choice(["hardening", "capped", "mixed"]))
-    made, time, load = shaken(rng, family, kinematics="small")
+    """Joints all but without stiffness too, whose forces end in round-off."""
+    made, time, load = shaken(rng, any_family(rng), kinematics="small")
     return gaps(move(made, time, **load))
 
 

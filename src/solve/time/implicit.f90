@@ -15,12 +15,12 @@ module rbs_solve_time_implicit
    use rbs_solve_time_implicit_balance, only: step_balance, step_tangent
    use rbs_loading_loads, only: lateral, horizontal
    use rbs_solve_time_motion, only: motion_type
-   use rbs_solve_time_newton, only: newton_stepper
+   use rbs_solve_time_newton, only: newton_stepper, progress
    use rbs_solve_time_state, only: state_type
    implicit none
    private
 
-   !> How often a spring may leave its lines at one place.
+   !> How often a spring may leave its lines while the residual does not decrease.
    integer, parameter :: most_returns = 5
 
    !> Rounds in which a member snaps and trials of each, the residuals that they leave, that of a state at
@@ -46,7 +46,7 @@ module rbs_solve_time_implicit
       real(wp), private :: of_loads = 0.0_wp, of_damping = 0.0_wp
       logical, private :: weighed = .false.
       !> How far the unknowns had moved where the last round of `snap` began (unknowns); how often each spring
-      !> has left its lines at one place (springs)
+      !> has left its lines since the residual decreased (springs)
       real(wp), allocatable, private :: anchor(:)
       integer, allocatable, private :: returns(:)
    contains
@@ -217,21 +217,24 @@ contains
 
       !> The step from end to end of the springs' lines, where `iterate` has failed. On the present lines the
       !> tangent step is exact, so the residual decreases in proportion to the way. A spring that leaves its
-      !> lines again and again at one place shows that no line leads on from there.
+      !> lines again and again while the residual does not decrease shows that no line leads on from there.
       subroutine go_by_events()
-         real(wp) :: share, before
+         real(wp) :: share, before, least
          integer :: i, way
 
          before = huge(1.0_wp)
-         self%returns = 0
+         least = huge(1.0_wp)
          call begin()
          do
+            if (self%residual < progress*least) then
+               least = self%residual
+               self%returns = 0
+            end if
             call self%correct(state)
             call first_end(self%step%q1, self%dq, share, i, way)
             self%step%q1 = self%step%q1 + share*self%dq
             self%step%moved = self%step%moved + share*self%dx
             if (i > 0) then
-               if (share > 0.0_wp) self%returns = 0
                self%returns(i) = self%returns(i) + 1
                self%busiest = i
                if (self%returns(i) > most_returns) return

@@ -14,7 +14,7 @@ module rbs_solve_time_newton
    implicit none
    private
 
-   public :: newton_stepper
+   public :: newton_stepper, progress
 
    !> Number of trials in which Newton's method may overshoot, most trials in turn that do not bring the
    !> residual below the least one before, most cuts of a step in halves, and most tries of a step and its

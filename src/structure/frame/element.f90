@@ -33,11 +33,14 @@ module rbs_structure_frame_element
    implicit none
    private
 
-   public :: frame_element, find_tangent, find_forces, find_rates
+   public :: frame_element, find_tangent, find_forces, find_rates, motion_of_rest, unbalance
    public :: shared, of_joint
 
    !> Springs without stiffness share a motion as if each had this part of its initial one.
    real(wp), parameter :: shared = 1.0e-9_wp
+
+   !> A sum below this share of its terms is round-off.
+   real(wp), parameter :: round_off = 8.0_wp*epsilon(1.0_wp)
 
    !> x at which a member buckles between ends that are clamped.
    real(wp), parameter :: largest_x = acos(-1.0_wp)**2
@@ -231,7 +234,9 @@ contains
 
    !> Forces of the ends that are in equilibrium with forces of the springs, and the corrections of their
    !> deformations that this needs.
-   pure subroutine find_forces(m, n, stiffness, rate, bent, opened, gap, f, dead, dead_force, s, correction)
+   pure subroutine find_forces(e, m, n, stiffness, rate, bent, opened, gap, f, dead, dead_force, s, &
+                               correction)
+      type(frame_element), intent(in) :: e
       !> Numbers of springs that bend, and that open
       integer, intent(in) :: m, n
       !> Of `find_tangent`
@@ -240,27 +245,56 @@ contains
       !> the dead load that acts, and what it does in them
       real(wp), intent(in) :: gap(3), f(m + n), dead, dead_force(m + n)
       real(wp), intent(out) :: s(3), correction(m + n)
-      real(wp) :: force
+      real(wp) :: force, left(3)
       integer :: i, j
 
-      s = stiffness(:, 1)*gap(1) + stiffness(:, 2)*gap(2) + stiffness(:, 3)*gap(3)
+      s = 0.0_wp
       do j = 1, m + n
          s = s + rate(:, j)*(f(j) - dead*dead_force(j))
-         correction(j) = rate(1, j)*gap(1) + rate(2, j)*gap(2) + rate(3, j)*gap(3)
+      end do
+      left = gap - motion_of_rest(e, s)
+      do j = 1, m + n
+         correction(j) = rate(1, j)*left(1) + rate(2, j)*left(2) + rate(3, j)*left(3)
       end do
       do j = 1, m
-         force = f(j) - dead*dead_force(j)
+         force = unbalance(f(j) - dead*dead_force(j), [e%share(:, j)*s(2:), 0.0_wp])
          do i = 1, m
             correction(i) = correction(i) - bent(i, j)*force
          end do
       end do
       do j = 1, n
-         force = f(m + j) - dead*dead_force(m + j)
+         force = unbalance(f(m + j) - dead*dead_force(m + j), [s(1), 0.0_wp, 0.0_wp])
          do i = 1, n
             correction(m + i) = correction(m + i) - opened(i, j)*force
          end do
       end do
+      s = s + (stiffness(:, 1)*gap(1) + stiffness(:, 2)*gap(2) + stiffness(:, 3)*gap(3))
    end subroutine find_forces
+
+   !> Motion of the ends that forces of the ends make in the elastic rest.
+   pure function motion_of_rest(e, s) result(q)
+      type(frame_element), intent(in) :: e
+      real(wp), intent(in) :: s(3)
+      real(wp) :: q(3), alike, against
+
+      q = 0.0_wp
+      if (e%rest_along > 0.0_wp) q(1) = s(1)/e%rest_along
+      if (.not. allocated(e%rest)) return
+      alike = (s(2) + s(3))/e%rest(1)
+      against = (s(2) - s(3))/e%rest(2)
+      q(2:) = [alike + against, alike - against]
+   end function motion_of_rest
+
+   !> Force of a spring or joint less what forces of the ends do there, term by term. Round-off of it is none:
+   !> a joint all but without stiffness would go far for it, and back in the next trial.
+   pure real(wp) function unbalance(force, of_ends)
+      real(wp), intent(in) :: force, of_ends(3)
+
+      unbalance = force - (of_ends(1) + of_ends(2) + of_ends(3))
+      associate (terms => abs(force) + (abs(of_ends(1)) + abs(of_ends(2)) + abs(of_ends(3))))
+         if (abs(unbalance) <= round_off*terms) unbalance = 0.0_wp
+      end associate
+   end function unbalance
 
    !> Changes of the deformations with those of the ends.
    pure subroutine find_rates(springs, rate, q, dd)

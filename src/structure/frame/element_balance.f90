@@ -150,9 +150,9 @@ contains
             call layered_forces(e, m + n, tangent(layout%stiffness), tangent(layout%rate), gap, d(first), &
                                 f(first), dead, dead_force(first), s, correction(first))
          else
-            call find_forces(m, n, tangent(layout%stiffness), tangent(layout%rate), tangent(layout%bent), &
-                             tangent(layout%opened), gap, f(first), dead, dead_force(first), s, &
-                             correction(first))
+            call find_forces(e, m, n, tangent(layout%stiffness), tangent(layout%rate), &
+                             tangent(layout%bent), tangent(layout%opened), gap, f(first), dead, &
+                             dead_force(first), s, correction(first))
          end if
       end associate
    end subroutine balance_ends

@@ -3,7 +3,7 @@
 !> `rbs_structure_frame_element` for the formulas.
 module rbs_structure_frame_layered
    use rbs_base_kinds, only: wp
-   use rbs_structure_frame_element, only: frame_element, of_joint, shared
+   use rbs_structure_frame_element, only: frame_element, motion_of_rest, of_joint, shared, unbalance
    implicit none
    private
 
@@ -118,10 +118,10 @@ contains
       !> share of the dead load that acts, and what it does in them
       real(wp), intent(in) :: gap(3), d(m), f(m), dead, dead_force(m)
       real(wp), intent(out) :: s(3), correction(m)
-      real(wp) :: all(3), force, moment, moved(2)
+      real(wp) :: all(3), more(3), force, moment, moved(2)
       integer :: j
 
-      all = gap
+      all = 0.0_wp
       do j = 1, size(e%first) - 1
          associate (of => e%first(j), last => e%first(j + 1) - 1)
             if (of == last) then
@@ -138,14 +138,29 @@ contains
                       + e%arm(:, 2, j)*(soft(2, j)*force + soft(3, j)*moment))
       end do
       s = stiffness(:, 1)*all(1) + stiffness(:, 2)*all(2) + stiffness(:, 3)*all(3)
+      ! In joints all but without stiffness these forces make motions beside which the gap is round-off.
+      all = gap - motion_of_rest(e, s)
+      do j = 1, size(e%first) - 1
+         associate (a => e%arm(:, :, j), of => e%first(j), last => e%first(j + 1) - 1)
+            force = unbalance(correction(of), a(:, 1)*s)
+            correction(of) = force
+            all = all + a(:, 1)*(soft(1, j)*force)
+            if (of == last) cycle
+            moment = unbalance(correction(of + 1), a(:, 2)*s)
+            correction(of + 1) = moment
+            all = all + (a(:, 1)*(soft(2, j)*moment) + a(:, 2)*(soft(2, j)*force + soft(3, j)*moment))
+         end associate
+      end do
+      more = stiffness(:, 1)*all(1) + stiffness(:, 2)*all(2) + stiffness(:, 3)*all(3)
+      s = s + more
       do j = 1, size(e%first) - 1
          associate (of => e%first(j), last => e%first(j + 1) - 1)
-            force = work_on(e%arm(:, 1, j), s) - correction(of)
+            force = work_on(e%arm(:, 1, j), more) - correction(of)
             if (of == last) then
                correction(of) = soft(1, j)*force
                cycle
             end if
-            moment = work_on(e%arm(:, 2, j), s) - correction(of + 1)
+            moment = work_on(e%arm(:, 2, j), more) - correction(of + 1)
             ! Layers stay in line.
             moved = joint_motion(e, j, m, d) + [soft(1, j)*force + soft(2, j)*moment, &
                                                 soft(2, j)*force + soft(3, j)*moment]
