@@ -19,19 +19,21 @@ import pytest
 from samples import SECTION
 
 import rbsdem
+from rbsdem._package import unwarned
 from rbsdem.cli import main
 from rbsdem.cli.columns import start_of
 from rbsdem.codes import code_values
+from rbsdem.errors import AccuracyWarning
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.output import frames as figures_of_frames
 from rbsdem.springs import Elastic
 from rbsdem.web import answers as web_answers
 from rbsdem.web import exports, frames
 from rbsdem.web.answers import Answers, shown_rows
-from rbsdem.web.pages import FRAMES, MODULES, parts
+from rbsdem.web.pages import PAGE, REPORT, parts
 from rbsdem.web.report import report, report_data, write_report
 from rbsdem.web.server import MOST_STATE, ExploreServer
-from rbsdem.web.state import DEFAULT, Faults
+from rbsdem.web.state import DEFAULT
 
 #: Numbers of requests; a tab counts on.
 COUNT = itertools.count(1)
@@ -132,7 +134,8 @@ GOOD = json.dumps({"tab": "r", "number": 1, "state": state()})
         (400, {"body": "[]"}),
         (400, {"body": '{"tab": "r", "number": 1.5, "state": {}}'}),
         (400, {"body": '{"tab": "r", "number": 1, "state": {"columns": []}}'}),
-        (400, {"path": "frame", "body": '{"tab": "r", "number": 1, "frame": []}'}),
+        (400, {"path": "loops", "body": '{"tab": "r", "number": 1, "state": {"frame": []}}'}),
+        (400, {"path": "bands", "body": '{"tab": "r", "number": 1, "state": {"frame": {}}}'}),
         (400, {"body": '{"tab": "r", "number": 1, "state": {"columns": [1], "loading": {}}}'}),
     ],
 )
@@ -353,89 +356,169 @@ def test_other_shapes(post, shape):
     assert max(answer["force"]) > 50e3
 
 
-def test_a_frame_is_that_of_the_functions(post, tmp_path):
+def _frame(**changes):
     given = copy.deepcopy(frames.DEFAULT)
-    given["storeys"][2]["column"] |= {"width": 0.3, "moment": 150e3}
-    answer = post("frame", frame=given)
+    for path, value in changes.items():
+        *way, last = path.split("__")
+        part = given
+        for name in way:
+            part = part[int(name) if name.isdigit() else name]
+        part[int(last) if last.isdigit() else last] = value
+    return given
 
-    def kind(width, depth, moment, share):
-        return rbsdem.FrameMember(
-            30e9, width * depth, share * width * depth**3 / 12, moment, hardening=0.01
-        )
 
-    frame = rbsdem.Frame.grid(
-        [3.2] * 3,
-        [6.0] * 3,
-        columns={(0, 0): kind(0.4, 0.4, 250e3, 0.7), (0, 3): kind(0.3, 0.4, 150e3, 0.7)},
-        beams=kind(0.3, 0.5, 200e3, 0.35),
-        beam_load=25e3,
-        floor_mass=25e3 * 18 / 9.80665,
-        kinematics="pdelta",
-    )
-    push = rbsdem.pushover(frame, drift=0.03, points=40)
-    np.testing.assert_allclose(answer["base_shear"], push.base_shear, rtol=1e-4, atol=10.0)
-    assert answer["period"] == pytest.approx(rbsdem.modes(frame, 1).period[0])
-    assert [(one["member"], one["end"]) for one in answer["events"]] == [
-        (event.member, event.end) for event in push.events
-    ]
-    # At the end of the push: nodes where they are, members between them, sections that turned.
-    node = frame.parts.nodes.index("N-4-3")
-    beam = answer["members"].index("B-3-3")
-    np.testing.assert_allclose(
-        answer["moved"][-1][beam][-1], [push.x[-1, node], push.y[-1, node]], atol=1e-4
-    )
-    yielded = {
-        (answer["members"][member], place)
-        for (member, place), ratio in zip(answer["springs"], answer["ductility"][-1], strict=True)
-        if ratio >= 1.0
+def _drawn(width, depth, size, spacing, **more):
+    return {"concrete": rbsdem.Concrete(30e6), "cover": 0.03, "width": width, "depth": depth} | {
+        "ties": rbsdem.Ties(0.008, spacing, rbsdem.Steel(400e6)),
+        **({"layout": rbsdem.Layout(8, size, rbsdem.Steel(450e6))} if size else {}),
+        **more,
     }
-    ends = {"start": 0.0, "end": 1.0}
-    assert yielded == {(event.member, ends.get(event.end, 0.5)) for event in push.events}
-    # The case file is the same frame and the same push.
-    (tmp_path / "frame.nml").write_text(answer["case"])
-    case = rbsdem.read_case(tmp_path / "frame.nml")
-    again = case.run()
-    assert len(again.displacement) >= 40
-    assert again.displacement[-1] == pytest.approx(0.03 * 9.6)
-    assert again.base_shear[-1] == pytest.approx(push.base_shear[-1])
 
 
-def test_members_of_a_frame_bend_as_the_figures_of_python_have_them():
-    """A cubic line with kinks where sections yielded, here for all rows at once."""
-    frame = frames.frame_of(frames.DEFAULT, Faults())
-    push = rbsdem.pushover(frame, drift=0.03, points=40)
-    answer = frames.pushover_json(frames.DEFAULT)
-    for i, member in enumerate(frame.geometry.values()):
-        row = answer["pictures"][-1]
-        line = figures_of_frames._deformed(push, member, row, 1.0, np.linspace(0, 1, 7))
-        drawn = np.array(answer["still"][i]) + answer["moved"][-1][i]
-        np.testing.assert_allclose(drawn, line, atol=1e-3)
+@pytest.fixture
+def grid():
+    """Return the frame of the page, with smaller columns above, a slab, and a beam less."""
+    steel, area, y = rbsdem.Steel(450e6), np.pi * 0.016**2 / 4, 0.25 - 0.03 - 0.008 - 0.008
+    bars = [(-y, area, steel)] * 4 + [(y, area, steel)] * 3
+    beam = _drawn(0.3, 0.5, None, 0.15, bars=bars, bar_diameter=0.016)
+    slab = rbsdem.frames.TeeSection(**beam, flange_width=1.2, flange_thickness=0.12)
+    below = rbsdem.RectangularSection(**_drawn(0.4, 0.4, 0.02, 0.1))
+    above = rbsdem.RectangularSection(**_drawn(0.3, 0.4, 0.02, 0.1))
+    with unwarned(AccuracyWarning):  # no test had a flange
+        return rbsdem.Frame.grid(
+            [3.2] * 3, [6.0] * 2,
+            columns={(0, 0): below, (0, 3): above},
+            beams={(0, 0): rbsdem.RectangularSection(**beam), (0, 2): slab, (1, 3): None},
+            dead_load=20e3, live_load=8e3, live_share=0.3, self_weight=True, mass="from_loads",
+            kinematics="pdelta", damping=0.05,
+        )  # fmt: skip
+
+
+def _state_of_grid(**more):
+    return _frame(
+        frame__storeys__2__column__section__width=0.3,
+        frame__storeys__1__beam__section__slab=0.12,
+        frame__storeys__1__beam__section__flange=1.2,
+        frame__removed=["B-1-3", "C-9-1", "x"],
+        **more,
+    )
+
+
+def test_a_frame_is_that_of_the_functions(post, grid, tmp_path):
+    state = _state_of_grid()
+    answer = post("loops", state=state)["frame"]
+    push = rbsdem.pushover(grid, drift=0.03, points=40)
+    assert answer["faults"] == []
+    rows, shown = np.flatnonzero(push.time == np.rint(push.time)), answer["pictures"]
+    for name in ("base_shear", "displacement", "storey_drift", "storey_shear"):
+        known = getattr(push, name)[rows]
+        found = np.array(answer[name])[shown]
+        np.testing.assert_allclose(found, known, atol=1e-4 * np.abs(known).max())
+    assert answer["period"] == pytest.approx(rbsdem.modes(grid, 1).period[0], rel=1e-5)
+    keys = ("member", "end", "what")
+    assert [tuple(one[key] for key in keys) for one in answer["events"]] == [
+        tuple(getattr(event, key) for key in keys) for event in push.events
+    ]
+    # At the end of the push: nodes where they are, members between them, and their forces.
+    last, beam = push.time.size - 1, answer["members"].index("B-2-3")
+    node, member = grid.parts.nodes.index("N-3-3"), push.member("B-2-3")
+    moved = np.array(answer["moved"][-1][beam])
+    np.testing.assert_allclose(moved[-1], [push.x[-1, node], push.y[-1, node]], atol=1e-4)
+    shares = np.linspace(0, 1, 7)
+    line = figures_of_frames.deformed(push, grid.geometry["B-2-3"], last, 1.0, shares)
+    np.testing.assert_allclose(np.array(answer["still"][beam])[1:-1] + moved[1:-1], line, atol=1e-3)
+    known = [member.axial[-1], *member.moment[-1], np.abs(member.shear[-1]).max()]
+    np.testing.assert_allclose(answer["forces"][-1][beam], known, atol=100)
+    # The case file is the same frame and the same push, and comes back as its drawing.
+    text = post("export", state=state, form="namelist")["text"]
+    (tmp_path / "frame.nml").write_text(text)
+    again = rbsdem.read_case(tmp_path / "frame.nml").run()
+    assert again.base_shear[-1] == push.base_shear[-1]
+    assert post("open", text=text)["state"] == state
+    changed = text.replace("kinematics = 'pdelta'", "kinematics = 'small'")
+    assert "changed after it was drawn" in post("open", text=changed)["note"]
+    page = post("report", state=state)["text"]
+    assert "Target displacement" in page
+    assert "C-1-1" in page
+
+
+def test_the_target_of_a_frame_and_its_members_are_those_of_the_functions(post, grid):
+    answer = post("checks", state=_state_of_grid())
+    push = rbsdem.pushover(grid, drift=0.03, points=40)
+    spectrum = rbsdem.codes.DesignSpectrum.en_1998(0.25, "C")
+    target = rbsdem.codes.target(push, spectrum, "en_1998")
+    assert answer["target"]["displacement"] == pytest.approx(target.displacement, rel=1e-5)
+    worst = rbsdem.codes.assess(push, "en_1998_3", at=target).worst(1).iloc[0]
+    found = max(answer["ends"], key=lambda one: one["ratio"])
+    assert (found["member"], found["end"]) == (worst["member"], worst["end"])
+    assert found["ratio"] == pytest.approx(worst["ratio"], rel=1e-5)
+    # A motion is judged by its envelope, and has no target.
+    state = _state_of_grid(loading={"kind": "synthetic", "seed": 2, "scale": 0.2})
+    loops, checks = post("loops", state=state)["frame"], post("checks", state=state)
+    motion = rbsdem.motions.synthetic(1, 2, dt=0.01)[0].scaled(0.2)
+    quake = rbsdem.time_history(grid, motion, method="newmark", dt=0.01)
+    known = np.abs(quake.storey_drift).max(axis=0)
+    np.testing.assert_allclose(loops["peak"]["storey_drift"], known, rtol=1e-5)
+    assert not checks["at_target"]
+    assert "target" not in checks
+
+
+@pytest.mark.parametrize("kinematics", ["pdelta", "small"])
+def test_a_frame_goes_to_and_fro(post, kinematics):
+    loading = {"kind": "amplitudes", "amplitudes": [0.005, 0.01], "cycles": 1}
+    answer = post("loops", state=_frame(loading=loading, frame__kinematics=kinematics))["frame"]
+    drift = np.array(answer["displacement"]) / answer["height"]
+    assert drift.max() == pytest.approx(0.01)
+    assert drift.min() == pytest.approx(-0.01)
+    assert drift[-1] == pytest.approx(-0.01, abs=0.011)
 
 
 @pytest.mark.parametrize(
-    ("place", "value", "field", "text"),
+    ("changes", "field", "text"),
     [
-        (("storeys", 1, "height"), -1.0, "frame.storeys", r"height = -1 m must be .*storey 2"),
-        (("storeys", 0, "beam"), 4, "beam.moment", "moment is missing, or too large for"),
-        (("storeys", 2, "column", "width"), 1e9, "column.width", "must be from 0.05 to 5"),
-        (("storeys", 2), 7, "frame.storeys", "height is missing, or too large for a number"),
-        (("storeys",), [], "frame.storeys", "give one to six"),
-        (("modulus",), None, "frame.modulus", "modulus is missing, or too large for a number"),
-        (("bays",), [6.0] * 7, "frame.bays", "give one to six"),
-        (("bays",), ["x"], "frame.bays", "must be a number"),
-        (("modulus",), 30, "frame.modulus", "must be from"),
-        (("drift",), 10**400, "frame.drift", "drift"),
-        (("beam_load",), 1e6, "frame.beam_load", "does not carry its dead load"),
+        (
+            {"storeys__1__height": -1.0},
+            "frame.storeys",
+            r"height = -1 m must be .*storey 2",
+        ),
+        ({"storeys__0__beam": 4}, "beam.section.shape", "shape = None is not known"),
+        ({"storeys__2__column__section__width": 1e9}, "column.section.width", "storey 3"),
+        ({"storeys__2__column__bars__number": 3}, "column.bars.number", "number = 3"),
+        ({"storeys__2__beam__top__number": 10**9}, "beam.top.number", "must be from 1 to 50"),
+        ({"storeys__2__beam__bottom__diameter": -1}, "beam.bottom.diameter", "diameter = -1"),
+        ({"storeys__2__beam__section__slab": 0.1}, "beam.section.flange", "flange_width"),
+        ({"storeys__2__beam__ties__spacing": None}, "beam.ties.spacing", "spacing"),
+        ({"storeys__2": 7}, "frame.storeys", "height is missing, or too large for a number"),
+        ({"storeys": []}, "frame.storeys", "give one to six"),
+        ({"concrete__fc": None}, "frame.concrete.fc", "fc"),
+        ({"concrete__fc": 30}, "frame.concrete.fc", "30e6"),
+        ({"bars__fy": 10**400}, "frame.bars.fy", "fy"),
+        ({"bays": [6.0] * 7}, "frame.bays", "give one to six"),
+        ({"bays": ["x"]}, "frame.bays", "must be a number"),
+        ({"dead_load": 1e6}, "frame.dead_load", "more compression than the section carries"),
+        ({"dead_load": 90e3}, "frame.dead_load", "dead load: it is beyond the capacity"),
+        ({"kinematics": "x"}, "frame.kinematics", "kinematics = 'x'"),
     ],
 )
-def test_errors_of_a_frame_stand_beside_their_fields(post, place, value, field, text):
-    given = copy.deepcopy(frames.DEFAULT)
-    part = given
-    for name in place[:-1]:
-        part = part[name]
-    part[place[-1]] = value
-    faults = {one["field"]: one["text"] for one in post("frame", frame=given)["faults"]}
-    assert re.search(text, faults[field])
+def test_errors_of_a_frame_stand_beside_their_fields(post, changes, field, text):
+    given = _frame(**{f"frame__{path}": value for path, value in changes.items()})
+    faults = {one["field"]: one["text"] for one in post("loops", state=given)["frame"]["faults"]}
+    assert re.search(text, faults[field]), faults
+
+
+@pytest.mark.parametrize(
+    ("demand", "field"),
+    [
+        ({"code": "x"}, "frame.demand.code"),
+        ({"code": "en_1998_3", "ag": None, "soil": "C"}, "frame.demand.ag"),
+        ({"code": "en_1998_3", "ag": 0.2, "soil": []}, "frame.demand.soil"),
+        ({"code": "asce_41", "s_xs": 1.0, "s_x1": -1}, "frame.demand.s_x1"),
+        (7, "frame.demand.code"),
+    ],
+)
+def test_errors_of_a_demand_stand_beside_their_fields(post, demand, field):
+    state = _frame(frame__demand=demand, frame__bays=[6.0], loading__drift=0.005)
+    assert [one["field"] for one in post("checks", state=state)["faults"]] == [field]
 
 
 def test_records_are_texts_and_scales_follow(post):
@@ -631,16 +714,16 @@ def test_what_has_no_report_says_so(tmp_path):
         report(rbsdem.peer.paper_columns("pdelta")["zahn_7"], tmp_path / "x.html")
 
 
-@pytest.mark.parametrize(("page", "modules"), [("index", MODULES), ("frame", FRAMES)])
-def test_modules_of_a_page_can_stand_in_one_file(page, modules):
+@pytest.mark.parametrize("modules", [PAGE, REPORT])
+def test_modules_of_a_page_can_stand_in_one_file(modules):
     seen: dict[str, str] = {}
-    files = parts(f"{page}.html", modules)
+    files = parts(modules=modules)
     for name in modules:
         text = files[name].decode()
         for imported in re.findall(r'^import .* from "\./(.*)";$', text, re.MULTILINE):
             assert imported in modules[: modules.index(name)]
         own = r"^(?:export )?(?:async )?(?:function|const|let) ([\w$]+)"
-        for word in re.findall(own, text, re.MULTILINE):
+        for word in re.findall(own, text, re.MULTILINE) if modules is REPORT else ():
             assert seen.setdefault(word, name) == name, word
         assert not re.search(r"^export [{*d]|^import .* as ", text, re.MULTILINE)
 

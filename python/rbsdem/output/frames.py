@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._types import Array
+from rbsdem._types import Array, NDArray
 from rbsdem.errors import InputError
 from rbsdem.model.frame import Frame, MemberGeometry
 from rbsdem.model.frame_result import FrameResult, landmarks_of
@@ -129,7 +129,7 @@ def frame(
             assert scale is not None
             moved = moved + scale * np.column_stack((result.x[row], result.y[row]))
             for i, member in enumerate(structure.geometry.values()):
-                bent = _deformed(result, member, row, scale)
+                bent = deformed(result, member, row, scale)
                 lost = result.lost is not None and result.lost[row, i] > 0
                 line = _MEMBER | (_LOST if lost else {})
                 drawn.plot(*bent.T, **line)
@@ -365,34 +365,36 @@ def _rounded(value: float) -> float:
     return float(min((1, 2, 5, 10), key=lambda one: abs(np.log(one * power / value))) * power)
 
 
-def _hinge_rotations(result: FrameResult, name: str, row: int) -> Array:
+def _hinge_rotations(result: FrameResult, name: str, row: int | NDArray[np.intp]) -> Array:
     """Return the rotations of the hinges at the two ends of a member, clockwise on what follows.
 
     Of sections that yield those beyond their elastic ones, which the bent member has; of springs
     that were given one by one the whole.
     """
-    turned = np.zeros(2)
+    turned = np.zeros((*np.shape(row), 2))
     if result.frame.kind_of(name).yield_moment is None and not result.frame.kind_of(name).flexure:
         return turned
     for i, spring in enumerate(result.frame.parts.springs_of("flexure")):
         if spring.member == name and spring.place in (0.0, 1.0):
-            turn = float(result.springs["rotation"][row, i])
+            turn = result.springs["rotation"][row, i]
             if result.frame.kind_of(name).yield_moment is not None:
-                turn -= float(result.springs["moment"][row, i]) / spring.stiffness
-            turned[int(spring.place)] = turn
+                turn = turn - result.springs["moment"][row, i] / spring.stiffness
+            turned[..., int(spring.place)] = turn
     return turned
 
 
-def _panel_rotations(result: FrameResult, member: MemberGeometry, row: int) -> Array:
+def _panel_rotations(
+    result: FrameResult, member: MemberGeometry, row: int | NDArray[np.intp]
+) -> Array:
     """Return the rotations of the columns against a beam in the nodes that it ends in."""
-    turned = np.zeros(2)
+    turned = np.zeros((*np.shape(row), 2))
     if abs(member.axis[0]) <= abs(member.axis[1]):
         return turned
     parts = result.frame.parts
     ends = [parts.nodes[node] for node in (member.start, member.end)]
     for i, spring in enumerate(parts.springs_of("flexure")):
         if spring.group == "panel" and spring.member in ends:
-            turned[ends.index(spring.member)] = result.springs["rotation"][row, i]
+            turned[..., ends.index(spring.member)] = result.springs["rotation"][row, i]
     return turned
 
 
@@ -410,23 +412,30 @@ def cubic(across: Array, slopes: Array, shares: Array) -> Array:
     )
 
 
-def _deformed(
-    result: FrameResult, member: MemberGeometry, row: int, scale: float, shares: Array | None = None
+def deformed(
+    result: FrameResult,
+    member: MemberGeometry,
+    row: int | NDArray[np.intp],
+    scale: float,
+    shares: Array | None = None,
 ) -> Array:
-    """Return points along a member with its displacements times a factor [m]."""
+    """Return points along a member with its displacements times a factor, (..., points, 2) [m].
+
+    The first axis is that of the rows, if there are several.
+    """
     shares = np.linspace(0, 1, 25) if shares is None else shares
     nodes = [member.start, member.end]
-    turn = result.turn[row, nodes] - _panel_rotations(result, member, row)
-    moved = np.column_stack((result.x[row, nodes], result.y[row, nodes]))
+    turn = result.turn[row][..., nodes] - _panel_rotations(result, member, row)
+    moved = np.stack((result.x[row][..., nodes], result.y[row][..., nodes]), axis=-1)
     # The rigid lengths turn with their nodes.
-    moved = moved + np.outer(turn * (member.rigid[0], -member.rigid[1]), member.normal)
+    moved = moved + (turn * (member.rigid[0], -member.rigid[1]))[..., None] * member.normal
     along, across = moved @ member.axis, moved @ member.normal
     hinges = _hinge_rotations(result, member.name, row)
     slopes = member.clear * (turn + hinges * (1, -1))
     bent = cubic(across, slopes, shares)
-    way = shares * member.clear + scale * (along[0] + shares * np.diff(along))
-    drawn = np.outer(way, member.axis)
-    return np.asarray(member.foot + drawn + scale * np.outer(bent, member.normal))
+    way = shares * member.clear + scale * (along[..., :1] + shares * np.diff(along))
+    drawn = member.foot + way[..., None] * member.axis
+    return np.asarray(drawn + scale * bent[..., None] * member.normal)
 
 
 def _draw_hinges(
@@ -464,7 +473,7 @@ def _draw_hinges(
         if result is None:
             at = member.foot + share * member.clear * member.axis
         else:
-            at = _deformed(result, member, row, scale, share)[0]
+            at = deformed(result, member, row, scale, share)[0]
         points[state].append(at)
     for state, (label, fill) in _STATES.items():
         if points[state]:

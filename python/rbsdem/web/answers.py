@@ -22,11 +22,12 @@ import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._package import recorded, unwarned
-from rbsdem._types import Array, NDArray
+from rbsdem._types import Array
 from rbsdem.checks.code_values import code_values
 from rbsdem.errors import InputError, RbsdemError, SolveError
 from rbsdem.measured.predict import Prediction, nearest, predict
 from rbsdem.measured.specimens import Specimen, Specimens, read_specimens
+from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.shape import Section
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.read import read_motion
@@ -46,14 +47,15 @@ from rbsdem.web.state import (
     column_of,
     drawn_case,
     key_of,
+    number,
+    numbers,
     section_of,
+    shown_rows,
     state_of,
 )
 
 #: Results that are kept: those of two columns, before and after a few undos; records that are kept.
 _KEPT, _RECORDS = 12, 16
-#: Rows of a response in an answer; a figure shows no more.
-_ROWS = 8000
 #: Points of an interaction diagram that takes long.
 _POINTS = 24
 #: Factors of a motion for which the peak drift is shown.
@@ -83,6 +85,10 @@ class Answered:
         Why the analysis ended early.
     seconds : float
         Time for column, path and limit states.
+    frame : FrameResult or None
+        The response of a frame.
+    sections : list
+        Sections of the columns and beams of its storeys.
     """
 
     result: Result | None = None
@@ -92,6 +98,8 @@ class Answered:
     notes: list[str] = field(default_factory=list)
     stopped: str = ""
     seconds: float = 0.0
+    frame: FrameResult | None = None
+    sections: list[Any] = field(default_factory=list)
 
 
 class Answers:
@@ -115,18 +123,37 @@ class Answers:
 
     def solved(self, given: Asked, loading: Asked) -> Answered:
         """Return a column of the state with its response."""
-        key = key_of([given, loading])
+        return self._once([given, loading], lambda: self._solve(given, loading))
+
+    def framed(self, state: Asked) -> Answered:
+        """Return the frame of a state with its response."""
+
+        def solve() -> Answered:
+            faults = Faults()
+            with recorded() as told:
+                found = frames.solved(state, self.records, faults)
+            notes = list(dict.fromkeys(str(one.message) for one in told))
+            return Answered(
+                frame=found.result, sections=found.sections, stopped=found.stopped,
+                faults=faults.listed, notes=notes,
+            )  # fmt: skip
+
+        return self._once(state, solve)
+
+    def _once(self, about: object, solve: Callable[[], Answered]) -> Answered:
+        """Return what was solved for an input, which is kept."""
+        key = key_of(about)
         if key in self._kept:
             self._kept.move_to_end(key)
             return self._kept[key]
         begun = time.perf_counter()
         try:
-            answered = self._solve(given, loading)
+            answered = solve()
         except Exception as error:
             answered = Answered(faults=[{"field": "", "text": defect(error)}])
         answered = replace(answered, seconds=time.perf_counter() - begun)
         # What was refused may be right later: a record may be opened meanwhile.
-        if answered.result is not None:
+        if answered.result is not None or answered.frame is not None:
             self._kept[key] = answered
             while len(self._kept) > _KEPT:
                 self._kept.popitem(last=False)
@@ -172,8 +199,10 @@ class Answers:
         return [(given, self.solved(given, state["loading"])) for given in state["columns"]]
 
     def loops(self, asked: Asked, pause: Pause) -> dict[str, Any]:
-        """Return the loop of each column with its limit states and the figure of its section."""
-        state, columns = state_of(asked), []
+        """Return the loop of each column, or of a frame, with limit states and its sections."""
+        state, columns = state_of(asked, frames=True), []
+        if "frame" in state:
+            return {"frame": self._frame(state)}
         for given in state["columns"]:
             begun = time.perf_counter()
             found = self.solved(given, state["loading"])
@@ -192,6 +221,23 @@ class Answers:
             answer["seconds"] = round(max(found.seconds, time.perf_counter() - begun), 4)
             columns.append(answer)
         return {"columns": columns}
+
+    def _frame(self, state: Asked) -> dict[str, Any]:
+        begun = time.perf_counter()
+        found = self.framed(state)
+        answer: dict[str, Any] = {"faults": found.faults, "notes": found.notes}
+        answer |= {"stopped": found.stopped, "sections": []}
+        for pair in found.sections:
+            answer["sections"].append([None if one is None else _figure(one) for one in pair])
+        if found.frame is not None:
+            answer |= frames.to_json(found.frame)
+        return answer | {"seconds": round(max(found.seconds, time.perf_counter() - begun), 4)}
+
+    def checks(self, asked: Asked, pause: Pause) -> dict[str, Any]:
+        """Return the target displacement of a frame, and its members beside their limits."""
+        state = state_of(asked, frames=True)
+        found = self.framed(state) if "frame" in state else Answered()
+        return {} if found.frame is None else frames.checked(found.frame, state)
 
     # ---- the section ----------------------------------------------------------------------------
 
@@ -279,27 +325,21 @@ class Answers:
             columns.append({"tests": rows})
         return {"columns": columns, "tests": len(self.near)}
 
-    # ---- frames ---------------------------------------------------------------------------------
-
-    def frame(self, asked: Asked, pause: Pause) -> dict[str, Any]:
-        """Return a frame that is pushed to one side."""
-        frame = asked.get("frame")
-        if not isinstance(frame, dict):
-            raise RefusedError(400, "frame must be an object")
-        try:
-            return frames.pushover_json(frame)
-        except Exception as error:
-            return {"faults": [{"field": "", "text": defect(error)}]}
-
     # ---- texts ----------------------------------------------------------------------------------
 
     def export(self, asked: Asked, pause: Pause) -> dict[str, Any]:
-        """Return a column as a case file, Python or csv."""
-        state, form, which = state_of(asked), asked.get("form"), asked.get("column", 0)
-        if type(which) is not int or not 0 <= which < len(state["columns"]):
-            raise RefusedError(400, "column must be the number of a column")
+        """Return a column or a frame as a case file, Python or csv."""
+        state, form = state_of(asked, frames=True), asked.get("form")
+        which = asked.get("column", 0)
         if form not in ("namelist", "python", "csv"):
             raise RefusedError(400, "form must be namelist, python or csv")
+        if "frame" in state:
+            response = self.framed(state)
+            if response.frame is None:
+                return {"faults": response.faults}
+            return {"text": exports.of_frame(form, response.frame, state), "name": "frame"}
+        if type(which) is not int or not 0 <= which < len(state["columns"]):
+            raise RefusedError(400, "column must be the number of a column")
         given, loading = state["columns"][which], state["loading"]
         found = self.solved(given, loading)
         if found.result is None or found.case is None:
@@ -340,8 +380,8 @@ class Answers:
 
 
 #: What can be asked, by the last part of the path.
-ONCE = ("export", "open", "record")
-LANES = ("loops", "sections", "own", "bands", "scales", "nearest", "frame", *ONCE)
+ONCE = ("export", "open", "record", "report")
+LANES = ("loops", "checks", "sections", "own", "bands", "scales", "nearest", *ONCE)
 
 
 # ---- a response as JSON -------------------------------------------------------------------------
@@ -393,18 +433,6 @@ def to_json(result: Result, factor: float = 1.0) -> dict[str, Any]:
 
 def _peak(values: Array) -> float | None:
     return number(float(np.max(np.abs(values), initial=0.0)))
-
-
-def shown_rows(displacement: Array, force: Array, most: int = _ROWS) -> NDArray[np.intp]:
-    """Return the rows of a response that a figure needs: all, or the extremes of equal parts."""
-    size = displacement.size
-    if size <= most:
-        return np.arange(size)
-    kept = [0, size - 1]
-    for part in np.array_split(np.arange(size), most // 4):
-        for values in (displacement[part], force[part]):
-            kept += [int(part[np.argmin(values)]), int(part[np.argmax(values)])]
-    return np.unique(kept)
 
 
 def _band(found: Answered) -> dict[str, Any]:
@@ -500,16 +528,6 @@ def _curve(diagram: InteractionDiagram) -> dict[str, Any]:
 
 def _codes(section: Section, span: float, load: float) -> list[dict[str, Any]]:
     return [asdict(one) | {"value": number(one.value)} for one in code_values(section, span, load)]
-
-
-def numbers(values: Array) -> list[float | None]:
-    """Return an array for JSON with six digits; None where it is not finite."""
-    return [number(value) for value in np.asarray(values, dtype=np.float64).tolist()]
-
-
-def number(value: float) -> float | None:
-    """Return a number for JSON, as `numbers`."""
-    return float(f"{value:.6g}") if math.isfinite(value) else None
 
 
 def _points(line: Array) -> list[list[float | None]]:

@@ -18,13 +18,16 @@ from typing import Any
 from rbsdem._arguments import Derived
 from rbsdem._package import unwarned
 from rbsdem.errors import InputError
+from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.springs import Spring
-from rbsdem.run.case import Case, case_of_text
+from rbsdem.run.case import Case, case_of, case_of_text
 from rbsdem.run.result import Result
 from rbsdem.run.solver import COLLAPSE_DRIFT
+from rbsdem.web import frames
 from rbsdem.web.state import Drawn, Faults, RefusedError, drawn_case, state_of
 
 _MARK = "! rbsdem explore: "
+_PROGRAM = 'import rbsdem\n\ncase = rbsdem.read_case("{}")\nresult = case.run()\nprint(result)\n'
 #: Letters of the drawing on a line of its comment.
 _LINE = 90
 
@@ -44,7 +47,7 @@ def _namelist(case: Case, drawing: Mapping[str, Any] | None) -> str:
         return text
     packed = json.dumps(drawing, separators=(",", ":"))
     lines = [_MARK + packed[i : i + _LINE] for i in range(0, len(packed), _LINE)]
-    head = "! The column of a drawing; its springs follow. rbsdem explore opens it again.\n"
+    head = "! What was drawn; its springs follow. rbsdem explore opens it again.\n"
     return head + "\n".join(lines) + "\n" + text
 
 
@@ -85,8 +88,9 @@ def opened(text: object) -> dict[str, Any]:
     drawing, note = drawing_in(str(text)), ""
     if drawing is not None:
         with suppress(RefusedError):
-            state = state_of({"state": drawing})
-            drawn, _, _ = drawn_case(state["columns"][0], state["loading"], {}, Faults())
+            state = state_of({"state": drawing}, frames=True)
+            with unwarned(Warning):
+                drawn = _drawn_again(state)
             if drawn is not None:
                 drawn = dataclasses.replace(drawn, title=case.title)
                 if drawn.to_namelist() == case.to_namelist():
@@ -94,6 +98,14 @@ def opened(text: object) -> dict[str, Any]:
         note = "the file was changed after it was drawn: it is shown as it is, without its drawing"
     column = {"name": "A", "case": text}
     return {"state": {"columns": [column], "loading": {"kind": "own"}}, "note": note}
+
+
+def _drawn_again(state: Mapping[str, Any]) -> Case | None:
+    """Return the case of a drawing; None if it has faults."""
+    if "frame" not in state:
+        return drawn_case(state["columns"][0], state["loading"], {}, Faults())[0]
+    result = frames.solved(state, {}, Faults()).result
+    return None if result is None else case_of(result)
 
 
 def _refuse_files(text: str) -> None:
@@ -136,16 +148,23 @@ def exported(
     if form == "python" and drawn is not None and "case" not in given:
         return _python(drawn, given["column"], loading)
     if form == "python":
-        return (
-            'import rbsdem\n\ncase = rbsdem.read_case("case.nml")\n'
-            "result = case.run()\nprint(result)\n"
-        )
+        return _PROGRAM.format("case.nml")
     # A record that was opened is in the case itself, not in its drawing.
     known = "case" not in given and loading.get("kind") != "record"
     return _namelist(case, {"columns": [given], "loading": loading} if known else None)
 
 
-def csv_of(result: Result) -> str:
+def of_frame(form: str, result: FrameResult, state: Mapping[str, Any]) -> str:
+    """Return a frame with its loading in a form, as `exported`, or its rows ("csv")."""
+    if form == "csv":
+        return csv_of(result)
+    if form == "python":
+        return _PROGRAM.format("frame.nml")
+    known = state["loading"].get("kind") != "record"
+    return _namelist(case_of(result), state if known else None)
+
+
+def csv_of(result: Result | FrameResult) -> str:
     """Return the rows of a result as the executable writes them."""
     with tempfile.TemporaryDirectory(prefix="rbsdem-") as folder:
         rows = Path(folder) / "rows.csv"

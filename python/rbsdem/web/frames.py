@@ -1,71 +1,106 @@
-"""The frame of the page: storeys and bays of rectangular members, pushed under its dead load.
+"""The frame of the page: storeys and bays of drawn members, pushed, moved to and fro, or shaken.
 
-A state is what JSON holds, in SI: storeys from the ground up, each with its height, columns and
-beams; widths of the bays; and the loads. What is wrong goes beside its field, as for columns.
+A state is what JSON holds, in SI: storeys from the ground up, each with its height and the drawings
+of its columns and beams; widths of the bays; loads; members that are removed; and the demand of a
+code. What is wrong goes beside its field, as for columns.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._package import recorded
+from rbsdem._package import unwarned
 from rbsdem._tables import STANDARD_GRAVITY
-from rbsdem._types import Array, NDArray
-from rbsdem.errors import InputError, RbsdemError
-from rbsdem.model.frame import FrameMember
+from rbsdem._types import Array
+from rbsdem.checks.acceptance import AcceptanceCode, Assessment, assess
+from rbsdem.errors import InputError, RbsdemError, SolveError
+from rbsdem.many.target import Target, target
 from rbsdem.model.frame_result import FrameResult
-from rbsdem.output.frames import cubic
+from rbsdem.model.shape import Section
+from rbsdem.motions.design import DesignSpectrum
+from rbsdem.motions.motion import GroundMotion
+from rbsdem.output.frames import deformed
 from rbsdem.run.analysis import modes
-from rbsdem.run.result import pushover
+from rbsdem.run.result import cyclic, pushover, time_history
+from rbsdem.run.solver import COLLAPSE_DRIFT
 from rbsdem.section.building import Frame
-from rbsdem.web.state import Faults, group
+from rbsdem.web.state import (
+    Faults,
+    group,
+    key_of,
+    loading_of,
+    number,
+    numbers,
+    section_of,
+    shown_rows,
+)
 
 #: The frame that the page begins with.
 DEFAULT: dict[str, Any] = {
-    "storeys": [
-        {
-            "height": 3.2,
-            "column": {"width": 0.4, "depth": 0.4, "moment": 250e3},
-            "beam": {"width": 0.3, "depth": 0.5, "moment": 200e3},
-        }
-        for _ in range(3)
-    ],
-    "bays": [6.0, 6.0, 6.0],
-    "modulus": 30e9,
-    "column_share": 0.7,
-    "beam_share": 0.35,
-    "hardening": 0.01,
-    "beam_load": 25e3,
-    "drift": 0.03,
+    "frame": {
+        "storeys": [
+            {
+                "height": 3.2,
+                "column": {
+                    "section": {"shape": "rectangle", "width": 0.4, "depth": 0.4, "cover": 0.03},
+                    "bars": {"number": 8, "diameter": 0.02},
+                    "ties": {"diameter": 0.008, "spacing": 0.1},
+                },
+                "beam": {
+                    "section": {"shape": "beam", "width": 0.3, "depth": 0.5, "cover": 0.03},
+                    "top": {"number": 4, "diameter": 0.016},
+                    "bottom": {"number": 3, "diameter": 0.016},
+                    "ties": {"diameter": 0.008, "spacing": 0.15},
+                },
+            }
+            for _ in range(3)
+        ],
+        "bays": [6.0, 6.0],
+        "concrete": {"fc": 30e6},
+        "bars": {"fy": 450e6},
+        "ties": {"fy": 400e6},
+        "dead_load": 20e3,
+        "live_load": 8e3,
+        "live_share": 0.3,
+        "self_weight": True,
+        "kinematics": "pdelta",
+        "damping": 0.05,
+        "removed": [],
+        "demand": {"code": "en_1998_3", "ag": 0.25, "soil": "C", "s_xs": 1.0, "s_x1": 0.6},
+    },
+    "loading": {"kind": "push", "drift": 0.03},
 }
 
-#: Storeys and bays that a page shows, and pictures of the frame on its way.
-_MOST, _PICTURES = 6, 40
+#: Storeys and bays that a page shows; pictures of the frame on its way; points between peaks.
+_MOST, _PICTURES, _ON_THE_WAY = 6, 40, 160
+#: Rows of a curve, and seconds that a response in time may take.
+_ROWS, _SECONDS = 1200, 60.0
 #: Where along a member its deformed shape is drawn.
 _SHARES = np.linspace(0.0, 1.0, 7)
-
+#: Fields of materials, which are those of all members.
+_SHARED = {"concrete": ("fc",), "bars": ("fy", "fu"), "ties": ("fy", "fu")}
+_MEMBER = re.compile(r"([CB])-([1-9])-([1-9])")
 
 #: Bounds of the numbers of a state.
 _BOUNDS: dict[str, dict[str, Any]] = {
     "height": {"least": 1.0, "most": 20.0, "unit": "m"},
     "bay": {"least": 1.0, "most": 50.0, "unit": "m"},
-    **{key: {"least": 0.05, "most": 5.0, "unit": "m"} for key in ("width", "depth")},
-    "moment": {"above": 0.0, "unit": "N m"},
-    "modulus": {"least": 1e9, "most": 1e12, "unit": "Pa"},
-    **{key: {"above": 0.0, "most": 1.0} for key in ("column_share", "beam_share")},
-    "hardening": {"least": 0.0, "most": 0.5},
-    "beam_load": {"least": 0.0, "unit": "N/m"},
+    "dead_load": {"least": 0.0, "unit": "N/m"},
+    "live_load": {"least": 0.0, "unit": "N/m"},
+    "live_share": {"least": 0.0, "most": 1.0},
+    "damping": {"least": 0.0, "most": 0.5},
     "drift": {"least": 0.001, "most": 0.2},
 }
 
 
-def frame_of(state: Mapping[str, Any], faults: Faults) -> Frame | None:
-    """Make the frame of a state; None if something is wrong with it."""
+def frame_of(state: Mapping[str, Any], faults: Faults) -> tuple[Frame | None, list[Any]]:
+    """Make the frame of a state, None if something is wrong with it, and its sections."""
 
     def read(given: Any, name: str, field: str, where: str = "") -> float:
         if given is None:  # JSON has no other word for what is beyond its numbers.
@@ -77,46 +112,60 @@ def frame_of(state: Mapping[str, Any], faults: Faults) -> Frame | None:
             faults.add(field, f"{error}{where}")
             return 1.0
 
-    def member(storey: Any, what: str, where: str) -> FrameMember:
-        given = group(storey, what)
-        width, depth, moment = (
-            read(given[name], name, f"{what}.{name}", where)
-            for name in ("width", "depth", "moment")
-        )
-        return FrameMember(
-            values["modulus"],
-            width * depth,
-            values[f"{what}_share"] * width * depth**3 / 12.0,
-            yield_moment=moment,
-            hardening=values["hardening"],
-        )
+    made: dict[str, Section | None] = {}
 
-    values = {
-        name: read(state.get(name), name, f"frame.{name}")
-        for name in ("modulus", "column_share", "beam_share", "hardening", "beam_load", "drift")
-    }
+    def section(storey: Mapping[str, Any], what: str, level: int) -> Section | None:
+        drawing = dict(group(storey, what))
+        for name, keys in _SHARED.items():
+            drawing[name] = dict(group(drawing, name)) | {
+                key: group(state, name)[key] for key in keys
+            }
+        key = key_of([what, drawing])
+        if key not in made:
+            own = Faults()
+            made[key] = section_of(drawing, own)
+            for fault in own.listed:
+                name, _, value = fault["field"].partition(".")
+                place = "frame" if value in _SHARED.get(name, ()) else what
+                text = fault["text"] + (f" (storey {level})" if place == what else "")
+                faults.add(f"{place}.{fault['field']}", text)
+        return made[key]
+
+    names = ("dead_load", "live_load", "live_share", "damping")
+    values = {name: read(state.get(name), name, f"frame.{name}") for name in names}
     bays = [read(bay, "bay", "frame.bays") for bay in _listed(state, "bays", faults)]
-    heights = []
-    columns, beams = {}, {}
+    heights: list[float] = []
+    sections: list[Any] = []
     for level, given in enumerate(_listed(state, "storeys", faults), 1):
         storey, where = given if isinstance(given, Mapping) else {}, f" (storey {level})"
         heights.append(read(storey.get("height"), "height", "frame.storeys", where))
-        columns[0, level] = member(storey, "column", where)
-        beams[0, level] = member(storey, "beam", where)
+        sections.append(tuple(section(storey, what, level) for what in ("column", "beam")))
     if faults.listed:
-        return None
-    load = values["beam_load"]
-    with faults.of("frame", "beam_load"):
-        return Frame.grid(
-            heights,
-            bays,
-            columns=columns,
-            beams=beams,
-            beam_load=load,
-            floor_mass=load * sum(bays) / STANDARD_GRAVITY,
-            kinematics="pdelta" if load > 0.0 else "small",
-        )
-    return None
+        return None, sections
+    cells: list[dict[tuple[int, int], Any]] = [
+        {(0, level): one[i] for level, one in enumerate(sections, 1)} for i in (0, 1)
+    ]
+    removed = state.get("removed")
+    for name in removed if isinstance(removed, list) else ():
+        found = _MEMBER.fullmatch(str(name))
+        if found is None:
+            continue
+        at, level = int(found[2]), int(found[3])
+        if at <= len(bays) + (found[1] == "C") and level <= len(heights):
+            cells[found[1] == "B"][at, level] = None
+    kinematics: Any = state.get("kinematics")
+    frame = None
+    try:
+        with faults.of("frame", "dead_load"):
+            frame = Frame.grid(
+                heights, bays, columns=cells[0], beams=cells[1],
+                dead_load=values["dead_load"], live_load=values["live_load"],
+                live_share=values["live_share"], self_weight=bool(state.get("self_weight")),
+                mass="from_loads", damping=values["damping"] or None, kinematics=kinematics,
+            )  # fmt: skip
+    except SolveError as error:  # its dead load
+        faults.add("frame.dead_load", str(error))
+    return frame, sections
 
 
 def _listed(state: Mapping[str, Any], name: str, faults: Faults) -> list[Any]:
@@ -128,96 +177,204 @@ def _listed(state: Mapping[str, Any], name: str, faults: Faults) -> list[Any]:
     return []
 
 
-def pushover_json(state: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the push-over of a state, pushed to one side: curve, pictures on the way, hinges."""
-    faults, stopped = Faults(), ""
+class Solved(NamedTuple):
+    """A frame of the page under its loading.
+
+    Attributes
+    ----------
+    result : FrameResult or None
+        The response; None if the input is wrong.
+    sections : list of (Section or None, Section or None)
+        Those of the columns and of the beams of each storey.
+    stopped : str
+        Why the analysis ended early.
+    """
+
+    result: FrameResult | None
+    sections: list[Any]
+    stopped: str = ""
+
+
+def solved(state: Mapping[str, Any], records: Mapping[str, GroundMotion], faults: Faults) -> Solved:
+    """Return the frame of a state under its loading; what is wrong is added to the faults."""
+    loading = state["loading"]
+    push = loading.get("kind") == "push"
+    frame, sections = frame_of(state["frame"], faults)
+    load = None
+    if push:
+        with faults.of("loading", "drift"):
+            drift = _arguments.number(loading.get("drift"), "drift", **_BOUNDS["drift"])
+    else:
+        load = loading_of(loading, records, faults)
+    if frame is None or faults.listed:
+        return Solved(None, sections)
     try:
-        with recorded() as told:
-            made = frame_of(state, faults)
-            if made is None:
-                return {"faults": faults.listed}
-            result = pushover(made, drift=state["drift"], points=_PICTURES)
-    except RbsdemError as error:
-        member = re.search(r"of member ([\w-]+)", str(error))
-        text = f"the frame does not carry its dead load{f' ({member[1]})' if member else ''}: "
-        text += "give less load, or larger yield moments"
-        return {"faults": [{"field": "frame.beam_load", "text": text}]}
-    if result.summary["status"] == "ended":
-        stopped = result.summary["reason"]
+        result: Any
+        if push:
+            result = pushover(frame, drift=drift, points=_PICTURES)
+        elif isinstance(load, GroundMotion):
+            result = time_history(
+                frame, ground_acceleration=load, method="newmark", dt=min(load.dt, 0.01),
+                collapse_drift=COLLAPSE_DRIFT, max_seconds=_SECONDS,
+            )  # fmt: skip
+        else:
+            result = cyclic(frame, displacement=frame.height * _on_the_way(np.asarray(load)))
+    except SolveError as error:
+        if error.result is None or not len(error.result.time):
+            faults.add("frame.dead_load", str(error))
+            return Solved(None, sections)
+        return Solved(error.result, sections, str(error))
+    except InputError as error:
+        faults.add("loading.kind", str(error))
+        return Solved(None, sections)
+    about = result.summary
+    early = about["status"] not in ("completed", "collapsed")
+    return Solved(result, sections, about["reason"] if early else "")
+
+
+def _on_the_way(peaks: Array) -> Array:
+    """Return the points of a path with points between its peaks, in proportion to their way."""
+    path = [0.0, *peaks.tolist()]
+    whole = max(float(np.abs(np.diff(path)).sum()), 1e-12)
+    parts = [
+        np.linspace(a, b, 1 + max(1, round(_ON_THE_WAY * abs(b - a) / whole)))[1:]
+        for a, b in pairwise(path)
+        if a != b
+    ]
+    return np.concatenate(parts) if parts else np.zeros(1)
+
+
+def to_json(result: FrameResult) -> dict[str, Any]:
+    """Return a response as the page draws it: curve, pictures on the way, hinges."""
     frame, parts = result.frame, result.frame.parts
-    springs = parts.springs_of("flexure")
-    rows = np.flatnonzero(result.time == np.rint(result.time))
-    targets = np.linspace(0.0, state["drift"] * frame.height, _PICTURES + 1)[1:]
-    values = ", ".join(f"{target:.10g}" for target in targets)
-    loading = f"&loading drive = 'displacement', values = {values} /\n"
+    whole = np.arange(result.time.size)
+    pictures = whole if result.dynamic else np.flatnonzero(result.time == np.rint(result.time))
+    if pictures.size > _ON_THE_WAY:
+        pictures = pictures[np.linspace(0, pictures.size - 1, _ON_THE_WAY).astype(int)]
+    rows = np.union1d(shown_rows(result.displacement, result.base_shear, _ROWS), pictures)
+    nodes = np.column_stack((parts.x, parts.y))
+    moved_nodes = nodes + np.stack((result.x[pictures], result.y[pictures]), axis=-1)
+    still: list[Array] = []
+    moved: list[Array] = []
+    for one in frame.geometry.values():
+        for found, at, scale in ((still, nodes[None], 0.0), (moved, moved_nodes, 1.0)):
+            line = deformed(result, one, pictures[: len(at)], scale, _SHARES)
+            found.append(np.concatenate((at[:, [one.start]], line, at[:, [one.end]]), axis=1))
+    with unwarned(Warning):
+        period = float(modes(frame, 1).period[0]) if parts.mass > 0.0 else None
+    ends = result.moment_from[pictures], result.moment_to[pictures]
+    shears = [
+        np.maximum(*(np.abs(one.shear(ends[0][:, i], ends[1][:, i], end)) for end in (0.0, 1.0)))
+        for i, one in enumerate(frame.geometry.values())
+    ]
+    forces = (result.member_axial[pictures], *ends, np.column_stack(shears))
     return {
-        "faults": [],
-        "notes": [str(one.message) for one in told],
-        "stopped": stopped,
+        "status": result.summary["status"],
+        "dynamic": result.dynamic,
         "height": frame.height,
         "weight": parts.mass * STANDARD_GRAVITY,
-        "period": float(modes(frame, 1).period[0]) if parts.mass > 0.0 else None,
-        "displacement": _rounded(result.displacement),
-        "base_shear": _rounded(result.base_shear),
-        "pictures": rows.tolist(),
+        "period": period,
+        "time": numbers(result.time[rows]),
+        "displacement": rounded(result.displacement[rows]),
+        "base_shear": rounded(result.base_shear[rows]),
+        "storey_drift": rounded(result.storey_drift[rows]),
+        "storey_shear": rounded(result.storey_shear[rows]),
+        "peak": {
+            "base_shear": number(float(np.abs(result.base_shear).max())),
+            "drift": number(float(np.abs(result.displacement).max()) / frame.height),
+            "storey_drift": numbers(np.abs(result.storey_drift).max(axis=0)),
+            "storey_shear": numbers(np.abs(result.storey_shear).max(axis=0)),
+            "residual": number(float(np.abs(result.residual_drift).max())),
+        },
+        "pictures": np.searchsorted(rows, pictures).tolist(),
         "members": list(parts.members),
-        "still": _rounded(_undeformed(frame)),
-        "moved": _rounded(_deformed(result, rows)),
-        "ductility": _ductility(result, rows).tolist(),
-        "springs": [[parts.members.index(one.member), one.place] for one in springs],
-        "storey_drift": _rounded(np.asarray(result.storey_drift)[rows], 4),
+        "still": rounded(np.array(still)[:, 0]),
+        "moved": rounded(np.swapaxes(np.array(moved) - still, 0, 1)),
+        "forces": rounded(np.stack(forces, axis=-1), 4),
         "events": [
-            {name: getattr(event, name) for name in ("member", "end", "drift", "force")}
+            {name: getattr(event, name) for name in ("member", "end", "group", "what")}
+            | {name: number(getattr(event, name)) for name in ("step", "drift", "force")}
             | {"dead": bool(event.step <= result.time[0])}
             for event in result.events
         ],
-        "case": frame.to_namelist() + loading,
     }
 
 
-def _undeformed(frame: Frame) -> Array:
-    """Return points along the members, shape (members, points, 2) [m]."""
-    ends = np.column_stack((frame.parts.x, frame.parts.y))[frame.parts.ends]
-    return np.asarray(ends[:, :1] + np.einsum("p,mj->mpj", _SHARES, ends[:, 1] - ends[:, 0]))
+def judged(
+    result: FrameResult, state: Mapping[str, Any]
+) -> tuple[Assessment, Target | None, dict[str, Any]]:
+    """Return the members of a frame beside the limits of its code, and its target displacement.
 
-
-def _deformed(result: FrameResult, rows: NDArray[np.intp]) -> Array:
-    """Return the displacements of points along the members, shape (rows, members, points, 2) [m].
-
-    A member is the cubic line between the rotations of its ends; in sections that yield the
-    rotation beyond the elastic one is a kink at the node.
+    At the target displacement of a push-over that reaches it; else they are judged by the envelope.
+    The last part says why there is no target, with the field that is wrong.
     """
-    parts = result.frame.parts
-    nodes = np.column_stack((parts.x, parts.y))[parts.ends]
-    length = np.hypot(*(nodes[:, 1] - nodes[:, 0]).T)
-    axis = (nodes[:, 1] - nodes[:, 0]) / length[:, None]
-    normal = np.column_stack((axis[:, 1], -axis[:, 0]))
-    moved = np.stack((result.x[rows], result.y[rows]), axis=-1)[:, parts.ends]
-    springs = parts.springs_of("flexure")
-    stiffness = np.array([spring.stiffness for spring in springs])
-    plastic = result.springs["rotation"][rows] - result.springs["moment"][rows] / stiffness
-    # Three sections a member: at its start, in the middle, at its end.
-    kinks = plastic.reshape(len(rows), len(parts.members), 3)[:, :, ::2]
-    slopes = length[:, None] * (result.turn[rows][:, parts.ends] + kinks * (1, -1))
-    along, across = (np.einsum("rmej,mj->rme", moved, way) for way in (axis, normal))
-    bent = cubic(across, slopes, _SHARES)
-    stretched = np.multiply.outer(along[..., 0], 1 - _SHARES)
-    stretched += np.multiply.outer(along[..., 1], _SHARES)
-    return np.asarray(stretched[..., None] * axis[:, None] + bent[..., None] * normal[:, None])
+    demand, none = group(state["frame"], "demand"), {}
+    code: AcceptanceCode = _arguments.choice(demand["code"], "code", ("en_1998_3", "asce_41"))
+    point: Target | None = None
+    if state["loading"].get("kind") == "push":
+        try:
+            if code == "asce_41":
+                spectrum = DesignSpectrum.asce_41(demand["s_xs"], demand["s_x1"])
+            else:
+                spectrum = DesignSpectrum.en_1998(demand["ag"], demand["soil"])
+            point = target(result, spectrum, "asce_41" if code == "asce_41" else "en_1998")
+        except InputError as error:
+            place = error.field.rpartition(".")[2] or "code"
+            none = {"field": f"frame.demand.{place}", "text": str(error)}
+    reached = point is not None and point.reached
+    return assess(result, code, at=point if reached else None), point, none
 
 
-def _ductility(result: FrameResult, rows: NDArray[np.intp]) -> Array:
-    """Return the largest rotation of each section so far over that at yield, rounded down."""
-    frame = result.frame
-    springs = frame.parts.springs_of("flexure")
-    moments = [frame.kind_of(spring.member).yield_moment or np.inf for spring in springs]
-    yields = np.array(moments) / [spring.stiffness for spring in springs]
-    reached = np.maximum.accumulate(np.abs(result.springs["rotation"]), axis=0)
-    return np.asarray(np.floor(1e3 * reached[rows] / yields + 1e-6) / 1e3)
+def checked(result: FrameResult, state: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what `judged` returns as the page draws it."""
+    try:
+        with unwarned(Warning):
+            made, point, none = judged(result, state)
+    except RbsdemError as error:
+        return {"faults": [{"field": "frame.demand.code", "text": str(error)}]}
+    found: dict[str, Any] = {"faults": [none] if none else [], "code": made.code}
+    found |= {"levels": made.levels, "at_target": made.displacement is not None}
+    found["ends"] = _ends(made)
+    if point is not None:
+        lines = point.lines
+        found["target"] = {
+            "spectrum": point.spectrum.name,
+            "reached": point.reached,
+            "storey_drift": numbers(point.storey_drift) if point.reached else None,
+            "lines": [
+                numbers(np.array([0.0, lines.yield_displacement, lines.end_displacement])),
+                numbers(np.array([0.0, lines.yield_force, lines.end_force])),
+            ],
+            **{
+                name: number(getattr(point, name))
+                for name in ("displacement", "signed", "base_shear", "period", "ductility")
+            },
+        }
+    return found
 
 
-def _rounded(values: Array, digits: int = 5) -> Any:
+def _ends(made: Assessment) -> list[dict[str, Any]]:
+    """Return the worse side of each end: its ratio, what governs, and the levels passed."""
+    states, last = made.states(), f"ratio_{made.levels[-1]}"
+    found: dict[tuple[str, str], dict[str, Any]] = {}
+    for row in made.rows:
+        at = row["member"], row["end"]
+        ratio = float(np.nan_to_num(max(row[last], row["ratio_shear"])))
+        if at not in found or ratio > found[at]["ratio"]:
+            about = {name: row[name] for name in ("governed_by", "status")}
+            found[at] = {
+                "member": at[0],
+                "end": at[1],
+                "ratio": ratio,
+                "passed": states[at],
+                **about,
+            }
+    return [one | {"ratio": number(one["ratio"])} for one in found.values()]
+
+
+def rounded(values: Array, digits: int = 5) -> Any:
     """Return an array for JSON with some digits of its largest value."""
+    values = np.asarray(values)
     largest = float(np.max(np.abs(values), initial=0.0))
     places = digits - 1 - int(np.floor(np.log10(largest))) if largest > 0.0 else 0
     return np.round(values, places).tolist()

@@ -10,12 +10,13 @@ from collections.abc import Mapping, Sequence
 from importlib import resources
 from typing import Any
 
-#: Modules of the page, each after those that it imports.
-_DRAWN = ("units.js", "chart.js", "fields.js", "drawing.js", "panels.js", "history.js")
-MODULES = (*_DRAWN, "answers.js", "main.js")
-
-#: Modules of the page of frames.
-FRAMES = ("units.js", "chart.js", "fields.js", "panels.js", "history.js", "answers.js", "frame.js")
+#: Modules that pages and reports share, each after those that it imports.
+_SHARED = (
+    "units.js", "chart.js", "fields.js", "drawing.js", "panels.js", "history.js", "answers.js",
+    "machine.js", "columns.js",
+)  # fmt: skip
+#: Modules of the page, and of a report of columns.
+PAGE, REPORT = (*_SHARED, "frame.js", "main.js"), (*_SHARED, "report.js")
 
 _KINDS = {"html": "html", "css": "css", "js": "javascript"}
 TYPES = {ending: f"text/{kind}; charset=utf-8" for ending, kind in _KINDS.items()}
@@ -24,7 +25,7 @@ _IMPORT = re.compile(r"^import \{[^}]*\} from \"\./[a-z]+\.js\";\n", re.MULTILIN
 _EXPORT = re.compile(r"^export ", re.MULTILINE)
 
 
-def parts(page: str = "index.html", modules: Sequence[str] = MODULES) -> dict[str, bytes]:
+def parts(page: str = "index.html", modules: Sequence[str] = PAGE) -> dict[str, bytes]:
     """Return the files of a page by their names."""
     folder = resources.files("rbsdem.web").joinpath("page")
     return {name: folder.joinpath(name).read_bytes() for name in (page, "page.css", *modules)}
@@ -33,7 +34,7 @@ def parts(page: str = "index.html", modules: Sequence[str] = MODULES) -> dict[st
 def one_file(
     title: str,
     data: Mapping[str, Any] | None,
-    modules: Sequence[str] = MODULES,
+    modules: Sequence[str] = REPORT,
     sheets: tuple[str, str] = ("", ""),
 ) -> str:
     """Return a page with its style, its modules and its results inside.
@@ -47,7 +48,7 @@ def one_file(
     data : mapping or None
         What the page would have got from the server.
     modules : sequence of str, optional
-        `MODULES`, or none for a page of sheets.
+        `REPORT`, or none for a page of sheets.
     sheets : tuple of str, optional
         Html that stands before and behind what the modules draw.
     """

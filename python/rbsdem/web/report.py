@@ -24,7 +24,7 @@ from rbsdem._files import atomic_write, data_frame, figure_bytes, save_frame
 from rbsdem._types import DataFrame
 from rbsdem.checks.acceptance import Assessment
 from rbsdem.checks.code_values import code_values
-from rbsdem.errors import InputError
+from rbsdem.errors import InputError, RbsdemError
 from rbsdem.many.ida import IDA
 from rbsdem.many.target import Target
 from rbsdem.measured.specimens import Specimens
@@ -42,8 +42,9 @@ from rbsdem.section.axial_moment import Code, interaction
 from rbsdem.section.curvature import diagram
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.web.answers import Answered, Answers
-from rbsdem.web.pages import MODULES, one_file, plain
-from rbsdem.web.state import Drawn
+from rbsdem.web.frames import judged
+from rbsdem.web.pages import REPORT, one_file, plain
+from rbsdem.web.state import Drawn, state_of
 
 #: Keys that only number things, or say how finely the program divides.
 _NUMBERS = ("id", "steel", "strips", "spring", "joint")
@@ -226,7 +227,7 @@ def report(
     front = _head(title, author, project, date) + _html(sheets[0])
     # Sheets whose table alone is beside the report have nothing to show.
     behind = "".join(_html(sheet) for sheet in sheets[1:] if sheet.figures or not sheet.beside)
-    made = _write(target, one_file(title, data, MODULES if data else (), (front, behind)))
+    made = _write(target, one_file(title, data, REPORT if data else (), (front, behind)))
     for sheet in sheets:
         if sheet.table is not None:
             save_frame(sheet.table, target.with_name(f"{target.stem}_{sheet.name}.csv"))
@@ -234,6 +235,30 @@ def report(
         with atomic_write(target.with_suffix(".nml")) as file:
             file.write(case.to_namelist().encode())
     return made
+
+
+def report_of_page(answers: Answers, asked: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the report of a state of the page as the text of one file."""
+    state = state_of(asked, frames=True)
+    if "frame" not in state:
+        title = " and ".join(str(one.get("name", ""))[:80] for one in state["columns"])
+        try:
+            data = report_data(state, f"Column {title}", answers.near)
+        except InputError as error:
+            return {"faults": [{"field": "", "text": str(error)}]}
+        head = _head(data["title"], "", "", None)
+        return {"text": one_file(data["title"], data, sheets=(head, "")), "name": "report"}
+    found = answers.framed(state)
+    if found.frame is None:
+        return {"faults": found.faults}
+    made: list[Sheet] = []
+    with suppress(RbsdemError):
+        assessment, point, _ = judged(found.frame, state)
+        made = list(_of_assessment(assessment, point))
+    shown = [one for one in made or sheets_of(found.frame) if one.figures or not one.beside]
+    html = _head("Frame", "", "", None) + "".join(map(_html, shown))
+    page = one_file("Frame", None, (), (html, ""))
+    return {"text": page, "name": "report"}
 
 
 def _head(title: str, author: str, project: str, date: str | None) -> str:

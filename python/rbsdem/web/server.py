@@ -23,8 +23,9 @@ from rbsdem.errors import InputError
 from rbsdem.measured.specimens import Specimens
 from rbsdem.web import frames
 from rbsdem.web.answers import LANES, ONCE, Answers, defect
-from rbsdem.web.pages import FRAMES, TYPES, parts
-from rbsdem.web.state import RefusedError
+from rbsdem.web.pages import TYPES, parts
+from rbsdem.web.report import report_of_page
+from rbsdem.web.state import DEFAULT, RefusedError
 
 #: Largest request [bytes]: a state, and the text of a file.
 MOST_STATE, MOST_TEXT = 1_000_000, 8_000_000
@@ -82,7 +83,7 @@ class ExploreServer(ThreadingHTTPServer):
         self.token = secrets.token_urlsafe(24)
         self.start = start
         self.answers = Answers(near)
-        self.parts = parts() | parts("frame.html", FRAMES)
+        self.parts = parts()
         self.computing = threading.Lock()
         self.room = threading.BoundedSemaphore(_AT_ONCE)
         self._newest: OrderedDict[tuple[str, str], int] = OrderedDict()
@@ -146,6 +147,8 @@ class ExploreServer(ThreadingHTTPServer):
         with self.computing:
             if check is not None:
                 check()
+            if lane == "report":
+                return {"number": number, **report_of_page(self.answers, asked)}
             return {"number": number, **getattr(self.answers, lane)(asked, pause)}
 
 
@@ -216,7 +219,8 @@ class _Handler(BaseHTTPRequestHandler):
     def _get(self, path: str) -> None:
         if path == "start":
             near = self.server.answers.near is not None
-            begin = {"state": self.server.start, "tests": near, "frame": frames.DEFAULT}
+            begin = {"state": self.server.start, "tests": near}
+            begin |= {"columns": DEFAULT, "frame": frames.DEFAULT}
             self._send(200, json.dumps(begin).encode(), "application/json")
             return
         name = path or "index.html"

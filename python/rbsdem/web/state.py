@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import math
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -18,11 +19,11 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._package import recorded
 from rbsdem._tables import STANDARD_GRAVITY
-from rbsdem._types import Array
+from rbsdem._types import Array, NDArray
 from rbsdem.errors import AccuracyWarning, InputError
 from rbsdem.model.column import Column, Footing
 from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
-from rbsdem.model.shape import CircularSection, RectangularSection, Section
+from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
 from rbsdem.model.springs import Elastic
 from rbsdem.motions.motion import GroundMotion
 from rbsdem.motions.shaping import synthetic
@@ -56,6 +57,10 @@ ENDS = {"cantilever": 1.0, "double": 2.0}
 
 #: Columns side by side, cycles of a path and values of a record that a page shows.
 _MOST_COLUMNS, _MOST_CYCLES, MOST_VALUES = 2, 200, 60_000
+_MOST_BARS = 50
+
+#: Rows of a response in an answer; a figure shows no more.
+_ROWS = 8000
 
 #: Shapes with the names of their sizes.
 SHAPES: dict[str, tuple[Callable[..., Section], tuple[str, ...]]] = {
@@ -68,7 +73,12 @@ SHAPES: dict[str, tuple[Callable[..., Section], tuple[str, ...]]] = {
 #: Groups of the form by the objects that errors name; others belong to the part that is made.
 _GROUPS = {"layout": "bars", "spiral": "ties"} | {n: n for n in ("ties", "section", "footing")}
 #: Fields of the form that errors name otherwise.
-_FIELDS = {"section.bar_diameter": "bars.diameter", "loading.protocol": "loading.name"}
+_FIELDS = {
+    "section.bar_diameter": "bars.diameter",
+    "section.flange_width": "section.flange",
+    "section.flange_thickness": "section.slab",
+    "loading.protocol": "loading.name",
+}
 #: The ground beneath a column: none but the column's own foot, or a footing on springs.
 _GROUND = ("none", "springs")
 
@@ -145,8 +155,10 @@ def key_of(value: object) -> str:
     return json.dumps(value, sort_keys=True, separators=(",", ":"))
 
 
-def state_of(asked: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the state of a request: columns and a loading; their values are checked later.
+def state_of(asked: Mapping[str, Any], frames: bool = False) -> dict[str, Any]:
+    """Return the state of a request: columns or a frame, and a loading.
+
+    Their values are checked later.
 
     Raises
     ------
@@ -157,6 +169,10 @@ def state_of(asked: Mapping[str, Any]) -> dict[str, Any]:
     if not isinstance(state, dict):
         raise RefusedError(400, "state must be an object")
     columns, loading = state.get("columns"), state.get("loading")
+    if frames and "frame" in state:
+        if not isinstance(state["frame"], dict) or not isinstance(loading, dict):
+            raise RefusedError(400, "state: frame and loading must be objects")
+        return {"frame": state["frame"], "loading": loading}
     if not isinstance(columns, list) or not 1 <= len(columns) <= _MOST_COLUMNS:
         raise RefusedError(400, "state: columns must be a list of one or two")
     if not all(isinstance(column, dict) for column in columns) or not isinstance(loading, dict):
@@ -181,7 +197,7 @@ def drawn_case(
     faults : Faults
         What is wrong is added here; then there is no case.
     """
-    load = _loading_of(loading, records, faults)
+    load = loading_of(loading, records, faults)
     drawn, notes = column_of(given, faults, whole=isinstance(load, GroundMotion))
     if drawn is not None and isinstance(load, GroundMotion):
         drawn = _in_motion(drawn, given, faults)
@@ -275,9 +291,11 @@ def _in_motion(drawn: Drawn, given: Mapping[str, Any], faults: Faults) -> Drawn 
 
 
 def section_of(given: Mapping[str, Any], faults: Faults) -> Section | None:
-    """Make the section of a column of the state; None if something is wrong with it."""
+    """Make the section of a column or beam of the state; None if something is wrong with it."""
     sizes, bars, ties = (group(given, name) for name in ("section", "bars", "ties"))
     shape = sizes["shape"]
+    if shape == "beam":
+        return _beam_of(given, faults)
     if not _arguments.is_one_of(shape, SHAPES):
         text = f"shape = {shape!r} is not known; there are {', '.join(SHAPES)}"
         faults.add("section.shape", text)
@@ -307,7 +325,46 @@ def section_of(given: Mapping[str, Any], faults: Faults) -> Section | None:
     return None
 
 
-def _loading_of(
+def _beam_of(given: Mapping[str, Any], faults: Faults) -> Section | None:
+    """Make the section of a beam: bars above and below, hoops, and a slab if it has a thickness."""
+    sizes, bars, ties = (group(given, name) for name in ("section", "bars", "ties"))
+    parts: dict[str, Any] = {}
+    rows: list[tuple[float, int, float, float]] = []
+    before = len(faults.listed)
+    with faults.of("concrete", "fc"):
+        parts["concrete"] = Concrete(group(given, "concrete")["fc"])
+    with faults.of("bars", "fy"):
+        steel = Steel(bars["fy"], bars["fu"])
+    with faults.of("ties", "diameter"):
+        legs = {} if ties["legs"] is None else {"legs": ties["legs"]}
+        hoops = Ties(ties["diameter"], ties["spacing"], Steel(ties["fy"], ties["fu"]), **legs)
+        parts["ties"] = hoops
+    with faults.of("section", "cover"):
+        for name, least in (("width", 0.0), ("depth", 0.0), ("cover", -1.0)):
+            parts[name] = _arguments.number(sizes[name], name, above=least, unit="m")
+    for side, name in ((-1.0, "top"), (1.0, "bottom")):
+        with faults.of(name, "number"):
+            row = group(given, name)
+            number = _arguments.integer(row["number"], "number")
+            if not 1 <= number <= _MOST_BARS:
+                raise InputError(f"number = {number} must be from 1 to {_MOST_BARS}")
+            size = _arguments.number(row["diameter"], "diameter", above=0.0, unit="m")
+            rows.append((side, number, size, math.pi * size**2 / 4.0))
+    if len(faults.listed) > before:
+        return None
+    with faults.of("section", "cover"):
+        inside = 0.5 * parts["depth"] - parts["cover"] - hoops.diameter
+        each = [((side * (inside - 0.5 * d), area, steel), n) for side, n, d, area in rows]
+        parts["bars"] = [bar for bar, number in each for _ in range(number)]
+        parts["bar_diameter"] = max(size for _, _, size, _ in rows)
+        if sizes["slab"] is None:
+            return RectangularSection(**parts)
+        flange = {"flange_width": sizes["flange"], "flange_thickness": sizes["slab"]}
+        return TeeSection(**parts, **flange)
+    return None
+
+
+def loading_of(
     given: Mapping[str, Any], records: Mapping[str, GroundMotion], faults: Faults
 ) -> Array | GroundMotion | None:
     """Make the loading of the state: drifts of a path, or a motion of the ground."""
@@ -364,3 +421,28 @@ def group(given: Mapping[str, Any], name: str) -> dict[str, Any]:
     """Return a group of a column; values that are missing are None, which the program refuses."""
     group = given.get(name)
     return defaultdict(lambda: None, group if isinstance(group, Mapping) else {})
+
+
+# ---- numbers for JSON ---------------------------------------------------------------------------
+
+
+def numbers(values: Array) -> list[float | None]:
+    """Return an array for JSON with six digits; None where it is not finite."""
+    return [number(value) for value in np.asarray(values, dtype=np.float64).tolist()]
+
+
+def number(value: float) -> float | None:
+    """Return a number for JSON, as `numbers`."""
+    return float(f"{value:.6g}") if math.isfinite(value) else None
+
+
+def shown_rows(displacement: Array, force: Array, most: int = _ROWS) -> NDArray[np.intp]:
+    """Return the rows of a response that a figure needs: all, or the extremes of equal parts."""
+    size = displacement.size
+    if size <= most:
+        return np.arange(size)
+    kept = [0, size - 1]
+    for part in np.array_split(np.arange(size), most // 4):
+        for values in (displacement[part], force[part]):
+            kept += [int(part[np.argmin(values)]), int(part[np.argmax(values)])]
+    return np.unique(kept)

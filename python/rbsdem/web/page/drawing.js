@@ -6,9 +6,9 @@ import { valueAt } from "./fields.js";
 
 const SECTION = 190, LEFT = 26, TOP = 16, HEIGHT = 250, TALL = 200;
 
-// A handle: where it is, which field it moves, how a pixel moves it, steps of the keys.
-function handlesOf(column, look) {
-  const { section, bars, column: frame } = column, round = section.shape.includes("circle");
+// The handles of a section: where each is, which field it moves, how a pixel moves it, steps of the keys.
+function handlesOf({ section, bars }, look) {
+  const round = section.shape.includes("circle");
   const { scale, cx, cy } = look, half = size => 0.5 * size * scale;
   const found = [];
   if (round) {
@@ -21,20 +21,63 @@ function handlesOf(column, look) {
   found.push({ path: "section.cover", label: "Cover", x: cx - (round ? 0 : 0.25 * section.width * scale), y: cy - half(depth) + section.cover * scale, way: [0, 1 / scale], grid: 0.001, cursor: "ns-resize", least: 0 });
   if ("wall" in section && section.shape.startsWith("hollow"))
     found.push({ path: "section.wall", label: "Wall", x: cx - half(round ? section.diameter : section.width) + section.wall * scale, y: cy, way: [1 / scale, 0], grid: 0.01, cursor: "ew-resize" });
-  if (look.bar) found.push({ path: "bars.diameter", label: "Bar diameter", x: look.bar[0] + 0.5 * bars.diameter * scale, y: look.bar[1], way: [2 / scale, 0], bar: true, cursor: "ew-resize" });
-  found.push({ path: "column.height", label: "Height", x: look.px, y: look.ptop, way: [0, -1 / look.tall], grid: 0.05, cursor: "ns-resize" });
-  found.push({ path: "column.axial_load", label: "Axial load", x: look.px, y: look.ptail, way: [0, -1 / look.perForce], grid: look.forceGrid, cursor: "ns-resize", dimension: "force", least: -Infinity });
+  if (look.bar && bars) found.push({ path: "bars.diameter", label: "Bar diameter", x: look.bar[0] + 0.5 * bars.diameter * scale, y: look.bar[1], way: [2 / scale, 0], bar: true, cursor: "ew-resize" });
   return found;
+}
+
+const sizesOf = ({ section }) => [section.cover, ...(section.shape.includes("circle") ? [section.diameter] : [section.width, section.depth])];
+
+function refused(host, svg) {
+  svg.append(svgElement("text", { x: 20, y: 40 }, "Nothing is drawn: a size is empty or no number."));
+  host.replaceChildren(svg);
+}
+
+// A section to scale with its sizes; returns what its handles need.
+function sectionInto(svg, { section }, figure, scale, system) {
+  const cx = LEFT + SECTION / 2 - 6, cy = TOP + SECTION / 2, X = x => cx + x * scale, Y = y => cy + y * scale;
+  const line = points => points.map(([x, y], i) => (i ? "L" : "M") + X(x).toFixed(1) + " " + Y(y).toFixed(1)).join("") + "Z";
+  const round = section.shape.includes("circle");
+  const wide = round ? section.diameter : section.width, deep = round ? section.diameter : section.depth;
+  svg.append(round
+    ? svgElement("circle", { class: "concrete", cx, cy, r: Math.max(0, 0.5 * wide * scale) })
+    : section.slab && figure ? svgElement("path", { class: "concrete", d: line(figure.outline) })
+    : svgElement("rect", { class: "concrete", x: X(-wide / 2), y: Y(-deep / 2), width: Math.max(0, wide * scale), height: Math.max(0, deep * scale) }));
+  let bar = null;
+  if (figure) {
+    if (figure.hoops.length) svg.append(svgElement("path", { class: "hoop", "fill-rule": "evenodd", d: figure.hoops.map(line).join("") }));
+    for (const leg of figure.legs) svg.append(svgElement("path", { class: "hoop", d: line(leg) }));
+    if (figure.void.length) svg.append(svgElement("path", { class: "void", d: line(figure.void) }));
+    for (const [x, y, d] of figure.bars) {
+      svg.append(svgElement("circle", { class: "bar", cx: X(x).toFixed(1), cy: Y(y).toFixed(1), r: (0.5 * d * scale).toFixed(2) }));
+      if (!bar || x + y > bar[2]) bar = [X(x), Y(y), x + y];
+    }
+  }
+  const [unit, factor] = unitOf(system, "length");
+  svg.append(svgElement("text", { class: "size", x: cx, y: Y(deep / 2) + 24, "text-anchor": "middle" }, (round ? "⌀ " : "") + shown(wide / factor) + " " + unit));
+  if (!round) svg.append(svgElement("text", { class: "size", "text-anchor": "middle", transform: `translate(${(X(-wide / 2) - 9).toFixed(1)} ${cy}) rotate(-90)` }, shown(deep / factor) + " " + unit));
+  return { scale, cx, cy, bar };
+}
+
+const scaleOf = ({ section }) => 150 / Math.max(...(section.shape.includes("circle") ? [positive(section.diameter, 0.4)] : [positive(section.slab ? section.flange : section.width, 0.4), positive(section.depth, 0.4)]));
+
+// A section alone, with its handles; a scale that is given stays while a handle moves. Returns the scale.
+export function drawSection(host, drawing, figure, { system, scale = scaleOf(drawing), title, kind, move, moved, stale }) {
+  const svg = svgElement("svg", { viewBox: `0 0 ${LEFT + SECTION + 14} ${HEIGHT}`, class: `drawing ${kind}` + (stale ? " stale" : ""), role: "group", "aria-label": `Section of the ${title}` });
+  if (sizesOf(drawing).some(value => typeof value !== "number")) { refused(host, svg); return scale; }
+  const look = sectionInto(svg, drawing, figure, scale, system);
+  svg.append(svgElement("text", { class: "name", x: 4, y: 14 }, title));
+  host.replaceChildren(svg);
+  for (const handle of handlesOf(drawing, look)) svg.append(handleElement(svg, handle, drawing, { system, move, moved }));
+  return scale;
 }
 
 // Scales of a drawing; kept while a handle moves, so that the drawing does not run away.
 export function scalesOf(column) {
   const { section, column: frame, concrete } = column;
-  const round = section.shape.includes("circle");
-  const wide = positive(round ? section.diameter : section.width, 0.4), deep = positive(round ? section.diameter : section.depth, 0.4);
+  const round = section.shape.includes("circle"), wide = positive(round ? section.diameter : section.width, 0.4), deep = positive(round ? section.diameter : section.depth, 0.4);
   const height = positive(frame.height, 1.6) + footingHeight(column);
   const squash = wide * deep * positive(concrete.fc, 30e6);
-  return { section: 150 / Math.max(wide, deep), tall: 118 / height, force: 75 / (0.5 * squash), grid: 10 ** Math.floor(Math.log10(squash / 100)) };
+  return { section: scaleOf(column), tall: 118 / height, force: 75 / (0.5 * squash), grid: 10 ** Math.floor(Math.log10(squash / 100)) };
 }
 
 function positive(value, otherwise) {
@@ -48,35 +91,11 @@ function footingHeight({ footing }) {
 // host gets one svg; `move(path, value, done)` is called while a handle moves.
 export function drawColumn(host, column, figure, { system, scales, kind, title, move, moved, fixed, stale }) {
   const { section, column: frame } = column;
-  const numbers = [section.cover, frame.height, frame.axial_load, ...(section.shape.includes("circle") ? [section.diameter] : [section.width, section.depth])];
   const svg = svgElement("svg", { viewBox: `0 0 ${LEFT + SECTION + 170} ${HEIGHT}`, class: `drawing ${kind}` + (stale ? " stale" : ""), role: "group", "aria-label": `Drawing of column ${title}` });
-  if (numbers.some(value => typeof value !== "number")) {
-    svg.append(svgElement("text", { x: 20, y: 40 }, "Nothing is drawn: a size is empty or no number."));
-    host.replaceChildren(svg);
-    return;
-  }
-  const scale = scales.section, cx = LEFT + SECTION / 2 - 6, cy = TOP + SECTION / 2;
-  const X = x => cx + x * scale, Y = y => cy + y * scale;
-  const line = points => points.map(([x, y], i) => (i ? "L" : "M") + X(x).toFixed(1) + " " + Y(y).toFixed(1)).join("") + "Z";
-  const round = section.shape.includes("circle");
-  const wide = round ? section.diameter : section.width, deep = round ? section.diameter : section.depth;
-  svg.append(round
-    ? svgElement("circle", { class: "concrete", cx, cy, r: Math.max(0, 0.5 * wide * scale) })
-    : svgElement("rect", { class: "concrete", x: X(-wide / 2), y: Y(-deep / 2), width: Math.max(0, wide * scale), height: Math.max(0, deep * scale) }));
-  let bar = null;
-  if (figure) {
-    if (figure.hoops.length) svg.append(svgElement("path", { class: "hoop", "fill-rule": "evenodd", d: figure.hoops.map(line).join("") }));
-    for (const leg of figure.legs) svg.append(svgElement("path", { class: "hoop", d: line(leg) }));
-    if (figure.void.length) svg.append(svgElement("path", { class: "void", d: line(figure.void) }));
-    for (const [x, y, d] of figure.bars) {
-      svg.append(svgElement("circle", { class: "bar", cx: X(x).toFixed(1), cy: Y(y).toFixed(1), r: (0.5 * d * scale).toFixed(2) }));
-      if (!bar || x + y > bar[2]) bar = [X(x), Y(y), x + y];
-    }
-  }
+  if ([frame.height, frame.axial_load, ...sizesOf(column)].some(value => typeof value !== "number")) { refused(host, svg); return; }
+  const look = sectionInto(svg, column, figure, scales.section, system), deep = section.shape.includes("circle") ? section.diameter : section.depth;
   const [unit, factor] = unitOf(system, "length");
   const measure = (x, y, value, anchor = "middle") => svg.append(svgElement("text", { class: "size", x, y, "text-anchor": anchor }, value));
-  measure(cx, Y(deep / 2) + 24, (round ? "⌀ " : "") + shown(wide / factor) + " " + unit);
-  if (!round) svg.append(svgElement("text", { class: "size", "text-anchor": "middle", transform: `translate(${(X(-wide / 2) - 9).toFixed(1)} ${cy}) rotate(-90)` }, shown(deep / factor) + " " + unit));
   // The column from the side: as wide as the section is deep, at its own scale.
   const double = frame.ends === "double", px = LEFT + SECTION + 78, ground = HEIGHT - 28, tall = scales.tall;
   const springs = column.footing?.kind === "springs", foot = ground - footingHeight(column) * tall;
@@ -104,8 +123,10 @@ export function drawColumn(host, column, figure, { system, scales, kind, title, 
   svg.append(svgElement("text", { class: "name", x: 4, y: 14 }, title));
   host.replaceChildren(svg);
   if (fixed) return;
-  const look = { scale, cx, cy, bar, px, ptop, ptail: tail, tall, perForce: scales.force, forceGrid: scales.grid };
-  for (const handle of handlesOf(column, look)) svg.append(handleElement(svg, handle, column, { system, move, moved }));
+  const handles = [...handlesOf(column, look),
+    { path: "column.height", label: "Height", x: px, y: ptop, way: [0, -1 / tall], grid: 0.05, cursor: "ns-resize" },
+    { path: "column.axial_load", label: "Axial load", x: px, y: tail, way: [0, -1 / scales.force], grid: scales.grid, cursor: "ns-resize", dimension: "force", least: -Infinity }];
+  for (const handle of handles) svg.append(handleElement(svg, handle, column, { system, move, moved }));
 }
 
 function handleElement(svg, handle, column, { system, move, moved }) {

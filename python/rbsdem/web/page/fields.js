@@ -92,7 +92,7 @@ export const toldOf = (fault, state, column, system) => toldAs(fault, FIELD[faul
 // A message of the program as the page says it: with the label and the unit of its field; an empty field says what it lacks.
 export function toldAs(fault, field, value, system) {
   if (!field) return inUnits(fault.text, system);
-  const name = field.path.split(".")[1];
+  const name = field.path.split(".").at(-1);
   const label = field.label.split(",")[0], [unit] = field.dimension ? unitOf(system, field.dimension) : [""];
   if (!field.optional && !field.choices && (value === undefined || value === null || value.length === 0))
     return `${label}: give ${field.whole ? "a whole number" : unit ? `a value in ${unit}` : "a number"}`;
@@ -114,9 +114,11 @@ function readValue(field, text, system) {
   return parsed(text, factor, field.whole);
 }
 
+const idOf = path => "f-" + path.replaceAll(".", "-");
+
 // One labelled field with its message; `edit(value, done)` is called while one types and when it is left.
 export function fieldRow(field, value, system, edit, fixed) {
-  const id = "f-" + field.path.replace(".", "-"), message = id + "-fault";
+  const id = idOf(field.path), message = id + "-fault";
   const row = element("div", { className: "row" });
   row.dataset.path = field.path;
   const [unit] = field.dimension ? unitOf(system, field.dimension) : [""];
@@ -153,13 +155,31 @@ export function fieldRow(field, value, system, edit, fixed) {
   return row;
 }
 
+// Fields under a title; none without fields.
+export function fieldGroup(title, rows) {
+  return rows.length ? [element("fieldset", {}, element("legend", {}, title), ...rows)] : [];
+}
+
+// The fields of a loading, with the button that opens a record.
+export function loadingRows(loading, system, edit, fixed, fields = LOADING_FIELDS) {
+  const rows = fields
+    .filter(field => !field.kinds || field.kinds.includes(loading.kind))
+    .map(field => fieldRow(field, valueAt({ loading }, field.path), system, (value, done) => edit(field.path, value, done), fixed));
+  if (loading.kind === "record") {
+    const button = element("button", { type: "button", disabled: fixed, id: "f-loading-record" }, loading.name || "Open a record…");
+    button.addEventListener("click", () => document.getElementById("recordfile").click());
+    button.setAttribute("aria-describedby", "f-loading-record-fault f-loading-record-hint");
+    const row = element("div", { className: "row" }, element("span", {}, "Record"), button, element("p", { className: "fault", id: "f-loading-record-fault", hidden: true }),
+      element("p", { className: "hint", id: "f-loading-record-hint" }, "A file .at2 of the PEER database, or .csv or .txt whose first line names the columns with their units, as time_s, acceleration_g (or m/s2, cm/s2)."));
+    row.dataset.path = "loading.record";
+    rows.splice(1, 0, row);
+  }
+  return rows;
+}
+
 // The form of a column and the loading. `edit(path, value, done)`.
-export function drawForm(form, state, active, system, edit, { fixed = false, openRecord } = {}) {
-  form.replaceChildren();
-  const column = state.columns[active];
-  const fieldset = (title, rows) => {
-    if (rows.length) form.append(element("fieldset", {}, element("legend", {}, title), ...rows));
-  };
+export function drawForm(form, state, active, system, edit, fixed = false) {
+  const column = state.columns[active], parts = [];
   const motion = ["synthetic", "record"].includes(state.loading.kind);
   if ("case" in column) {
     const text = element("textarea", { id: "f-case", value: column.case, rows: 14, spellcheck: false, readOnly: fixed });
@@ -168,29 +188,18 @@ export function drawForm(form, state, active, system, edit, { fixed = false, ope
     text.addEventListener("change", () => edit("case", text.value, true));
     const row = element("div", { className: "row wide" }, element("label", { htmlFor: "f-case" }, "Case file"), text, element("p", { className: "fault", id: "f-case-fault", hidden: true }));
     row.dataset.path = "case";
-    fieldset("Column and loading of a case file", [row]);
+    parts.push(...fieldGroup("Column and loading of a case file", [row]));
   } else {
     const shape = valueAt(column, "section.shape"), footing = valueAt(column, "footing.kind") === "springs";
     for (const { group, fields } of COLUMN_FIELDS) {
-      fieldset(group, fields
+      parts.push(...fieldGroup(group, fields
         .filter(field => (!field.shapes || field.shapes.includes(shape)) && (!field.motion || motion) && (!field.footing || footing))
-        .map(field => fieldRow(field, valueAt(column, field.path), system, (value, done) => edit(field.path, value, done), fixed)));
+        .map(field => fieldRow(field, valueAt(column, field.path), system, (value, done) => edit(field.path, value, done), fixed))));
     }
   }
-  if (state.columns.every(one => "case" in one)) return;
-  const rows = LOADING_FIELDS
-    .filter(field => !field.kinds || field.kinds.includes(state.loading.kind))
-    .map(field => fieldRow(field, valueAt(state, field.path), system, (value, done) => edit(field.path, value, done), fixed));
-  if (state.loading.kind === "record") {
-    const button = element("button", { type: "button", disabled: fixed, id: "f-loading-record" }, state.loading.name || "Open a record…");
-    button.addEventListener("click", openRecord);
-    button.setAttribute("aria-describedby", "f-loading-record-fault f-loading-record-hint");
-    const row = element("div", { className: "row" }, element("span", {}, "Record"), button, element("p", { className: "fault", id: "f-loading-record-fault", hidden: true }),
-      element("p", { className: "hint", id: "f-loading-record-hint" }, "A file .at2 of the PEER database, or .csv or .txt whose first line names the columns with their units, as time_s, acceleration_g (or m/s2, cm/s2)."));
-    row.dataset.path = "loading.record";
-    rows.splice(1, 0, row);
-  }
-  fieldset(state.columns.length > 1 ? "Loading of both columns" : "Loading", rows);
+  if (!state.columns.every(one => "case" in one))
+    parts.push(...fieldGroup(state.columns.length > 1 ? "Loading of both columns" : "Loading", loadingRows(state.loading, system, edit, fixed)));
+  form.replaceChildren(...parts);
 }
 
 // Put the messages beside their fields; what has no field is returned.
@@ -210,13 +219,12 @@ export function showFaults(form, faults) {
   return left;
 }
 
-// The values of the fields anew, except of the one that is being typed in.
-export function refreshFields(form, state, active, system) {
-  const column = state.columns[active];
-  for (const field of [...COLUMN_FIELDS.flatMap(group => group.fields), ...LOADING_FIELDS]) {
-    const input = form.querySelector(`[id="f-${field.path.replace(".", "-")}"]`);
+// The values of fields anew, except of the one that is being typed in.
+export function refreshFields(form, fields, valueOf, system) {
+  for (const field of fields) {
+    const input = form.querySelector(`[id="${idOf(field.path)}"]`);
     if (!input || input === document.activeElement) continue;
-    const value = valueAt(field.path.startsWith("loading.") ? state : column, field.path);
+    const value = valueOf(field.path);
     if (field.choices) input.value = String(value ?? field.choices[0][0]);
     else input.value = shownValue(field, value, system);
   }

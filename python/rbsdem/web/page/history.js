@@ -4,7 +4,8 @@ export function makeHistory(changed) {
   let done = [], undone = [], now = null;
   const copy = state => JSON.parse(JSON.stringify(state));
   return {
-    begin(state) { done = []; undone = []; now = JSON.stringify(state); changed(false, false); },
+    begin(state) { done = []; undone = []; now = JSON.stringify(state); },
+    ways: () => ({ back: done.length > 0, forth: undone.length > 0 }),
     // Keep a state; drags and letters in between are one step.
     commit(state) {
       const text = JSON.stringify(state);
@@ -13,7 +14,7 @@ export function makeHistory(changed) {
       if (done.length > 200) done.shift();
       undone = [];
       now = text;
-      changed(true, false);
+      changed();
       return true;
     },
     undo() { return this.step(done, undone); },
@@ -22,7 +23,7 @@ export function makeHistory(changed) {
       if (!from.length) return null;
       to.push(now);
       now = from.pop();
-      changed(done.length > 0, undone.length > 0);
+      changed();
       return copy(JSON.parse(now));
     },
   };
@@ -35,35 +36,16 @@ export function packed(value) {
   return btoa(text).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "");
 }
 
-// A state with all its groups: a link may come from anywhere.
-export function tidied({ columns, loading }) {
-  const group = value => value && typeof value === "object" && !Array.isArray(value) ? value : {};
-  return { loading, columns: columns.map((column, i) => {
-    if ("case" in column) return { name: String(column.name ?? "AB"[i]), case: String(column.case) };
-    const { section, concrete, bars, ties, column: frame, footing } = column;
-    return { name: String(column.name ?? "AB"[i]), section: { ...group(section), shape: String(section?.shape ?? "rectangle") }, concrete: group(concrete), bars: group(bars), ties: group(ties), column: group(frame), ...(footing ? { footing: group(footing) } : {}) };
-  }) };
-}
-
 function decoded(text) {
   const raw = atob(text.replace(/-/g, "+").replace(/_/g, "/"));
   return JSON.parse(new TextDecoder().decode(Uint8Array.from(raw, letter => letter.charCodeAt(0))));
 }
 
-// The frame of a link, or null.
-export function unpackedFrame(text) {
+// The state and the units of a link, or null; it may come from anywhere, and the view of its kind says what it must have.
+export function unpacked(text, views) {
   try {
-    const value = decoded(text), { storeys, bays } = value.frame;
-    return Array.isArray(bays) && Array.isArray(storeys) && storeys.length && storeys.every(one => one && typeof one === "object") ? value : null;
-  } catch { return null; }
-}
-
-export function unpacked(text) {
-  try {
-    const value = decoded(text);
-    const right = value && Array.isArray(value.state?.columns) && value.state.columns.length >= 1 &&
-      value.state.columns.length <= 2 && value.state.columns.every(one => one && typeof one === "object") &&
-      value.state.loading && typeof value.state.loading === "object";
-    return right ? { ...value, state: tidied(value.state) } : null;
+    const value = decoded(text), view = views[value.state.frame ? "frame" : "columns"];
+    const right = value.state.loading && typeof value.state.loading === "object" && view.isState(value.state);
+    return right ? { ...value, state: view.tidied(value.state) } : null;
   } catch { return null; }
 }

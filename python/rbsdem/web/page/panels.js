@@ -37,9 +37,10 @@ export function loopChart(host, state, loops, bands, system) {
     top: one ? { factor: one.height / 100 / metre, label: `displacement (${length})` } : null, label: "Lateral force against drift; " + told.join("; ") });
 }
 
-export function timeChart(host, state, loops) {
-  const lines = loops.map((loop, i) => loop?.time ? { x: loop.time, y: scaled(loop.displacement, loop.height / 100), kind: KINDS[i], label: state.columns[i].name } : null).filter(Boolean);
-  if (lines.length) drawChart(host, { lines: lines.length > 1 ? lines : [{ ...lines[0], label: "" }], zero: true, height: 230, xLabel: "Time (s)", yLabel: "Drift (%)", label: "Drift in time" });
+// Drifts in time: rows of { time, drift, name }.
+export function timeChart(host, rows) {
+  const known = rows.filter(Boolean), lines = known.map(({ time, drift, name }, i) => ({ x: time, y: scaled(drift, 0.01), kind: KINDS[i] ?? `s${i}`, label: known.length > 1 ? name : "" }));
+  return lines.length ? drawChart(host, { lines, zero: true, height: 230, xLabel: "Time (s)", yLabel: "Drift (%)", label: "Drift in time" }) : null;
 }
 
 export function scaleChart(host, state, scales) {
