@@ -22,9 +22,17 @@ module rbs_hysteresis_journal
       logical, allocatable :: is_kept(:)
       !> The branches that they had (changed)
       type(segment), allocatable :: line(:)
+      !> How those that are kept have changed since, in one move: the direction, 0 if there were several
+      !> moves or directions; the deformation beyond which they go through the same branches again; how many;
+      !> deformation and work where they entered the last one (count)
+      integer, allocatable :: direction(:), branches(:)
+      real(wp), allocatable :: beyond(:), d_entered(:), work_entered(:)
    contains
       procedure :: start
       procedure :: keep
+      procedure :: leave_branch
+      procedure :: enter_branch
+      procedure :: passes_again
       procedure :: give_back
       procedure :: forget
    end type journal_type
@@ -43,6 +51,8 @@ contains
       if (.not. allocated(self%is_kept)) then
          allocate (self%is_kept(n), source=.false.)
          allocate (self%spring(n), self%line(n), self%d(n), self%work(n))
+         allocate (self%direction(n), self%branches(n), self%beyond(n), self%d_entered(n), &
+                   self%work_entered(n))
       end if
       if (self%changed > 0) call self%forget()
       self%open = .true.
@@ -65,8 +75,47 @@ contains
       self%changed = self%changed + 1
       self%spring(self%changed) = i
       self%line(self%changed) = line
+      self%direction(i) = 0
+      self%branches(i) = 0
       call save_memory(slot)
    end subroutine keep
+
+   !> A spring leaves a branch by its end.
+   pure subroutine leave_branch(self, i, direction, last)
+      class(journal_type), intent(inout) :: self
+      integer, intent(in) :: i, direction
+      !> The last deformation of the branch in that direction
+      real(wp), intent(in) :: last
+
+      if (self%branches(i) == 0) then
+         self%direction(i) = direction
+         self%beyond(i) = last
+      else if (self%direction(i) /= direction) then
+         self%direction(i) = 0
+      else
+         self%beyond(i) = direction*max(direction*self%beyond(i), direction*last)
+      end if
+      self%branches(i) = self%branches(i) + 1
+   end subroutine leave_branch
+
+   !> It has entered the next branch.
+   pure subroutine enter_branch(self, i, d, work)
+      class(journal_type), intent(inout) :: self
+      integer, intent(in) :: i
+      real(wp), intent(in) :: d, work
+
+      self%d_entered(i) = d
+      self%work_entered(i) = work
+   end subroutine enter_branch
+
+   !> Whether a spring on its way from the mark to another deformation enters its present branch as before.
+   pure logical function passes_again(self, i, d)
+      class(journal_type), intent(in) :: self
+      integer, intent(in) :: i
+      real(wp), intent(in) :: d
+
+      passes_again = self%direction(i)*(d - self%beyond(i)) > 0.0_wp
+   end function passes_again
 
    !> Give spring i the memory back that it had at the start.
    subroutine give_back(self, i, slot)

@@ -81,6 +81,7 @@ module rbs_hysteresis_springs
       procedure :: is_released
       procedure :: mark
       procedure :: restore
+      procedure :: retry
       procedure :: forget_mark
       procedure :: serialize
       procedure :: move_all
@@ -228,7 +229,10 @@ contains
       real(wp) :: flexural_work
 
       line = self%line_of(i)
-      if (self%journal%open) call self%journal%keep(i, line, self%slot(i))
+      if (self%journal%open) then
+         call self%journal%keep(i, line, self%slot(i))
+         call self%journal%leave_branch(i, direction, merge(self%last(i), self%first(i), direction > 0))
+      end if
       if (self%unload_on_reversal(i) /= -direction) call advance_on_branch(self, i, &
            merge(line%hi, line%lo, direction > 0))
       flexural_work = 0.0_wp
@@ -239,6 +243,7 @@ contains
       self%events = self%events + 1
       self%version = modulo(self%version + 1, huge(1))
       call put_line(self, i, line)
+      if (self%journal%open) call self%journal%enter_branch(i, self%d(i), self%work(i))
    end subroutine change_line
 
    !> A spring is at an end of its line and is about to move beyond it.
@@ -249,6 +254,7 @@ contains
       integer, intent(in) :: direction
 
       call change_line(self, i, direction)
+      if (self%journal%open) self%journal%direction(i) = 0
       ! A branch that unloads on reversal starts at the present deformation, to the last bit.
       if (self%unload_on_reversal(i) > 0) self%first(i) = self%d(i)
       if (self%unload_on_reversal(i) < 0) self%last(i) = self%d(i)
@@ -316,7 +322,57 @@ contains
    !> Return to the marked state, to the last bit. The mark stays.
    subroutine restore(self)
       class(spring_array), intent(inout) :: self
-      integer :: i, j
+
+      call go_back(self)
+   end subroutine restore
+
+   !> Move every spring from the mark to new deformations. Of those that go through branches that they went
+   !> through in the last move, all but the last one are not asked for again: the state is the same to the
+   !> last bit.
+   subroutine retry(self, d)
+      class(spring_array), intent(inout) :: self
+      !> New deformations (count) [m or rad]
+      real(wp), intent(in), contiguous :: d(:)
+      integer :: i
+
+      if (self%pressed) then
+         call go_back(self)
+         call self%move_all(d)
+         return
+      end if
+      call go_back(self, d)
+      do i = 1, self%count
+         if (self%journal%is_kept(i)) then
+            call enter_again(self, i)
+         else if (d(i) <= self%last(i) .and. d(i) >= self%first(i)) then
+            cycle
+         end if
+         call self%advance_to(i, d(i))
+      end do
+      if (self%stuck) return
+      call advance_all(self%count, d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
+                       self%first, self%last)
+   end subroutine retry
+
+   !> Put a spring where it entered its present branch.
+   pure subroutine enter_again(self, i)
+      type(spring_array), intent(inout) :: self
+      integer, intent(in) :: i
+
+      self%d(i) = self%journal%d_entered(i)
+      self%work(i) = self%journal%work_entered(i)
+      self%events = self%events + self%journal%branches(i)
+      if (self%unload_on_reversal(i) > 0) self%first(i) = self%d(i)
+      if (self%unload_on_reversal(i) < 0) self%last(i) = self%d(i)
+   end subroutine enter_again
+
+   !> Return to the mark. Of springs that pass their present branch again on the way to new deformations,
+   !> branch and memory stay.
+   subroutine go_back(self, d)
+      type(spring_array), intent(inout) :: self
+      real(wp), intent(in), contiguous, optional :: d(:)
+      logical :: stays
+      integer :: i, j, left
 
       associate (journal => self%journal)
          do i = 1, self%count
@@ -325,20 +381,30 @@ contains
          end do
          self%events = journal%events
          self%stuck = .false.
-         if (journal%changed > 0) self%version = modulo(self%version + 1, huge(1))
+         left = 0
          do j = 1, journal%changed
             i = journal%spring(j)
-            call journal%give_back(i, self%slot(i))
-            call put_line(self, i, journal%line(j))
+            ! A spring that decays with the work of others depends on their ways.
+            stays = present(d) .and. .not. self%slot(i)%is_told
+            if (stays) stays = journal%passes_again(i, d(i))
+            if (stays) then
+               left = left + 1
+               journal%spring(left) = i
+               journal%line(left) = journal%line(j)
+            else
+               call journal%give_back(i, self%slot(i))
+               call put_line(self, i, journal%line(j))
+            end if
          end do
-         journal%changed = 0
+         if (journal%changed > left) self%version = modulo(self%version + 1, huge(1))
+         journal%changed = left
          do i = 1, self%count
             if (self%unload_on_reversal(i) > 0) self%first(i) = self%d(i)
             if (self%unload_on_reversal(i) < 0) self%last(i) = self%d(i)
          end do
       end associate
       if (self%pressed) call self%fit_planes()
-   end subroutine restore
+   end subroutine go_back
 
    !> Save or restore where the springs are, and what their rules remember.
    subroutine serialize(self, stream)
@@ -523,8 +589,10 @@ contains
       do i = 1, n
          work(i) = work(i) + (f0(i) + k(i)*(0.5_wp*(to(i) + d(i)) - d0(i)))*(to(i) - d(i))
          d(i) = to(i)
-         first(i) = merge(to(i), first(i), unload_on_reversal(i) > 0)
-         last(i) = merge(to(i), last(i), unload_on_reversal(i) < 0)
+      end do
+      do i = 1, n
+         if (unload_on_reversal(i) > 0) first(i) = to(i)
+         if (unload_on_reversal(i) < 0) last(i) = to(i)
       end do
    end subroutine advance_all
 

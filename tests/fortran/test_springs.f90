@@ -22,6 +22,7 @@ contains
                unit_test('a spring that arrives at a closed end stays on the line', arrive_closed), &
                unit_test('leave turns back on a one-way line', leave_one_way), &
                unit_test('restore brings back the marked state, to the last bit', restoring), &
+               unit_test('a trial after another one ends as one from the mark, to the last bit', trying_again), &
                unit_test('only springs that leave their line change the version', versions), &
                unit_test('springs that stay on their lines move as along a path', carried), &
                unit_test('a contact presses, and does not pull', contact), &
@@ -180,6 +181,48 @@ contains
       end do
       call check_true(error, springs%events > 100, 'lines were left')
    end subroutine restoring
+
+   !> Trials near the last one, farther or less far, and others elsewhere; now and then a spring has turned
+   !> back in between.
+   subroutine trying_again(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(random_type) :: random
+      type(spring_record) :: specs(6)
+      type(spring_array) :: springs, undisturbed, moved
+      real(wp) :: point(6), other(6)
+      integer :: round, trial, i
+
+      call all_kinds(specs)
+      call make_springs(springs, specs)
+      do round = 1, 300
+         undisturbed = springs
+         call springs%mark()
+         call random_move(random, point)
+         call springs%move_all(point)
+         do trial = 1, 6
+            call random_move(random, other)
+            if (mod(trial + round, 4) > 0) then
+               point = springs%d + 0.1_wp*other
+            else
+               point = other
+            end if
+            if (mod(trial + round, 9) == 0) then
+               i = 2 + mod(trial, 4)
+               if (springs%unload_on_reversal(i) /= 0) then
+                  call springs%leave(i, -springs%unload_on_reversal(i))
+               end if
+            end if
+            call springs%retry(point)
+            moved = undisturbed
+            call moved%move_all(point)
+            call check_alike(error, springs, moved, random, 'round '//to_text(round))
+            if (allocated(error)) return
+         end do
+         if (mod(round, 5) == 0) call springs%restore()
+         call springs%forget_mark()
+      end do
+      call check_true(error, springs%events > 100, 'lines were left')
+   end subroutine trying_again
 
    subroutine versions(error)
       type(error_type), allocatable, intent(inout) :: error

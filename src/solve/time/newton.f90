@@ -281,12 +281,12 @@ contains
       inside = in_bounds(size(q), q)
       if (.not. inside) return
       if (self%marked) then
-         call state%springs%restore()
+         call state%springs%retry(q)
       else
          call state%springs%mark()
          self%marked = .true.
+         call state%springs%move_all(q)
       end if
-      call state%springs%move_all(q)
    end subroutine move_springs
 
 end module rbs_solve_time_newton
