@@ -6,7 +6,7 @@
 !> does not converge is taken back to the stored state and cut in two.
 module rbs_solve_time_implicit
    use rbs_base_arrays, only: swap
-   use rbs_base_inner_product, only: inner_product
+   use rbs_base_inner_product, only: inner_product, total
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_solve_one_body_implicit_one_body, only: one_body_step
@@ -403,20 +403,22 @@ contains
          associate (structure => state%motion%structure, work => state%springs%work, &
                     work_before => state%springs%journal%work)
             kinetic = structure%kinetic_energy(state%q, state%v)
-            loss = self%of_loads - self%of_damping - (sum(work) - sum(work_before)) &
+            loss = self%of_loads - self%of_damping - (total(size(work), work) - total(size(work), work_before)) &
                    - (structure%kinetic_energy(self%step%q1, self%step%w1) - kinetic) &
                    - (structure%potential_energy(self%step%q1) - structure%potential_energy(state%q))
-            energy = abs(sum(work)) + kinetic
+            energy = abs(total(size(work), work)) + kinetic
          end associate
       end subroutine find_loss
 
       !> The end of the step becomes the state.
       subroutine commit()
 
-         if (.not. self%weighed) call find_works()
+         if (.not. self%weighed) then
+            call find_works()
+            call state%springs%carry_to(self%step%q1)
+         end if
          state%of_loads = state%of_loads + self%of_loads
          state%of_damping = state%of_damping + self%of_damping
-         call state%springs%carry_to(self%step%q1)
          call swap(state%q, self%step%q1)
          call swap(state%v, self%step%w1)
          state%time = state%time + self%h

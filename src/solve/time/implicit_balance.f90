@@ -197,8 +197,8 @@ contains
                       self%g0, self%g1, self%r)
          call self%measure(structure, self%a1, self%load, relative)
          if (size(self%now%correction) > 0) then
-            relative = max(relative, &
-                           maxval(abs(structure%initial_stiffness*self%spring_unit*self%now%correction)) &
+            relative = max(relative, largest_product(size(self%now%correction), structure%initial_stiffness, &
+                                                     self%spring_unit, self%now%correction) &
                            /max(maxval(self%scale), maxval(self%largest), tiny(1.0_wp)))
          end if
       end associate
@@ -300,6 +300,7 @@ contains
 
       scale = 0.0_wp
       rest = 0.0_wp
+      !$omp simd reduction(max:scale)
       do i = 1, springs
          scale = max(scale, spring_unit(i)*abs(f(i)))
       end do
@@ -308,6 +309,19 @@ contains
          rest = max(rest, unit(i)*abs(r(i)))
       end do
    end subroutine measure_all
+
+   !> The largest product of three numbers, in size.
+   pure real(wp) function largest_product(n, a, b, c) result(largest)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: a(n), b(n), c(n)
+      integer :: i
+
+      largest = 0.0_wp
+      !$omp simd reduction(max:largest)
+      do i = 1, n
+         largest = max(largest, abs(a(i)*b(i)*c(i)))
+      end do
+   end function largest_product
 
    !> Whether the residual is what round-off leaves of the terms of the step. Modes that the step does not
    !> resolve have accelerations far beyond what comes of them: after a shock h^2 a0 is many turns.
