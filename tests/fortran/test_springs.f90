@@ -22,7 +22,7 @@ contains
                unit_test('a spring that arrives at a closed end stays on the line', arrive_closed), &
                unit_test('leave turns back on a one-way line', leave_one_way), &
                unit_test('restore brings back the marked state, to the last bit', restoring), &
-               unit_test('a trial after another one ends as one from the mark, to the last bit', trying_again), &
+               unit_test('a further trial ends as one from the mark, to the last bit', trying_again), &
                unit_test('only springs that leave their line change the version', versions), &
                unit_test('springs that stay on their lines move as along a path', carried), &
                unit_test('a contact presses, and does not pull', contact), &

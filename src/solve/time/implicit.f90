@@ -403,7 +403,8 @@ contains
          associate (structure => state%motion%structure, work => state%springs%work, &
                     work_before => state%springs%journal%work)
             kinetic = structure%kinetic_energy(state%q, state%v)
-            loss = self%of_loads - self%of_damping - (total(size(work), work) - total(size(work), work_before)) &
+            loss = self%of_loads - self%of_damping &
+                   - (total(size(work), work) - total(size(work), work_before)) &
                    - (structure%kinetic_energy(self%step%q1, self%step%w1) - kinetic) &
                    - (structure%potential_energy(self%step%q1) - structure%potential_energy(state%q))
             energy = abs(total(size(work), work)) + kinetic
