@@ -211,7 +211,7 @@ def largest_growth(drawing: Drawing, path: np.ndarray) -> tuple[float, float]:
     for i, joint in enumerate(frame.parts.springs_of("axial_spring")):
         opening = run.springs["opening"][:, i]
         rotation = run.springs["rotation"][:, at[joint.member, joint.place]]
-        made = frame.kind_of(joint.member).at("flexure", joint.place)
+        made = frame.kinds[joint.member].at("flexure", joint.place)
         for y, bar in made.layers if isinstance(made, Layered) else ():
             if isinstance(bar, SteelSpring):
                 strain = np.append(opening + y * rotation, 0.0) * bar.k / bar.f_y

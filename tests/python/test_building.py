@@ -55,7 +55,7 @@ def test_a_drawn_frame_is_one_of_members_by_hand(drawn):
     one, two = (rbsdem.pushover(each, drift=0.005, points=5) for each in (drawn, hand))
     np.testing.assert_array_equal(one.base_shear, two.base_shear)
     # Beams are stronger where their top is in tension: more bars are drawn there.
-    hinge = drawn.kind_of("B-1-1").at("flexure", 0.0)
+    hinge = drawn.kinds["B-1-1"].at("flexure", 0.0)
     above = sum(layer.k for y, layer in hinge.layers if y > 0.15)
     below = sum(layer.k for y, layer in hinge.layers if y < -0.15)
     assert above > below
@@ -151,7 +151,7 @@ def test_a_tee_hogs_with_its_slab_in_tension():
         bar_diameter=0.018, ties=TIES, cover=0.03, flange_width=1.0, flange_thickness=0.12,
     )  # fmt: skip
     frame = rbsdem.Frame.grid([3.2], [5.6], columns=C, beams=tee, **MORE)
-    assert frame.kind_of("B-1-1").sections == (tee.mirrored, tee.mirrored)
+    assert frame.kinds["B-1-1"].sections == (tee.mirrored, tee.mirrored)
 
 
 @pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")

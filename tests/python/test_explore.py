@@ -425,7 +425,8 @@ def test_a_frame_is_that_of_the_functions(post, grid, tmp_path):
     moved = np.array(answer["moved"][-1][beam])
     np.testing.assert_allclose(moved[-1], [push.x[-1, node], push.y[-1, node]], atol=1e-4)
     shares = np.linspace(0, 1, 7)
-    line = figures_of_frames.deformed(push, grid.geometry["B-2-3"], last, 1.0, shares)
+    turns = figures_of_frames.spring_turns(push, last)
+    line = figures_of_frames.deformed(push, grid.geometry["B-2-3"], last, 1.0, turns, shares)
     np.testing.assert_allclose(np.array(answer["still"][beam])[1:-1] + moved[1:-1], line, atol=1e-3)
     known = [member.axial[-1], *member.moment[-1], np.abs(member.shear[-1]).max()]
     np.testing.assert_allclose(answer["forces"][-1][beam], known, atol=100)

@@ -230,7 +230,7 @@ def gaps(run: FrameResult) -> float:
                 hinges[own.member].append((channel, own.place, values))
     worst, size = 0.0, float(np.abs(run.x).max() + 1e-12)
     for at, name in enumerate(parts.members):
-        m, own = Geometry(made, at), made.kind_of(name)
+        m, own = Geometry(made, at), made.kinds[name]
         beam = int(name.startswith("B"))
         (start, rigid), (end, other) = (
             (n, r) for n, r in zip((m.start, m.end), m.rigid, strict=True)
@@ -344,7 +344,7 @@ def explicit(rng: Rng, made: Frame, x: float, y: float) -> Frame:
     members = [
         Member(
             f"member {i}", *(names[parts.nodes[at]] for at in parts.ends[i]),
-            kind=remade(made.kind_of(name), rigid_end=0.0), rigid_end=made.geometry[name].rigid,
+            kind=remade(made.kinds[name], rigid_end=0.0), rigid_end=made.geometry[name].rigid,
             load=made.load_of(name),
         )
         for i, name in enumerate(parts.members)

@@ -117,7 +117,7 @@ def demands(result: FrameResult, rows: Array) -> list[_Demand]:
 
     found = []
     for i, (name, one) in enumerate(frame.geometry.items()):
-        sections, length = frame.kind_of(name).sections, one.clear
+        sections, length = frame.kinds[name].sections, one.clear
         if sections is None:
             continue
         axial, turned = of(result.member_axial[:, i])[:, 0], of(result.chord_rotation[:, i])

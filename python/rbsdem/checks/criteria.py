@@ -18,7 +18,6 @@ from rbsdem.checks.formulas import goodnight_buckling_strain, quantities
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
 from rbsdem.model.frame import Frame, FrameSpring, Structure
-from rbsdem.model.frame_result import landmarks_of
 from rbsdem.model.response import Response
 from rbsdem.model.shape import Section
 from rbsdem.model.springs import Gauge, Landmark, Layered, Spring
@@ -121,7 +120,7 @@ def _criteria(column: Structure, names: Collection[str]) -> list[Criterion]:
                 where = f"the {group} spring of {own.member} at {own.place:g} of its length"
                 if own.group == "panel":
                     where = f"the panel of node {own.member}"
-                marks = landmarks_of(column, own)
+                marks = column.landmarks[own]
                 found += _of_landmarks(number, marks, where, states, what)
         return [criterion for criterion in found if criterion.name in names]
     for joint, spring in zip(column.joint_numbers, column.joints("flexure"), strict=True):
@@ -142,7 +141,7 @@ def _of_joints(frame: Frame, springs: Sequence[FrameSpring], number: int) -> Ite
     for own in springs:
         if own.rule != "layered":
             continue
-        made = frame.kind_of(own.member).at(own.group, own.place)
+        made = frame.kinds[own.member].at(own.group, own.place)
         assert isinstance(made, Layered)
         places: dict[Spring, list[float]] = {}
         for y, layer in made.layers:

@@ -16,7 +16,7 @@ from rbsdem.errors import InputError, warn
 from rbsdem.model.column import NOTES_ON, Column, checked_column
 from rbsdem.model.damping import Damping
 from rbsdem.model.shape import Section
-from rbsdem.model.springs import Layered, Spring, layer_springs
+from rbsdem.model.springs import Landmark, Layered, Spring, layer_springs
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -379,7 +379,7 @@ class MemberGeometry:
     foot: Array
     load: float
 
-    @property
+    @cached_property
     def normal(self) -> Array:
         """To the right of one who goes from its start to its end: a clockwise turn from `axis`."""
         return np.array([self.axis[1], -self.axis[0]])
@@ -584,7 +584,7 @@ class Frame:
         parts, own = self.parts, {member.name: member for member in self.members}
         nodes, found = np.column_stack((parts.x, parts.y)), {}
         for name, (start, end) in zip(parts.members, parts.ends.tolist(), strict=True):
-            rigid: Any = own[name].rigid_end if name in own else self.kind_of(name).rigid_end
+            rigid: Any = (own.get(name) or self.kinds[name]).rigid_end
             if not isinstance(rigid, tuple):
                 foot = name.startswith("C") and name.endswith("-1")
                 rigid = (0.0 if foot else rigid, rigid)
@@ -622,7 +622,7 @@ class Frame:
     @property
     def joint_numbers(self) -> range:
         """Numbers of the springs in members, from 1, as limit states know them, layers last."""
-        made = (self.kind_of(own.member).at("flexure", own.place) for own in self._joints())
+        made = (self.kinds[own.member].at("flexure", own.place) for own in self._joints())
         layers = sum(len(one.layers) for one in made if isinstance(one, Layered))
         return range(1, len(self.parts.springs) + layers + 1)
 
@@ -634,11 +634,13 @@ class Frame:
         """Whether the frame has viscous damping."""
         return isinstance(self.damping, Damping) and self.damping.acts
 
-    def kind_of(self, member: str) -> FrameMember:
-        """Return the kind of a member by the name of the member."""
-        for own in self.members:
-            if own.name == member:
-                return own.kind
+    @cached_property
+    def kinds(self) -> dict[str, FrameMember]:
+        """Kinds of the members by their names, in the order of the columns of a result."""
+        own = {member.name: member.kind for member in self.members}
+        return {name: own.get(name) or self._kind_in_grid(name) for name in self.parts.members}
+
+    def _kind_in_grid(self, member: str) -> FrameMember:
         letter, line, storey = member.split("-")
         cells = self.columns if letter == "C" else self.beams
         found = [
@@ -650,12 +652,25 @@ class Frame:
         assert kind is not None, member
         return kind
 
-    def panel_of(self, node: str) -> Spring | None:
-        """Return the spring in the panel of a node by the name of the node."""
-        springs = self.parts.springs
-        if not any(own.group == "panel" and own.member == node for own in springs):
-            return None
-        return next((own.panel for own in self.nodes if own.name == node and own.panel), self.panel)
+    @cached_property
+    def landmarks(self) -> dict[FrameSpring, list[Landmark]]:
+        """Cracking, yield and cap of each spring, first time on the virgin curve."""
+        return {spring: self._landmarks_of(spring) for spring in self.parts.springs}
+
+    def _landmarks_of(self, spring: FrameSpring) -> list[Landmark]:
+        if spring.group == "panel":
+            own = {node.name: node.panel for node in self.nodes}
+            panel = own.get(spring.member) or self.panel
+            return [] if panel is None else panel.landmarks()
+        kind = self.kinds[spring.member]
+        if kind.yield_moment is not None:
+            if spring.group != "flexure":
+                return []
+            turned = kind.yield_moment / spring.stiffness
+            sides: tuple[Literal[1, -1], ...] = (1, -1)
+            return [Landmark("yield", side, turned, "yield_moment") for side in sides]
+        made = None if spring.rule == "layered" else kind.at(spring.group, spring.place)
+        return [] if made is None else made.landmarks()
 
     def without(self, *members: str) -> Self:
         """Return the frame after the loss of members.

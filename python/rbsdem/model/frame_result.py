@@ -371,7 +371,7 @@ class FrameResult(Rows):
             deformation.append(values)
             force.append(forces)
             kept = values[: self._lost_at().get(name)]
-            points = [*landmarks_of(self.frame, spring)]
+            points = [*self.frame.landmarks[spring]]
             points += [point for point, _ in self._yields(spring, kept)]
             yields = [point.deformation for point in points if point.name == "yield"]
             largest = float(np.abs(kept).max(initial=0.0))
@@ -398,7 +398,7 @@ class FrameResult(Rows):
         for spring, values, _ in self._springs():
             if spring.member != name or spring.group != "flexure" or spring.place not in (0.0, 1.0):
                 continue
-            points = [(one, self._reached(one, values)) for one in landmarks_of(self.frame, spring)]
+            points = [(one, self._reached(one, values)) for one in self.frame.landmarks[spring]]
             for point, row in [*points, *self._yields(spring, values)]:
                 if point.name == "yield" and row is not None:
                     end = int(spring.place)
@@ -424,7 +424,7 @@ class FrameResult(Rows):
     def _yields(self, spring: FrameSpring, rotation: Array) -> list[tuple[Landmark, int | None]]:
         """Return where the first layer of a joint yields in tension, for each way that it turns."""
         made = (
-            self.frame.kind_of(spring.member).at(spring.group, spring.place)
+            self.frame.kinds[spring.member].at(spring.group, spring.place)
             if spring.rule == "layered" and spring.group == "flexure"
             else None
         )
@@ -462,7 +462,7 @@ class FrameResult(Rows):
             # What moves on in a member that is lost reaches nothing.
             values = whole[: self._lost_at().get(spring.member)]
             points = [
-                (point, self._reached(point, values)) for point in landmarks_of(self.frame, spring)
+                (point, self._reached(point, values)) for point in self.frame.landmarks[spring]
             ]
             for point, row in [*points, *self._yields(spring, values)]:
                 if row is None:
@@ -500,14 +500,14 @@ class FrameResult(Rows):
         """Return members that fail in shear, and that lose their axial load on a static path."""
         parts, found, lost = self.frame.parts, [], self._lost_at()
         for at, name in enumerate(parts.members):
-            kind = self.frame.kind_of(name)
+            kind = self.frame.kinds[name]
             if kind.failure_drift is None or kind.failure_load is None:
                 continue
             drift = np.abs(self._chord(self.frame.geometry[name]))
             failed = drift >= (np.inf if kind.shear_drift is None else kind.shear_drift)
             for spring, values, _ in self._springs():
                 if spring.member == name and spring.group == "shear":
-                    for point in landmarks_of(self.frame, spring):
+                    for point in self.frame.landmarks[spring]:
                         if point.name == "yield":
                             failed |= point.side * values >= _REACHED * point.deformation
             rows = np.flatnonzero(failed[: lost.get(name)])
@@ -576,24 +576,6 @@ class FrameResult(Rows):
         )
 
 
-def landmarks_of(frame: Frame, spring: FrameSpring) -> list[Landmark]:
-    """Return where a spring of a member cracks, yields and caps, first time on the virgin curve."""
-    if spring.group == "panel":
-        panel = frame.panel_of(spring.member)
-        return [] if panel is None else panel.landmarks()
-    kind = frame.kind_of(spring.member)
-    if kind.yield_moment is not None:
-        if spring.group != "flexure":
-            return []
-        turned = kind.yield_moment / spring.stiffness
-        return [
-            Landmark("yield", 1, turned, "yield_moment"),
-            Landmark("yield", -1, turned, "yield_moment"),
-        ]
-    own = None if spring.rule == "layered" else kind.at(spring.group, spring.place)
-    return [] if own is None else list(own.landmarks())
-
-
 def span_note(result: FrameResult) -> str:
     """Return a note on members that are bent most between their springs, beyond what these know.
 
@@ -643,11 +625,9 @@ def _yield_moment(frame: Frame, spring: FrameSpring) -> float:
     if spring.rule == "layered":
         return 0.0
     turned = [
-        point.side * point.deformation
-        for point in landmarks_of(frame, spring)
-        if point.name == "yield"
+        point.side * point.deformation for point in frame.landmarks[spring] if point.name == "yield"
     ]
-    own = frame.kind_of(spring.member).at(spring.group, spring.place)
+    own = frame.kinds[spring.member].at(spring.group, spring.place)
     if not turned:
         return np.inf
     if own is None:

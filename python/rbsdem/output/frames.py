@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from rbsdem import _arguments
 from rbsdem._types import Array, NDArray
 from rbsdem.errors import InputError
 from rbsdem.model.frame import Frame, MemberGeometry
-from rbsdem.model.frame_result import FrameResult, landmarks_of
+from rbsdem.model.frame_result import FrameResult
 from rbsdem.output.style import (
     MODEL_LINE,
     TEST_LINE,
@@ -72,6 +72,8 @@ _FORCES = {
     "shear": "Shear forces (kN)",
     "axial": "Axial forces (kN)",
 }
+#: Points at which a member is drawn, in shares of its clear length.
+_SHARES = np.linspace(0, 1, 25)
 #: Most members whose names and forces are written.
 _NAMED = 60
 
@@ -128,8 +130,9 @@ def frame(
         if result is not None:
             assert scale is not None
             moved = moved + scale * np.column_stack((result.x[row], result.y[row]))
+            turns = spring_turns(result, row)
             for i, member in enumerate(structure.geometry.values()):
-                bent = deformed(result, member, row, scale)
+                bent = deformed(result, member, row, scale, turns)
                 lost = result.lost is not None and result.lost[row, i] > 0
                 line = _MEMBER | (_LOST if lost else {})
                 drawn.plot(*bent.T, **line)
@@ -365,37 +368,37 @@ def _rounded(value: float) -> float:
     return float(min((1, 2, 5, 10), key=lambda one: abs(np.log(one * power / value))) * power)
 
 
-def _hinge_rotations(result: FrameResult, name: str, row: int | NDArray[np.intp]) -> Array:
-    """Return the rotations of the hinges at the two ends of a member, clockwise on what follows.
+class SpringTurns(NamedTuple):
+    """Rotations of springs in a row of a result, or in several.
 
-    Of sections that yield those beyond their elastic ones, which the bent member has; of springs
-    that were given one by one the whole.
+    Attributes
+    ----------
+    hinges : dict of str to ndarray, shape (..., 2)
+        Of the hinges at the ends of a member, clockwise on what follows: of sections that yield
+        those beyond their elastic ones, of springs that were given one by one the whole.
+    panels : dict of str to ndarray, shape (...)
+        Of the columns against the beams of a node.
     """
-    turned = np.zeros((*np.shape(row), 2))
-    if result.frame.kind_of(name).yield_moment is None and not result.frame.kind_of(name).flexure:
-        return turned
-    for i, spring in enumerate(result.frame.parts.springs_of("flexure")):
-        if spring.member == name and spring.place in (0.0, 1.0):
-            turn = result.springs["rotation"][row, i]
-            if result.frame.kind_of(name).yield_moment is not None:
-                turn = turn - result.springs["moment"][row, i] / spring.stiffness
-            turned[..., int(spring.place)] = turn
-    return turned
+
+    hinges: dict[str, Array]
+    panels: dict[str, Array]
 
 
-def _panel_rotations(
-    result: FrameResult, member: MemberGeometry, row: int | NDArray[np.intp]
-) -> Array:
-    """Return the rotations of the columns against a beam in the nodes that it ends in."""
-    turned = np.zeros((*np.shape(row), 2))
-    if abs(member.axis[0]) <= abs(member.axis[1]):
-        return turned
-    parts = result.frame.parts
-    ends = [parts.nodes[node] for node in (member.start, member.end)]
-    for i, spring in enumerate(parts.springs_of("flexure")):
-        if spring.group == "panel" and spring.member in ends:
-            turned[..., ends.index(spring.member)] = result.springs["rotation"][row, i]
-    return turned
+def spring_turns(result: FrameResult, row: int | NDArray[np.intp]) -> SpringTurns:
+    """Return the rotations of the springs by their members and nodes."""
+    structure = result.frame
+    found = SpringTurns(
+        {name: np.zeros((*np.shape(row), 2)) for name in structure.parts.members}, {}
+    )
+    turned, moments = result.springs["rotation"][row], result.springs["moment"][row]
+    for i, spring in enumerate(structure.parts.springs_of("flexure")):
+        if spring.group == "panel":
+            found.panels[spring.member] = turned[..., i]
+        elif spring.place in (0.0, 1.0):
+            elastic = structure.kinds[spring.member].yield_moment is not None
+            turn = turned[..., i] - (moments[..., i] / spring.stiffness if elastic else 0.0)
+            found.hinges[spring.member][..., int(spring.place)] = turn
+    return found
 
 
 def cubic(across: Array, slopes: Array, shares: Array) -> Array:
@@ -417,21 +420,25 @@ def deformed(
     member: MemberGeometry,
     row: int | NDArray[np.intp],
     scale: float,
-    shares: Array | None = None,
+    turns: SpringTurns,
+    shares: Array = _SHARES,
 ) -> Array:
     """Return points along a member with its displacements times a factor, (..., points, 2) [m].
 
     The first axis is that of the rows, if there are several.
     """
-    shares = np.linspace(0, 1, 25) if shares is None else shares
     nodes = [member.start, member.end]
-    turn = result.turn[row][..., nodes] - _panel_rotations(result, member, row)
+    turn = result.turn[row][..., nodes]
+    if abs(member.axis[0]) > abs(member.axis[1]):
+        # Rotations of nodes are those of their columns.
+        names, still = result.frame.parts.nodes, np.zeros(np.shape(row))
+        beside = [turns.panels.get(names[node], still) for node in nodes]
+        turn = turn - np.stack(beside, axis=-1)
     moved = np.stack((result.x[row][..., nodes], result.y[row][..., nodes]), axis=-1)
     # The rigid lengths turn with their nodes.
     moved = moved + (turn * (member.rigid[0], -member.rigid[1]))[..., None] * member.normal
     along, across = moved @ member.axis, moved @ member.normal
-    hinges = _hinge_rotations(result, member.name, row)
-    slopes = member.clear * (turn + hinges * (1, -1))
+    slopes = member.clear * (turn + turns.hinges[member.name] * (1, -1))
     bent = cubic(across, slopes, shares)
     way = shares * member.clear + scale * (along[..., :1] + shares * np.diff(along))
     drawn = member.foot + way[..., None] * member.axis
@@ -448,12 +455,12 @@ def _draw_hinges(
         if event.group != "member" and event.step <= result.time[row]:  # type: ignore[union-attr]
             key = event.member, event.group, event.end
             reached[key] = max(reached.get(key, ""), event.what, key=order.index)
-    members = {member.name: member for member in structure.geometry.values()}
+    turns = None if result is None else spring_turns(result, row)
     beside = _BESIDE * _size(structure)
     points: dict[str, list[Array]] = {state: [] for state in _STATES}
     for spring in structure.parts.springs:
         layered = (spring.rule, spring.group) == ("layered", "flexure")
-        if not (layered or landmarks_of(structure, spring)):
+        if not (layered or structure.landmarks[spring]):
             continue
         if spring.group == "panel":
             node = structure.parts.nodes.index(spring.member)
@@ -462,7 +469,7 @@ def _draw_hinges(
                 here = here + scale * np.array([result.x[row, node], result.y[row, node]])
             points[reached.get((spring.member, "panel", ""), "")].append(here)
             continue
-        member = members[spring.member]
+        member = structure.geometry[spring.member]
         end = {0.0: "start", 1.0: "end"}.get(spring.place, f"{spring.place:g}")
         state = reached.get((spring.member, spring.group, end), "")
         # Between the ends only what has been reached: sections there seldom are.
@@ -470,10 +477,10 @@ def _draw_hinges(
             continue
         aside = min(beside / member.clear, 0.3)
         share = np.array([np.clip(spring.place, aside, 1 - aside)])
-        if result is None:
+        if result is None or turns is None:
             at = member.foot + share * member.clear * member.axis
         else:
-            at = deformed(result, member, row, scale, share)[0]
+            at = deformed(result, member, row, scale, turns, share)[0]
         points[state].append(at)
     for state, (label, fill) in _STATES.items():
         if points[state]:
