@@ -64,7 +64,7 @@ def code_digest() -> bytes:
 
 #: Commands that are run by Python, and their modules.
 COMMANDS = dict.fromkeys(
-    ("trade", "ensemble", "ida", "explore", "report"), "rbsdem.cli.columns"
+    ("trade", "ensemble", "ida", "explore", "report", "draw"), "rbsdem.cli.columns"
 ) | {
     "peer": "rbsdem.cli.measured",
     "predict": "rbsdem.cli.measured",

@@ -72,7 +72,7 @@ contains
       !> The command; empty for all of them
       character(len=*), intent(in) :: topic
       type(error_type), allocatable, intent(inout) :: error
-      character(len=*), parameter :: text(40) = [character(len=84) :: &
+      character(len=*), parameter :: text(41) = [character(len=84) :: &
          'rbsdem '//version//': reinforced-concrete columns and planar frames', &
          '', &
          'usage:', &
@@ -86,6 +86,7 @@ contains
          'with the Python package also:', &
          '  rbsdem explore                                  draw a column or a frame, in the browser', &
          '  rbsdem report CASE.nml                          a page on a case', &
+         '  rbsdem draw CASE.nml                            springs of a frame drawn by sections', &
          '  rbsdem trade CASE.nml                           error and time of the methods', &
          '  rbsdem ensemble CASE.nml RECORD ... --out DIR   many records', &
          '  rbsdem ida CASE.nml RECORD ...                  incremental dynamic analysis', &

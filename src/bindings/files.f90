@@ -36,7 +36,9 @@ contains
       integer :: place, m, i
 
       call load_case(path, case, history, answer%error, unloaded=.true.)
-      if (.not. allocated(answer%error)) call make_structure(case, structure, before, answer%error)
+      if (allocated(answer%error)) return
+      ! A frame that is drawn is made, and checked, by Python.
+      if (.not. case%is_drawn_frame()) call make_structure(case, structure, before, answer%error)
       if (allocated(answer%error)) return
       m = size(history%time)
       allocate (answer%rows(1 + m, 0:drives), source=0.0_c_double)

@@ -5,7 +5,7 @@ module rbs_case_case_record
    use rbs_base_key_visitor, only: key_visitor, visited_record
    use rbs_base_units, only: unit_system, unit_named, length_units, force_units, mass_units
    use rbs_case_analysis_record, only: analysis_record, output_record
-   use rbs_case_drawing_record, only: drawing_groups, drawing_record
+   use rbs_case_drawing_record, only: add_drawing, drawing_groups, drawing_record
    use rbs_structure_column_column_record, only: column_record
    use rbs_loading_loading_record, only: loading_record
    use rbs_structure_frame_frame_parts, only: frame_parts
@@ -36,8 +36,8 @@ module rbs_case_case_record
       type(frame_record), allocatable :: frame
       !> Its nodes and members, once it has been validated
       type(frame_parts), allocatable :: parts
-      !> What its springs were drawn from, if that is known
-      type(drawing_record), allocatable :: drawing
+      !> What its springs were drawn from, if that is known; of a drawn frame the last, and those before it
+      type(drawing_record), allocatable :: drawing, earlier(:)
       !> Number of loadings
       integer :: loadings = 0
       type(loading_record) :: loading(most_loadings)
@@ -51,6 +51,7 @@ module rbs_case_case_record
       procedure :: validate
       procedure :: check_static
       procedure :: height
+      procedure :: is_drawn_frame
    end type case_record
 
 contains
@@ -66,6 +67,12 @@ contains
          call self%frame%open_group(group)
       end if
       if (all(drawing_groups /= group)) return
+      if (allocated(self%drawing) .and. group == 'drawing') then
+         if (self%drawing%stated) then
+            call add_drawing(self%earlier, self%drawing)
+            deallocate (self%drawing)
+         end if
+      end if
       if (.not. allocated(self%drawing)) allocate (self%drawing)
       call self%drawing%open_group(group)
    end subroutine open_group
@@ -170,6 +177,7 @@ contains
    subroutine validate(self, messages)
       class(case_record), intent(inout) :: self
       type(message_list), intent(inout) :: messages
+      type(frame_record) :: with_kinds
       integer :: i, known
 
       known = messages%count
@@ -182,7 +190,13 @@ contains
       else
          call self%column%validate(messages)
       end if
-      if (allocated(self%drawing)) call self%drawing%validate(messages)
+      if (allocated(self%drawing)) call self%drawing%validate(allocated(self%frame), messages)
+      if (allocated(self%earlier)) then
+         do i = 1, size(self%earlier)
+            call self%earlier(i)%validate(allocated(self%frame), messages)
+         end do
+         if (.not. allocated(self%frame)) call messages%add('drawing: a column has one; remove the others')
+      end if
       if (self%analysis%method == '') then
          call messages%add("analysis: the loading has times, so method must be named: 'static' for the "// &
                            "path without inertia, or 'auto' for the response in time")
@@ -206,19 +220,36 @@ contains
 
       !> What is wrong with the frame, and what belongs to columns alone.
       subroutine validate_frame()
+         integer :: i
 
          allocate (self%parts)
-         call self%parts%find(self%frame, messages)
-         call self%column%damping%check('damping', messages)
-         if (allocated(self%drawing)) then
-            call messages%add('drawing: a frame has members of several kinds, and no drawing of its own; '// &
-                              'remove the groups of the drawing')
+         with_kinds = self%frame
+         ! Elastic members in place of drawn ones, for the checks of all else.
+         if (allocated(self%earlier)) then
+            do i = 1, size(self%earlier)
+               call stand_in(self%earlier(i)%name)
+            end do
          end if
+         if (allocated(self%drawing)) call stand_in(self%drawing%name)
+         call self%parts%find(with_kinds, messages)
+         call self%column%damping%check('damping', messages)
          if (any(self%loading(:self%loadings)%drive == 'axial_load')) then
             call messages%add("loading: drive = 'axial_load' is for columns; in a frame they carry the "// &
                               'dead load of floors, beams and nodes')
          end if
       end subroutine validate_frame
+
+      subroutine stand_in(name)
+         character(len=*), intent(in) :: name
+
+         call with_kinds%open_group('member_kind')
+         associate (kind => with_kinds%kind(size(with_kinds%kind)))
+            kind%name = name
+            kind%modulus = 3e10_wp
+            kind%area = 0.16_wp
+            kind%inertia = 2e-3_wp
+         end associate
+      end subroutine stand_in
 
       !> Refuse loadings that cannot act together.
       subroutine check_together()
@@ -257,6 +288,13 @@ contains
          height = self%column%height
       end if
    end function height
+
+   !> Whether it is a frame whose members Python makes of drawings.
+   pure logical function is_drawn_frame(self)
+      class(case_record), intent(in) :: self
+
+      is_drawn_frame = allocated(self%frame) .and. allocated(self%drawing)
+   end function is_drawn_frame
 
    !> Refuse input that a static path cannot take before the path starts, with the message of the solver.
    subroutine check_static(self, messages)

@@ -1,5 +1,5 @@
-!> The drawing that the springs of a case were made from: a section, and what the model was told. The springs
-!> stand in the case as well, and the solver takes them; with the drawing the case also says what they are of.
+!> A drawing: a section, and what the model was told. The springs of a column are in the case as well, and the
+!> solver takes them; members of a frame are named after their drawings, and Python makes their springs.
 module rbs_case_drawing_record
    use rbs_base_check, only: is_given
    use rbs_base_constants, only: unset, unset_integer
@@ -8,13 +8,14 @@ module rbs_case_drawing_record
    use rbs_base_keys, only: above_zero, any_number, bound_type, one_or_more
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column_record, only: most_bodies
+   use rbs_structure_frame_frame_record, only: name_length
    use rbs_section_cross_section, only: spiral, ties
    use rbs_section_section_record, only: append_steel, find_steel, section_record
    use rbs_section_shape, only: bar_size
    implicit none
    private
 
-   public :: drawing_record
+   public :: add_drawing, drawing_record
 
    !> The groups of a drawing.
    character(len=12), parameter, public :: drawing_groups(10) = [character(len=12) :: &
@@ -43,6 +44,8 @@ module rbs_case_drawing_record
    end type parameter_record
 
    type, extends(visited_record) :: drawing_record
+      !> By which the members of a frame are named after it
+      character(len=name_length) :: name = ''
       type(section_record) :: section
       !> In place of bars one by one: along the hoops, and along those around a void
       type(layout_record), allocatable :: layout, inner_layout
@@ -133,12 +136,15 @@ contains
       class(drawing_record), intent(inout) :: self
       type(key_visitor), intent(inout) :: v
 
+      call v%word('name', self%name, 'name of a drawing of members of a frame; its groups follow it')
       call v%word('version', self%version, 'version of the parameters of the layered model')
       call v%key('height', self%height, 'm', above_zero, &
-                 'from an end to where the moment is zero: the height, or half of it under a fixed top')
+                 'of a column, from an end to where the moment is zero: the height, or half of it under '// &
+                 'a fixed top', optional=.true.)
       call v%key('axial_load', self%axial_load, 'N', any_number, &
-                 'axial load that the springs were drawn for, compression positive')
-      call v%key('n', self%n, '', bound_type(2.0_wp, real(most_bodies, wp)), 'bodies of that height')
+                 'axial load that the springs were drawn for, compression positive', optional=.true.)
+      call v%key('n', self%n, '', bound_type(2.0_wp, real(most_bodies, wp)), 'bodies of that height', &
+                 optional=.true.)
       call v%key('restrained', self%restrained, '', one_or_more, &
                  'bars that hoops or ties hold; without it as the layout has them', optional=.true.)
       call v%key('round_core', self%round_core, 'the ties stand for a spiral around a round core')
@@ -168,8 +174,9 @@ contains
    end subroutine visit_parameter
 
    !> Add a message for every value that is refused.
-   subroutine validate(self, messages)
+   subroutine validate(self, of_frame, messages)
       class(drawing_record), intent(inout) :: self
+      logical, intent(in) :: of_frame
       type(message_list), intent(inout) :: messages
       integer :: i
 
@@ -179,6 +186,13 @@ contains
       else
          call self%check('drawing', messages)
          if (self%version == '') call messages%add("drawing: version is missing; give it, as '2026.6'")
+         if (of_frame) then
+            if (self%name == '') call messages%add('drawing: name is missing; members of the frame name it')
+         else
+            call require(is_given(self%height), 'height is missing; give it a value in m')
+            call require(is_given(self%axial_load), 'axial_load is missing; give it a value in N')
+            call require(is_given(self%n), 'n is missing; give it a value')
+         end if
       end if
       call self%section%validate(messages)
       call check_layout(self%section, 'layout', self%layout, messages)
@@ -191,7 +205,31 @@ contains
          call self%parameters(i)%check('parameter', messages)
          if (self%parameters(i)%name == '') call messages%add('parameter: name is missing; give it')
       end do
+
+   contains
+
+      subroutine require(there, text)
+         logical, intent(in) :: there
+         character(len=*), intent(in) :: text
+
+         if (.not. there) call messages%add('drawing: '//text)
+      end subroutine require
    end subroutine validate
+
+   !> Add a drawing to a list.
+   subroutine add_drawing(list, drawing)
+      type(drawing_record), allocatable, intent(inout) :: list(:)
+      type(drawing_record), intent(in) :: drawing
+      type(drawing_record), allocatable :: longer(:)
+      integer :: n
+
+      n = 0
+      if (allocated(list)) n = size(list)
+      allocate (longer(n + 1))
+      if (n > 0) longer(:n) = list
+      longer(n + 1) = drawing
+      call move_alloc(longer, list)
+   end subroutine add_drawing
 
    !> The values of a layout, and its steels.
    subroutine check_layout(section, name, layout, messages)

@@ -80,7 +80,7 @@ contains
       character(len=*), intent(in) :: where
       type(message_list), intent(inout) :: messages
       logical, intent(out) :: ok
-      integer :: place, known
+      integer :: i, place, known, where_seen
 
       known = messages%count
       self%group = group
@@ -95,6 +95,13 @@ contains
                               list_of(group_names)//suggestion(group, group_names))
       else if (group == 'loading' .and. self%case%loadings == most_loadings) then
          call messages%add_at(where, '&loading appears more than '//to_text(most_loadings)//' times')
+      else if (group == 'drawing' .and. self%seen(place)) then
+         ! Each drawing of a frame has groups of its own.
+         do i = 1, size(drawing_groups)
+            where_seen = findloc(group_names == drawing_groups(i), .true., dim=1)
+            self%seen(where_seen) = .false.
+         end do
+         self%seen(place) = .true.
       else if (self%seen(place) .and. all(repeated /= group)) then
          call messages%add_at(where, '&'//trim(group)//' appears twice; it may appear once')
       else

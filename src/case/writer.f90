@@ -7,6 +7,7 @@ module rbs_case_writer
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text, exact_text
    use rbs_case_case_record, only: case_record
+   use rbs_case_drawing_record, only: drawing_record
    use rbs_case_spring_entry, only: entry_list, spring_entry
    use rbs_case_text_buffer, only: text_buffer
    use rbs_structure_frame_frame_record, only: frame_groups
@@ -41,6 +42,7 @@ contains
       type(case_text), intent(inout) :: text
       !> Springs of layers that have been written before
       type(entry_list) :: layer_springs
+      type(drawing_record), allocatable :: last
       integer :: i
 
       call write_record('case')
@@ -54,6 +56,15 @@ contains
          call write_springs('shear', case%column%shear)
          call write_springs('flexure', case%column%flexure)
          call write_springs('axial_spring', case%column%axial_spring)
+      end if
+      if (allocated(case%earlier)) then
+         ! Keys are visited of the present drawing.
+         call move_alloc(case%drawing, last)
+         do i = 1, size(case%earlier)
+            case%drawing = case%earlier(i)
+            call write_drawing()
+         end do
+         call move_alloc(last, case%drawing)
       end if
       if (allocated(case%drawing)) call write_drawing()
       do i = 1, case%loadings

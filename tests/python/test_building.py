@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pandas
 import pytest
 
 import rbsdem
@@ -19,6 +20,7 @@ B = rbsdem.RectangularSection(
     0.3, 0.5, rbsdem.Concrete(25e6), bars=[(-0.2, 10e-4, STEEL), (0.2, 6e-4, STEEL)],
     bar_diameter=0.018, ties=TIES, cover=0.03,
 )  # fmt: skip
+LOADING = "&loading drive = 'displacement', values = 0.01 /\n"
 MORE = {"dead_load": 20e3, "live_load": 10e3, "kinematics": "pdelta"}
 
 
@@ -128,7 +130,7 @@ def test_a_drawn_frame_comes_back_from_its_springs(drawn):
 
 def test_equal_members_are_one_kind():
     tall = rbsdem.Frame.grid([3.2] * 6, [5.6] * 4, columns=C, beams=B, **MORE)
-    kinds = {id(kind.flexure[0][1]) for kind in tall._kinds()}
+    kinds = {id(kind.flexure[0][1]) for kind in map(tall.kind_of, tall.parts.members)}
     assert len(tall.parts.members) == 54
     assert len(kinds) < 20
 
@@ -173,3 +175,92 @@ def test_refusals(change, text):
     given = {"storeys": [3.2, 3.0], "bays": [5.6], "columns": C, "beams": B, **MORE} | change
     with pytest.raises(rbsdem.InputError, match=text):
         rbsdem.Frame.grid(**given)
+
+
+def sections_of(frame):
+    return [frame.kind_of(name).sections for name in frame.parts.members]
+
+
+@pytest.mark.filterwarnings("ignore:the section has a flange")
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"ends": 0.5, "node_load": 30e3, "self_weight": True, "mass": "from_loads"},
+        {"panel_hoops": TIES},
+        {"panel_hoops": replace(TIES, spacing=0.1), "damping": 0.05, "floor_mass": 30e3},
+        {"panel_hoops": "none", "base": "pinned", "diaphragm": True},
+    ],
+    ids=["ends", "hoops of a section", "other hoops", "no hoops"],
+)
+def test_a_drawn_frame_comes_back_from_a_case_file_with_its_sections(more):
+    kind = rbsdem.FrameMember(3e10, 0.2, 4e-3, rigid_end=0.25, name="section-1")
+    flange = TeeSection(
+        0.3, 0.5, rbsdem.Concrete(25e6), bars=B.bars, bar_diameter=0.018, ties=TIES, cover=0.03,
+        flange_width=1.0, flange_thickness=0.12,
+    ) if "panel_hoops" not in more else B.mirrored  # fmt: skip
+    frame = rbsdem.Frame.grid(
+        [3.2, 3.0, 3.0], [5.6, 4.0], columns={(0, 0): C, (2, 3): kind},
+        beams={(1, 0): (B, flange), (2, 0): B, (2, 3): None}, **MORE, **more,
+    )  # fmt: skip
+    text = frame.to_namelist()
+    back = case_of_text(text + LOADING).column
+    assert back == frame
+    assert back.to_namelist() == text
+    assert sections_of(back) == sections_of(frame)
+    # 40 lines in place of some 500; a frame that was changed has its springs.
+    springs = frame.to_namelist(springs=True)
+    assert len(springs.splitlines()) > 5 * len(text.splitlines())
+    # Other axial loads would make other columns.
+    lost = replace(frame, beam_load=1e3)
+    assert "&drawing" not in lost.to_namelist()
+    assert case_of_text(lost.to_namelist() + LOADING).column == lost
+
+
+def test_a_drawn_case_is_the_same_by_python_and_the_executable(drawn, tmp_path, run_cli):
+    path = tmp_path / "house.nml"
+    loading = "&loading drive = 'displacement', values = 0.03, 0.06, -0.06 /\n"
+    path.write_text("&case title = 'house' /\n" + drawn.to_namelist() + loading)
+    case = rbsdem.read_case(path)
+    result = case.run()
+    # The executable says what is to be done.
+    refused = run_cli(["run", path])
+    assert refused.returncode == 2
+    assert "rbsdem draw CASE.nml" in refused.stderr
+    springs = tmp_path / "springs.nml"
+    springs.write_text(case.to_namelist(springs=True))
+    assert run_cli(["run", springs, "--quiet"]).returncode == 0
+    rows = pandas.read_csv(tmp_path / "springs.csv", comment="#")
+    for name in ("displacement_m", "force_N", "base_shear_N", "spring_J"):
+        np.testing.assert_array_equal(rows[name], result.to_pandas()[name])
+    result.save(tmp_path / "house.npz")
+    again = rbsdem.read_result(tmp_path / "house.npz")
+    assert again == result
+    assert sections_of(again.frame) == sections_of(drawn)
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        (("version = '2026.6'", "version = '2020.1'"), "version = '2020.1' is not known"),
+        (("name = 'section-1', ", ""), "drawing: name is missing"),
+        (("kind = 'section-1'", "kind = 'section-9'"), "section-9"),
+        (
+            ("&drawing name = 'section-2'", "&drawing n = 3, name = 'section-2'"),
+            "name and version alone",
+        ),
+        (("&concrete fc = 25000000 /\n", ""), "concrete: fc is missing"),
+    ],
+)
+def test_faults_of_drawn_cases_are_named(drawn, change, text):
+    case = drawn.to_namelist() + LOADING
+    assert change[0] in case
+    with pytest.raises(rbsdem.InputError, match=text):
+        case_of_text(case.replace(*change, 1))
+
+
+def test_a_column_has_one_drawing():
+    column = rbsdem.section.column(C, 1.6, axial_load=400e3)
+    case = column.to_namelist() + LOADING
+    more = "&drawing name = 'x', version = '2026.6' /\n"
+    with pytest.raises(rbsdem.InputError, match="a column has one; remove the others"):
+        case_of_text(case + more)

@@ -13,7 +13,7 @@ STIFF = frames.FrameMember(30e9, 4.0, 4.0)
 def frame(kinematics="pdelta", **more):
     """Return three storeys, two bays, with rigid ends, loads on beams and on nodes."""
     kinds = [
-        frames.FrameMember(30e9, 0.16, 2.1e-3, yield_moment=m, hardening=0.02, panel=p)
+        frames.FrameMember(30e9, 0.16, 2.1e-3, yield_moment=m, hardening=0.02, rigid_end=p)
         for m, p in ((250e3, 0.25), (180e3, 0.2))
     ]
     nodes = [frames.FrameNode(f"N-{i}-{k}", load_y=-40e3) for i in (1, 3) for k in (1, 2, 3)]
@@ -104,7 +104,7 @@ def test_rotations_of_a_cantilever_and_of_its_hinge():
     np.testing.assert_allclose(bent.chord_rotation[-1], [-0.01, 0.005], rtol=1e-9)
     assert not bent.plastic_rotation.any()
     hinge = frames.FrameMember(
-        30e9, 0.16, 2.1e-3, flexure=Bilinear(1e7, 4e-3, 1e5), between="rigid"
+        30e9, 0.16, 2.1e-3, flexure=Bilinear(1e7, 4e-3, 1e5), interior="rigid"
     )
     made = rbsdem.Frame([3.0], columns=hinge)
     # No moment is at the top, so all of the drift is the rotation of the foot.

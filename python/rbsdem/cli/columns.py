@@ -52,6 +52,22 @@ _jobs = click.option("--jobs", type=int, metavar="N", help="threads; default one
 _tests = click.option("--tests", type=FOLDER, metavar="DIR", help="show the nearest measured tests")
 
 
+# ---- drawn frames -------------------------------------------------------------------------------
+
+
+@click.command("draw")
+@CASE
+def draw(case: Path) -> int:
+    """Write a case whose frame is drawn by sections with the springs of its members.
+
+    The executable solves springs: rbsdem draw CASE.nml | rbsdem run - --output rows.csv
+
+    Exit codes: 0 done, 2 the input is wrong.
+    """
+    print(read_case(case).to_namelist(springs=True), end="")
+    return 0
+
+
 # ---- methods ------------------------------------------------------------------------------------
 
 

@@ -713,11 +713,24 @@ class Frame:
     def _groups(self) -> _core.Statement:
         return self._statement
 
-    def _state(self) -> _core.Statement:
+    def _state(
+        self,
+        cells: Sequence[Mapping[tuple[int, int], Any]] = (),
+        drawn: Mapping[Any, dict[str, Any]] | None = None,
+        **more: Any,
+    ) -> _core.Statement:
+        """Return the groups of a case file; some cells may be drawn, with `more` keys of the grid.
+
+        Of a drawn cell `drawn` has the keys that name its drawings.
+        """
+        places: Any = cells or (self.columns or {}, self.beams or {})
+        drawn = drawn or {}
+        kinds = [one for own in places for one in own.values() if one and one not in drawn]
+        kinds += [member.kind for member in self.members]
         # The same kind may end in nodes of different sizes.
         names: dict[FrameMember, str] = {}
-        taken = {own.name for own in self._kinds() if own.name}
-        for own in (with_rigid_end(kind, 0.0) for kind in self._kinds()):
+        taken = {own.name for own in kinds if own.name}
+        for own in (with_rigid_end(kind, 0.0) for kind in kinds):
             if own not in names:
                 number = len(names) + 1
                 while f"kind-{number}" in taken:
@@ -730,31 +743,23 @@ class Frame:
             for name in ("storeys", "bays", "diaphragm", "control_node", *usual)
         }
         own_values = {k: v for k, v in grid.items() if v not in (None, False, "", usual.get(k))}
-        parts = [_core.group("frame", own_values)]
-        masses, loads = self.floor_mass, self.beam_load
-        count = max(len(masses), len(loads))  # type: ignore[arg-type]
-        for i in range(count):
-            mass = masses[min(i, len(masses) - 1)]  # type: ignore[arg-type, index]
-            load = loads[min(i, len(loads) - 1)]  # type: ignore[arg-type, index]
-            if mass or load:
-                storey = None if count == 1 else i + 1
-                values = {"storey": storey, "mass": mass or None, "load": load or None}
-                parts.append(_core.group("floor", values))
+        parts = [_core.group("frame", own_values | more)]
+        parts += self._floors()
         layers: dict[Spring, int] = {}
         for kind, name in names.items():
             parts += kind._groups(name, layers)
         parts.append(layer_springs(layers))
-        for group, key, cells in (
-            ("column_of", "line", self.columns),
-            ("beam_of", "bay", self.beams),
+        keys: dict[Any, dict[str, Any]] = {None: {"kind": _core.Text("none")}, **drawn}
+        for kind in kinds:
+            keys[kind] = {"kind": _core.Text(names[with_rigid_end(kind, 0.0)])} | _rigid_lengths(
+                kind.rigid_end
+            )
+        for group, at, own_cells in zip(
+            ("column_of", "beam_of"), ("line", "bay"), places, strict=True
         ):
-            for (at, storey), cell in (cells or {}).items():  # type: ignore[union-attr]
-                values = {
-                    key: at or None,
-                    "storey": storey or None,
-                    "kind": _core.Text(names[with_rigid_end(cell, 0.0)] if cell else "none"),
-                } | (_rigid_lengths(cell.rigid_end) if cell else {})
-                parts.append(_core.group(group, values))
+            for (line, storey), cell in own_cells.items():
+                where = {at: line or None, "storey": storey or None}
+                parts.append(_core.group(group, where | keys[cell]))
         for node in self.nodes:
             parts += node._groups()
         parts += [member._group(names[with_rigid_end(member.kind, 0.0)]) for member in self.members]
@@ -769,10 +774,16 @@ class Frame:
         numbers = [number for part in parts for number in part.numbers]
         return _core.Statement("\n".join(part.text for part in parts if part.text), numbers)
 
-    def _kinds(self) -> Iterator[FrameMember]:
-        for cells in (self.columns, self.beams):
-            yield from filter(None, (cells or {}).values())  # type: ignore[union-attr]
-        yield from (member.kind for member in self.members)
+    def _floors(self) -> Iterator[_core.Statement]:
+        masses, loads = self.floor_mass, self.beam_load
+        count = max(len(masses), len(loads))  # type: ignore[arg-type]
+        for i in range(count):
+            mass = masses[min(i, len(masses) - 1)]  # type: ignore[arg-type, index]
+            load = loads[min(i, len(loads) - 1)]  # type: ignore[arg-type, index]
+            if mass or load:
+                storey = None if count == 1 else i + 1
+                values = {"storey": storey, "mass": mass or None, "load": load or None}
+                yield _core.group("floor", values)
 
 
 def _spring_of(text: str, place: float, stiffness: float) -> FrameSpring:

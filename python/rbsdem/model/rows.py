@@ -21,7 +21,7 @@ from rbsdem.curves.envelope import Envelope, Idealisation, Method, strength_loss
 from rbsdem.curves.envelope import envelope as curve_envelope
 from rbsdem.curves.metrics import loop_pair
 from rbsdem.errors import InputError
-from rbsdem.model.frame import Structure
+from rbsdem.model.frame import Frame, Structure
 
 #: Names of the energies.
 ENERGIES = ("input", "kinetic", "spring", "damping", "axial", "residual")
@@ -436,8 +436,12 @@ def _parts(result: Any) -> tuple[dict[str, Any], dict[str, Any]]:
     arrays: dict[str, Any] = {}
     about: dict[str, Any] = {"format": FORMAT, "format_version": FORMAT_VERSION}
     about |= {"version": _core.version(), "units": _core.units()}
+    structure = result.column
+    plain = structure._statement if isinstance(structure, Frame) else structure._groups()
     about |= {
-        "column": result.column.to_namelist(),
+        "column": _core.evaluate("to_namelist", plain).text,
+        # Springs stay as they were solved; sections come back where they still give these springs.
+        "drawing": structure.to_namelist() if structure._groups() != plain else None,
         "summary": result.summary,
         "arrays": {},
         "case": None,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import tempfile
@@ -129,13 +130,20 @@ class Case:
         column: Column = self.column
         return column
 
-    def to_namelist(self) -> str:
+    def to_namelist(self, *, springs: bool = False) -> str:
         """Return the text of a case file, from which the same case comes back.
 
         Histories are written into the text itself, with all their digits.
+
+        Parameters
+        ----------
+        springs : bool, optional
+            Whether a frame that was drawn is written with all its springs, as the executable takes
+            it; else by its sections.
         """
         head = {"title": _core.Text(self.title) if self.title else None}
-        parts = [_core.group("case", head), self.column._groups()]
+        structure = self.column._statement if springs else self.column._groups()
+        parts = [_core.group("case", head), structure]
         time = None if self.method == "static" else self.time
         for name, values in self.loads.items():
             parts.append(_core.group("loading", {"drive": name, "time": time, "values": values}))
@@ -181,8 +189,13 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     """
     statement, time, values, acting = _core.read_case(path)
     groups: dict[str, list[dict[str, Any]]] = {}
+    drawings: list[dict[str, list[dict[str, Any]]]] = []
     for name, given in _core.groups(statement):
         groups.setdefault(name, []).append(given)
+        # Groups of a drawing follow it.
+        drawings += [{}] if name == "drawing" else []
+        if drawings:
+            drawings[-1].setdefault(name, []).append(given)
     # Of springs and of what a drawing has there are several.
     found = {name: given[-1] for name, given in groups.items()}
     settings = _core.typed("analysis", found.get("analysis", {}))
@@ -193,7 +206,7 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     if "initial" in settings:
         settings["initial"] = os.path.join(os.path.dirname(os.fspath(path)), settings["initial"])
     if "frame" in groups:
-        return _case_of(frame_of(groups), found, settings, time, values, acting)
+        return _case_of(frame_of(groups, drawings), found, settings, time, values, acting)
     column = _core.typed("column", found["column"])
     column |= springs_of_joints(groups, column.get("n", 1) + (column.get("top") == "fixed"))
     beneath = {name: column.pop(f"{name}_0", None) for name in SPRING_GROUPS}
@@ -330,6 +343,10 @@ def _result(about: dict[str, Any], arrays: dict[str, Any]) -> Result | FrameResu
     with notes_off():
         structure = case_of_text(about["column"] + _LOADING).column
         case = None if about["case"] is None else case_of_text(about["case"])
+        if about.get("drawing"):
+            with contextlib.suppress(InputError):
+                drawn = case_of_text(about["drawing"] + _LOADING).column
+                structure = drawn if drawn == structure else structure
     own: dict[str, Any] = {
         name: arrays[name] if there else None for name, there in about["arrays"].items()
     }

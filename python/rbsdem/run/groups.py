@@ -14,7 +14,7 @@ from rbsdem.model.frame import FrameMember, FrameNode, Member, with_rigid_end
 from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
 from rbsdem.model.springs import SPRINGS, Layered, Spring
-from rbsdem.section.building import Frame
+from rbsdem.section.building import Building, Frame
 from rbsdem.section.layered import LayeredColumn, LayeredModel
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
 
@@ -187,25 +187,50 @@ def _joints(given: dict[str, Any]) -> tuple[int, ...]:
     return tuple(int(joint) for joint in _core.several(given.get("joint", [])))
 
 
-def frame_of(groups: Groups) -> Frame:
-    """Return the frame of the groups of a case."""
-    kinds = {given["name"]: _kind(given, groups) for given in groups.get("member_kind", [])}
+def frame_of(groups: Groups, drawings: Sequence[Groups] = ()) -> Frame:
+    """Return the frame of the groups of a case, and of those of each of its drawings.
+
+    Raises
+    ------
+    InputError
+        If the members of a drawn frame cannot be made.
+    """
+    kinds: dict[str, Any] = {
+        given["name"]: _kind(given, groups) for given in groups.get("member_kind", [])
+    }
     frame = _core.typed("frame", groups["frame"][-1])
     storeys = max(len(frame.get("storeys", ())), 1)
     damping = groups.get("damping")
     panels = [own for own in groups.get("flexure", []) if "panel" in own]
-    return Frame(
-        **frame,
-        columns=_cells("column_of", "line", groups, kinds),
-        beams=_cells("beam_of", "bay", groups, kinds),
-        floor_mass=_by_floor("mass", storeys, groups),
-        beam_load=_by_floor("load", storeys, groups),
-        nodes=_nodes(groups, len(frame.get("bays", ())) + 1),
-        members=[_member(given, kinds[given["kind"]]) for given in groups.get("member", [])],
-        damping=Damping(**_core.typed("damping", damping[-1])) if damping else None,
-        panel=next((_spring(own) for own in panels if own["panel"] == "all"), None),
-        losses={own["member"]: own.get("time", 0.0) for own in groups.get("loss", [])} or None,
-    )
+    ends, hoops = frame.pop("ends", "asce"), frame.pop("panel_hoops", None)
+    made = frame | {
+        "floor_mass": _by_floor("mass", storeys, groups),
+        "beam_load": _by_floor("load", storeys, groups),
+        "nodes": _nodes(groups, len(frame.get("bays", ())) + 1),
+        "members": [_member(given, kinds[given["kind"]]) for given in groups.get("member", [])],
+        "damping": Damping(**_core.typed("damping", damping[-1])) if damping else None,
+        "panel": next((_spring(own) for own in panels if own["panel"] == "all"), None),
+        "losses": {own["member"]: own.get("time", 0.0) for own in groups.get("loss", [])} or None,
+    }
+    kinds |= {own["drawing"][0]["name"]: _drawn_section(own) for own in drawings}
+    cells = [_cells(*names, groups, kinds) for names in (("column_of", "line"), ("beam_of", "bay"))]
+    if not drawings:
+        return Frame(columns=cells[0] or None, beams=cells[1] or None, **made)
+    storeys, bays = made.pop("storeys", ()), made.pop("bays", ())
+    building = Building(cells[0], cells[1], ends, getattr(kinds.get(hoops), "ties", hoops))
+    return Frame.of_drawings(tuple(storeys), tuple(bays), building, made)
+
+
+def _drawn_section(groups: Groups) -> Section:
+    """Return the section of a drawing of members of a frame."""
+    about = _one(groups, "drawing")
+    if set(about) > {"name", "version"} or "parameter" in groups:
+        raise InputError(
+            f"drawing {about['name']!r}: of members of a frame it has name and version alone, and "
+            "the parameters of the version"
+        )
+    _parameters(about["version"], {})
+    return _section(groups)
 
 
 def _member(given: Mapping[str, Any], kind: FrameMember) -> Member:
@@ -242,19 +267,24 @@ def _layered(given: dict[str, Any], groups: Groups) -> Layered:
 
 
 def _cells(
-    group: str, key: str, groups: Groups, kinds: Mapping[str, FrameMember]
-) -> dict[tuple[int, int], FrameMember | None] | None:
-    found: dict[tuple[int, int], FrameMember | None] = {}
+    group: str, key: str, groups: Groups, kinds: Mapping[str, Any]
+) -> dict[tuple[int, int], Any]:
+    """Return kinds, or sections of drawings, by their places."""
+    found: dict[tuple[int, int], Any] = {}
     for given in groups.get(group, []):
         pair = (int(given.get(key, 0)), int(given.get("storey", 0)))
         # The last that fits counts.
         found.pop(pair, None)
-        none = given["kind"] == "none"
+        kind = None if given["kind"] == "none" else kinds[given["kind"]]
+        if isinstance(kind, Section):
+            other = given.get("kind_to")
+            found[pair] = kind if other is None else (kind, kinds[other])
+            continue
         rigid_end = given.get("rigid_end", 0.0)
         if "rigid_from" in given or "rigid_to" in given:
             rigid_end = given.get("rigid_from", rigid_end), given.get("rigid_to", rigid_end)
-        found[pair] = None if none else with_rigid_end(kinds[given["kind"]], rigid_end)
-    return found or None
+        found[pair] = None if kind is None else with_rigid_end(kind, rigid_end)
+    return found
 
 
 def _by_floor(name: str, storeys: int, groups: Groups) -> list[float]:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import lru_cache
+from itertools import count
 from typing import Any, Literal
 
 import numpy as np
 
-from rbsdem import _arguments
+from rbsdem import _arguments, _core
 from rbsdem._tables import STANDARD_GRAVITY
 from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError, warn
@@ -20,6 +21,7 @@ from rbsdem.model.shape import RectangularSection, Section
 from rbsdem.section.beams import rigid_ends
 from rbsdem.section.columns import member
 from rbsdem.section.panel import JointPanel, PanelClass
+from rbsdem.section.parameters import VERSION
 
 Halves = tuple[Section, Section]
 Drawn = Section | Halves | FrameMember
@@ -35,7 +37,7 @@ _DIFFER = 0.05
 
 @dataclass(frozen=True)
 class Building:
-    """What a frame was drawn from.
+    """What the members of a frame were drawn from.
 
     Attributes
     ----------
@@ -45,25 +47,12 @@ class Building:
         Rule of the rigid ends, the `share` of `rbsdem.section.rigid_ends`.
     panel_hoops : Ties, "none" or None
         Hoops in the panels of nodes; None: the nodes are rigid.
-    dead_load, live_load : tuple of float
-        On the beams of each floor, without their own weight [N/m].
-    live_share : float
-        Part of the live load that acts with the earthquake.
-    node_load : dict
-        Weights of walls and facades by (line, floor), 0 for all [N].
-    self_weight : bool
-        Whether columns and beams have their own weight.
     """
 
     columns: dict[tuple[int, int], Any]
     beams: dict[tuple[int, int], Any]
     ends: float | Literal["asce"] = "asce"
     panel_hoops: Ties | Literal["none"] | None = None
-    dead_load: tuple[float, ...] = (0.0,)
-    live_load: tuple[float, ...] = (0.0,)
-    live_share: float = 0.3
-    node_load: dict[tuple[int, int], float] = field(default_factory=dict)
-    self_weight: bool = False
 
 
 @dataclass(frozen=True, repr=False)
@@ -144,16 +133,16 @@ class Frame(model.Frame):
             cells[1],
             ends if ends is not None else "asce" if panel_hoops is None else 1.0,
             panel_hoops,
-            grid.floors(dead_load, "dead_load"),
-            grid.floors(live_load, "live_load"),
-            _arguments.number(live_share, "frame: live_share", least=0.0, most=1.0),
-            _node_loads(node_load, lines),
-            _arguments.boolean(self_weight, "frame: self_weight"),
         )
-        drawn = any(not isinstance(one, FrameMember) for one in grid.all_cells())
         nodes = {node.name: node for node in more.pop("nodes", ())}
-        loads = grid.loads(building, np.array(grid.floors(more.pop("beam_load", 0.0), "beam_load")))
-        weights = grid.weights(building)
+        loads = np.array(grid.floors(more.pop("beam_load", 0.0), "beam_load"))
+        loads = loads + grid.floors(dead_load, "dead_load")
+        share = _arguments.number(live_share, "frame: live_share", least=0.0, most=1.0)
+        loads = loads + share * np.array(grid.floors(live_load, "live_load"))
+        heavy = _arguments.boolean(self_weight, "frame: self_weight")
+        if heavy:
+            loads = loads + grid.weights_of_beams()
+        weights = grid.weights(_node_loads(node_load, lines), heavy)
         for name, weight in weights.items():
             node = nodes.get(name, FrameNode(name))
             nodes[name] = replace(node, load_y=node.load_y - weight)
@@ -164,15 +153,95 @@ class Frame(model.Frame):
             if level > 0:
                 floors[level - 1] -= node.load_y / STANDARD_GRAVITY
         _masses(more, floors, mass)
-        if drawn:
-            cells = grid.members(cls, building, more | {"nodes": tuple(nodes.values())})
-            for name, node in grid.panels(building).items():
-                own = nodes.get(name, FrameNode(name))
-                nodes[name] = own if own.panel is not None else replace(own, panel=node)
-            more["building"] = building
-        return cls(
-            heights, widths or None, cells[0], cells[1] or None, nodes=tuple(nodes.values()), **more
-        )
+        more["nodes"] = tuple(nodes.values())
+        if all(isinstance(one, FrameMember) for one in grid.all_cells()):
+            return cls(heights, widths or None, cells[0], cells[1] or None, **more)
+        return cls.of_drawings(heights, widths, building, more)
+
+    @classmethod
+    def of_drawings(
+        cls,
+        storeys: tuple[float, ...],
+        bays: tuple[float, ...],
+        building: Building,
+        given: dict[str, Any],
+    ) -> Frame:
+        """Return a frame whose members are made of their sections, under loads that are known.
+
+        Parameters
+        ----------
+        storeys, bays : tuple of float
+            Heights and widths between axes [m].
+        building : Building
+            The drawings.
+        given : dict
+            All other parameters of `Frame`: loads, masses and nodes as they are.
+        """
+        grid = _Grid(storeys, bays, building.columns, building.beams)
+        cells = grid.members(cls, building, given)
+        nodes = {node.name: node for node in given["nodes"]}
+        for name, panel in grid.panels(building).items():
+            own = nodes.get(name, FrameNode(name))
+            nodes[name] = own if own.panel is not None else replace(own, panel=panel)
+        given = given | {"nodes": tuple(nodes.values()), "building": building}
+        return cls(storeys, bays or None, cells[0], cells[1] or None, **given)
+
+    def to_namelist(self, *, springs: bool = False) -> str:
+        """Return the frame as groups of a case file, from which the same frame comes back.
+
+        Parameters
+        ----------
+        springs : bool, optional
+            Whether members that were drawn are written with all their springs, as the executable
+            takes them; else by their sections, of which `rbsdem.read_case` makes them again.
+        """
+        statement = self._statement if springs else self._groups()
+        return _core.evaluate("to_namelist", statement).text
+
+    def _groups(self) -> _core.Statement:
+        """Return the groups of a case file, with drawings in place of springs where that is all."""
+        building = self.building
+        if building is None:
+            return self._statement
+        given: Any = self.storeys or (), self.bays or ()
+        storeys, bays = given
+        panels = _Grid(storeys, bays, building.columns, building.beams).panels(building)
+        own = [
+            replace(node, panel=None) if node.panel == panels.get(node.name) else node
+            for node in self.nodes
+        ]
+        nodes = tuple(node for node in own if node != FrameNode(node.name))
+        known = {one.name: getattr(self, one.name) for one in fields(model.Frame)}
+        for name in ("storeys", "bays", "columns", "beams"):
+            known.pop(name)
+        if self.of_drawings(storeys, bays, building, known | {"nodes": nodes}) != self:
+            # It was changed since, as by `without`.
+            return self._statement
+        plain = replace(self, nodes=nodes, building=None)
+        cells = building.columns, building.beams
+        drawings: dict[Section, str] = {}
+        taken = {one.name for own in cells for one in own.values() if isinstance(one, FrameMember)}
+
+        def name_of(section: Section) -> _core.Text:
+            names = (f"section-{i}" for i in count(1))
+            free = (name for name in names if name not in {*taken, *drawings.values()})
+            return _core.Text(drawings.get(section) or drawings.setdefault(section, next(free)))
+
+        drawn: dict[Any, dict[str, Any]] = {}
+        for one in [one for own in cells for one in own.values() if _is_drawn(one)]:
+            start, end = _halves(one)
+            drawn[one] = {"kind": name_of(start), "kind_to": name_of(end) if start != end else None}
+        hoops: Any = building.panel_hoops
+        if isinstance(hoops, Ties):
+            # A drawing with these hoops; no member may be of it.
+            like: Section = replace(next(iter(drawings)), ties=hoops)  # type: ignore[call-arg]
+            hoops = name_of(next((one for one in drawings if one.ties == hoops), like))
+        more = {"panel_hoops": hoops, "ends": building.ends if building.ends != "asce" else None}
+        statement = plain._state(cells, drawn, **more)
+        for section, name in drawings.items():
+            about = {"name": _core.Text(name), "version": _core.Text(VERSION)}
+            statement += _core.group("drawing", about) + section.drawing()
+        return statement
 
 
 # With the parameters of the frame that it extends.
@@ -265,25 +334,20 @@ class _Grid:
             )
         return tuple(np.broadcast_to(values, len(self.storeys)).tolist())
 
-    def loads(self, building: Building, more: Array) -> Array:
-        """Return the loads on the beams of each floor that act [N/m]."""
-        found = more + np.array(building.dead_load)
-        found = found + building.live_share * np.array(building.live_load)
-        if building.self_weight:
-            for k in range(len(self.storeys)):
-                own = [_area(self.beams[i, k + 1]) for i in range(1, len(self.bays) + 1)]
-                # One load for the beams of a floor: that of their mean.
-                found[k] += (
-                    CONCRETE_WEIGHT * float(np.dot(own, self.bays)) / max(sum(self.bays), 1.0)
-                )
-        return np.asarray(found)
+    def weights_of_beams(self) -> Array:
+        """Return the weight of the beams of each floor, of their mean section [N/m]."""
+        found = []
+        for k in range(len(self.storeys)):
+            own = [_area(self.beams[i, k + 1]) for i in range(1, len(self.bays) + 1)]
+            found.append(CONCRETE_WEIGHT * float(np.dot(own, self.bays)) / max(sum(self.bays), 1.0))
+        return np.array(found)
 
-    def weights(self, building: Building) -> dict[str, float]:
+    def weights(self, walls: dict[tuple[int, int], float], heavy: bool) -> dict[str, float]:
         """Return the weights on the nodes of floors [N]: walls, and halves of the columns."""
         found = {}
         for i, k in self.columns:
-            weight = _at(building.node_load, i, k) or 0.0
-            if building.self_weight:
+            weight = _at(walls, i, k) or 0.0
+            if heavy:
                 above = self.columns.get((i, k + 1))
                 for one, height in (
                     (self.columns[i, k], self.storeys[k - 1]),

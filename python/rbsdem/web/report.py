@@ -527,9 +527,9 @@ def _of_structure(structure: Structure) -> Sheet:
         (own,) = (given for name, given in _core.groups(structure._groups()) if name == "column")
         shown = ("height", "axial_load", "mass", "top_mass", "kinematics")
         return _drawn(structure.drawing.section, _core.group("column", {n: own[n] for n in shown}))
-    given = inputs(structure._groups())
     if not isinstance(structure, Frame):
-        return Sheet("Inputs", table=given)
+        return Sheet("Inputs", table=inputs(structure._groups()))
+    given = inputs(structure._statement)
     # Layers and springs of drawn members fill pages.
     return Sheet(
         "Inputs", _described(structure), _drawings(structure), given, beside=len(given) > 60

@@ -56,6 +56,12 @@ contains
       type(modes_type) :: modes
       integer :: i, j
 
+      if (case%is_drawn_frame()) then
+         call messages%add('frame: it is drawn, and Python makes members of drawings; run it there, '// &
+                           'rbsdem.read_case(path).run(), or write its springs: rbsdem draw CASE.nml')
+         call messages%raise(error)
+         return
+      end if
       if (.not. allocated(case%parts)) then
          allocate (case%parts)
          call case%parts%find(case%frame, messages)

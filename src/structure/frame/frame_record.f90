@@ -48,7 +48,8 @@ module rbs_structure_frame_frame_record
    type, extends(visited_record), public :: cell_record
       logical :: is_beam = .false.
       integer :: line = 0, storey = 0
-      character(len=name_length) :: kind = ''
+      !> Name of a kind; of a drawn member that of a drawing, and of its second half if it is another one
+      character(len=name_length) :: kind = '', kind_to = ''
       !> In all nodes, or at the two ends where these are given
       real(wp) :: rigid_end = 0.0_wp, rigid_from = unset, rigid_to = unset
    contains
@@ -100,6 +101,9 @@ module rbs_structure_frame_frame_record
       logical :: diaphragm = .false.
       character(len=name_length) :: control_node = ''
       character(len=8) :: control = 'x'
+      !> Of drawn members: the part of a node that is rigid, and whose ties are in the panels of the nodes
+      real(wp) :: ends = unset
+      character(len=name_length) :: panel_hoops = ''
       type(floor_record), allocatable :: floor(:)
       type(kind_record), allocatable :: kind(:)
       type(cell_record), allocatable :: column_of(:), beam_of(:)
@@ -222,6 +226,10 @@ contains
       call v%word('control', self%control, 'direction of that displacement', 'x y')
       call v%word('collapse', self%collapse, 'whose drift collapse is judged by: the largest of the '// &
                   'storeys, or that of the top', 'storey roof')
+      call v%key('ends', self%ends, '', bound_type(0.0_wp, 1.0_wp), 'of drawn members: part of a node '// &
+                 'that is rigid in columns and beams; without it the rule of ASCE 41-17', optional=.true.)
+      call v%word('panel_hoops', self%panel_hoops, 'of drawn members: drawing whose ties are in the '// &
+                  'panels of the nodes, or ''none''; without it the nodes are rigid')
    end subroutine visit_frame
 
    subroutine visit_floor(self, v)
@@ -272,9 +280,10 @@ contains
          call v%key('line', self%line, '', not_negative, 'line of columns from the left, 0 for all')
       end if
       call v%key('storey', self%storey, '', not_negative, 'storey from the ground up, 0 for all')
-      call v%word('kind', self%kind, 'name of the kind of member, ''none'' where there is '// &
-                  'none; the last group that fits counts', &
+      call v%word('kind', self%kind, 'name of the kind of member or of its drawing, ''none'' where '// &
+                  'there is none; the last group that fits counts', &
                   required=.true.)
+      call v%word('kind_to', self%kind_to, 'drawing of its second half, if it is another one')
       call v%key('rigid_end', self%rigid_end, 'm', not_negative, &
                  'rigid length in each node that it ends in, not at the base')
       call v%key('rigid_from', self%rigid_from, 'm', not_negative, 'rigid length at its beginning, '// &
