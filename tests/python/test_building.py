@@ -124,13 +124,12 @@ def test_unlike_halves():
 
 
 def test_a_drawn_frame_comes_back_from_its_springs(drawn):
-    loading = "&loading drive = 'displacement', values = 0.01 /\n"
-    assert case_of_text(drawn.to_namelist() + loading).column == drawn
+    assert case_of_text(drawn.to_namelist(springs=True) + LOADING).column == drawn
 
 
 def test_equal_members_are_one_kind():
     tall = rbsdem.Frame.grid([3.2] * 6, [5.6] * 4, columns=C, beams=B, **MORE)
-    kinds = {id(kind.flexure[0][1]) for kind in map(tall.kind_of, tall.parts.members)}
+    kinds = {id(kind.flexure[0][1]) for kind in tall.kinds.values()}
     assert len(tall.parts.members) == 54
     assert len(kinds) < 20
 
@@ -178,7 +177,7 @@ def test_refusals(change, text):
 
 
 def sections_of(frame):
-    return [frame.kind_of(name).sections for name in frame.parts.members]
+    return [kind.sections for kind in frame.kinds.values()]
 
 
 @pytest.mark.filterwarnings("ignore:the section has a flange")
