@@ -122,6 +122,15 @@ module rbs_hysteresis_rules_capped
       procedure :: serialize
    end type capped_memory
 
+   !> A spring at an event: its part, and what the event changes.
+   type :: capped_spring
+      type(capped_part), pointer :: part => null()
+      type(capped_state), pointer :: now => null()
+      !> Open turns of each side (-1:1)
+      type(open_turns), pointer :: turns_of(:) => null()
+      type(segment), pointer :: branch => null()
+   end type capped_spring
+
 contains
 
    !> The memory of the virgin part, and its branch.
@@ -164,15 +173,21 @@ contains
       call find_branch(self, memory%now, memory%open, branch, direction)
    end subroutine next
 
+   !> The next branch at the end of the present one, where the motion continues or reverses.
    subroutine find_branch(self, now, turns_of, branch, direction)
-      class(capped_part), intent(in) :: self
-      type(capped_state), intent(inout) :: now
-      type(open_turns), intent(inout) :: turns_of(-1:1)
-      type(segment), intent(inout) :: branch
+      type(capped_part), intent(in), target :: self
+      type(capped_state), intent(inout), target :: now
+      type(open_turns), intent(inout), target :: turns_of(-1:1)
+      type(segment), intent(inout), target :: branch
       integer, intent(in) :: direction
+      type(capped_spring) :: spring
       type(point) :: here
       logical :: outward
 
+      spring%part => self
+      spring%now => now
+      spring%turns_of(-1:) => turns_of
+      spring%branch => branch
       here%d = branch%end_toward(direction)
       here%f = branch%force(here%d)
       now%work = now%work + 0.5_wp*(here%f + now%begun%f)*(here%d - now%begun%d)
@@ -184,16 +199,16 @@ contains
          if (direction*here%d > 0.0_wp) then
             ! What the flexural spring did before counts for nothing: an uncracked spring has not decayed.
             now%work_at_cracking = now%flexural_work
-            call follow_backbone(direction, here)
+            call follow_backbone(spring, direction, here)
          else
             now%side = direction
             branch = virgin_branch(self, now, direction)
          end if
       case (on_backbone)
          if (outward) then
-            call follow_backbone(direction, here)
+            call follow_backbone(spring, direction, here)
          else
-            call unload(here)
+            call unload(spring, here)
          end if
       case (unloading)
          if (outward) then
@@ -201,73 +216,80 @@ contains
             branch = now%left
             call branch%lead_outward(now%side, near=here%d, far=now%left%end_toward(direction))
          else
-            call end_excursion(here%d)
+            call end_excursion(spring, here%d)
          end if
       case (reloading)
          if (outward) then
-            call go_on(here)
+            call go_on(spring, here)
          else
-            call unload(here)
+            call unload(spring, here)
          end if
       case default                                   ! in a gap
          if (outward) then
-            call reload()
+            call reload(spring)
          else
             now%way_back = 0.0_wp
-            call enter(direction, here%d)
+            call enter(spring, direction, here%d)
          end if
       end select
+   end subroutine find_branch
 
-   contains
+   !> On the backbone of side s from a point on.
+   subroutine follow_backbone(spring, s, here)
+      type(capped_spring), intent(inout) :: spring
+      integer, intent(in) :: s
+      type(point), intent(in) :: here
+      real(wp) :: k
 
-      !> On the backbone of side s from a point on.
-      subroutine follow_backbone(s, here)
-         integer, intent(in) :: s
-         type(point), intent(in) :: here
-         real(wp) :: k
-
+      associate (now => spring%now, branch => spring%branch, turns_of => spring%turns_of)
          now%side = s
          now%branch = on_backbone
          ! No turn of this side lies ahead any more.
          turns_of(s)%count = 0
          if (.not. now%yielded .and. s*here%d >= now%backbone(s)%d_y) then
             ! What was dissipated before yield does not deteriorate.
-            k = unloading_stiffness(s, point(s*here%d, s*here%f))
+            k = unloading_stiffness(spring, s, point(s*here%d, s*here%f))
             now%work_at_zero = now%work - 0.5_wp*here%f**2/k
             now%yielded = .true.
          end if
          branch = now%backbone(s)%line_from(s, here%d)
-      end subroutine follow_backbone
+      end associate
+   end subroutine follow_backbone
 
-      !> The motion has turned back: unload toward zero force.
-      subroutine unload(here)
-         type(point), intent(in) :: here
-         type(point) :: at
-         real(wp) :: k
-         integer :: s
+   !> The motion has turned back: unload toward zero force.
+   subroutine unload(spring, here)
+      type(capped_spring), intent(inout) :: spring
+      type(point), intent(in) :: here
+      type(point) :: at
+      real(wp) :: k
+      integer :: s
 
+      associate (part => spring%part, now => spring%now, branch => spring%branch)
          s = now%side
          at = point(s*here%d, s*here%f)
          now%peak(s) = max(now%peak(s), at%d)
-         now%worn = max(now%worn, spent_at(at%f))
+         now%worn = max(now%worn, spent_at(spring, at%f))
          now%turned = turn(at, start=now%start_at, goal=now%goal)
          now%left = branch
          now%left_branch = now%branch
          now%branch = unloading
-         if (at%f <= no_force*self%given(s)%f_y) then
+         if (at%f <= no_force*part%given(s)%f_y) then
             ! There is no force to unload.
-            call end_excursion(here%d)
+            call end_excursion(spring, here%d)
             return
          end if
-         k = unloading_stiffness(s, at)
+         k = unloading_stiffness(spring, s, at)
          branch = segment(d0=here%d, f0=here%f, k=k)
          call branch%lead_outward(s, near=here%d - here%f/k, far=here%d, unload_on_reversal=.false.)
-      end subroutine unload
+      end associate
+   end subroutine unload
 
-      !> Zero force is reached: the excursion to the present side is over.
-      subroutine end_excursion(zero)
-         real(wp), intent(in) :: zero
+   !> Zero force is reached: the excursion to the present side is over.
+   subroutine end_excursion(spring, zero)
+      type(capped_spring), intent(inout) :: spring
+      real(wp), intent(in) :: zero
 
+      associate (now => spring%now, turns_of => spring%turns_of)
          if (now%yielded) now%dissipated(now%side) = now%dissipated(now%side) + (now%work - now%work_at_zero)
          now%work_at_zero = now%work
          call turns_of(-now%side)%fade(now%turned%at%d)
@@ -276,29 +298,32 @@ contains
          now%turned%number = min(now%closed, now%turns)
          call turns_of(now%side)%push(now%turned)
          now%way_back = now%turned%at%d - now%entered
-         call enter(-now%side, zero)
-      end subroutine end_excursion
+         call enter(spring, -now%side, zero)
+      end associate
+   end subroutine end_excursion
 
-      !> Without force the motion goes toward side s, which deteriorates.
-      subroutine enter(s, zero)
-         integer, intent(in) :: s
-         !> Where the force is zero [m or rad]
-         real(wp), intent(in) :: zero
-         real(wp) :: least, k
+   !> Without force the motion goes toward side s, which deteriorates.
+   subroutine enter(spring, s, zero)
+      type(capped_spring), intent(inout) :: spring
+      integer, intent(in) :: s
+      !> Where the force is zero [m or rad]
+      real(wp), intent(in) :: zero
+      real(wp) :: least, k
 
+      associate (part => spring%part, now => spring%now, branch => spring%branch, turns_of => spring%turns_of)
          now%side = s
          now%begun = point(zero, 0.0_wp)
          now%entered = s*zero
-         if (self%deterioration%acts() .or. self%hinge_work > 0.0_wp) call deteriorate(s)
+         if (part%deterioration%acts() .or. part%hinge_work > 0.0_wp) call deteriorate(spring, s)
          now%start_at = s*zero
-         if (self%slips) then
+         if (part%slips) then
             ! At a share of the permanent deformation, where unloading from the peak ends
-            k = virgin_unloading(s, now%peak(s))*stiffness_left(now%worn)
-            least = self%slip*max(now%peak(s) - now%backbone(s)%force(now%peak(s))/k, 0.0_wp)
+            k = virgin_unloading(spring, s, now%peak(s))*stiffness_left(spring, now%worn)
+            least = part%slip*max(now%peak(s) - now%backbone(s)%force(now%peak(s))/k, 0.0_wp)
             now%start_at = max(now%start_at, least)
-            call find_turns(s, least)
+            call find_turns(spring, s, least)
          else
-            call find_turns(s, -unbounded)
+            call find_turns(spring, s, -unbounded)
          end if
          call turns_of(s)%forget_inside(now%start_at)
          if (now%start_at > s*zero) then
@@ -306,21 +331,24 @@ contains
             branch = segment(d0=zero)
             call branch%lead_outward(s, near=zero, far=s*now%start_at)
          else
-            call reload()
+            call reload(spring)
          end if
-      end subroutine enter
+      end associate
+   end subroutine enter
 
-      !> Start reloading, to the newest open turn or the peak.
-      subroutine reload()
-         logical :: found
+   !> Start reloading, to the newest open turn or the peak.
+   subroutine reload(spring)
+      type(capped_spring), intent(inout) :: spring
+      logical :: found
 
+      associate (part => spring%part, now => spring%now, turns_of => spring%turns_of)
          now%branch = reloading
          now%closed_start = now%start_at
          now%closed_at = now%start_at
          now%closed = no_turn
          associate (s => now%side, turns => turns_of(now%side))
             do while (turns%count > 0)
-               call turns%list(turns%count)%shift(now%start_at, self%k_0, found)
+               call turns%list(turns%count)%shift(now%start_at, part%k_0, found)
                if (found) exit
                turns%count = turns%count - 1
             end do
@@ -328,18 +356,21 @@ contains
             if (now%to_turn) then
                now%goal = turns%list(turns%count)%at
             else
-               now%goal = goal_from(s, now%start_at)
+               now%goal = goal_from(spring, s, now%start_at)
             end if
-            call aim(point(now%start_at, 0.0_wp))
+            call aim(spring, point(now%start_at, 0.0_wp))
          end associate
-      end subroutine reload
+      end associate
+   end subroutine reload
 
-      !> The goal of reloading is reached.
-      subroutine go_on(here)
-         type(point), intent(in) :: here
+   !> The goal of reloading is reached.
+   subroutine go_on(spring, here)
+      type(capped_spring), intent(inout) :: spring
+      type(point), intent(in) :: here
 
+      associate (now => spring%now, turns_of => spring%turns_of)
          associate (s => now%side, turns => turns_of(now%side))
-            now%closed_start = outermost_rest(s*here%d)
+            now%closed_start = outermost_rest(spring, s*here%d)
             now%closed_at = s*here%d
             if (now%to_turn) then
                ! The inner loop is closed.
@@ -349,24 +380,27 @@ contains
                now%goal = turns%list(turns%count)%goal
                turns%count = turns%count - 1
                now%to_turn = turns%count > 0
-               call aim(point(s*here%d, s*here%f))
+               call aim(spring, point(s*here%d, s*here%f))
             else
                call turns_of(-s)%let_fade(0_int64, s*here%d)
-               call follow_backbone(s, here)
+               call follow_backbone(spring, s, here)
             end if
          end associate
-      end subroutine go_on
+      end associate
+   end subroutine go_on
 
-      !> The straight line to the goal. That point is its anchor, so that it is met exactly.
-      subroutine aim(from)
-         !> As seen from the side
-         type(point), intent(in) :: from
-         real(wp) :: way, k
+   !> The straight line to the goal. That point is its anchor, so that it is met exactly.
+   subroutine aim(spring, from)
+      type(capped_spring), intent(inout) :: spring
+      !> As seen from the side
+      type(point), intent(in) :: from
+      real(wp) :: way, k
 
+      associate (part => spring%part, now => spring%now, branch => spring%branch)
          associate (s => now%side, at => now%goal)
             way = at%d - from%d
             ! If round-off leaves no distance, the point is met at once.
-            k = self%k_0
+            k = part%k_0
             if (way > 0.0_wp) then
                k = (at%f - from%f)/way
                branch = segment(d0=s*at%d, f0=0.0_wp + s*at%f, k=k)
@@ -375,82 +409,92 @@ contains
             end if
             call branch%lead_outward(s, near=s*from%d, far=s*max(at%d, from%d))
          end associate
-      end subroutine aim
+      end associate
+   end subroutine aim
 
-      !> Stiffness at which a turn unloads [N/m or N m/rad].
-      real(wp) function unloading_stiffness(s, at) result(k)
-         integer, intent(in) :: s
-         !> The turn, both positive
-         type(point), intent(in) :: at
-         real(wp) :: least
+   !> Stiffness at which a turn unloads [N/m or N m/rad].
+   real(wp) function unloading_stiffness(spring, s, at) result(k)
+      type(capped_spring), intent(inout) :: spring
+      integer, intent(in) :: s
+      !> The turn, both positive
+      type(point), intent(in) :: at
+      real(wp) :: least
 
-         k = virgin_unloading(s, max(now%peak(s), at%d))* &
-             stiffness_left(max(now%worn, spent_at(at%f)))
-         ! Unloading must not pass the deformation where loading started: that would create energy.
-         least = outermost_rest(at%d)
-         if (at%d > least) k = max(k, at%f/(at%d - least))
-         k = min(k, self%k_0)
-      end function unloading_stiffness
+      k = virgin_unloading(spring, s, max(spring%now%peak(s), at%d))* &
+          stiffness_left(spring, max(spring%now%worn, spent_at(spring, at%f)))
+      ! Unloading must not pass the deformation where loading started: that would create energy.
+      least = outermost_rest(spring, at%d)
+      if (at%d > least) k = max(k, at%f/(at%d - least))
+      k = min(k, spring%part%k_0)
+   end function unloading_stiffness
 
-      !> The deformation, as seen from the side, that unloading from a deformation does not pass.
-      real(wp) function outermost_rest(d)
-         real(wp), intent(in) :: d
+   !> The deformation, as seen from the side, that unloading from a deformation does not pass.
+   real(wp) function outermost_rest(spring, d)
+      type(capped_spring), intent(inout) :: spring
+      real(wp), intent(in) :: d
 
-         outermost_rest = max(now%start_at, now%closed_start - release*(d - now%closed_at))
-      end function outermost_rest
+      outermost_rest = max(spring%now%start_at, spring%now%closed_start - release*(d - spring%now%closed_at))
+   end function outermost_rest
 
-      !> Energy that is dissipated at a turn: without what the stiffest unloading would return [J]. It never
-      !> decreases along a line.
-      real(wp) function spent_at(f)
-         real(wp), intent(in) :: f
+   !> Energy that is dissipated at a turn: without what the stiffest unloading would return [J]. It never
+   !> decreases along a line.
+   real(wp) function spent_at(spring, f)
+      type(capped_spring), intent(inout) :: spring
+      real(wp), intent(in) :: f
 
+      associate (part => spring%part, now => spring%now)
          spent_at = 0.0_wp
          if (.not. now%yielded) return
          spent_at = now%dissipated(1) + now%dissipated(-1) + (now%work - now%work_at_zero) - &
-                    0.5_wp*f**2/self%k_0
-      end function spent_at
+                    0.5_wp*f**2/part%k_0
+      end associate
+   end function spent_at
 
-      !> Share of the unloading stiffness that deterioration has left.
-      real(wp) function stiffness_left(spent) result(share)
-         !> Energy dissipated at the last turn [J]
-         real(wp), intent(in) :: spent
+   !> Share of the unloading stiffness that deterioration has left.
+   real(wp) function stiffness_left(spring, spent) result(share)
+      type(capped_spring), intent(inout) :: spring
+      !> Energy dissipated at the last turn [J]
+      real(wp), intent(in) :: spent
 
-         share = max(self%deterioration%left(self%deterioration%unloading, spent), least_stiffness)
-      end function stiffness_left
+      share = max(spring%part%deterioration%left(spring%part%deterioration%unloading, spent), least_stiffness)
+   end function stiffness_left
 
-      !> Unloading stiffness without deterioration from the largest deformation of a side: before yield toward
-      !> the cracking force of the other side, after it decreasing with ductility [N/m or N m/rad].
-      real(wp) function virgin_unloading(s, d) result(k)
-         integer, intent(in) :: s
-         !> Positive
-         real(wp), intent(in) :: d
-         real(wp) :: f, beyond
+   !> Unloading stiffness without deterioration from the largest deformation of a side: before yield toward
+   !> the cracking force of the other side, after it decreasing with ductility [N/m or N m/rad].
+   real(wp) function virgin_unloading(spring, s, d) result(k)
+      type(capped_spring), intent(inout) :: spring
+      integer, intent(in) :: s
+      !> Positive
+      real(wp), intent(in) :: d
+      real(wp) :: f, beyond
 
-         associate (own => self%given(s), other => self%given(-s))
-            k = own%stiffness()
-            if (d <= own%d_c .or. (d < own%d_y .and. .not. own%d_c > 0.0_wp)) return
-            ! Where the elastic line of this side has the cracking force of the other.
-            beyond = other%f_c/k
-            if (d < own%d_y) then
-               f = own%f_c + (own%f_y - own%f_c)*((d - own%d_c)/(own%d_y - own%d_c))
-               k = (f + other%f_c)/(d + beyond)
-            else
-               k = (own%f_y + other%f_c)/(own%d_y + beyond)*(own%d_y/d)**self%b0
-            end if
-         end associate
-      end function virgin_unloading
+      associate (own => spring%part%given(s), other => spring%part%given(-s))
+         k = own%stiffness()
+         if (d <= own%d_c .or. (d < own%d_y .and. .not. own%d_c > 0.0_wp)) return
+         ! Where the elastic line of this side has the cracking force of the other.
+         beyond = other%f_c/k
+         if (d < own%d_y) then
+            f = own%f_c + (own%f_y - own%f_c)*((d - own%d_c)/(own%d_y - own%d_c))
+            k = (f + other%f_c)/(d + beyond)
+         else
+            k = (own%f_y + other%f_c)/(own%d_y + beyond)*(own%d_y/d)**spring%part%b0
+         end if
+      end associate
+   end function virgin_unloading
 
-      !> The backbone and the peak of a side as they are after what the other side has dissipated.
-      subroutine deteriorate(s)
-         integer, intent(in) :: s
-         real(wp) :: left, moved, worked
+   !> The backbone and the peak of a side as they are after what the other side has dissipated.
+   subroutine deteriorate(spring, s)
+      type(capped_spring), intent(inout) :: spring
+      integer, intent(in) :: s
+      real(wp) :: left, moved, worked
 
-         associate (law => self%deterioration, energy => now%dissipated(-s), backbone => now%backbone(s), &
-                    given => self%given(s))
+      associate (part => spring%part, now => spring%now, turns_of => spring%turns_of)
+         associate (law => part%deterioration, energy => now%dissipated(-s), backbone => now%backbone(s), &
+                    given => part%given(s))
             backbone%strength = law%strength_left(energy)
-            if (self%hinge_work > 0.0_wp) then
-               worked = max(now%flexural_work - now%work_at_cracking, 0.0_wp)/self%hinge_work
-               left = self%s_min + (1.0_wp - self%s_min)/(1.0_wp + worked)
+            if (part%hinge_work > 0.0_wp) then
+               worked = max(now%flexural_work - now%work_at_cracking, 0.0_wp)/part%hinge_work
+               left = part%s_min + (1.0_wp - part%s_min)/(1.0_wp + worked)
                ! After a small excursion to the other side little has changed.
                left = max(left, now%left_by_hinge(s) - decay_rate*max(now%way_back, 0.0_wp)/given%d_y)
                now%left_by_hinge(s) = min(left, now%left_by_hinge(s))
@@ -469,42 +513,46 @@ contains
                now%target_left(s) = left
             end if
          end associate
-      end subroutine deteriorate
+      end associate
+   end subroutine deteriorate
 
-      !> Put the open turns of a side on the lines as they are now.
-      subroutine find_turns(s, least)
-         integer, intent(in) :: s
-         !> Lines start here or farther in
-         real(wp), intent(in) :: least
-         integer :: i
+   !> Put the open turns of a side on the lines as they are now.
+   subroutine find_turns(spring, s, least)
+      type(capped_spring), intent(inout) :: spring
+      integer, intent(in) :: s
+      !> Lines start here or farther in
+      real(wp), intent(in) :: least
+      integer :: i
 
-         do i = 1, turns_of(s)%count
-            associate (turned => turns_of(s)%list(i))
-               ! That of the peak itself stays: unloading from it ends behind `least` in any case.
-               if (turned%at%d < turned%goal%d) turned%start = max(turned%start, least)
-               if (i == 1) then
-                  turned%goal = goal_from(s, turned%start)
-               else
-                  turned%goal = turns_of(s)%list(i - 1)%at
-               end if
-               if (turned%at%d >= turned%goal%d) then
-                  turned%at%f = now%backbone(s)%force(turned%at%d)
-               else if (turned%at%d > turned%start) then
-                  turned%at%f = turned%goal%f*((turned%at%d - turned%start)/(turned%goal%d - turned%start))
-               end if
-            end associate
-         end do
-      end subroutine find_turns
+      do i = 1, spring%turns_of(s)%count
+         associate (turned => spring%turns_of(s)%list(i))
+            ! That of the peak itself stays: unloading from it ends behind `least` in any case.
+            if (turned%at%d < turned%goal%d) turned%start = max(turned%start, least)
+            if (i == 1) then
+               turned%goal = goal_from(spring, s, turned%start)
+            else
+               turned%goal = spring%turns_of(s)%list(i - 1)%at
+            end if
+            if (turned%at%d >= turned%goal%d) then
+               turned%at%f = spring%now%backbone(s)%force(turned%at%d)
+            else if (turned%at%d > turned%start) then
+               turned%at%f = turned%goal%f*((turned%at%d - turned%start)/(turned%goal%d - turned%start))
+            end if
+         end associate
+      end do
+   end subroutine find_turns
 
-      !> The point of the backbone to which a line from zero force leads: the peak, or a corner beyond it if
-      !> the line to it is steeper (as to yield in Takeda's rule).
-      type(point) function goal_from(s, start) result(goal)
-         integer, intent(in) :: s
-         !> As seen from the side
-         real(wp), intent(in) :: start
-         real(wp) :: slope
-         integer :: i
+   !> The point of the backbone to which a line from zero force leads: the peak, or a corner beyond it if
+   !> the line to it is steeper (as to yield in Takeda's rule).
+   type(point) function goal_from(spring, s, start) result(goal)
+      type(capped_spring), intent(inout) :: spring
+      integer, intent(in) :: s
+      !> As seen from the side
+      real(wp), intent(in) :: start
+      real(wp) :: slope
+      integer :: i
 
+      associate (part => spring%part, now => spring%now)
          associate (backbone => now%backbone(s))
             goal = point(now%peak(s), backbone%force(now%peak(s)))
             slope = -1.0_wp
@@ -515,13 +563,13 @@ contains
                goal = point(backbone%d(i), backbone%f(i))
                slope = goal%f/(goal%d - start)
             end do
-            if (slope < 0.0_wp .or. slope > self%k_0*(1.0_wp + parallel)) then
-               goal%d = backbone%meeting(self%k_0, start)
+            if (slope < 0.0_wp .or. slope > part%k_0*(1.0_wp + parallel)) then
+               goal%d = backbone%meeting(part%k_0, start)
                goal%f = backbone%force(goal%d)
             end if
          end associate
-      end function goal_from
-   end subroutine find_branch
+      end associate
+   end function goal_from
 
    pure subroutine copy(self, other)
       class(capped_memory), intent(inout) :: self

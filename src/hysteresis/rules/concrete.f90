@@ -80,6 +80,13 @@ module rbs_hysteresis_rules_concrete
       procedure :: next
    end type concrete_rule
 
+   !> A spring at an event: its rule, and what the event changes.
+   type :: concrete_spring
+      type(concrete_rule), pointer :: rule => null()
+      type(concrete_state), pointer :: now => null()
+      type(segment), pointer :: branch => null()
+   end type concrete_spring
+
 contains
 
    subroutine visit(self, v)
@@ -146,183 +153,203 @@ contains
       end select
    end subroutine next
 
+   !> The next branch at the end of the present one, where the motion continues or reverses.
    subroutine find_branch(self, now, branch, direction)
-      type(concrete_rule), intent(in) :: self
-      type(concrete_state), intent(inout) :: now
-      type(segment), intent(inout) :: branch
+      type(concrete_rule), intent(in), target :: self
+      type(concrete_state), intent(inout), target :: now
+      type(segment), intent(inout), target :: branch
       integer, intent(in) :: direction
+      type(concrete_spring) :: spring
       real(wp) :: c, f
 
+      spring = concrete_spring(self, now, branch)
       c = -branch%end_toward(direction)
       f = -branch%force(-c)
       if (direction < 0) then
          select case (now%kind)
          case (envelope)
-            call follow_envelope(c, f)
+            call follow_envelope(spring, c, f)
          case (unloading)
-            call follow_envelope(now%c_u, now%strength*now%f_u)
+            call follow_envelope(spring, now%c_u, now%strength*now%f_u)
          case (contact)
-            call unload()
+            call unload(spring)
          case (opening)
-            call widen(c)
+            call widen(spring, c)
             ! The line of zero force while the crack closes, until the faces touch
             now%kind = closing
             branch = chord(c, 0.0_wp, now%c_p - now%gap, 0.0_wp)
             ! Openings are added up only if they have an effect.
             if (self%wear > 0.0_wp) call set_unloading(branch)
          case (releasing, parting)
-            call rub(c, f)
+            call rub(spring, c, f)
          case (between)
-            call close_on(c)
+            call close_on(spring, c)
          case default
-            call touch()
+            call touch(spring)
          end select
       else
          select case (now%kind)
          case (envelope)
             if (c > 0.0_wp) then
-               call leave_envelope(c, f/now%strength)
+               call leave_envelope(spring, c, f/now%strength)
                if (self%rubs) then
-                  call rub(c, f)
+                  call rub(spring, c, f)
                else
-                  call unload()
+                  call unload(spring)
                end if
             else
-               call open_up(c)
+               call open_up(spring, c)
             end if
          case (unloading)
             if (self%rubs) then
-               call rub(c, f)
+               call rub(spring, c, f)
             else
-               call touch()
+               call touch(spring)
             end if
          case (contact)
             if (self%rubs .and. c > now%c_p - now%gap) then
-               call rub(c, f)
+               call rub(spring, c, f)
             else
-               call open_up(c)
+               call open_up(spring, c)
             end if
          case (between)
-            call release(c)
+            call release(spring, c)
          case (releasing)
-            call release(c)
+            call release(spring, c)
          case default
-            call open_up(c)
+            call open_up(spring, c)
          end select
       end if
+   end subroutine find_branch
 
-   contains
+   !> On the envelope from (c, f) to its next corner.
+   subroutine follow_envelope(spring, c, f)
+      type(concrete_spring), intent(inout) :: spring
+      !> Where the spring is: closing [m], force [N]
+      real(wp), intent(in) :: c, f
+      real(wp) :: c_next, f_next, c_flat
+      integer :: i
 
-      !> On the envelope from (c, f) to its next corner.
-      subroutine follow_envelope(c, f)
-         !> Where the spring is: closing [m], force [N]
-         real(wp), intent(in) :: c, f
-         real(wp) :: c_next, f_next, c_flat
-         integer :: i
-
+      associate (rule => spring%rule, now => spring%now, branch => spring%branch)
          now%kind = envelope
          do i = 1, size(chord_ends)
-            c_next = chord_ends(i)*self%d_peak
+            c_next = chord_ends(i)*rule%d_peak
             if (c_next > c*(1.0_wp + 1.0e-9_wp)) then
-               f_next = now%strength*curve(self, c_next)
+               f_next = now%strength*curve(rule, c_next)
                branch = chord(c, f, c_next, f_next)
                call set_unloading(branch)
                return
             end if
          end do
-         c_flat = self%d_peak + (self%f_peak - self%f_res)/self%k_soft
+         c_flat = rule%d_peak + (rule%f_peak - rule%f_res)/rule%k_soft
          if (c_flat > c*(1.0_wp + 1.0e-9_wp)) then
-            branch = chord(c, f, c_flat, now%strength*self%f_res)
+            branch = chord(c, f, c_flat, now%strength*rule%f_res)
          else
             branch = segment(d0=-c, f0=-f, lo=-unbounded, hi=-c)
          end if
          call set_unloading(branch)
-      end subroutine follow_envelope
+      end associate
+   end subroutine follow_envelope
 
-      !> The motion has turned back on the envelope at (c, f), f without wear.
-      subroutine leave_envelope(c, f)
-         real(wp), intent(in) :: c, f
-         real(wp) :: largest, share
+   !> The motion has turned back on the envelope at (c, f), f without wear.
+   subroutine leave_envelope(spring, c, f)
+      type(concrete_spring), intent(inout) :: spring
+      real(wp), intent(in) :: c, f
+      real(wp) :: largest, share
 
+      associate (rule => spring%rule, now => spring%now)
          ! Crushing wears down what keeps the faces apart: gap times force does not grow, or the path of
          ! unloading would store more than the envelope has given.
          largest = f
-         if (c > self%d_peak) largest = self%f_peak
+         if (c > rule%d_peak) largest = rule%f_peak
          if (largest > now%f_largest) then
             now%gap = now%gap*(now%f_largest/largest)
             now%f_largest = largest
          end if
          now%c_u = c
          now%f_u = f
-         share = karsan_jirsa(c/self%d_peak) - karsan_jirsa(chord_ends(1))
+         share = karsan_jirsa(c/rule%d_peak) - karsan_jirsa(chord_ends(1))
          ! Unloading is never stiffer than `k`.
-         now%c_p = max(min(self%plastic*share*self%d_peak, c - f/self%k), 0.0_wp)
-      end subroutine leave_envelope
+         now%c_p = max(min(rule%plastic*share*rule%d_peak, c - f/rule%k), 0.0_wp)
+      end associate
+   end subroutine leave_envelope
 
-      !> On the line of unloading between full closing and the envelope.
-      subroutine unload()
-         real(wp) :: c_closed, f_closed
+   !> On the line of unloading between full closing and the envelope.
+   subroutine unload(spring)
+      type(concrete_spring), intent(inout) :: spring
+      real(wp) :: c_closed, f_closed
 
+      associate (rule => spring%rule, now => spring%now, branch => spring%branch)
          now%kind = unloading
-         call full_closing(c_closed, f_closed)
+         call full_closing(spring, c_closed, f_closed)
          branch = chord(c_closed, f_closed, now%c_u, now%strength*now%f_u)
-         if (self%rubs) then
+         if (rule%rubs) then
             call set_unloading(branch)
          else
             branch%includes_upper_end = .not. now%gap > 0.0_wp
          end if
-      end subroutine unload
+      end associate
+   end subroutine unload
 
-      !> On the line between the first touch of the faces and full closing; without length it is skipped.
-      subroutine touch()
-         real(wp) :: c_closed, f_closed
+   !> On the line between the first touch of the faces and full closing; without length it is skipped.
+   subroutine touch(spring)
+      type(concrete_spring), intent(inout) :: spring
+      real(wp) :: c_closed, f_closed
 
-         call full_closing(c_closed, f_closed)
+      associate (rule => spring%rule, now => spring%now, branch => spring%branch)
+         call full_closing(spring, c_closed, f_closed)
          if (now%gap > 0.0_wp) then
             now%kind = contact
             ! The lines before and after it lead both ways, so both corners belong to this line.
             branch = chord(now%c_p - now%gap, 0.0_wp, c_closed, f_closed)
             branch%includes_lower_end = .true.
             branch%includes_upper_end = .true.
-            if (self%rubs) call set_unloading(branch)
+            if (rule%rubs) call set_unloading(branch)
          else if (now%kind == closing) then
-            call unload()
+            call unload(spring)
          else
-            call open_up(now%c_p)
+            call open_up(spring, now%c_p)
          end if
-      end subroutine touch
+      end associate
+   end subroutine touch
 
-      !> Between the paths through (c, f): as stiff as the virgin spring, up to the path of closing and down
-      !> to that of opening.
-      subroutine rub(c, f)
-         real(wp), intent(in) :: c, f
-         real(wp) :: upper, lower
+   !> Between the paths through (c, f): as stiff as the virgin spring, up to the path of closing and down
+   !> to that of opening.
+   subroutine rub(spring, c, f)
+      type(concrete_spring), intent(inout) :: spring
+      real(wp), intent(in) :: c, f
+      real(wp) :: upper, lower
 
+      associate (rule => spring%rule, now => spring%now, branch => spring%branch)
          upper = c
          lower = c
          if (now%kind == releasing .or. now%kind == parting) then
-            upper = min(max(meeting(1.0_wp, c, f), c), now%c_u)
+            upper = min(max(meeting(spring, 1.0_wp, c, f), c), now%c_u)
          else
-            lower = min(meeting(1.0_wp - share_of_friction(), c, f), c)
+            lower = min(meeting(spring, 1.0_wp - share_of_friction(spring), c, f), c)
          end if
          now%kind = between
-         branch = segment(d0=-c, f0=-f, k=self%k, lo=-upper, hi=-lower)
-      end subroutine rub
+         branch = segment(d0=-c, f0=-f, k=rule%k, lo=-upper, hi=-lower)
+      end associate
+   end subroutine rub
 
-      !> The share by which the path of opening is lower: none where the virgin spring is elastic.
-      real(wp) function share_of_friction()
+   !> The share by which the path of opening is lower: none where the virgin spring is elastic.
+   real(wp) function share_of_friction(spring)
+      type(concrete_spring), intent(inout) :: spring
 
-         share_of_friction = (now%c_u/self%d_peak - chord_ends(1))/(1.0_wp - chord_ends(1))
-         share_of_friction = self%friction*min(max(share_of_friction, 0.0_wp), 1.0_wp)
-      end function share_of_friction
+      share_of_friction = (spring%now%c_u/spring%rule%d_peak - chord_ends(1))/(1.0_wp - chord_ends(1))
+      share_of_friction = spring%rule%friction*min(max(share_of_friction, 0.0_wp), 1.0_wp)
+   end function share_of_friction
 
-      !> Where the line of the initial stiffness through (c, f) meets a path: a share of that of closing.
-      real(wp) function meeting(share, c, f)
-         real(wp), intent(in) :: share, c, f
-         real(wp) :: c_closed, f_closed, c_0, f_0, slope
+   !> Where the line of the initial stiffness through (c, f) meets a path: a share of that of closing.
+   real(wp) function meeting(spring, share, c, f)
+      type(concrete_spring), intent(inout) :: spring
+      real(wp), intent(in) :: share, c, f
+      real(wp) :: c_closed, f_closed, c_0, f_0, slope
 
-         call full_closing(c_closed, f_closed)
-         if (f + self%k*(c_closed - c) < share*f_closed) then
+      associate (rule => spring%rule, now => spring%now)
+         call full_closing(spring, c_closed, f_closed)
+         if (f + rule%k*(c_closed - c) < share*f_closed) then
             c_0 = c_closed
             f_0 = share*f_closed
             meeting = c_0
@@ -334,26 +361,29 @@ contains
             f_0 = 0.0_wp
             slope = 0.0_wp
             ! Before it the path has no force.
-            if (c_closed > c_0 .and. f < self%k*(c - c_0)) slope = share*f_closed/(c_closed - c_0)
+            if (c_closed > c_0 .and. f < rule%k*(c - c_0)) slope = share*f_closed/(c_closed - c_0)
          end if
          ! Both lines from c_0 on.
          meeting = c_0
-         if (self%k*(1.0_wp - 1.0e-9_wp) > slope) then
-            meeting = c_0 + (f_0 - f - self%k*(c_0 - c))/(self%k - slope)
+         if (rule%k*(1.0_wp - 1.0e-9_wp) > slope) then
+            meeting = c_0 + (f_0 - f - rule%k*(c_0 - c))/(rule%k - slope)
          end if
          meeting = max(meeting, now%c_p - now%gap)
-      end function meeting
+      end associate
+   end function meeting
 
-      !> On the path of closing from the closing c on.
-      subroutine close_on(c)
-         real(wp), intent(in) :: c
-         real(wp) :: c_closed, f_closed
+   !> On the path of closing from the closing c on.
+   subroutine close_on(spring, c)
+      type(concrete_spring), intent(inout) :: spring
+      real(wp), intent(in) :: c
+      real(wp) :: c_closed, f_closed
 
-         call full_closing(c_closed, f_closed)
+      associate (now => spring%now, branch => spring%branch)
+         call full_closing(spring, c_closed, f_closed)
          if (c >= now%c_u) then
-            call follow_envelope(now%c_u, now%strength*now%f_u)
+            call follow_envelope(spring, now%c_u, now%strength*now%f_u)
          else if (c >= c_closed) then
-            call unload()
+            call unload(spring)
             branch%hi = -c
          else
             now%kind = contact
@@ -361,15 +391,18 @@ contains
             branch%hi = -c
             call set_unloading(branch)
          end if
-      end subroutine close_on
+      end associate
+   end subroutine close_on
 
-      !> On the path of opening from the closing c on.
-      subroutine release(c)
-         real(wp), intent(in) :: c
-         real(wp) :: c_closed, f_closed, left, c_none
+   !> On the path of opening from the closing c on.
+   subroutine release(spring, c)
+      type(concrete_spring), intent(inout) :: spring
+      real(wp), intent(in) :: c
+      real(wp) :: c_closed, f_closed, left, c_none
 
-         call full_closing(c_closed, f_closed)
-         left = 1.0_wp - share_of_friction()
+      associate (now => spring%now, branch => spring%branch)
+         call full_closing(spring, c_closed, f_closed)
+         left = 1.0_wp - share_of_friction(spring)
          c_none = now%c_p - now%gap
          if (c > c_closed) then
             now%kind = releasing
@@ -378,57 +411,64 @@ contains
             now%kind = parting
             branch = chord(c_none, 0.0_wp, c_closed, left*f_closed)
          else
-            call open_up(c)
+            call open_up(spring, c)
             return
          end if
          branch%lo = -c
          branch%includes_lower_end = .true.
          branch%unload_on_reversal = 1
-      end subroutine release
+      end associate
+   end subroutine release
 
-      !> Where a closing crack is fully closed.
-      subroutine full_closing(c, f)
-         !> Closing [m] and force [N]
-         real(wp), intent(out) :: c, f
+   !> Where a closing crack is fully closed.
+   subroutine full_closing(spring, c, f)
+      type(concrete_spring), intent(inout) :: spring
+      !> Closing [m] and force [N]
+      real(wp), intent(out) :: c, f
 
+      associate (rule => spring%rule, now => spring%now)
          c = now%c_p
          f = 0.0_wp
          if (.not. now%gap > 0.0_wp) return
-         c = now%c_p + self%contact*(now%c_u - now%c_p)
-         f = self%contact*now%strength*now%f_u
-      end subroutine full_closing
+         c = now%c_p + rule%contact*(now%c_u - now%c_p)
+         f = rule%contact*now%strength*now%f_u
+      end associate
+   end subroutine full_closing
 
-      !> The line of zero force while the crack opens, from the closing c.
-      subroutine open_up(c)
-         real(wp), intent(in) :: c
+   !> The line of zero force while the crack opens, from the closing c.
+   subroutine open_up(spring, c)
+      type(concrete_spring), intent(inout) :: spring
+      real(wp), intent(in) :: c
 
-         now%kind = opening
-         now%c_opened = c
-         branch = segment(d0=-c, lo=-c, hi=unbounded, includes_lower_end=.true., unload_on_reversal=1)
-      end subroutine open_up
+      spring%now%kind = opening
+      spring%now%c_opened = c
+      spring%branch = segment(d0=-c, lo=-c, hi=unbounded, includes_lower_end=.true., unload_on_reversal=1)
+   end subroutine open_up
 
-      !> The crack has opened to a closing c: the wider it was, the earlier its faces touch, and the
-      !> strength falls with the way. There is no force, so neither is felt at once.
-      subroutine widen(c)
-         real(wp), intent(in) :: c
-         real(wp) :: before, width, inside, openings
+   !> The crack has opened to a closing c: the wider it was, the earlier its faces touch, and the
+   !> strength falls with the way. There is no force, so neither is felt at once.
+   subroutine widen(spring, c)
+      type(concrete_spring), intent(inout) :: spring
+      real(wp), intent(in) :: c
+      real(wp) :: before, width, inside, openings
 
+      associate (rule => spring%rule, now => spring%now)
          before = now%c_p - now%c_opened
          width = now%c_p - c
-         now%gap = max(now%gap, self%misfit*width)
-         if (self%wear > 0.0_wp .and. now%c_u > 0.0_wp) then
+         now%gap = max(now%gap, rule%misfit*width)
+         if (rule%wear > 0.0_wp .and. now%c_u > 0.0_wp) then
             ! The way over the width so far, integrated as the width grows.
             inside = min(width, now%widest) - min(before, now%widest)
-            openings = inside/(now%widest + self%d_peak)
+            openings = inside/(now%widest + rule%d_peak)
             if (width > now%widest) then
-               openings = openings + log((width + self%d_peak)/(max(now%widest, before) + self%d_peak))
+               openings = openings + log((width + rule%d_peak)/(max(now%widest, before) + rule%d_peak))
             end if
             now%strength = now%strength* &
-                            (1.0_wp - self%wear)**(openings*min(1.0_wp, 0.5_wp*now%c_u/self%d_peak))
+                            (1.0_wp - rule%wear)**(openings*min(1.0_wp, 0.5_wp*now%c_u/rule%d_peak))
          end if
          now%widest = max(now%widest, width)
-      end subroutine widen
-   end subroutine find_branch
+      end associate
+   end subroutine widen
 
    !> Plastic closing after unloading from x, both over the closing at the peak (Karsan and Jirsa 1969); a
    !> straight line beyond x = 2.

@@ -80,6 +80,14 @@ module rbs_hysteresis_rules_takeda
       procedure :: next
    end type takeda_rule
 
+   !> A spring at an event: its rule, and what the event changes.
+   type :: takeda_spring
+      type(takeda_rule), pointer :: rule => null()
+      type(takeda_state), pointer :: now => null()
+      type(open_turns), pointer :: open => null()
+      type(segment), pointer :: branch => null()
+   end type takeda_spring
+
 contains
 
    subroutine visit(self, v)
@@ -141,14 +149,19 @@ contains
 
    !> The next branch at the end of the present one, where the motion continues or reverses.
    subroutine find_branch(self, now, open, branch, direction)
-      type(takeda_rule), intent(in) :: self
-      type(takeda_state), intent(inout) :: now
-      type(open_turns), intent(inout) :: open
-      type(segment), intent(inout) :: branch
+      type(takeda_rule), intent(in), target :: self
+      type(takeda_state), intent(inout), target :: now
+      type(open_turns), intent(inout), target :: open
+      type(segment), intent(inout), target :: branch
       integer, intent(in) :: direction
+      type(takeda_spring) :: spring
       type(point) :: here
       logical :: outward
 
+      spring%rule => self
+      spring%now => now
+      spring%open => open
+      spring%branch => branch
       here%d = branch%end_toward(direction)
       here%f = branch%force(here%d)
       outward = direction == now%side
@@ -156,159 +169,178 @@ contains
       select case (now%branch)
       case (uncracked)
          now%cracked(direction) = .true.
-         call follow_backbone(direction, direction*self%d_c)
+         call follow_backbone(spring, direction, direction*self%d_c)
       case (cracked_backbone, yielded_backbone)
          if (outward) then
-            call follow_backbone((now%side), here%d)
+            call follow_backbone(spring, (now%side), here%d)
          else
-            call unload_from_peak(here)
+            call unload_from_peak(spring, here)
          end if
       case (outer_unloading)
          if (outward) then
-            call follow_backbone((now%side), here%d)
+            call follow_backbone(spring, (now%side), here%d)
          else if (now%cracked(direction)) then
-            call reload_from_outer(here%d)
+            call reload_from_outer(spring, here%d)
          else
-            call crack_on_reversal(here%d)
+            call crack_on_reversal(spring, here%d)
          end if
       case (reloading)
          if (outward) then
-            call reach_target()
+            call reach_target(spring)
          else
-            call unload_from_inner_peak(here)
+            call unload_from_inner_peak(spring, here)
          end if
       case (inner_unloading)
          if (outward) then
-            call resume_reloading((open%count))
+            call resume_reloading(spring, (open%count))
          else
-            call reload_from_inner(direction, here)
+            call reload_from_inner(spring, direction, here)
          end if
       case default                                  ! no other branch
       end select
+   end subroutine find_branch
 
-   contains
+   !> On the backbone of side s from deformation d on.
+   subroutine follow_backbone(spring, s, d)
+      type(takeda_spring), intent(inout) :: spring
+      integer, intent(in) :: s
+      real(wp), intent(in) :: d
 
-      !> On the backbone of side s from deformation d on.
-      subroutine follow_backbone(s, d)
-         integer, intent(in) :: s
-         real(wp), intent(in) :: d
-
+      associate (rule => spring%rule, now => spring%now, branch => spring%branch)
          now%side = s
-         if (s*d < self%d_y) then
+         if (s*d < rule%d_y) then
             now%branch = cracked_backbone
-            branch = segment(d0=s*self%d_c, f0=s*self%f_c, k=self%k_y)
-            call branch%lead_outward(s, near=d, far=s*self%d_y)
+            branch = segment(d0=s*rule%d_c, f0=s*rule%f_c, k=rule%k_y)
+            call branch%lead_outward(s, near=d, far=s*rule%d_y)
          else
             now%branch = yielded_backbone
-            branch = segment(d0=s*self%d_y, f0=s*self%f_y, k=self%k_u)
+            branch = segment(d0=s*rule%d_y, f0=s*rule%f_y, k=rule%k_u)
             call branch%lead_outward(s, near=d, far=s*unbounded)
          end if
-      end subroutine follow_backbone
+      end associate
+   end subroutine follow_backbone
 
-      !> Reversal on the backbone: a new peak of this side, unloading with K_r.
-      subroutine unload_from_peak(peak)
-         type(point), intent(in) :: peak
-         real(wp) :: near
-         integer :: s
+   !> Reversal on the backbone: a new peak of this side, unloading with K_r.
+   subroutine unload_from_peak(spring, peak)
+      type(takeda_spring), intent(inout) :: spring
+      type(point), intent(in) :: peak
+      real(wp) :: near
+      integer :: s
 
+      associate (rule => spring%rule, now => spring%now, branch => spring%branch)
          s = now%side
          now%branch = outer_unloading
          now%peak(s) = peak
-         now%k_r(s) = outer_stiffness(abs(peak%d), abs(peak%f))
+         now%k_r(s) = outer_stiffness(spring, abs(peak%d), abs(peak%f))
          branch = segment(d0=peak%d, f0=peak%f, k=now%k_r(s))
          if (now%cracked(-s)) then
             near = peak%d - peak%f/now%k_r(s)
-         else if (abs(peak%d) <= self%d_y) then
-            near = -s*self%d_c                         ! by definition K_r leads to the cracking point
+         else if (abs(peak%d) <= rule%d_y) then
+            near = -s*rule%d_c                         ! by definition K_r leads to the cracking point
          else
-            near = peak%d - (peak%f + s*self%f_c)/now%k_r(s)
+            near = peak%d - (peak%f + s*rule%f_c)/now%k_r(s)
          end if
          call branch%lead_outward(s, near=near, far=peak%d, includes_near_end=now%cracked(-s), &
                                   unload_on_reversal=.false.)
-      end subroutine unload_from_peak
+      end associate
+   end subroutine unload_from_peak
 
-      !> K_r of a peak (eq 7), not below the secant: unloading must not end on the other side of the origin.
-      real(wp) function outer_stiffness(d, f) result(k_r)
-         !> Peak, both positive
-         real(wp), intent(in) :: d, f
+   !> K_r of a peak (eq 7), not below the secant: unloading must not end on the other side of the origin.
+   real(wp) function outer_stiffness(spring, d, f) result(k_r)
+      type(takeda_spring), intent(inout) :: spring
+      !> Peak, both positive
+      real(wp), intent(in) :: d, f
 
-         if (d <= self%d_y) then
-            k_r = (f + self%f_c)/(d + self%d_c)
+      associate (rule => spring%rule)
+         if (d <= rule%d_y) then
+            k_r = (f + rule%f_c)/(d + rule%d_c)
          else
-            k_r = (self%f_c + self%f_y)/(self%d_c + self%d_y)*(self%d_y/d)**self%b0
+            k_r = (rule%f_c + rule%f_y)/(rule%d_c + rule%d_y)*(rule%d_y/d)**rule%b0
          end if
          k_r = max(k_r, f/d)
-      end function outer_stiffness
+      end associate
+   end function outer_stiffness
 
-      !> Outer unloading has reached zero force, and the other side has cracked: reload toward its peak, or
-      !> toward its yield point if it has not yielded and the line to it is steeper.
-      subroutine reload_from_outer(zero)
-         real(wp), intent(in) :: zero
-         type(point) :: yield
-         integer :: s
+   !> Outer unloading has reached zero force, and the other side has cracked: reload toward its peak, or
+   !> toward its yield point if it has not yielded and the line to it is steeper.
+   subroutine reload_from_outer(spring, zero)
+      type(takeda_spring), intent(inout) :: spring
+      real(wp), intent(in) :: zero
+      type(point) :: yield
+      integer :: s
 
+      associate (rule => spring%rule, now => spring%now)
          s = -now%side
-         yield = point(s*self%d_y, s*self%f_y)
-         if (s*now%peak(s)%d < self%d_y) then
+         yield = point(s*rule%d_y, s*rule%f_y)
+         if (s*now%peak(s)%d < rule%d_y) then
             if (yield%f/(yield%d - zero) > now%peak(s)%f/(now%peak(s)%d - zero)) now%peak(s) = yield
          end if
-         call reload_toward_peak(s, point(zero, 0.0_wp), zero)
-      end subroutine reload_from_outer
+         call reload_toward_peak(spring, s, point(zero, 0.0_wp), zero)
+      end associate
+   end subroutine reload_from_outer
 
-      !> Outer unloading has continued to the cracking force of the other side, which cracks.
-      subroutine crack_on_reversal(d)
-         real(wp), intent(in) :: d
-         real(wp) :: zero, k_r, ahead, d_peak
-         integer :: s
+   !> Outer unloading has continued to the cracking force of the other side, which cracks.
+   subroutine crack_on_reversal(spring, d)
+      type(takeda_spring), intent(inout) :: spring
+      real(wp), intent(in) :: d
+      real(wp) :: zero, k_r, ahead, d_peak
+      integer :: s
 
+      associate (rule => spring%rule, now => spring%now)
          s = -now%side
          now%cracked(s) = .true.
          k_r = now%k_r(-s)
-         if (abs(now%peak(-s)%d) <= self%d_y) then
-            call follow_backbone(s, d)
+         if (abs(now%peak(-s)%d) <= rule%d_y) then
+            call follow_backbone(spring, s, d)
             return
          end if
          zero = now%peak(-s)%d - now%peak(-s)%f/k_r
-         now%peak(s) = point(s*self%d_y, s*self%f_y)
+         now%peak(s) = point(s*rule%d_y, s*rule%f_y)
          ahead = s*(now%peak(s)%d - d)
-         if (self%f_y - self%f_c > k_r*ahead .and. k_r > (1.0_wp + parallel)*self%k_u) then
+         if (rule%f_y - rule%f_c > k_r*ahead .and. k_r > (1.0_wp + parallel)*rule%k_u) then
             ! The line to the yield point is steeper than K_r or leads back: continue with K_r to the yielded
             ! backbone.
-            d_peak = (self%f_y - self%k_u*self%d_y - self%f_c + k_r*s*d)/(k_r - self%k_u)
-            now%peak(s) = point(s*d_peak, s*(self%f_y + self%k_u*(d_peak - self%d_y)))
+            d_peak = (rule%f_y - rule%k_u*rule%d_y - rule%f_c + k_r*s*d)/(k_r - rule%k_u)
+            now%peak(s) = point(s*d_peak, s*(rule%f_y + rule%k_u*(d_peak - rule%d_y)))
          end if
-         call reload_toward_peak(s, point(d, s*self%f_c), zero)
-      end subroutine crack_on_reversal
+         call reload_toward_peak(spring, s, point(d, s*rule%f_c), zero)
+      end associate
+   end subroutine crack_on_reversal
 
-      !> Reloading has reached its target.
-      subroutine reach_target()
-         type(point) :: here
-         integer :: place
+   !> Reloading has reached its target.
+   subroutine reach_target(spring)
+      type(takeda_spring), intent(inout) :: spring
+      type(point) :: here
+      integer :: place
 
+      associate (now => spring%now, open => spring%open)
          here = now%aim%goal
          place = open%place_of(now%aim%goal_number)
          if (place > 0) then
-            call resume_reloading(place)
+            call resume_reloading(spring, place)
             return
          end if
          open%count = 0
          if (now%aim%goal_number == 0_int64) then
-            call follow_backbone((now%side), here%d)
+            call follow_backbone(spring, (now%side), here%d)
          else
             ! The inner peak was so old that it has been forgotten: continue to the backbone.
-            call reload_toward_peak((now%side), here, (now%aim%start))
+            call reload_toward_peak(spring, (now%side), here, (now%aim%start))
          end if
-      end subroutine reach_target
+      end associate
+   end subroutine reach_target
 
-      !> Reversal on reloading before its target: a new inner peak, from which unloading has slope K_in.
-      subroutine unload_from_inner_peak(here)
-         type(point), intent(in) :: here
-         real(wp) :: k_in
-         integer :: s
+   !> Reversal on reloading before its target: a new inner peak, from which unloading has slope K_in.
+   subroutine unload_from_inner_peak(spring, here)
+      type(takeda_spring), intent(inout) :: spring
+      type(point), intent(in) :: here
+      real(wp) :: k_in
+      integer :: s
 
+      associate (rule => spring%rule, now => spring%now, branch => spring%branch, open => spring%open)
          s = now%side
-         if (abs(here%f) <= no_force*self%f_y) then
-            call reload_from_inner(-s, here)
+         if (abs(here%f) <= no_force*rule%f_y) then
+            call reload_from_inner(spring, -s, here)
             return
          end if
          now%peaks = now%peaks + 1_int64
@@ -317,23 +349,26 @@ contains
          now%aim%number = now%peaks
          call open%push(now%aim)
          now%branch = inner_unloading
-         k_in = inner_stiffness(here)
+         k_in = inner_stiffness(spring, here)
          branch = segment(d0=here%d, f0=here%f, k=k_in)
          call branch%lead_outward(s, near=here%d - here%f/k_in, far=here%d, unload_on_reversal=.false.)
-      end subroutine unload_from_inner_peak
+      end associate
+   end subroutine unload_from_inner_peak
 
-      !> K_in of an inner peak within its bounds, of which the lower one has priority.
-      real(wp) function inner_stiffness(peak) result(k_in)
-         type(point), intent(in) :: peak
-         real(wp) :: k_r, way
+   !> K_in of an inner peak within its bounds, of which the lower one has priority.
+   real(wp) function inner_stiffness(spring, peak) result(k_in)
+      type(takeda_spring), intent(inout) :: spring
+      type(point), intent(in) :: peak
+      real(wp) :: k_r, way
 
+      associate (rule => spring%rule, now => spring%now)
          k_r = now%k_r(now%side)
          if (.not. k_r > 0.0_wp) k_r = now%k_r(-now%side)
-         select case (self%inner)
+         select case (rule%inner)
          case (of_uncracked)
-            k_in = self%b1*self%k_c
+            k_in = rule%b1*rule%k_c
          case (of_outer)
-            k_in = self%b1*k_r
+            k_in = rule%b1*k_r
          case default
             k_in = k_r
          end select
@@ -341,63 +376,73 @@ contains
          ! At ductilities of 1e16 round-off leaves no distance from the zero crossing.
          way = now%side*(peak%d - now%aim%start)
          if (way > 0.0_wp) k_in = max(k_in, now%side*peak%f/way)
-      end function inner_stiffness
+      end associate
+   end function inner_stiffness
 
-      !> Continue on the reloading branch that was left at an inner peak; it and all newer peaks are closed.
-      subroutine resume_reloading(place)
-         integer, intent(in) :: place
+   !> Continue on the reloading branch that was left at an inner peak; it and all newer peaks are closed.
+   subroutine resume_reloading(spring, place)
+      type(takeda_spring), intent(inout) :: spring
+      integer, intent(in) :: place
 
+      associate (now => spring%now, branch => spring%branch, open => spring%open)
          now%branch = reloading
          now%aim = open%list(place)
          now%side = now%aim%side
          branch = segment(d0=now%aim%goal%d, f0=now%aim%goal%f, k=now%aim%k)
          call branch%lead_outward(now%side, near=now%aim%at%d, far=now%aim%goal%d)
          open%count = place - 1
-      end subroutine resume_reloading
+      end associate
+   end subroutine resume_reloading
 
-      !> Inner unloading has reached zero force: reload toward the newest open peak of side s, else toward its
-      !> backbone peak. If the target were the yield point instead, inner loops would not close.
-      subroutine reload_from_inner(s, from)
-         integer, intent(in) :: s
-         type(point), intent(in) :: from
-         integer :: place
+   !> Inner unloading has reached zero force: reload toward the newest open peak of side s, else toward its
+   !> backbone peak. If the target were the yield point instead, inner loops would not close.
+   subroutine reload_from_inner(spring, s, from)
+      type(takeda_spring), intent(inout) :: spring
+      integer, intent(in) :: s
+      type(point), intent(in) :: from
+      integer :: place
 
+      associate (now => spring%now, open => spring%open)
          place = open%newest_of_side(s)
          if (place == 0) then
-            call reload_toward_peak(s, from, from%d)
+            call reload_toward_peak(spring, s, from, from%d)
          else
             now%aim = turn(goal=open%list(place)%at, goal_number=open%list(place)%number, start=from%d)
-            call reload(s, from)
+            call reload(spring, s, from)
          end if
-      end subroutine reload_from_inner
+      end associate
+   end subroutine reload_from_inner
 
-      !> Reload toward the backbone peak of side s.
-      subroutine reload_toward_peak(s, from, zero)
-         integer, intent(in) :: s
-         type(point), intent(in) :: from
-         real(wp), intent(in) :: zero
+   !> Reload toward the backbone peak of side s.
+   subroutine reload_toward_peak(spring, s, from, zero)
+      type(takeda_spring), intent(inout) :: spring
+      integer, intent(in) :: s
+      type(point), intent(in) :: from
+      real(wp), intent(in) :: zero
 
-         now%aim = turn(goal=now%peak(s), start=zero)
-         call reload(s, from)
-      end subroutine reload_toward_peak
+      spring%now%aim = turn(goal=spring%now%peak(s), start=zero)
+      call reload(spring, s, from)
+   end subroutine reload_toward_peak
 
-      !> The straight line to the target. The target is its anchor, so that a peak is met exactly.
-      subroutine reload(s, from)
-         integer, intent(in) :: s
-         type(point), intent(in) :: from
-         real(wp) :: way, k
+   !> The straight line to the target. The target is its anchor, so that a peak is met exactly.
+   subroutine reload(spring, s, from)
+      type(takeda_spring), intent(inout) :: spring
+      integer, intent(in) :: s
+      type(point), intent(in) :: from
+      real(wp) :: way, k
 
+      associate (rule => spring%rule, now => spring%now, branch => spring%branch)
          now%branch = reloading
          now%side = s
          way = now%aim%goal%d - from%d
          ! If round-off leaves no distance, the target is met at once.
-         k = self%k_c
+         k = rule%k_c
          if (s*way > 0.0_wp) k = (now%aim%goal%f - from%f)/way
          now%aim%k = k
          branch = segment(d0=now%aim%goal%d, f0=now%aim%goal%f, k=k)
          call branch%lead_outward(s, near=from%d, far=s*max(s*now%aim%goal%d, s*from%d))
-      end subroutine reload
-   end subroutine find_branch
+      end associate
+   end subroutine reload
 
    pure subroutine copy(self, other)
       class(takeda_memory), intent(inout) :: self
