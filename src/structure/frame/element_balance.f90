@@ -3,8 +3,8 @@
 module rbs_structure_frame_element_balance
    use rbs_base_kinds, only: wp
    use rbs_structure_frame_element, only: frame_element, find_forces, find_rates, find_tangent
-   use rbs_structure_frame_layered, only: drop_small_rates, joint_motion, layered_forces, &
-                                          layered_rates, layered_tangent
+   use rbs_structure_frame_layered, only: drop_small_rates, layered_forces, layered_rates, layered_tangent, &
+                                          take_joints_off
    implicit none
    private
 
@@ -69,16 +69,12 @@ contains
       real(wp), intent(in) :: q(3), dead
       real(wp), intent(in), contiguous :: d(:)
       real(wp) :: gap(3)
-      real(wp) :: z(2)
       integer :: j
 
       gap = q
       gap(2:) = gap(2:) - dead*e%dead_rotation
       if (e%layered) then
-         do j = 1, size(e%first) - 1
-            z = joint_motion(e, j, size(e%y), d(e%before + 1:e%before + size(e%y)))
-            gap = gap - (e%arm(:, 1, j)*z(1) + e%arm(:, 2, j)*z(2))
-         end do
+         call take_joints_off(e, size(e%y), d(e%before + 1:e%before + size(e%y)), gap)
          return
       end if
       do j = 1, e%bending

@@ -32,9 +32,7 @@ contains
       integer :: at, i, j, kind, m
 
       f = springs%f0 + springs%k*(d - springs%d0)
-      row(1) = self%base_force(d, f)
-      if (contents%in_time .and. self%damped) row(1) = response%base_shear
-      row(2:3*self%n + 1) = 0.0_wp
+      row(1:3*self%n + 1) = 0.0_wp
       do i = 1, self%n
          do j = 1, 3
             if (self%number(j, i) > 0) row(1 + (j - 1)*self%n + i) = d(self%inside + self%number(j, i))
@@ -48,7 +46,10 @@ contains
          row(at + i) = -s(1)
          row(at + m + i) = s(2)
          row(at + 2*m + i) = s(3)
+         row(1) = row(1) + support_force(self, i, d, s)
       end do
+      row(1) = row(1) + ground_force(self, f)
+      if (contents%in_time .and. self%damped) row(1) = response%base_shear
       at = at + 3*m
       do kind = 1, 3
          associate (of => self%listed(kind)%spring)
@@ -101,28 +102,48 @@ contains
 
    module procedure base_force
       real(wp) :: s(3)
-      integer :: i, j
+      integer :: i
 
-      force = 0.0_wp
+      force = ground_force(self, f)
       do i = 1, self%members
-         associate (e => self%element(i))
-            if (all(self%number(1, e%node) > 0)) cycle
-            call self%member_forces(i, d, f, s)
-            do j = 1, 2
-               if (self%number(1, e%node(j)) > 0) cycle
-               force = force - sum(s*e%to_basic(:, 3*j - 2))
-               ! A chord that leans presses the support aside; a rotation against it has the opposite sign.
-               if (self%axially_loaded) then
-                  force = force - e%compression*e%length &
-                          *chord_rotation(e, d(self%inside + 1:))*e%to_basic(2, 3*j - 2)
-               end if
-            end do
-         end associate
-      end do
-      ! A spring of no account carries nothing that counts.
-      do i = self%inside + 1, size(d)
-         if (self%place(i)%kind == shear) force = force + f(i)
+         if (all(self%number(1, self%element(i)%node) > 0)) cycle
+         call self%member_forces(i, d, f, s)
+         force = force + support_force(self, i, d, s)
       end do
    end procedure base_force
+
+   !> What supports hold a member with along x [N].
+   pure real(wp) function support_force(self, member, d, s) result(force)
+      type(frame_type), intent(in) :: self
+      integer, intent(in) :: member
+      !> Deformations of the springs (springs); axial force and moments of its ends
+      real(wp), intent(in), contiguous :: d(:)
+      real(wp), intent(in) :: s(3)
+      integer :: j
+
+      force = 0.0_wp
+      associate (e => self%element(member))
+         do j = 1, 2
+            if (self%number(1, e%node(j)) > 0) cycle
+            force = force - sum(s*e%to_basic(:, 3*j - 2))
+            ! A chord that leans presses the support aside; a rotation against it has the opposite sign.
+            if (self%axially_loaded) force = force - e%compression*e%length &
+                                             *chord_rotation(e, d(self%inside + 1:))*e%to_basic(2, 3*j - 2)
+         end do
+      end associate
+   end function support_force
+
+   !> What springs from the ground hold the frame with along x [N]. Those of no account carry nothing that
+   !> counts.
+   pure real(wp) function ground_force(self, f) result(force)
+      type(frame_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: f(:)
+      integer :: i
+
+      force = 0.0_wp
+      do i = self%inside + 1, size(f)
+         if (self%place(i)%kind == shear) force = force + f(i)
+      end do
+   end function ground_force
 
 end submodule rbs_structure_frame_frame_rows

@@ -7,7 +7,8 @@ module rbs_structure_frame_layered
    implicit none
    private
 
-   public :: layered_tangent, layered_forces, layered_rates, drop_small_rates, joint_motion
+   public :: layered_tangent, layered_forces, layered_rates, drop_small_rates, joint_motion, &
+             take_joints_off
 
 contains
 
@@ -204,6 +205,21 @@ contains
          correction(i) = (moved(1) + y(i)*moved(2)) - d(i)
       end do
    end subroutine align
+
+   !> Take the motions of the ends that the joints make from those that there are.
+   pure subroutine take_joints_off(e, m, d, gap)
+      type(frame_element), intent(in) :: e
+      integer, intent(in) :: m
+      real(wp), intent(in) :: d(m)
+      real(wp), intent(inout) :: gap(3)
+      real(wp) :: z(2)
+      integer :: j
+
+      do j = 1, size(e%first) - 1
+         z = joint_motion(e, j, m, d)
+         gap = gap - (e%arm(:, 1, j)*z(1) + e%arm(:, 2, j)*z(2))
+      end do
+   end subroutine take_joints_off
 
    !> Opening in the middle and rotation of a joint of layers, told by its outermost ones; or the deformation
    !> of a single spring.
