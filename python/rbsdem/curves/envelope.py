@@ -493,7 +493,9 @@ def _asce_41(x: Array, y: Array) -> tuple[float, float, float, float]:
 
     With a point (u, v) of the envelope at 0.6 of the yield force, the area of the lines is
     (v end/0.6 + last end - last u/0.6)/2. Those points where it is that of the envelope lie on a
-    straight line, parallel to the chord; of all of them the highest is taken.
+    straight line, parallel to the chord. Where there are several, the lines that lie closest to the
+    envelope are taken: the least area between both, as the standard balances the areas above and
+    below.
     """
     total, end, last, reach = _area(x, y), float(x[-1]), float(y[-1]), float(y.max())
     off = end * y - last * x - 0.6 * (2.0 * total - last * end)
@@ -517,8 +519,22 @@ def _asce_41(x: Array, y: Array) -> tuple[float, float, float, float]:
             "ASCE 41, 7.4.3.2.4: no two lines through the envelope at 0.6 of the yield force have "
             f"its area up to end = {end:g} m; choose another end or another method"
         )
-    top, place = max(zip(force[good].tolist(), at[good].tolist(), strict=True))
-    return min(place, end), top, end, last
+    lines = [
+        (min(place, end), top, end, last)
+        for place, top in zip(at[good].tolist(), force[good].tolist(), strict=True)
+    ]
+    return min(lines, key=lambda each: (_apart(x, y, *each), -each[1]))
+
+
+def _apart(x: Array, y: Array, at: float, force: float, end: float, last: float) -> float:
+    """Return the area between an envelope and two lines, in size [J]."""
+    u = np.union1d(x, at)
+    off = np.interp(u, x, y) - np.interp(u, [0.0, at, end], [0.0, force, last])
+    one, two = np.abs(off[:-1]), np.abs(off[1:])
+    both = np.maximum(one + two, np.finfo(float).tiny)
+    # Where the line crosses the envelope there are two triangles.
+    heights = np.where(off[:-1] * off[1:] < 0, (one**2 + two**2) / both, both)
+    return 0.5 * float(np.diff(u) @ heights)
 
 
 def _ec_8(x: Array, y: Array) -> tuple[float, float, float, float]:
