@@ -136,14 +136,19 @@ def _slopes(task: tuple[int, np.ndarray]) -> np.ndarray:
 
 
 class Search:
-    """Gauss-Newton from the priors, over some of the tests."""
+    """Gauss-Newton from the priors, or from a start, over some of the tests."""
 
-    def __init__(self, cases: Sequence[Case], pool: ProcessPoolExecutor | None = None) -> None:
+    def __init__(
+        self,
+        cases: Sequence[Case],
+        pool: ProcessPoolExecutor | None = None,
+        start: np.ndarray | None = None,
+    ) -> None:
         self.cases = cases
         self.map = map if pool is None else lambda f, tasks: pool.map(f, tasks, chunksize=4)
         series = [case.specimen.series for case in cases]
         self.weight = np.array([1 / math.sqrt(series.count(name)) for name in series])
-        self.start = np.zeros(len(FREE))
+        self.start = np.zeros(len(FREE)) if start is None else start
         # No test sees another one here, so that all searches share the first slopes.
         self.first = self.slopes(range(len(cases)), self.start)
 

@@ -87,15 +87,20 @@ def _begin(folder: str) -> None:
         _group.update(dict.fromkeys((cases[i].specimen.series for i in members), number))
 
 
-def _column(number: int, judged: int | None) -> Any:
-    """Return the column of a test with the parameters without its group and the judged one."""
+def _column(number: int, judged: int | np.ndarray | None) -> Any:
+    """Return the column of a test with the parameters without its group and the judged one.
+
+    Places of parameters may stand for the judged group: then they are those of the column.
+    """
     case = fit_model._cases[number]
+    if isinstance(judged, np.ndarray):
+        return peer.column(case.specimen, model_parameters=fit_model.at(judged))
     out = {_group[case.specimen.series]} | ({judged} if judged is not None else set())
     places = _all + np.sum([_without[one] - _all for one in out], axis=0)
     return peer.column(case.specimen, model_parameters=fit_model.at(places))
 
 
-def _numbers(task: tuple[int, int | None]) -> Numbers:
+def _numbers(task: tuple[int, int | np.ndarray | None]) -> Numbers:
     number, judged = task
     case = fit_model._cases[number]
     d, test, height = case.target.displacement, case.target.force, case.specimen.length
@@ -146,7 +151,7 @@ class Band(NamedTuple):
         return float(np.mean(above + below + 2 / (1 - LEVEL) * beyond))
 
 
-def _band(task: tuple[int, int | None, int, Scatter]) -> Band:
+def _band(task: tuple[int, int | np.ndarray | None, int, Scatter]) -> Band:
     number, judged, samples, scatter = task
     case, column = fit_model._cases[number], _column(number, judged)
     d = case.target.displacement
@@ -337,12 +342,11 @@ def by_chance(inside: dict[str, np.ndarray], series: np.ndarray) -> list[str]:
     return lines
 
 
-def write(scatter: Scatter, tables: dict[str, list[str]]) -> None:
-    """Put numbers and tables where they belong."""
-    names = (*NAMES.values(), "shape", "force", *NUMBERS)
-    values = {name: getattr(scatter, name) for name in names}
-    text = json.dumps(values, indent=2) + "\n"
-    (ROOT / "data/layered_spread.json").write_text(text, "utf-8")
+def write(values: dict[str, Any], tables: dict[str, list[str]]) -> None:
+    """Put numbers and tables where they belong; what has no new value stays."""
+    path = ROOT / "data/layered_spread.json"
+    kept = json.loads(path.read_text("utf-8")) | values
+    path.write_text(json.dumps(kept, indent=2) + "\n", "utf-8")
     path = ROOT / "docs/peer.md"
     text = path.read_text("utf-8")
     for name, lines in tables.items():
@@ -402,7 +406,8 @@ def main() -> None:
         print("\n" + "\n".join(lines))
     print(f"\n{VERSION}: {shipped!r}\n{time.perf_counter() - began:.0f} s")
     if given.write:
-        write(shipped, tables)
+        names = (*NAMES.values(), "shape", "force", *NUMBERS)
+        write({name: getattr(shipped, name) for name in names}, tables)
 
 
 if __name__ == "__main__":

@@ -120,6 +120,18 @@ def test_outside_the_range_of_the_tests_it_says_so() -> None:
     with pytest.warns(AccuracyWarning, match="concrete strength = 140 MPa is outside"):
         found = rbsdem.peer.band(far, PATH[:3], scatter=NONE)
     assert found.remarks == far.outside
+    with pytest.warns(AccuracyWarning, match="is outside"):
+        wide = rbsdem.peer.band(far, PATH[:3], scatter=replace(NONE, outside=(1.5, 2.0, 3.0, 4.0)))
+    np.testing.assert_allclose(wide.upper - wide.force, 1.5 * (found.upper - found.force))
+    np.testing.assert_allclose(wide.force - wide.lower, 1.5 * (found.force - found.lower))
+    # From 0.9 and 1.2, 0.5 and 1.5, 0.7; this path loses no strength.
+    assert wide.peak_force.lower == pytest.approx(0.9**2 * found.peak_force.value)
+    assert wide.peak_force.upper == pytest.approx(1.2**2 * found.peak_force.value)
+    rise = (wide.energy.upper - wide.energy.value) / (found.energy.upper - found.energy.value)
+    assert rise == pytest.approx((1.5**3 - 1) / 0.5)
+    assert wide.drift_at_loss.lower == pytest.approx(0.7**3 * found.drift_at_loss.lower)
+    inside = rbsdem.peer.band(column(), PATH[:3], scatter=replace(NONE, outside=(9.0,) * 4))
+    assert inside.width == pytest.approx(0.2)
     with pytest.warns(AccuracyWarning, match="there are no ties"):
         rbsdem.section.column(replace(SECTION, ties=None, layout=None), 1.6, axial_load=1.2e6)
 

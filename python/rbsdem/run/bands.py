@@ -6,7 +6,8 @@ laboratory and from test to test (`Scatter`). Samples of it (Sobol points) go th
 force times a factor, the displacement over a factor, and the parameters of degradation times one.
 The bands of the samples are then widened by one number so that 80 % of the points of left-out tests
 lie within (conformal prediction), because a model is wrong in more ways than three. The number is
-another for columns that come near their shear strength, squat or slender.
+another for columns that come near their shear strength, squat or slender; outside the range of the
+tests the band is wider by a factor.
 """
 
 from __future__ import annotations
@@ -76,6 +77,9 @@ class Scatter:
     peak, energy, drift : ((float, float), (float, float), (float, float))
         Ends of the 80 % intervals of largest force, work and drift at 20 % loss, over what is
         predicted, likewise.
+    outside : (float, float, float, float), optional
+        By what the band is wider outside the range of the tests, and the logarithms of the ends of
+        the three intervals, in their order.
     """
 
     strength: tuple[float, float]
@@ -86,6 +90,7 @@ class Scatter:
     peak: tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
     energy: tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
     drift: tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
+    outside: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
 
 
 @cache
@@ -331,8 +336,9 @@ def band(
     near = near_shear(column, peak)
     place = Place(near, slender(column.height, column._drawing.section.depth))
     up, down = half_band(force, sampled, scatter)
-    widen = between(scatter.force, place)
-    values = numbers(d, force, column.height)
+    wider, *powers = scatter.outside if column.outside else (1.0, 1.0, 1.0, 1.0)
+    widen = wider * between(scatter.force, place)
+    values, height = numbers(d, force, column.height), column.height
     moved = float(np.abs(np.diff(d)) @ np.abs(0.5 * (force[1:] + force[:-1])))
     return Band(
         displacement=d,
@@ -341,10 +347,12 @@ def band(
         lower=force - widen * down,
         upper=force + widen * up,
         samples=sampled,
-        peak_force=_interval(values["peak"], scatter.peak, place),
-        energy=_interval(values["energy"], scatter.energy, place, scale=_LEAST_WORK * moved),
+        peak_force=_interval(values["peak"], scatter.peak, place, powers[0]),
+        energy=_interval(
+            values["energy"], scatter.energy, place, powers[1], scale=_LEAST_WORK * moved
+        ),
         drift_at_loss=_interval(
-            values["drift"], scatter.drift, place, float(np.max(np.abs(d))) / column.height
+            values["drift"], scatter.drift, place, powers[2], float(np.max(np.abs(d))) / height
         ),
         near_shear=near,
         remarks=remarks,
@@ -475,15 +483,17 @@ def _interval(
     value: float,
     factors: Sequence[tuple[float, float]],
     place: Place,
+    power: float,
     least: float = math.nan,
     scale: float = 0.0,
 ) -> Interval:
     """Return a value with its interval; `least` is what it exceeds if it is not known.
 
     The ends are in proportion to the value, or to `scale` where that is more: a number that can
-    come near zero is not known the better for it.
+    come near zero is not known the better for it. Outside the range of the tests the logarithms of
+    the factors are larger by `power`.
     """
-    lower, upper = (between(ends, place) for ends in zip(*factors, strict=True))
+    lower, upper = (between(ends, place) ** power for ends in zip(*factors, strict=True))
     if math.isnan(value):
         # No more is known than that it lies beyond, as far as the model is right.
         return Interval(min(lower, 1.0) * least, value, math.inf)
