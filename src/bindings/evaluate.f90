@@ -235,10 +235,10 @@ contains
       end do
       call text%append(line)
       allocate (place(0), stiffness(0))
-      do i = 1, frame%inside
+      do i = 1, frame%member_springs
          if (frame%place(i)%kind /= layer) then
             group = kinds(frame%place(i)%kind)
-            if (i > frame%inside - count(frame%beam_rotation > 0)) group = 'panel'
+            if (i > frame%member_springs - count(frame%beam_rotation > 0)) group = 'panel'
             call add_spring(group, trim(frame%rules%name(frame%rules%of(i))), frame%initial_stiffness(i))
          else if (frame%heads(i)) then
             ! About the centre of stiffness of its layers [N m/rad], and axially [N/m]

@@ -23,7 +23,7 @@ module rbs_bindings_runs
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic
-   use rbs_solve_time_sight, only: sight_type, watch_type
+   use rbs_solve_time_monitor, only: response_monitor, watch_type
    use rbs_structure_structure, only: structure_type
    implicit none
    private
@@ -39,7 +39,7 @@ module rbs_bindings_runs
       type(case_record) :: case
       type(array_recorder) :: recorder
       type(task_type) :: task
-      type(sight_type) :: sight
+      type(response_monitor) :: monitor
    end type run_type
 
 contains
@@ -63,7 +63,7 @@ contains
       integer :: i
 
       watches => request%array('watches')
-      call run%sight%watch_for(watches_of(watches), size(watches)/6)
+      call run%monitor%watch_for(watches_of(watches), size(watches)/6)
       call structure_from_statements(request%statement, request%number, run%structure, run%task%before, &
                                      run%case, answer%error)
       if (.not. allocated(answer%error)) then
@@ -100,11 +100,11 @@ contains
       call move_alloc(run%recorder%rows, answer%rows)
       answer%kept = run%recorder%count
       call run%task%summary%get_figures(figure)
-      where (.not. run%sight%reached < huge(1.0_wp))
-         run%sight%reached = ieee_value(1.0_wp, ieee_quiet_nan)
-         run%sight%top = run%sight%reached
+      where (.not. run%monitor%reached < huge(1.0_wp))
+         run%monitor%reached = ieee_value(1.0_wp, ieee_quiet_nan)
+         run%monitor%top = run%monitor%reached
       end where
-      answer%value = [run%sight%reached, run%sight%top, (figure(i)%value, i=1, size(figure))]
+      answer%value = [run%monitor%reached, run%monitor%top, (figure(i)%value, i=1, size(figure))]
       if (run%task%after%is_given()) then
          answer%value = [answer%value, run%task%after%stream%value(:run%task%after%stream%count)]
       end if
@@ -166,7 +166,7 @@ contains
                initial%opening_given = request%wants('opening_given')
             end if
             run%recorder%expected = plan%rows(output%every)
-            call run_dynamic(structure, analysis, plan, time, loads, initial, run%task, error, run%sight)
+            call run_dynamic(structure, analysis, plan, time, loads, initial, run%task, error, run%monitor)
          end associate
       end subroutine run_time_history
 

@@ -67,7 +67,7 @@ module rbs_hysteresis_rule
       class(rule_type), pointer :: rule => null()
       class(rule_memory), allocatable :: memory, kept
       !> Whether the memory is told of the work of the flexural spring
-      logical :: is_told = .false.
+      logical :: needs_flexural_work = .false.
    contains
       procedure :: next_branch
    end type spring_slot
@@ -117,7 +117,7 @@ contains
       !> Work of the flexural spring of the joint so far [J]; for a spring that decays with it
       real(wp), intent(in) :: flexural_work
 
-      if (self%is_told) self%memory%flexural_work = flexural_work
+      if (self%needs_flexural_work) self%memory%flexural_work = flexural_work
       call self%rule%next(self%memory, branch, direction)
    end subroutine next_branch
 

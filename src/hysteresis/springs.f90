@@ -40,7 +40,7 @@ module rbs_hysteresis_springs
       !> Work done on each spring along its path, exact (count) [J]
       real(wp), allocatable :: work(:)
       !> First and last of the springs whose work a spring decays with, 0: none (2, count)
-      integer, allocatable :: heard(:, :)
+      integer, allocatable :: work_source(:, :)
       !> Work from before `work` was counted, where a step counts it from its own start (count) [J]
       real(wp), allocatable :: work_before(:)
       !> Number of lines left so far
@@ -77,7 +77,7 @@ module rbs_hysteresis_springs
       procedure :: load_to
       procedure :: line_of
       procedure :: put
-      procedure :: let_go
+      procedure :: release
       procedure :: is_released
       procedure :: mark
       procedure :: restore
@@ -97,12 +97,12 @@ module rbs_hysteresis_springs
 contains
 
    !> Virgin springs with rules that have been made.
-   subroutine create(self, rules, told, axial_load)
+   subroutine create(self, rules, work_source, axial_load)
       class(spring_array), intent(out) :: self
       !> They stay where they are, and must be there as long as the springs
       type(spring_rules), intent(in), target :: rules
       !> First and last of the springs whose work each spring may decay with, 0: none (2, count)
-      integer, intent(in) :: told(:, :)
+      integer, intent(in) :: work_source(:, :)
       !> Axial load that the layers of each spring begin under, compression positive (count) [N]
       real(wp), intent(in) :: axial_load(:)
       type(segment) :: line
@@ -115,7 +115,7 @@ contains
                 self%includes_upper_end(n))
       allocate (self%d(n), self%work(n), self%work_before(n), source=0.0_wp)
       allocate (self%d0(n), self%f0(n), self%k(n), self%first(n), self%last(n))
-      allocate (self%heard(2, n), source=0)
+      allocate (self%work_source(2, n), source=0)
       allocate (self%on_plane(n), source=.false.)
       allocate (self%layered(0))
       do i = 1, n
@@ -129,8 +129,8 @@ contains
                call start_under(rule, axial_load(i), self%slot(i)%memory, line)
             end if
             call put_line(self, i, line)
-            if (rule%uses_flexural_work) self%heard(:, i) = told(:, i)
-            self%slot(i)%is_told = self%heard(1, i) > 0
+            if (rule%uses_flexural_work) self%work_source(:, i) = work_source(:, i)
+            self%slot(i)%needs_flexural_work = self%work_source(1, i) > 0
          end associate
          select type (section => self%slot(i)%memory)
          type is (fibre_section)
@@ -236,7 +236,7 @@ contains
       if (self%unload_on_reversal(i) /= -direction) call advance_on_branch(self, i, &
            merge(line%hi, line%lo, direction > 0))
       flexural_work = 0.0_wp
-      associate (first => self%heard(1, i), last => self%heard(2, i))
+      associate (first => self%work_source(1, i), last => self%work_source(2, i))
          if (first > 0) flexural_work = sum(self%work_before(first:last) + self%work(first:last))
       end associate
       call self%slot(i)%next_branch(line, direction, flexural_work)
@@ -385,7 +385,7 @@ contains
          do j = 1, journal%changed
             i = journal%spring(j)
             ! A spring that decays with the work of others depends on their ways.
-            stays = present(d) .and. .not. self%slot(i)%is_told
+            stays = present(d) .and. .not. self%slot(i)%needs_flexural_work
             if (stays) stays = journal%passes_again(i, d(i))
             if (stays) then
                left = left + 1
@@ -481,13 +481,13 @@ contains
    end subroutine put
 
    !> Let a spring have a constant force from now on.
-   pure subroutine let_go(self, i, force)
+   pure subroutine release(self, i, force)
       class(spring_array), intent(inout) :: self
       integer, intent(in) :: i
       real(wp), intent(in) :: force
 
       call self%put(i, segment(f0=force), self%d(i), self%work(i))
-   end subroutine let_go
+   end subroutine release
 
    !> Whether it was let go: no rule has a line without stiffness and without ends.
    pure logical function is_released(self, i)

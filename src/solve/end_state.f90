@@ -18,7 +18,7 @@ module rbs_solve_end_state
    implicit none
    private
 
-   public :: end_state, standing_type, static_state, moving_state
+   public :: end_state, checkpoint_type, static_state, moving_state
 
    !> Changes when what is written here changes.
    integer, parameter :: format = 2
@@ -30,7 +30,7 @@ module rbs_solve_end_state
    integer, parameter :: static_state = 1, moving_state = 2
 
    !> State of a structure at the end of an analysis, as either kind of analysis takes it up.
-   type :: standing_type
+   type :: checkpoint_type
       integer :: kind = 0
       !> Whether the axial loads of layered joints varied
       logical :: pressed = .false.
@@ -53,8 +53,8 @@ module rbs_solve_end_state
       integer :: method = 0
       real(wp) :: setting = 0.0_wp
    contains
-      procedure :: serialize => serialize_standing
-   end type standing_type
+      procedure :: serialize => serialize_checkpoint
+   end type checkpoint_type
 
    type :: end_state
       type(stream_type) :: stream
@@ -62,7 +62,7 @@ module rbs_solve_end_state
       procedure :: is_given
       procedure :: start_saving
       procedure :: finish_saving
-      procedure :: take_up
+      procedure :: restore
       procedure :: check
    end type end_state
 
@@ -75,8 +75,8 @@ contains
       is_given = self%stream%count > 0
    end function is_given
 
-   pure subroutine serialize_standing(self, stream)
-      class(standing_type), intent(inout) :: self
+   pure subroutine serialize_checkpoint(self, stream)
+      class(checkpoint_type), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
 
       call stream%item(self%kind)
@@ -92,13 +92,13 @@ contains
       call stream%item(self%offset)
       call stream%item(self%method)
       call stream%item(self%setting)
-   end subroutine serialize_standing
+   end subroutine serialize_checkpoint
 
    !> Begin a state with what every analysis has. What the solver remembers follows.
-   subroutine start_saving(self, structure, standing, springs)
+   subroutine start_saving(self, structure, checkpoint, springs)
       class(end_state), intent(inout) :: self
       class(structure_type), intent(in) :: structure
-      type(standing_type), intent(inout) :: standing
+      type(checkpoint_type), intent(inout) :: checkpoint
       type(spring_array), intent(inout) :: springs
       real(wp) :: first(head)
 
@@ -110,7 +110,7 @@ contains
       first(8) = size(structure%place)
       call self%stream%save()
       call self%stream%item(first)
-      call standing%serialize(self%stream)
+      call checkpoint%serialize(self%stream)
       call springs%serialize(self%stream)
    end subroutine start_saving
 
@@ -169,26 +169,26 @@ contains
 
    !> Take up what every analysis has; springs are those of the structure, virgin. What the solver remembers
    !> comes next in the stream.
-   subroutine take_up(self, structure, standing, springs, error)
+   subroutine restore(self, structure, checkpoint, springs, error)
       class(end_state), intent(inout) :: self
       class(structure_type), intent(in) :: structure
-      type(standing_type), intent(out) :: standing
+      type(checkpoint_type), intent(out) :: checkpoint
       type(spring_array), intent(inout) :: springs
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: first(head)
 
       call self%check(structure, error)
       if (allocated(error)) return
-      allocate (standing%press(size(structure%place)), standing%v(size(structure%place)), source=0.0_wp)
+      allocate (checkpoint%press(size(structure%place)), checkpoint%v(size(structure%place)), source=0.0_wp)
       call self%stream%restore()
       call self%stream%item(first)
-      call standing%serialize(self%stream)
+      call checkpoint%serialize(self%stream)
       call springs%serialize(self%stream)
       if (self%stream%broken) then
          call fatal_error(error, bad_input, 'initial: the state was written by a version of rbsdem whose '// &
                           'springs remember other things; run the first analysis again with this version')
       end if
-   end subroutine take_up
+   end subroutine restore
 
    !> Two numbers that tell structures with other springs or sizes apart.
    subroutine find_stamp(structure, stamp)

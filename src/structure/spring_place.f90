@@ -18,7 +18,7 @@ module rbs_structure_spring_place
       integer :: member = 1, joint = 0
       !> First and last of the springs whose work this one may ask for: a flexural spring, or the layers of a
       !> joint; 0: none
-      integer :: heard = 0, heard_last = 0
+      integer :: work_source = 0, last_work_source = 0
       !> Number of the joint among those of all members
       integer :: index = 0
       !> Name of the member, or of the node that a spring from the ground belongs to; blank for a column

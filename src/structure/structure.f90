@@ -140,10 +140,10 @@ module rbs_structure_structure
       procedure :: check_loads
       procedure :: check_initial
       ! Parts that are lost on the way
-      procedure :: find_lost
-      procedure :: let_go
-      procedure :: has_fallen
-      procedure :: find_runaway
+      procedure :: next_failed_member
+      procedure :: remove_member
+      procedure :: has_collapsed
+      procedure :: unbounded_spring
       ! Where deformations follow from the unknowns and the present stiffness of the springs
       procedure :: linearise
       procedure :: damp
@@ -483,39 +483,39 @@ contains
    end subroutine check_initial
 
    !> A member that is to be lost where the springs are now, 0: none.
-   integer function find_lost(self, springs, time) result(member)
+   integer function next_failed_member(self, springs, time) result(member)
       class(structure_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
       !> [s]; on a static path none is lost by time
       real(wp), intent(in), optional :: time
 
       member = 0
-   end function find_lost
+   end function next_failed_member
 
    !> Let a member carry nothing from now on.
-   subroutine let_go(self, member, springs)
+   subroutine remove_member(self, member, springs)
       class(structure_type), intent(in) :: self
       integer, intent(in) :: member
       type(spring_array), intent(inout) :: springs
-   end subroutine let_go
+   end subroutine remove_member
 
    !> Whether a part has fallen so far that small rotations do not describe it.
-   pure logical function has_fallen(self, d)
+   pure logical function has_collapsed(self, d)
       class(structure_type), intent(in) :: self
       !> Deformations of the springs (springs)
       real(wp), intent(in), contiguous :: d(:)
 
-      has_fallen = .false.
-   end function has_fallen
+      has_collapsed = .false.
+   end function has_collapsed
 
    !> A spring without mass that nothing in its part holds any more, 0: none.
-   pure integer function find_runaway(self, d) result(spring)
+   pure integer function unbounded_spring(self, d) result(spring)
       class(structure_type), intent(in) :: self
       !> Deformations of the springs (springs)
       real(wp), intent(in), contiguous :: d(:)
 
       spring = 0
-   end function find_runaway
+   end function unbounded_spring
 
    !> What follows from the present stiffness of the springs; nothing, where it is not asked for.
    subroutine linearise(self, k, tangent, unstable)
@@ -600,11 +600,11 @@ contains
       type(spring_array), intent(out) :: springs
       !> Compression positive (springs) [N]
       real(wp), intent(in), contiguous :: axial_force(:)
-      integer :: heard(2, size(axial_force))
+      integer :: work_source(2, size(axial_force))
 
-      heard(1, :) = self%place%heard
-      heard(2, :) = self%place%heard_last
-      call springs%create(self%rules, heard, axial_force)
+      work_source(1, :) = self%place%work_source
+      work_source(2, :) = self%place%last_work_source
+      call springs%create(self%rules, work_source, axial_force)
    end subroutine create_springs
 
    !> Add the inertia of the moving ground.

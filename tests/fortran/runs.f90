@@ -161,7 +161,7 @@ contains
       state%v = v
       call state%springs%move_all(state%q)
       state%at_begin = energy_of(state)
-      call state%begin_sight(unset, .false.)
+      call state%begin_monitor(unset, .false.)
    end subroutine new_state
 
    !> The structure of a state, which is a column.

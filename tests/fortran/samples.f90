@@ -48,15 +48,15 @@ contains
       !> As in `create`; without it none is told
       integer, intent(in), optional :: told(:)
       type(spring_rules), pointer :: rules
-      integer :: heard(2, size(specs))
+      integer :: work_source(2, size(specs))
       real(wp) :: axial_load(size(specs))
 
-      heard = 0
-      if (present(told)) heard = spread(told, 1, 2)
+      work_source = 0
+      if (present(told)) work_source = spread(told, 1, 2)
       axial_load = specs%axial_load
       allocate (rules)
       call add_rules(rules, specs, size(specs))
-      call springs%create(rules, heard, axial_load)
+      call springs%create(rules, work_source, axial_load)
    end subroutine make_springs
 
    !> The next number between two bounds.

@@ -6,7 +6,7 @@ module test_frame
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_channels, only: new_channels
    use rbs_output_recorder, only: array_recorder
-   use rbs_solve_end_state, only: end_state, standing_type
+   use rbs_solve_end_state, only: end_state, checkpoint_type
    use rbs_solve_static_dead_load, only: put_dead_load
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_straight, only: trace_straight
@@ -137,7 +137,7 @@ contains
       type(frame_type), target :: frame
       type(frame_node) :: node(3)
       type(end_state) :: state
-      type(standing_type) :: standing
+      type(checkpoint_type) :: checkpoint
       type(spring_array) :: springs
       real(wp) :: s(3)
       integer :: of, i
@@ -152,10 +152,10 @@ contains
          call put_dead_load(frame, state, error)
          if (allocated(error)) return
          call stand(frame, springs)
-         call state%take_up(frame, standing, springs, error)
+         call state%restore(frame, checkpoint, springs, error)
          if (allocated(error)) return
-         call check_close(error, springs%d(frame%inside + frame%number(2, 2)), -w*l**4/(384.0_wp*bending), &
-                          1.0e-12_wp, 0.0_wp, 'sag')
+         call check_close(error, springs%d(frame%member_springs + frame%number(2, 2)), &
+                          -w*l**4/(384.0_wp*bending), 1.0e-12_wp, 0.0_wp, 'sag')
          do i = 1, 2
             call frame%member_forces(i, springs%d, springs%f0 + springs%k*(springs%d - springs%d0), s)
             s = s/(w*l**2/12.0_wp)

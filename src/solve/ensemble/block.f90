@@ -3,7 +3,7 @@ module rbs_solve_ensemble_block
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_output_recorder, only: array_recorder
-   use rbs_solve_end_state, only: end_state, standing_type
+   use rbs_solve_end_state, only: end_state, checkpoint_type
    use rbs_solve_ensemble_lane_choice, only: takes_lanes
    use rbs_solve_ensemble_ensemble_input, only: ensemble_column, ensemble_motion, run_type, lane_task
    use rbs_solve_ensemble_run_result, only: run_result, collect
@@ -14,7 +14,7 @@ module rbs_solve_ensemble_block
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic
-   use rbs_solve_time_sight, only: sight_type
+   use rbs_solve_time_monitor, only: response_monitor
    use rbs_solve_time_start, only: resume_state
    use rbs_solve_time_state, only: state_type
    implicit none
@@ -62,7 +62,7 @@ contains
       type(end_state) :: before
       type(time_plan) :: plan
       type(state_type) :: state
-      type(standing_type) :: standing
+      type(checkpoint_type) :: checkpoint
       type(loads_type) :: loads
 
       if (.not. allocated(column%before)) return
@@ -70,7 +70,7 @@ contains
       loads%signal(horizontal)%time = motion%time
       loads%signal(horizontal)%value = motion%acceleration
       plan = planned
-      call resume_state(state, column%structure, loads, before, plan, standing, error)
+      call resume_state(state, column%structure, loads, before, plan, checkpoint, error)
    end subroutine check_start
 
    !> The state that runs of a column begin in, if it is given one.
@@ -217,12 +217,12 @@ contains
       type(initial_state) :: at_rest
       type(array_recorder), target :: no_rows
       type(task_type) :: task
-      type(sight_type) :: sight
+      type(response_monitor) :: monitor
       type(error_type), allocatable :: error
 
-      call sight%watch_for(column%watch, column%states)
+      call monitor%watch_for(column%watch, column%states)
       if (allocated(unplanned)) then
-         call collect(sight%reached, task%summary, unplanned, result)
+         call collect(monitor%reached, task%summary, unplanned, result)
          return
       end if
       task%recorder => no_rows
@@ -231,8 +231,8 @@ contains
       loads%signal(horizontal)%value = scale*motion%acceleration
       call take_before(column, task%before)
       call run_dynamic(column%structure, column%analysis, plan, motion%time, loads, at_rest, task, error, &
-                       sight)
-      call collect(sight%reached, task%summary, error, result)
+                       monitor)
+      call collect(monitor%reached, task%summary, error, result)
    end subroutine run_alone
 
 end module rbs_solve_ensemble_block

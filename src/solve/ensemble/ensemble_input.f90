@@ -4,7 +4,7 @@ module rbs_solve_ensemble_ensemble_input
    use rbs_base_kinds, only: wp
    use rbs_case_analysis_record, only: analysis_record
    use rbs_solve_time_plan, only: time_plan
-   use rbs_solve_time_sight, only: watch_type
+   use rbs_solve_time_monitor, only: watch_type
    use rbs_structure_structure, only: structure_type
    implicit none
    private

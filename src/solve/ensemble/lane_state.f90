@@ -45,9 +45,9 @@ contains
       x%ground(l) = state%load(horizontal)
       x%of_loads(l) = state%of_loads
       x%of_damping(l) = state%of_damping
-      x%peak(l) = state%sight%peak_displacement
-      x%base(l) = state%sight%peak_base_shear
-      x%rotation(l) = state%sight%peak_rotation
+      x%peak(l) = state%monitor%peak_displacement
+      x%base(l) = state%monitor%peak_base_shear
+      x%rotation(l) = state%monitor%peak_rotation
       call bounds_to_lane(y, l, state)
    end subroutine motion_to_lane
 
@@ -65,11 +65,11 @@ contains
       state%load(horizontal) = x%ground(l)
       state%of_loads = x%of_loads(l)
       state%of_damping = x%of_damping(l)
-      state%sight%peak_displacement = x%peak(l)
-      state%sight%peak_base_shear = x%base(l)
-      state%sight%peak_rotation = x%rotation(l)
-      state%sight%clock = x%t(l)
-      state%sight%q(:) = state%q
+      state%monitor%peak_displacement = x%peak(l)
+      state%monitor%peak_base_shear = x%base(l)
+      state%monitor%peak_rotation = x%rotation(l)
+      state%monitor%clock = x%t(l)
+      state%monitor%q(:) = state%q
       call ground_from_lane(x, l, state)
    end subroutine motion_from_lane
 
@@ -92,9 +92,9 @@ contains
       integer, intent(in) :: l
       type(state_type), intent(in) :: state
 
-      y%lowest(l, :) = state%sight%lowest
-      y%highest(l, :) = state%sight%highest
-      y%from(l, :) = state%sight%q
+      y%lowest(l, :) = state%monitor%lowest
+      y%highest(l, :) = state%monitor%highest
+      y%from(l, :) = state%monitor%q
    end subroutine bounds_to_lane
 
    !> Velocities, accelerations and forces at the start of the next implicit step.

@@ -104,7 +104,7 @@ contains
          end do
          call batch%kernel%finish(batch%x, batch%y, size(batch%time), batch%time, batch%acceleration, count, &
                                   list)
-         if (batch%x%any_beyond > 0.5_wp) call look_closely(batch)
+         if (batch%x%any_beyond > 0.5_wp) call check_limit_states(batch)
          do j = 1, count
             call unload(batch, list(j), task, result, error)
             call free(list(j))
@@ -211,9 +211,9 @@ contains
             lane%column = place
             lane%dt = x%h(l)
          end if
-         call lane%state%sight%watch_for(column%watch, column%states)
-         call lane%state%begin_sight(column%analysis%collapse_drift, .false.)
-         x%furthest(l) = lane%state%sight%furthest
+         call lane%state%monitor%watch_for(column%watch, column%states)
+         call lane%state%begin_monitor(column%analysis%collapse_drift, .false.)
+         x%furthest(l) = lane%state%monitor%furthest
          call motion_to_lane(x, y, l, lane%state)
          call springs_to_lane(y, l, lane%state)
          call lines_to_lane(x, y, l, lane%state, batch%body, batch%method%implicit, lane%line)
@@ -346,22 +346,22 @@ contains
    end subroutine step_alone
 
    !> Lanes in which a limit state may have been reached.
-   subroutine look_closely(batch)
+   subroutine check_limit_states(batch)
       type(batch_type), intent(inout) :: batch
       integer :: l
 
       do l = 1, lanes
          if (batch%x%beyond(l) < 0.5_wp) cycle
          associate (x => batch%x, y => batch%y, state => batch%lane(l)%state)
-            state%sight%q(:) = y%from(l, :)
+            state%monitor%q(:) = y%from(l, :)
             ! A step that was cut has been seen within.
-            state%sight%clock = max(state%sight%clock, x%seen(l))
+            state%monitor%clock = max(state%monitor%clock, x%seen(l))
             state%q(:) = y%q(l, :)
-            call state%sight%look(state%springs, state%q, x%displacement(l), x%t(l))
+            call state%monitor%check_limits(state%springs, state%q, x%displacement(l), x%t(l))
             call bounds_to_lane(y, l, state)
          end associate
       end do
-   end subroutine look_closely
+   end subroutine check_limit_states
 
    !> Fate and measures of a run that has ended; its lane is empty.
    subroutine unload(batch, l, task, result, error)
@@ -392,8 +392,8 @@ contains
             summary%steps = summary%steps + lane%stepper%steps
             summary%cut_steps = lane%stepper%cut_steps
          end if
-         if (allocated(lane%state%sight%reached)) then
-            call collect(lane%state%sight%reached, summary, error, result(this%run))
+         if (allocated(lane%state%monitor%reached)) then
+            call collect(lane%state%monitor%reached, summary, error, result(this%run))
          else
             call collect([huge(1.0_wp)], summary, error, result(this%run))
          end if

@@ -208,7 +208,7 @@ contains
             self%moved(1) = self%moved(1) + self%dx(1)
             self%moved(2) = self%moved(2) + self%dx(2)
          end if
-         call look(self, slot, slope)
+         call check_end(self, slot, slope)
          if (.not. slope < out_of_bounds) exit
          taken = abs(self%r(1)) <= self%wanted*self%scale(1) .and. abs(self%r(2)) <= self%wanted*self%scale(2)
          if (taken) exit
@@ -276,7 +276,7 @@ contains
          share = bracket%next()
          self%moved = self%moved + (share - now)*self%dx
          now = share
-         call look(self, slot, slope)
+         call check_end(self, slot, slope)
          if (abs(slope) <= too_far/3.0_wp*self%work .or. self%stuck) return
          call bracket%narrow(share, slope)
       end do
@@ -284,7 +284,7 @@ contains
 
    !> Look where the body is when it has moved so far: put the springs on their lines there, find what is left
    !> of the balance, and its work on the correction.
-   subroutine look(self, slot, slope)
+   subroutine check_end(self, slot, slope)
       type(one_body_step), intent(inout) :: self
       type(spring_slot), intent(inout) :: slot(2)
       !> `huge`: out of bounds, or the springs go round in lines
@@ -302,7 +302,7 @@ contains
       end if
       call find_residual(self)
       slope = self%r(1)*self%dx(1) + self%r(2)*self%dx(2)
-   end subroutine look
+   end subroutine check_end
 
    !> Whether a spring that goes to q is on its line there: one that has come to it by the end of another is
    !> beyond that end.

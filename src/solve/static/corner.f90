@@ -195,7 +195,7 @@ contains
          integer, allocatable :: tried(:)
          integer :: trial, i, most
 
-         tried = pack([(i, i=1, path%moving)], [(way_out(path%springs, i) /= 0, i=1, path%moving)])
+         tried = pack([(i, i=1, path%moving)], [(exit_direction(path%springs, i) /= 0, i=1, path%moving)])
          tried = [pack(tried, path%changed(tried) > 1), pack(tried, path%changed(tried) <= 1)]
          most = min(most_tried, int(log(real(most_work, wp)/path%moving)/log(2.0_wp)))
          tried = tried(:min(size(tried), most))
@@ -211,7 +211,7 @@ contains
             ! The bit that changes next in the Gray code.
             if (trial == 2**size(tried)) exit
             i = tried(trailz(trial) + 1)
-            call path%springs%leave(i, way_out(path%springs, i))
+            call path%springs%leave(i, exit_direction(path%springs, i))
          end do
          found = .false.
       end subroutine try_all_ways
@@ -367,18 +367,18 @@ contains
    end function is_on_closed_end
 
    !> The way by which a spring can leave its line where it stands, 0 if it cannot.
-   pure integer function way_out(springs, i)
+   pure integer function exit_direction(springs, i)
       type(spring_array), intent(in) :: springs
       integer, intent(in) :: i
 
-      way_out = -springs%unload_on_reversal(i)
-      if (way_out /= 0) return
+      exit_direction = -springs%unload_on_reversal(i)
+      if (exit_direction /= 0) return
       if (springs%d(i) >= springs%end_toward(i, 1)) then
-         way_out = 1
+         exit_direction = 1
       else if (springs%d(i) <= springs%end_toward(i, -1)) then
-         way_out = -1
+         exit_direction = -1
       end if
-   end function way_out
+   end function exit_direction
 
    !> Report why the path cannot be continued.
    subroutine report_no_line(path, target, error)

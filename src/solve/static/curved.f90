@@ -69,13 +69,13 @@ module rbs_solve_static_curved
       !> Largest work of the lateral force so far, in size [J]
       real(wp) :: most_work = 0.0_wp
       !> Strides in a row that made no progress
-      integer :: standing = 0
+      integer :: stalled_strides = 0
    contains
       procedure :: advance
       procedure :: solve_line
       procedure :: find_balance
       procedure :: unbalance
-      procedure :: stand_still
+      procedure :: reset_reference
       procedure :: serialize
    end type curved_path
 
@@ -102,12 +102,12 @@ contains
       allocate (path%here%q(m), path%here%rate(m), path%there%q(m), &
                 path%there%rate(m), source=0.0_wp)
       path%structure => column
-      path%steady => column
-      if (varies) path%steady => path%equilibrium%steady
+      path%without_top_load => column
+      if (varies) path%without_top_load => path%equilibrium%without_top_load
       call begin_path(path, by_force, m, varies, task%before, error)
       if (allocated(error)) return
       if (.not. task%resumes()) then
-         call path%stand_still()
+         call path%reset_reference()
          path%at_begin = path%at_begin + path%load_work
       end if
       call path%follow(target, task, error)
@@ -123,7 +123,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: direction, strides
 
-      self%standing = 0
+      self%stalled_strides = 0
       if (self%equilibrium%varies) then
          self%row = self%row + 1
          self%equilibrium%driven = [self%control, target - self%control]
@@ -204,7 +204,7 @@ contains
          return
       end do
       if (.not. near) self%next_length = 2.0_wp*length
-      if (self%standing > 20 + 4*self%moving + merge(2000, 0, self%springs%pressed)) then
+      if (self%stalled_strides > 20 + 4*self%moving + merge(2000, 0, self%springs%pressed)) then
          call report_no_way(self, target, error)
       end if
 
@@ -266,7 +266,7 @@ contains
             self%load_work = self%load_work + works(2)
             self%most_work = max(self%most_work, abs(self%work))
             stands = .not. abs(there%t - here%t) > 0.0_wp
-            self%standing = merge(self%standing + 1, 0, stands)
+            self%stalled_strides = merge(self%stalled_strides + 1, 0, stands)
             if (spring > 0 .and. self%layer == 0) then
                side = merge(1, -1, self%direction*there%rate(spring) > 0.0_wp)
                closed = merge(self%springs%includes_upper_end(spring), &
@@ -466,9 +466,11 @@ contains
                done = .not. strict .or. abs(work(2)) <= most_correction*max(self%most_work, turnover)
                return
             end if
-            associate (unit => self%equilibrium%unit, steady => self%equilibrium%steady)
-               lift = [unit%potential_energy(here%q), unit%potential_energy(there%q)]
-               weight = [steady%potential_energy(here%q), steady%potential_energy(there%q)]
+            associate (unit_top_load => self%equilibrium%unit_top_load, &
+                       without_top_load => self%equilibrium%without_top_load)
+               lift = [unit_top_load%potential_energy(here%q), unit_top_load%potential_energy(there%q)]
+               weight = [without_top_load%potential_energy(here%q), &
+                         without_top_load%potential_energy(there%q)]
             end associate
             works(2) = sum(self%curve%work([here%axial_load, there%axial_load], lift, &
                                            [here%axial_rate, there%axial_rate], &
@@ -560,7 +562,7 @@ contains
    end function unbalance
 
    !> The springs stand where the path begins.
-   subroutine stand_still(self)
+   subroutine reset_reference(self)
       class(curved_path), intent(inout) :: self
 
       self%direction = 0
@@ -573,8 +575,8 @@ contains
       if (.not. self%equilibrium%varies) return
       self%equilibrium%load = [self%load_now, 0.0_wp]
       ! The load has done its work before the path begins.
-      self%load_work = self%load_now*self%equilibrium%unit%potential_energy(self%here%q)
-   end subroutine stand_still
+      self%load_work = self%load_now*self%equilibrium%unit_top_load%potential_energy(self%here%q)
+   end subroutine reset_reference
 
    !> Present to a tape where the path is and how far it may stride.
    subroutine serialize(self, stream)

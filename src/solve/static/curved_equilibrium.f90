@@ -57,7 +57,7 @@ module rbs_solve_static_curved_equilibrium
       real(wp) :: driven(2) = [0.0_wp, 1.0_wp], load(2) = 0.0_wp, ratio = 0.0_wp
       class(column_type), pointer :: column => null()
       !> Where the load at the top varies, the column under its weight alone, and weightless under a unit
-      class(column_type), allocatable :: steady, unit
+      class(column_type), allocatable :: without_top_load, unit_top_load
       !> Weight above the joints that layered joints feel (unknowns) [N]
       real(wp), allocatable :: above(:)
       !> Largest slip, relative rotation and opening so far
@@ -105,13 +105,13 @@ contains
          ! What is left when the load is taken off would depend on it by round-off, and a path that is cut
          ! begins under another load.
          self%ratio = column%axial_force_ratio
-         allocate (self%steady, self%unit, source=column)
-         call self%steady%put_under(0.0_wp)
-         self%unit%weight = 0.0_wp
-         call self%unit%put_under(1.0_wp)
-         call list_axial_forces(self%steady, self%constant)
-         call list_axial_forces(self%unit, self%per_load)
-         self%above(column%at(flexure, :)) = self%steady%compression
+         allocate (self%without_top_load, self%unit_top_load, source=column)
+         call self%without_top_load%put_under(0.0_wp)
+         self%unit_top_load%weight = 0.0_wp
+         call self%unit_top_load%put_under(1.0_wp)
+         call list_axial_forces(self%without_top_load, self%constant)
+         call list_axial_forces(self%unit_top_load, self%per_load)
+         self%above(column%at(flexure, :)) = self%without_top_load%compression
       end if
       self%axial = self%constant
       ! The initial stiffness on the diagonal of the tangent, joint by joint.

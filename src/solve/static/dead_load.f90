@@ -7,7 +7,7 @@ module rbs_solve_static_dead_load
    use rbs_base_text, only: to_text
    use rbs_hysteresis_springs, only: spring_array
    use rbs_output_recorder, only: array_recorder
-   use rbs_solve_end_state, only: end_state, standing_type
+   use rbs_solve_end_state, only: end_state, checkpoint_type
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_straight, only: trace_straight
    use rbs_solve_task, only: task_type
@@ -117,7 +117,7 @@ contains
       type(equilibrium_type), target :: equilibrium
       type(array_recorder), target :: nothing
       type(task_type), target :: task
-      type(standing_type) :: standing
+      type(checkpoint_type) :: checkpoint
       type(spring_array) :: springs
 
       call equilibrium%create(frame, .true.)
@@ -128,16 +128,16 @@ contains
       call trace_straight(unloaded, equilibrium, .true., [1.0_wp], task, error)
       if (allocated(error)) return
       call frame%create_springs(springs, frame%constant_axial)
-      call task%after%take_up(frame, standing, springs, error)
+      call task%after%restore(frame, checkpoint, springs, error)
       if (allocated(error)) return
       call frame%set_compression(springs%d, springs%f0 + springs%k*(springs%d - springs%d0))
       ! Work of the dead load is no part of an analysis, whose lateral force begins at zero.
-      standing%force = 0.0_wp
-      standing%load = 0.0_wp
-      standing%input = 0.0_wp
-      standing%residual = 0.0_wp
-      standing%method = 0
-      call state%start_saving(frame, standing, springs)
+      checkpoint%force = 0.0_wp
+      checkpoint%load = 0.0_wp
+      checkpoint%input = 0.0_wp
+      checkpoint%residual = 0.0_wp
+      checkpoint%method = 0
+      call state%start_saving(frame, checkpoint, springs)
       call state%finish_saving()
    end subroutine load_once
 

@@ -49,7 +49,7 @@ module rbs_solve_static_equilibrium
       logical :: lost_digits = .false.
       !> Rates of force and displacement; work of the load per force and per unit of what is driven, less that
       !> of the displacement
-      real(wp) :: force_rate = 0.0_wp, displacement_rate = 0.0_wp, further_rate = 0.0_wp
+      real(wp) :: force_rate = 0.0_wp, displacement_rate = 0.0_wp, dead_load_work_rate = 0.0_wp
       !> Change that takes the structure to equilibrium: of the deformations (moving), and of the force [N]
       real(wp), allocatable :: correction(:)
       real(wp) :: force_correction = 0.0_wp
@@ -216,7 +216,7 @@ contains
          self%force_rate = y(1)
          self%displacement_rate = 1.0_wp
          if (by_force) self%displacement_rate = structure%top_displacement(self%moved(:, 1))
-         self%further_rate = work_rate(self, rate) - self%displacement_rate
+         self%dead_load_work_rate = work_rate(self, rate) - self%displacement_rate
          call solve(2, gap, settled)
          ! Of a mechanism what corrects round-off is round-off itself; more than that is found by the row.
          if (.not. settled .or. maxval(abs(self%change(:, 1))) > no_more*structure%total_height) then
@@ -452,7 +452,7 @@ contains
       class(equilibrium_type), intent(inout) :: self
       type(stream_type), intent(inout) :: stream
 
-      call stream%items(self%force_rate, self%displacement_rate, self%further_rate)
+      call stream%items(self%force_rate, self%displacement_rate, self%dead_load_work_rate)
    end subroutine serialize
 
 end module rbs_solve_static_equilibrium

@@ -64,7 +64,7 @@ module rbs_solve_static_path
    type, abstract :: static_path
       !> The structure, and the one whose potential belongs to the balance of energy: where axial loads vary,
       !> under the constant ones alone
-      class(structure_type), pointer :: structure => null(), steady => null()
+      class(structure_type), pointer :: structure => null(), without_top_load => null()
       type(spring_array) :: springs
       !> Number of springs that can move, the first ones
       integer :: moving = 0
@@ -108,7 +108,7 @@ module rbs_solve_static_path
       integer, private :: number = 0
       !> What a state of the structure may miss, and whether the present point was found to be none
       type(row_check), private :: check
-      logical, private :: is_wrong = .false.
+      logical, private :: violates_balance = .false.
       !> Rotations of the bodies, a work array (n)
       real(wp), allocatable, private :: rotation(:)
       !> What is told of a corner between two targets: its summary, and its recorder if the row is to be kept
@@ -126,7 +126,7 @@ module rbs_solve_static_path
       procedure(solve_line_interface), deferred :: solve_line
       procedure(balance_interface), deferred :: find_balance
       procedure(unbalance_interface), deferred :: unbalance
-      procedure :: stand_still
+      procedure :: reset_reference
    end type static_path
 
    abstract interface
@@ -208,11 +208,11 @@ contains
    end subroutine prepare
 
    !> The springs stand where the path begins: take their place as the present point.
-   subroutine stand_still(self)
+   subroutine reset_reference(self)
       class(static_path), intent(inout) :: self
 
       self%direction = 0
-   end subroutine stand_still
+   end subroutine reset_reference
 
    !> Save or restore what every path remembers; solvers add what is their own.
    subroutine serialize_path(self, stream)
@@ -268,7 +268,7 @@ contains
       ! A path that goes on has forces and works from before, and the round-off of theirs.
       call self%look(self%control, self%unbalance(), .false., failure)
       if (allocated(failure)) deallocate (failure)
-      self%is_wrong = .false.
+      self%violates_balance = .false.
       do i = 1, size(target)
          self%number = i - 1
          self%way_begin = self%control
@@ -283,7 +283,7 @@ contains
             ! That is what ends the path.
             if (allocated(failure)) deallocate (failure)
          else if (.not. allocated(failure)) then
-            call stand_on_ends(self)
+            call snap_to_ends(self)
             call check_members(self, failure)
          end if
          if (may_collapse) then
@@ -291,7 +291,7 @@ contains
          end if
          ends = i == size(target) .or. lost > 0 .or. task%summary%collapsed .or. allocated(failure)
          if (lost > 0 .or. allocated(failure)) then
-            if (.not. self%is_wrong) then
+            if (.not. self%violates_balance) then
                call see_turn(self)
                call task%summary%see_energies(self%energies())
             end if
@@ -300,7 +300,7 @@ contains
          end if
          if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message
          ! What is no state of the structure is no row.
-         if (.not. self%is_wrong) then
+         if (.not. self%violates_balance) then
             call see_peak(self)
             if (ends .or. mod(i - 1, every) == 0) then
                task%summary%rows = task%summary%rows + 1
@@ -328,7 +328,7 @@ contains
       type(error_type), allocatable, intent(inout) :: failure
       integer :: member
 
-      member = self%structure%find_lost(self%springs)
+      member = self%structure%next_failed_member(self%springs)
       if (member == 0) return
       associate (place => self%structure%place)
          call fatal_error(failure, analysis_failed, 'member '// &
@@ -364,17 +364,17 @@ contains
          check%largest_force = max(check%largest_force, abs(self%force))
          check%largest_work = max(check%largest_work, abs(energy%input), abs(energy%spring), &
                                   abs(energy%axial))
-         if (abs(self%displacement) > check%farthest .or. wrong() > 0) then
+         if (abs(self%displacement) > check%farthest .or. balance_fault() > 0) then
             check%farthest = max(check%farthest, abs(self%displacement))
             call measure_springs(springs%count, self%structure%arm, self%structure%initial_stiffness, &
                                  check%share, springs%d, springs%d0, springs%f0, springs%k, ways, &
                                  check%largest_force, check%stiff_force, works)
-            if (wrong() > 0) call see_parts(check, self%structure, springs)
+            if (balance_fault() > 0) call see_parts(check, self%structure, springs)
             check%largest_place = max(check%largest_place, ways)
             check%stiff_work = max(check%stiff_work, works)
          end if
       end associate
-      select case (wrong())
+      select case (balance_fault())
       case (0)
          return
       case (1)
@@ -384,7 +384,7 @@ contains
       case default
          fault = to_text(missing)//' J of its work are missing'
       end select
-      self%is_wrong = .true.
+      self%violates_balance = .true.
       call fatal_error(failure, analysis_failed, 'on the way to '//to_text(target)//' '//merge('N', 'm', &
                        self%by_force)//' the arithmetic has lost the static path: at a displacement of '// &
                        to_text(self%displacement)//' m '//fault//'. The path up to there is kept. The '// &
@@ -395,16 +395,16 @@ contains
    contains
 
       !> What misses more than round-off: place, forces, work; 0: nothing.
-      pure integer function wrong()
-         wrong = 0
+      pure integer function balance_fault()
+         balance_fault = 0
          if (gap > place*self%check%largest_place) then
-            wrong = 1
+            balance_fault = 1
          else if (unbalance > of_force*self%check%largest_force + digits*self%check%stiff_force) then
-            wrong = 2
+            balance_fault = 2
          else if (abs(missing) > self%check%work*self%check%largest_work + digits*self%check%stiff_work) then
-            wrong = 3
+            balance_fault = 3
          end if
-      end function wrong
+      end function balance_fault
 
    end subroutine look
 
@@ -506,7 +506,7 @@ contains
    end function is_on_end
 
    !> A spring that was put on the end of its line has moved the top by as little: that is where the top is.
-   subroutine stand_on_ends(self)
+   subroutine snap_to_ends(self)
       class(static_path), intent(inout) :: self
       real(wp) :: there, reach
 
@@ -518,7 +518,7 @@ contains
       self%work = self%work + self%force*(there - self%displacement)
       self%displacement = there
       self%control = there
-   end subroutine stand_on_ends
+   end subroutine snap_to_ends
 
    !> The energies at the present point; the residual is what the balance misses.
    type(energy_type) function energies(self) result(energy)
@@ -527,7 +527,7 @@ contains
       energy%input = self%work
       energy%spring = total(self%springs%count, self%springs%work)
       energy%damping = self%damped_before
-      energy%axial = self%steady%potential_energy(self%springs%d) + self%load_work
+      energy%axial = self%without_top_load%potential_energy(self%springs%d) + self%load_work
       energy%residual = self%work + self%at_begin - energy%spring - energy%damping - energy%axial
    end function energies
 

@@ -5,7 +5,7 @@ module rbs_solve_static_resume
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: go_under, vary_axial_loads
-   use rbs_solve_end_state, only: end_state, standing_type, static_state
+   use rbs_solve_end_state, only: end_state, checkpoint_type, static_state
    use rbs_solve_line_search, only: false_position
    use rbs_solve_static_path, only: static_path
    use rbs_structure_channel, only: energy_type
@@ -53,19 +53,19 @@ contains
       !> axial load goes on as if it had not been cut. Otherwise the top is held where it is, velocities
       !> vanish, and the joints come to equilibrium.
       subroutine begin_from()
-         type(standing_type) :: standing
+         type(checkpoint_type) :: checkpoint
          real(wp) :: press(size(path%structure%place)), missing
          integer :: lost
          type(energy_type) :: energy
          logical :: goes_on
 
-         call before%take_up(path%structure, standing, path%springs, error)
+         call before%restore(path%structure, checkpoint, path%springs, error)
          if (allocated(error)) return
          if (varies) call vary_axial_loads(path%springs)
          press = path%structure%constant_axial
-         if (varies) press = standing%press
-         goes_on = standing%kind == static_state .and. all(abs(press - standing%press) <= 0.0_wp)
-         call go_under(path%springs, press, standing%pressed)
+         if (varies) press = checkpoint%press
+         goes_on = checkpoint%kind == static_state .and. all(abs(press - checkpoint%press) <= 0.0_wp)
+         call go_under(path%springs, press, checkpoint%pressed)
          lost = path%springs%lost_joint()
          if (lost > 0) then
             call fatal_error(error, analysis_failed, 'initial: the layers of '// &
@@ -74,14 +74,14 @@ contains
                              ' N in the state that the first analysis ended in; give a smaller axial_load')
             return
          end if
-         path%load_now = merge(standing%axial_load, path%structure%axial_load, varies)
-         path%work = standing%input
-         path%damped_before = standing%damping
-         path%at_begin = standing%at_begin
+         path%load_now = merge(checkpoint%axial_load, path%structure%axial_load, varies)
+         path%work = checkpoint%input
+         path%damped_before = checkpoint%damping
+         path%at_begin = checkpoint%at_begin
          if (goes_on) then
-            path%displacement = standing%displacement
-            path%force = standing%force
-            if (standing%method == kind_of(path, varies)) then
+            path%displacement = checkpoint%displacement
+            path%force = checkpoint%force
+            if (checkpoint%method == kind_of(path, varies)) then
                call path%serialize(before%stream)
                if (before%stream%broken) then
                   call fatal_error(error, analysis_failed, 'initial: the state ends too early; run the '// &
@@ -89,19 +89,19 @@ contains
                   return
                end if
             else
-               call path%stand_still()
+               call path%reset_reference()
             end if
          else
             path%displacement = path%structure%top_displacement(path%springs%d)
-            path%force = standing%force
+            path%force = checkpoint%force
             call path%compress(error)
             if (.not. allocated(error)) call settle(path, error)
             if (allocated(error)) return
-            call path%stand_still()
+            call path%reset_reference()
          end if
          if (path%direction == 0) path%control = merge(path%force, path%displacement, path%by_force)
          energy = path%energies()
-         missing = standing%residual - energy%residual
+         missing = checkpoint%residual - energy%residual
          if (abs(missing) > 0.0_wp) path%at_begin = path%at_begin + missing
       end subroutine begin_from
 
@@ -206,31 +206,31 @@ contains
       class(static_path), intent(inout) :: path
       logical, intent(in) :: varies
       type(end_state), intent(inout) :: after
-      type(standing_type) :: standing
+      type(checkpoint_type) :: checkpoint
       type(energy_type) :: energy
 
-      standing%kind = static_state
-      standing%pressed = path%springs%pressed
-      standing%displacement = path%displacement
-      standing%force = path%force
-      standing%axial_load = path%load_now
-      standing%press = path%structure%constant_axial
+      checkpoint%kind = static_state
+      checkpoint%pressed = path%springs%pressed
+      checkpoint%displacement = path%displacement
+      checkpoint%force = path%force
+      checkpoint%axial_load = path%load_now
+      checkpoint%press = path%structure%constant_axial
       if (varies) then
-         standing%press = path%load_now + path%structure%axial_force_ratio*path%force &
+         checkpoint%press = path%load_now + path%structure%axial_force_ratio*path%force &
                           + (path%structure%constant_axial - path%structure%axial_load)
          associate (layered => path%springs%layered)
-            if (path%springs%pressed) standing%press(layered) = path%springs%press_at(layered)
+            if (path%springs%pressed) checkpoint%press(layered) = path%springs%press_at(layered)
          end associate
       end if
-      allocate (standing%v(path%springs%count), source=0.0_wp)
-      standing%input = path%work
-      standing%damping = path%damped_before
-      standing%at_begin = path%at_begin
+      allocate (checkpoint%v(path%springs%count), source=0.0_wp)
+      checkpoint%input = path%work
+      checkpoint%damping = path%damped_before
+      checkpoint%at_begin = path%at_begin
       energy = path%energies()
-      standing%residual = energy%residual
-      standing%load(1) = path%force
-      standing%method = kind_of(path, varies)
-      call after%start_saving(path%structure, standing, path%springs)
+      checkpoint%residual = energy%residual
+      checkpoint%load(1) = path%force
+      checkpoint%method = kind_of(path, varies)
+      call after%start_saving(path%structure, checkpoint, path%springs)
       call path%serialize(after%stream)
       call after%finish_saving()
    end subroutine end_path

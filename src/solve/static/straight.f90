@@ -67,7 +67,7 @@ contains
       type(straight_path) :: path
 
       path%structure => structure
-      path%steady => structure
+      path%without_top_load => structure
       path%equilibrium => equilibrium
       path%is_straight = .true.
       path%may_go_back = .not. by_force
@@ -226,7 +226,7 @@ contains
    subroutine go(self, control)
       class(straight_path), intent(inout) :: self
       real(wp), intent(in) :: control
-      real(wp) :: change, force, displacement, d
+      real(wp) :: change, force, displacement, moved, d
       integer :: near(self%moving), count, j
 
       change = control - self%start
@@ -248,8 +248,9 @@ contains
          if (self%in_loop) then
             if ((control - self%loop_control)*(self%control - self%loop_control) <= 0.0_wp) call end_loop()
          end if
-         self%work = self%work + 0.5_wp*(force + self%force)*(displacement - self%displacement &
-                                                              + line%further_rate*(control - self%control))
+         moved = displacement - self%displacement &
+                                + line%dead_load_work_rate*(control - self%control)
+         self%work = self%work + 0.5_wp*(force + self%force)*moved
       end associate
       call self%see_crossing(displacement, force)
       self%force = force
@@ -267,7 +268,7 @@ contains
          if (self%goes_back .or. .not. abs(self%control - self%loop_control) > 0.0_wp) return
          associate (line => self%equilibrium)
             at = self%force_start + line%force_rate*(self%loop_control - self%start)
-            work = self%work + 0.5_wp*(at + self%force)*(1.0_wp + line%further_rate) &
+            work = self%work + 0.5_wp*(at + self%force)*(1.0_wp + line%dead_load_work_rate) &
                    *(self%loop_control - self%control)
          end associate
          self%released = self%released + (self%loop_work - work)

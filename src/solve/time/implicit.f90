@@ -14,7 +14,7 @@ module rbs_solve_time_implicit
    use rbs_solve_time_implicit_finite, only: finite_stepper
    use rbs_solve_time_implicit_balance, only: step_balance, step_tangent
    use rbs_loading_loads, only: lateral, horizontal
-   use rbs_solve_time_motion, only: motion_type
+   use rbs_solve_time_motion, only: equation_of_motion
    use rbs_solve_time_newton, only: newton_stepper, progress
    use rbs_solve_time_state, only: state_type
    implicit none
@@ -203,7 +203,7 @@ contains
       !> A step in which a member slides or turns away is none.
       subroutine find_runaway()
 
-         self%runaway = state%motion%structure%find_runaway(self%step%q1)
+         self%runaway = state%motion%structure%unbounded_spring(self%step%q1)
          self%converged = self%runaway == 0
       end subroutine find_runaway
 
@@ -300,7 +300,7 @@ contains
             way_before = way
             at_last = resistance
             resistance = max(0.3_wp*resistance, least_resistance)
-            self%runaway = state%motion%structure%find_runaway(self%step%q1)
+            self%runaway = state%motion%structure%unbounded_spring(self%step%q1)
             if (self%runaway > 0) exit
          end do
          self%step%now%resistance = 0.0_wp
@@ -447,7 +447,7 @@ contains
    pure subroutine fit_one_body(body, step, motion, h)
       type(one_body_step), intent(inout) :: body
       type(step_balance), intent(in) :: step
-      type(motion_type), intent(in) :: motion
+      type(equation_of_motion), intent(in) :: motion
       real(wp), intent(in) :: h
 
       body%alpha_m = step%alpha_m

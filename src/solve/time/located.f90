@@ -47,7 +47,7 @@ contains
       real(wp), intent(in) :: h
       type(error_type), allocatable, intent(inout) :: error
       type(event_type) :: event
-      real(wp) :: finish, left, part, corner, wrong, no_length, clock_digits
+      real(wp) :: finish, left, part, corner, excess, no_length, clock_digits
       integer :: tries, idle, i
 
       if (allocated(error)) return
@@ -79,12 +79,12 @@ contains
          if (allocated(error)) return
          do tries = 1, 200
             call self%scheme%attempt(state, part)
-            wrong = error_of()
-            if (.not. wrong > 1.0_wp) exit
+            excess = error_of()
+            if (.not. excess > 1.0_wp) exit
             ! A load may jump within the last digits of the clock; a shorter step would not help then.
-            if (part <= clock_digits .and. wrong < not_finite) exit
+            if (part <= clock_digits .and. excess < not_finite) exit
             if (self%tolerance > 0.0_wp .and. part > self%shortest) then
-               part = max(part*max(0.2_wp, 0.9_wp*wrong**(-1.0_wp/self%scheme%order)), 0.5_wp*self%shortest)
+               part = max(part*max(0.2_wp, 0.9_wp*excess**(-1.0_wp/self%scheme%order)), 0.5_wp*self%shortest)
                self%cut_steps = self%cut_steps + 1
             else
                i = maxloc(abs(self%scheme%error_q)*sqrt(state%motion%structure%initial_stiffness), dim=1)
@@ -113,8 +113,8 @@ contains
          if (event%spring > 0) then
             if (state%springs%lost_joint() > 0) return
          end if
-         if (state%sight%feels) call state%see(state%begin + state%time)
-         if (state%sight%collapsed) return
+         if (state%monitor%feels) call state%update_monitor(state%begin + state%time)
+         if (state%monitor%collapsed) return
       end do
       state%time = finish
 
@@ -137,8 +137,8 @@ contains
                state%q(i) = state%springs%end_toward(i, event%way)
             end if
          end if
-         call state%sight%see_within(state%motion, state%springs, self%scheme%q, self%scheme%v, state%q, &
-                                     state%v, h, state%begin + state%time)
+         call state%monitor%update_within_step(state%motion, state%springs, self%scheme%q, self%scheme%v, &
+                                               state%q, state%v, h, state%begin + state%time)
          ! No other spring has passed an end by more than the last digits.
          call state%springs%carry_to(state%q)
          if (i > 0) call state%springs%leave(i, event%way)
@@ -147,26 +147,26 @@ contains
             self%largest = max(self%largest, energy_of(state%q, state%v))
             ! The length of a step that ends at an event is not that which accuracy allows.
             if (i == 0) then
-               self%next_step = h*min(5.0_wp, 0.9_wp*max(wrong, 1.0e-10_wp)**(-1.0_wp/self%scheme%order))
+               self%next_step = h*min(5.0_wp, 0.9_wp*max(excess, 1.0e-10_wp)**(-1.0_wp/self%scheme%order))
                self%next_step = min(self%next_step, self%longest)
             end if
          end if
       end subroutine accept
 
       !> Error of the attempt over the tolerance, in energy norm; above 1 also where it is not finite.
-      real(wp) function error_of() result(wrong)
+      real(wp) function error_of() result(excess)
          real(wp) :: measure
 
-         wrong = 0.0_wp
+         excess = 0.0_wp
          if (.not. self%tolerance > 0.0_wp) return
-         wrong = not_finite
+         excess = not_finite
          if (.not. all(ieee_is_finite(self%scheme%v))) return
          if (.not. all(ieee_is_finite(self%scheme%q))) return
-         wrong = 0.0_wp
+         excess = 0.0_wp
          if (.not. in_bounds(size(self%scheme%q), self%scheme%q)) return
          measure = max(self%largest, energy_of(self%scheme%q, self%scheme%v))
          if (measure > 0.0_wp) then
-            wrong = sqrt(energy_of(self%scheme%error_q, self%scheme%error_v)/measure)/self%tolerance
+            excess = sqrt(energy_of(self%scheme%error_q, self%scheme%error_v)/measure)/self%tolerance
          end if
       end function error_of
 

@@ -6,12 +6,12 @@ module rbs_solve_time_march
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: fall_of
    use rbs_output_summary, only: summary_type
-   use rbs_solve_end_state, only: standing_type
+   use rbs_solve_end_state, only: checkpoint_type
    use rbs_solve_task, only: task_type
    use rbs_loading_loads, only: loads_type, lateral, horizontal
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_plan, only: time_plan, same_step
-   use rbs_solve_time_sight, only: sight_type
+   use rbs_solve_time_monitor, only: response_monitor
    use rbs_solve_time_start, only: initial_state, start_state, resume_state, resume_steps, keep_state
    use rbs_solve_time_state, only: state_type, stepper_type, out_of_bounds
    use rbs_structure_channel, only: energy_type, response_type
@@ -25,7 +25,7 @@ module rbs_solve_time_march
 contains
 
    !> March through the plan.
-   subroutine march(structure, planned, stepper, time, loads, initial, task, error, sight)
+   subroutine march(structure, planned, stepper, time, loads, initial, task, error, monitor)
       class(structure_type), intent(in) :: structure
       type(time_plan), intent(in) :: planned
       !> The method
@@ -39,8 +39,8 @@ contains
       !> On failure everything up to the last good state has been recorded
       type(error_type), allocatable, intent(out) :: error
       !> What to watch for, and what has been seen
-      type(sight_type), intent(inout), optional :: sight
-      type(standing_type) :: standing
+      type(response_monitor), intent(inout), optional :: monitor
+      type(checkpoint_type) :: checkpoint
       type(time_plan) :: plan
       type(state_type) :: state
       type(response_type) :: response
@@ -48,21 +48,21 @@ contains
 
       plan = planned
       if (task%resumes()) then
-         call resume_state(state, structure, loads, task%before, plan, standing, error)
+         call resume_state(state, structure, loads, task%before, plan, checkpoint, error)
          if (allocated(error)) return
-         call resume_steps(state, stepper, task%before, standing)
+         call resume_steps(state, stepper, task%before, checkpoint)
       end if
-      if (standing%kind == 0) call start_state(state, structure, loads, initial, plan%begin, error)
+      if (checkpoint%kind == 0) call start_state(state, structure, loads, initial, plan%begin, error)
       if (allocated(error)) return
-      if (present(sight)) state%sight = sight
-      call state%begin_sight(task%collapse_drift, task%recorder%channels%contents%motion)
+      if (present(monitor)) state%monitor = monitor
+      call state%begin_monitor(task%collapse_drift, task%recorder%channels%contents%motion)
       task%summary%time_step = plan%dt
       call take_steps()
-      if (present(sight)) sight = state%sight
+      if (present(monitor)) monitor = state%monitor
       task%summary%last_time = response%time
       task%summary%last_displacement = response%displacement
-      task%summary%peaks_type = state%sight%peaks_type
-      task%summary%collapsed = state%sight%collapsed
+      task%summary%peaks_type = state%monitor%peaks_type
+      task%summary%collapsed = state%monitor%collapsed
       task%summary%events = state%springs%events
       task%summary%steps = stepper%steps
       task%summary%cut_steps = stepper%cut_steps
@@ -84,7 +84,7 @@ contains
          next_row = huge(1)
          if (task%every /= unset_integer) next_row = min(task%every, plan%steps)
          step = 0
-         call let_go()
+         call remove_members()
          call balance(state, response%energy, task%summary)
          call keep(error, now)
          if (allocated(error)) return
@@ -112,18 +112,18 @@ contains
                if (part == parts) state%clock = finish
                lost = state%springs%lost_joint()
                if (lost > 0) task%summary%lost_joint = state%motion%structure%place(lost)%index
-               ends = task%summary%lost_joint > 0 .or. state%sight%collapsed
+               ends = task%summary%lost_joint > 0 .or. state%monitor%collapsed
                ! A joint may have lost its axial load, or the column may have collapsed, within the step.
                associate (at => state%begin + state%time)
                   if (ends .and. at < state%clock - same_step*h) state%clock = at
                end associate
                state%time = state%clock - state%begin
-               call let_go()
-               call state%see(state%clock)
-               associate (sight => state%sight)
-                  sight%collapsed = sight%collapsed .or. state%motion%structure%has_fallen(state%q)
+               call remove_members()
+               call state%update_monitor(state%clock)
+               associate (monitor => state%monitor)
+                  monitor%collapsed = monitor%collapsed .or. state%motion%structure%has_collapsed(state%q)
                end associate
-               ends = ends .or. state%sight%collapsed
+               ends = ends .or. state%monitor%collapsed
                if (task%summary%lost_joint > 0) call fall_of(state%springs, lost, task%summary%fall)
                if (ends .or. part == parts) call balance(state, response%energy, task%summary)
                if (ends .or. step == next_row .or. (task%every == unset_integer .and. part == parts)) then
@@ -157,22 +157,22 @@ contains
                                ' slides or turns away: its member no longer carries its dead load, or '// &
                                'the moments of its ends'
          task%summary%fallen_member = state%motion%structure%place(state%runaway)%member
-         state%sight%collapsed = .true.
+         state%monitor%collapsed = .true.
          call keep_last(now)
       end subroutine end_with_fall
 
       !> Members that are lost carry nothing from the next step on, which begins with other accelerations.
-      subroutine let_go()
+      subroutine remove_members()
          integer :: member
 
          do
-            member = state%motion%structure%find_lost(state%springs, state%clock)
+            member = state%motion%structure%next_failed_member(state%springs, state%clock)
             if (member == 0) return
-            call state%motion%structure%let_go(member, state%springs)
+            call state%motion%structure%remove_member(member, state%springs)
             state%q = state%springs%d
             stepper%begun = .false.
          end do
-      end subroutine let_go
+      end subroutine remove_members
 
       !> End of an interval between kept times, and the number of its steps.
       pure subroutine interval_of(interval, finish, parts)
@@ -197,7 +197,7 @@ contains
 
          state%clock = state%begin + state%time
          if (state%lost .or. .not. state%clock > response%time) return
-         call state%see(state%clock)
+         call state%update_monitor(state%clock)
          call balance(state, response%energy, task%summary)
          call keep(ignored, now)
       end subroutine keep_last

@@ -17,9 +17,9 @@ module rbs_solve_time_motion
    implicit none
    private
 
-   public :: motion_type, motion_result
+   public :: equation_of_motion, motion_result
 
-   type :: motion_type
+   type :: equation_of_motion
       class(structure_type), pointer :: structure => null()
       !> The structure where it is a column of one body under lateral force and horizontal ground motion, its
       !> rotations small: such runs have forms of their own; its damping there
@@ -45,12 +45,12 @@ module rbs_solve_time_motion
       procedure :: press
       procedure :: damping_power
       procedure :: base_shear
-   end type motion_type
+   end type equation_of_motion
 
 contains
 
    subroutine create(self, structure, acts, error)
-      class(motion_type), intent(out) :: self
+      class(equation_of_motion), intent(out) :: self
       class(structure_type), intent(in), target :: structure
       !> Which of the loads act
       logical, intent(in) :: acts(4)
@@ -79,7 +79,7 @@ contains
 
    !> Accelerations of the springs at a state, and what they follow from.
    subroutine acceleration(self, springs, q, v, load, result)
-      class(motion_type), intent(in) :: self
+      class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
       !> Deformations and their velocities (springs); loads at the time
       real(wp), intent(in) :: q(springs%count), v(springs%count), load(signals)
@@ -96,7 +96,7 @@ contains
 
    !> Forces on the unknowns with small rotations; all of the result but the accelerations.
    subroutine forces_on_bodies(self, springs, q, v, load, result, g)
-      class(motion_type), intent(in) :: self
+      class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in) :: q(springs%count), v(springs%count)
       !> Loads at the time
@@ -119,7 +119,7 @@ contains
 
    !> What else acts besides the forces of the springs on their lines.
    subroutine find_others(self, springs, v, load, result, m)
-      type(motion_type), intent(in) :: self
+      type(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in) :: v(springs%count), load(signals)
       type(motion_result), intent(inout) :: result
@@ -134,7 +134,7 @@ contains
 
    !> Forces of the springs on their present lines, and of the damping beside them.
    subroutine joint_forces(self, springs, q, v, load, f)
-      class(motion_type), intent(in) :: self
+      class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in), contiguous :: q(:), v(:)
       !> Loads at the time
@@ -148,7 +148,7 @@ contains
 
    !> Add what layered joints bear by axial loads that have changed, and the forces of the damping.
    subroutine add_to_springs(self, springs, v, load, f)
-      class(motion_type), intent(in) :: self
+      class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in) :: v(springs%count), load(signals)
       real(wp), intent(inout), contiguous :: f(:)
@@ -192,7 +192,7 @@ contains
 
    !> Tell layered joints the axial forces that their next move leads to.
    subroutine press(self, springs, load)
-      class(motion_type), intent(in) :: self
+      class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(inout) :: springs
       !> Loads at the end of the move
       real(wp), intent(in) :: load(4)
@@ -207,7 +207,7 @@ contains
 
    !> Power of the damping [W].
    real(wp) function damping_power(self, springs, q, v) result(watt)
-      class(motion_type), intent(in) :: self
+      class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in), contiguous :: q(:), v(:)
 
@@ -231,7 +231,7 @@ contains
    !> What the ground holds the structure with along x: forces of the lowest springs and of the damping, that
    !> between the bodies and the ground included [N]; asked for in every step.
    real(wp) function base_shear(self, springs, q, v) result(force)
-      class(motion_type), intent(in) :: self
+      class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in) :: q(springs%count), v(springs%count)
       real(wp) :: c(3)

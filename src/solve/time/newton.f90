@@ -172,7 +172,9 @@ contains
          call self%take_step(state)
          if (self%converged) then
             self%steps = self%steps + 1
-            if (.not. (state%lost .or. state%springs%stuck)) call state%see(state%begin + state%time)
+            if (.not. (state%lost .or. state%springs%stuck)) then
+               call state%update_monitor(state%begin + state%time)
+            end if
          else
             call halve(self, state, 0.5_wp*h, cuts + 1, error)
             if (allocated(error) .or. state%runaway > 0) return

@@ -18,7 +18,7 @@ module rbs_solve_time_run_dynamic
    use rbs_solve_time_pair45, only: pair45_scheme
    use rbs_solve_time_plan, only: time_plan, new_plan, check_times, check_length
    use rbs_solve_time_rk4, only: rk4_stepper, rk4_scheme
-   use rbs_solve_time_sight, only: sight_type
+   use rbs_solve_time_monitor, only: response_monitor
    use rbs_solve_time_state, only: stepper_type
    use rbs_structure_structure, only: structure_type, finite
    use rbs_case_analysis_record, only: analysis_record
@@ -177,7 +177,7 @@ contains
    end function longest_period
 
    !> Response in time under lateral force, ground motion, axial load, or all of them.
-   subroutine run_dynamic(structure, analysis, plan, time, loads, initial, task, error, sight)
+   subroutine run_dynamic(structure, analysis, plan, time, loads, initial, task, error, monitor)
       class(structure_type), intent(in) :: structure
       !> Validated settings
       type(analysis_record), intent(in) :: analysis
@@ -191,7 +191,7 @@ contains
       type(task_type), intent(inout) :: task
       type(error_type), allocatable, intent(out) :: error
       !> What to watch for, and what has been seen
-      type(sight_type), intent(inout), optional :: sight
+      type(response_monitor), intent(inout), optional :: monitor
       class(stepper_type), allocatable :: stepper
       integer :: i
 
@@ -213,7 +213,7 @@ contains
       task%summary%method = plan%method
       task%summary%reason = plan%reason
       call new_stepper(stepper, structure, analysis, plan)
-      call march(structure, plan, stepper, time, loads, initial, task, error, sight)
+      call march(structure, plan, stepper, time, loads, initial, task, error, monitor)
    end subroutine run_dynamic
 
    !> The method of a plan, ready for its first step.

@@ -5,7 +5,7 @@ module rbs_solve_time_start
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: go_under, vary_axial_loads
-   use rbs_solve_end_state, only: end_state, standing_type, moving_state
+   use rbs_solve_end_state, only: end_state, checkpoint_type, moving_state
    use rbs_loading_loads, only: loads_type, lateral, vertical, top_axial
    use rbs_solve_time_plan, only: time_plan, same_step
    use rbs_solve_time_state, only: state_type, stepper_type
@@ -28,36 +28,36 @@ module rbs_solve_time_start
 contains
 
    !> The state that another analysis ended in. At a time that is that of its end the clock goes on.
-   subroutine resume_state(state, structure, loads, before, plan, standing, error)
+   subroutine resume_state(state, structure, loads, before, plan, checkpoint, error)
       type(state_type), intent(out) :: state
       class(structure_type), intent(in) :: structure
       type(loads_type), intent(in) :: loads
       type(end_state), intent(inout) :: before
       type(time_plan), intent(inout) :: plan
-      type(standing_type), intent(out) :: standing
+      type(checkpoint_type), intent(out) :: checkpoint
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: press(size(structure%place)), missing, largest(4)
       integer :: i, lost
 
       call create_state(state, structure, loads, plan%begin, error)
       if (allocated(error)) return
-      call before%take_up(structure, standing, state%springs, error)
+      call before%restore(structure, checkpoint, state%springs, error)
       if (allocated(error)) return
-      if (standing%kind == moving_state) then
-         call plan%go_on_from(standing%dt, standing%origin, standing%offset)
-         if (.not. abs(standing%clock - plan%begin) > 0.0_wp) then
-            state%begin = standing%begin
-            state%time = standing%time
+      if (checkpoint%kind == moving_state) then
+         call plan%go_on_from(checkpoint%dt, checkpoint%origin, checkpoint%offset)
+         if (.not. abs(checkpoint%clock - plan%begin) > 0.0_wp) then
+            state%begin = checkpoint%begin
+            state%time = checkpoint%time
             state%loads = loads
             call prepare_loads(state, structure)
          end if
       end if
       ! A load that goes on differs by the round-off of a clock that counts steps from where it was.
       call state%loads%find_largest(largest)
-      largest = same_step*max(largest, abs(standing%load))
-      if (all(abs(state%load - standing%load) <= largest)) state%load = standing%load
+      largest = same_step*max(largest, abs(checkpoint%load))
+      if (all(abs(state%load - checkpoint%load) <= largest)) state%load = checkpoint%load
       press = [(structure%axial_force(i, state%load), i=1, size(press))]
-      call go_under(state%springs, press, standing%pressed)
+      call go_under(state%springs, press, checkpoint%pressed)
       lost = state%springs%lost_joint()
       if (lost > 0) then
          call fatal_error(error, analysis_failed, 'initial: the layers of '// &
@@ -67,13 +67,13 @@ contains
          return
       end if
       state%q = state%springs%d
-      state%v = standing%v
-      state%of_loads = standing%input
-      state%of_damping = standing%damping
-      state%at_begin = standing%at_begin
-      state%along_joints = standing%along_joints
+      state%v = checkpoint%v
+      state%of_loads = checkpoint%input
+      state%of_damping = checkpoint%damping
+      state%at_begin = checkpoint%at_begin
+      state%along_joints = checkpoint%along_joints
       ! What is missing from the balance of energy
-      missing = standing%residual - (state%of_loads + state%at_begin &
+      missing = checkpoint%residual - (state%of_loads + state%at_begin &
                                      - (structure%kinetic_energy(state%q, state%v) + state%along_joints) &
                                      - sum(state%springs%work) - state%of_damping &
                                      - structure%potential_energy(state%q))
@@ -81,15 +81,15 @@ contains
    end subroutine resume_state
 
    !> The same method goes on with what it remembers, unless a load jumps at the start.
-   subroutine resume_steps(state, stepper, before, standing)
+   subroutine resume_steps(state, stepper, before, checkpoint)
       type(state_type), intent(inout) :: state
       class(stepper_type), intent(inout) :: stepper
       type(end_state), intent(inout) :: before
-      type(standing_type), intent(in) :: standing
+      type(checkpoint_type), intent(in) :: checkpoint
 
-      if (standing%kind /= moving_state .or. standing%method /= stepper%method) return
-      if (abs(standing%setting - stepper%setting) > 0.0_wp .or. &
-          any(abs(state%load - standing%load) > 0.0_wp)) return
+      if (checkpoint%kind /= moving_state .or. checkpoint%method /= stepper%method) return
+      if (abs(checkpoint%setting - stepper%setting) > 0.0_wp .or. &
+          any(abs(state%load - checkpoint%load) > 0.0_wp)) return
       call stepper%resume(state, before%stream)
    end subroutine resume_steps
 
@@ -102,35 +102,35 @@ contains
       integer, intent(in) :: steps
       real(wp), intent(in) :: residual
       type(end_state), intent(inout) :: after
-      type(standing_type) :: standing
+      type(checkpoint_type) :: checkpoint
       integer :: i
 
       associate (structure => state%motion%structure)
-         standing%kind = moving_state
-         standing%pressed = state%springs%pressed
-         standing%displacement = structure%top_displacement(state%q)
-         standing%force = state%load(lateral)
-         standing%axial_load = structure%axial_load + state%load(top_axial)
-         standing%press = [(structure%axial_force(i, state%load), i=1, size(structure%place))]
-         standing%v = state%v
-         standing%input = state%of_loads
-         standing%damping = state%of_damping
-         standing%at_begin = state%at_begin
-         standing%residual = residual
-         standing%along_joints = state%along_joints
-         standing%begin = state%begin
-         standing%clock = state%clock
-         standing%time = state%time
-         standing%load = state%load
-         standing%dt = plan%dt
+         checkpoint%kind = moving_state
+         checkpoint%pressed = state%springs%pressed
+         checkpoint%displacement = structure%top_displacement(state%q)
+         checkpoint%force = state%load(lateral)
+         checkpoint%axial_load = structure%axial_load + state%load(top_axial)
+         checkpoint%press = [(structure%axial_force(i, state%load), i=1, size(structure%place))]
+         checkpoint%v = state%v
+         checkpoint%input = state%of_loads
+         checkpoint%damping = state%of_damping
+         checkpoint%at_begin = state%at_begin
+         checkpoint%residual = residual
+         checkpoint%along_joints = state%along_joints
+         checkpoint%begin = state%begin
+         checkpoint%clock = state%clock
+         checkpoint%time = state%time
+         checkpoint%load = state%load
+         checkpoint%dt = plan%dt
          if (plan%free) then
-            standing%origin = plan%origin
-            standing%offset = plan%offset + steps
+            checkpoint%origin = plan%origin
+            checkpoint%offset = plan%offset + steps
          end if
-         standing%method = stepper%method
-         standing%setting = stepper%setting
+         checkpoint%method = stepper%method
+         checkpoint%setting = stepper%setting
          ! The motion stands where its springs do.
-         call after%start_saving(structure, standing, state%springs)
+         call after%start_saving(structure, checkpoint, state%springs)
       end associate
       call stepper%resume(state, after%stream)
       call after%finish_saving()

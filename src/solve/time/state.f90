@@ -6,15 +6,15 @@ module rbs_solve_time_state
    use rbs_base_stream, only: stream_type
    use rbs_hysteresis_springs, only: spring_array
    use rbs_loading_loads, only: loads_type
-   use rbs_solve_time_motion, only: motion_type
-   use rbs_solve_time_sight, only: sight_type
+   use rbs_solve_time_motion, only: equation_of_motion
+   use rbs_solve_time_monitor, only: response_monitor
    implicit none
    private
 
    public :: state_type, stepper_type, out_of_bounds, in_bounds
 
    type :: state_type
-      type(motion_type) :: motion
+      type(equation_of_motion) :: motion
       type(spring_array) :: springs
       type(loads_type) :: loads
       !> Deformations of the springs and their velocities (springs)
@@ -36,10 +36,10 @@ module rbs_solve_time_state
       integer :: snaps = 0, snap_spring = 0
       real(wp) :: in_snaps = 0.0_wp, largest_snap = -huge(1.0_wp), snap_time = 0.0_wp
       !> What has been seen of the run
-      type(sight_type) :: sight
+      type(response_monitor) :: monitor
    contains
-      procedure :: begin_sight
-      procedure :: see
+      procedure :: begin_monitor
+      procedure :: update_monitor
    end type state_type
 
    !> A method of integration. What it needs from step to step is in its own type.
@@ -77,25 +77,25 @@ module rbs_solve_time_state
 contains
 
    !> Look at the state for the first time; what to watch for is known.
-   subroutine begin_sight(self, collapse_drift, floor)
+   subroutine begin_monitor(self, collapse_drift, floor)
       class(state_type), intent(inout) :: self
       !> Drift at which the structure has collapsed, of a storey or of the top; `unset`: none
       real(wp), intent(in) :: collapse_drift
       !> Whether the acceleration of the top is looked at
       logical, intent(in) :: floor
 
-      call self%sight%begin(self%motion, self%springs, self%q, self%v, self%load, self%clock, &
+      call self%monitor%begin(self%motion, self%springs, self%q, self%v, self%load, self%clock, &
                             collapse_drift, floor)
-   end subroutine begin_sight
+   end subroutine begin_monitor
 
    !> Look at the state, at the end of a step or of a part of one.
-   subroutine see(self, clock)
+   subroutine update_monitor(self, clock)
       class(state_type), intent(inout) :: self
       !> [s]
       real(wp), intent(in) :: clock
 
-      call self%sight%see(self%motion, self%springs, self%q, self%v, self%load, clock)
-   end subroutine see
+      call self%monitor%update(self%motion, self%springs, self%q, self%v, self%load, clock)
+   end subroutine update_monitor
 
    !> Ready for another run of the same structure with the same steps.
    subroutine restart(self)

@@ -63,7 +63,7 @@ module rbs_structure_frame_frame
       !> Number of members; elements behind them are panels of nodes
       integer :: members = 0
       !> Number of springs in elements
-      integer :: inside = 0
+      integer :: member_springs = 0
       !> Dead loads on the unknowns (unknowns), and on the springs of elements whose ends do not move (inside)
       real(wp), allocatable :: dead(:), dead_force(:)
       !> When members are lost, see `frame_member` (members)
@@ -98,11 +98,11 @@ module rbs_structure_frame_frame
       procedure :: base_force
       procedure :: accelerations
       procedure :: check_loads
-      procedure :: is_lost
-      procedure :: find_lost
-      procedure :: let_go
-      procedure :: has_fallen
-      procedure :: find_runaway
+      procedure :: is_removed
+      procedure :: next_failed_member
+      procedure :: remove_member
+      procedure :: has_collapsed
+      procedure :: unbounded_spring
    end type frame_type
 
    interface
@@ -165,40 +165,40 @@ module rbs_structure_frame_frame
       end function base_force
 
       !> Whether a member carries nothing any more.
-      pure logical module function is_lost(self, member, springs)
+      pure logical module function is_removed(self, member, springs)
          class(frame_type), intent(in) :: self
          integer, intent(in) :: member
          type(spring_array), intent(in) :: springs
-      end function is_lost
+      end function is_removed
 
       !> A member whose time has come, or one that has failed in shear and whose drift is that at which its
       !> axial load is lost: failure_drift/(1 + P/failure_load).
-      integer module function find_lost(self, springs, time) result(member)
+      integer module function next_failed_member(self, springs, time) result(member)
          class(frame_type), intent(in) :: self
          type(spring_array), intent(in) :: springs
          real(wp), intent(in), optional :: time
-      end function find_lost
+      end function next_failed_member
 
       !> Take the forces of a member away. The energy of its elastic rest is lost with it. Its springs keep
       !> what dead load does in them where it is carried to the nodes, on which it stays.
-      module subroutine let_go(self, member, springs)
+      module subroutine remove_member(self, member, springs)
          class(frame_type), intent(in) :: self
          integer, intent(in) :: member
          type(spring_array), intent(inout) :: springs
-      end subroutine let_go
+      end subroutine remove_member
 
       !> Whether a node has sunk by a tenth of the height of a storey, once members may be lost.
-      pure logical module function has_fallen(self, d)
+      pure logical module function has_collapsed(self, d)
          class(frame_type), intent(in) :: self
          real(wp), intent(in), contiguous :: d(:)
-      end function has_fallen
+      end function has_collapsed
 
       !> A spring in a member that has slid by the height of the frame, or turned several times: it does not
       !> carry the dead load, or the end moments, of its member any more.
-      pure integer module function find_runaway(self, d) result(spring)
+      pure integer module function unbounded_spring(self, d) result(spring)
          class(frame_type), intent(in) :: self
          real(wp), intent(in), contiguous :: d(:)
-      end function find_runaway
+      end function unbounded_spring
 
    end interface
 
@@ -239,7 +239,7 @@ contains
             call add_band(self%element(i), tangent(at:at + 8), band)
          end associate
       end do
-      band(1, :) = band(1, :) + k(self%inside + 1:)
+      band(1, :) = band(1, :) + k(self%member_springs + 1:)
    end subroutine add_stiffness
 
    !> Damping of the modes, and in proportion to the stiffness of the elements, initial or present.
@@ -303,7 +303,7 @@ contains
          call spring_motion(self%element(i), size(dd), self%tangent_numbers, tangent, &
                             end_motion(self%element(i), dx), dd)
       end do
-      dd(self%inside + 1:) = dx
+      dd(self%member_springs + 1:) = dx
    end subroutine spring_rates
 
    !> Take rates that are round-off of larger ones for zero: a spring that stands still on a corner of its
@@ -345,7 +345,7 @@ contains
       terms = 0.0_wp
       work = 0.0_wp
       f = springs%f0 + springs%k*(springs%d - springs%d0)
-      associate (x => springs%d(self%inside + 1:))
+      associate (x => springs%d(self%member_springs + 1:))
          do i = 1, size(self%element)
             associate (e => self%element(i))
                if (i <= self%members) then
@@ -367,7 +367,7 @@ contains
       real(wp), intent(in), contiguous :: dd(:)
       real(wp), intent(out), contiguous :: dx(:)
 
-      dx = dd(self%inside + 1:)
+      dx = dd(self%member_springs + 1:)
    end subroutine unknown_rates
 
    !> Forces on the unknowns under all dead load and the lateral one.
@@ -395,8 +395,8 @@ contains
       real(wp) :: gap(3), s(3)
       integer :: i
 
-      associate (x => d(self%inside + 1:))
-         g = dead*self%dead - f(self%inside + 1:)
+      associate (x => d(self%member_springs + 1:))
+         g = dead*self%dead - f(self%member_springs + 1:)
          correction = 0.0_wp
          do i = 1, size(self%element)
             associate (e => self%element(i))
@@ -419,7 +419,7 @@ contains
       real(wp), intent(out) :: s(3)
       real(wp) :: correction(size(d)), gap(3)
 
-      associate (e => self%element(member), x => d(self%inside + 1:))
+      associate (e => self%element(member), x => d(self%member_springs + 1:))
          gap = compatibility_error(e, end_motion(e, x), d, 1.0_wp)
          call balance_ends(e, size(d), self%tangent_numbers, gap, 1.0_wp, self%dead_force, d, f, &
                            self%initial_tangent, s, correction)
@@ -454,7 +454,7 @@ contains
 
       do i = 1, self%n
          rotation(i) = 0.0_wp
-         if (self%number(3, i) > 0) rotation(i) = d(self%inside + self%number(3, i))
+         if (self%number(3, i) > 0) rotation(i) = d(self%member_springs + self%number(3, i))
       end do
    end subroutine rotations
 
@@ -468,7 +468,7 @@ contains
       drift = 0.0_wp
       do i = 1, self%n
          if (self%number(1, i) == 0) cycle
-         associate (floor => self%storey(i), x => d(self%inside + self%number(1, i)))
+         associate (floor => self%storey(i), x => d(self%member_springs + self%number(1, i)))
             if (floor > 0) drift(floor) = drift(floor) + self%storey_share(1, i)*x
             if (floor >= 0 .and. floor < self%storeys) then
                drift(floor + 1) = drift(floor + 1) + self%storey_share(2, i)*x
@@ -505,11 +505,11 @@ contains
 
       associate (x => result%force)
          call self%forces(d, load, result%axial(:pressing), self%initial_tangent, result%f, x, correction)
-         if (self%damped) call self%damp(v(self%inside + 1:), self%initial_tangent, x)
+         if (self%damped) call self%damp(v(self%member_springs + 1:), self%initial_tangent, x)
          call self%add_ground(load, x)
          do i = 1, self%unknowns
             if (self%inertias(i) > 0.0_wp) then
-               x(i) = x(i)/self%inertias(i) - self%mass_damping*v(self%inside + i)
+               x(i) = x(i)/self%inertias(i) - self%mass_damping*v(self%member_springs + i)
             else
                x(i) = 0.0_wp
             end if

@@ -48,8 +48,8 @@ contains
       real(wp) :: gap(3), turned(2)
       integer :: i
 
-      associate (x => d(self%inside + 1:))
-         work = sum(self%dead*x) + sum(self%dead_force*d(:self%inside))
+      associate (x => d(self%member_springs + 1:))
+         work = sum(self%dead*x) + sum(self%dead_force*d(:self%member_springs))
          do i = 1, size(self%element)
             associate (e => self%element(i))
                if (.not. allocated(e%rest)) cycle
@@ -66,9 +66,9 @@ contains
       real(wp) :: g(self%unknowns)
       integer :: i
 
-      associate (x => d(self%inside + 1:))
+      associate (x => d(self%member_springs + 1:))
          g = 0.0_wp
-         energy = -sum(self%dead*x) - sum(self%dead_force*d(:self%inside))
+         energy = -sum(self%dead*x) - sum(self%dead_force*d(:self%member_springs))
          do i = 1, self%members
             associate (e => self%element(i))
                energy = energy + energy_of_rest(e, compatibility_error(e, end_motion(e, x), d, 1.0_wp))

@@ -16,21 +16,21 @@ submodule (rbs_structure_frame_frame) rbs_structure_frame_frame_loss
 
 contains
 
-   module procedure is_lost
+   module procedure is_removed
 
       associate (e => self%element(member))
-         is_lost = e%bending + e%opening > 0
-         if (is_lost) is_lost = springs%is_released(e%before + 1)
+         is_removed = e%bending + e%opening > 0
+         if (is_removed) is_removed = springs%is_released(e%before + 1)
       end associate
-   end procedure is_lost
+   end procedure is_removed
 
-   module procedure find_lost
+   module procedure next_failed_member
       integer :: i
 
       member = 0
       if (.not. self%may_lose) return
       do i = 1, self%members
-         if (self%is_lost(i, springs)) cycle
+         if (self%is_removed(i, springs)) cycle
          if (present(time) .and. is_given(self%lost_at(i))) then
             if (time - self%lost_at(i) >= -same_time*abs(self%lost_at(i))) member = i
          end if
@@ -39,7 +39,7 @@ contains
          end if
          if (member > 0) return
       end do
-   end procedure find_lost
+   end procedure next_failed_member
 
    logical function has_failed(frame, member, springs)
       type(frame_type), intent(in) :: frame
@@ -48,7 +48,7 @@ contains
       real(wp) :: drift, s(3)
       integer :: i
 
-      associate (e => frame%element(member), x => springs%d(frame%inside + 1:))
+      associate (e => frame%element(member), x => springs%d(frame%member_springs + 1:))
          drift = abs(sum(e%chord*x(e%unknown)))
          has_failed = is_given(frame%shear_drift(member)) .and. drift >= abs(frame%shear_drift(member))
          do i = e%before + 1, e%before + e%bending
@@ -64,17 +64,17 @@ contains
       end associate
    end function has_failed
 
-   module procedure let_go
+   module procedure remove_member
       real(wp) :: tangent(self%tangent_numbers), correction(springs%count), s(3), q(3), energy
       integer :: i, unstable
 
       tangent = 0.0_wp
       correction = 0.0_wp
       associate (e => self%element(member))
-         q = end_motion(e, springs%d(self%inside + 1:))
+         q = end_motion(e, springs%d(self%member_springs + 1:))
          energy = energy_of_rest(e, compatibility_error(e, q, springs%d, 1.0_wp))
          do i = e%before + 1, e%before + e%bending + e%opening
-            call springs%let_go(i, self%dead_force(i))
+            call springs%release(i, self%dead_force(i))
          end do
          call self%linearise(springs%k, tangent, unstable)
          call balance_ends(e, springs%count, size(tangent), compatibility_error(e, q, springs%d, 1.0_wp), &
@@ -86,27 +86,27 @@ contains
          energy = energy - energy_of_rest(e, compatibility_error(e, q, springs%d, 1.0_wp))
          springs%work(e%before + 1) = springs%work(e%before + 1) + energy
       end associate
-   end procedure let_go
+   end procedure remove_member
 
-   module procedure has_fallen
+   module procedure has_collapsed
       integer :: i
 
-      has_fallen = .false.
+      has_collapsed = .false.
       if (.not. self%may_lose) return
       do i = 1, self%n
          if (self%number(2, i) == 0) cycle
-         has_fallen = has_fallen .or. &
-                      d(self%inside + self%number(2, i)) < -deepest*self%height/max(self%storeys, 1)
+         has_collapsed = has_collapsed .or. &
+                      d(self%member_springs + self%number(2, i)) < -deepest*self%height/max(self%storeys, 1)
       end do
-   end procedure has_fallen
+   end procedure has_collapsed
 
-   module procedure find_runaway
+   module procedure unbounded_spring
 
-      do spring = 1, self%inside
+      do spring = 1, self%member_springs
          if (abs(d(spring)) < min(self%height, farthest)) cycle
          if (abs(d(spring)) > merge(farthest, self%height, self%place(spring)%kind == flexure)) return
       end do
       spring = 0
-   end procedure find_runaway
+   end procedure unbounded_spring
 
 end submodule rbs_structure_frame_frame_loss

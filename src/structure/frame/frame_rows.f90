@@ -35,7 +35,9 @@ contains
       row(1:3*self%n + 1) = 0.0_wp
       do i = 1, self%n
          do j = 1, 3
-            if (self%number(j, i) > 0) row(1 + (j - 1)*self%n + i) = d(self%inside + self%number(j, i))
+            associate (at => self%number(j, i))
+               if (at > 0) row(1 + (j - 1)*self%n + i) = d(self%member_springs + at)
+            end associate
          end do
       end do
       at = 1 + 3*self%n
@@ -54,7 +56,7 @@ contains
       do kind = 1, 3
          associate (of => self%listed(kind)%spring)
             do j = 1, size(of)
-               call tell_spring(self, kind, of(j), d, f, row(at + j), row(at + size(of) + j))
+               call spring_response(self, kind, of(j), d, f, row(at + j), row(at + size(of) + j))
             end do
             at = at + 2*size(of)
          end associate
@@ -62,19 +64,19 @@ contains
       if (contents%motion) then
          row(at + 1:at + self%n) = 0.0_wp
          do i = 1, self%n
-            if (self%number(1, i) > 0) row(at + i) = response%a(self%inside + self%number(1, i))
+            if (self%number(1, i) > 0) row(at + i) = response%a(self%member_springs + self%number(1, i))
          end do
          at = at + self%n + 1
          row(at) = response%ground
       end if
       if (.not. self%may_lose) return
       do i = 1, m
-         row(at + i) = merge(1.0_wp, 0.0_wp, self%is_lost(i, springs))
+         row(at + i) = merge(1.0_wp, 0.0_wp, self%is_removed(i, springs))
       end do
    end procedure fill_row
 
    !> Deformation and force of a spring; of a joint of layers rotation and moment, or opening and axial force.
-   pure subroutine tell_spring(self, kind, spring, d, f, deformation, force)
+   pure subroutine spring_response(self, kind, spring, d, f, deformation, force)
       type(frame_type), intent(in) :: self
       !> Kind that is told, and the spring, of a joint its first layer
       integer, intent(in) :: kind, spring
@@ -98,7 +100,7 @@ contains
             force = sum(f(spring:last)*e%y(j:j + last - spring))
          end if
       end associate
-   end subroutine tell_spring
+   end subroutine spring_response
 
    module procedure base_force
       real(wp) :: s(3)
@@ -112,7 +114,7 @@ contains
       end do
    end procedure base_force
 
-   !> What supports hold a member with along x [N].
+   !> Force along x of the supports of a member [N].
    pure real(wp) function support_force(self, member, d, s) result(force)
       type(frame_type), intent(in) :: self
       integer, intent(in) :: member
@@ -122,26 +124,25 @@ contains
       integer :: j
 
       force = 0.0_wp
-      associate (e => self%element(member))
+      associate (e => self%element(member), x => d(self%member_springs + 1:))
          do j = 1, 2
             if (self%number(1, e%node(j)) > 0) cycle
             force = force - sum(s*e%to_basic(:, 3*j - 2))
+            if (.not. self%axially_loaded) cycle
             ! A chord that leans presses the support aside; a rotation against it has the opposite sign.
-            if (self%axially_loaded) force = force - e%compression*e%length &
-                                             *chord_rotation(e, d(self%inside + 1:))*e%to_basic(2, 3*j - 2)
+            force = force - e%compression*e%length*chord_rotation(e, x)*e%to_basic(2, 3*j - 2)
          end do
       end associate
    end function support_force
 
-   !> What springs from the ground hold the frame with along x [N]. Those of no account carry nothing that
-   !> counts.
+   !> Force along x of the springs from the ground [N]. Those of no account carry nothing that counts.
    pure real(wp) function ground_force(self, f) result(force)
       type(frame_type), intent(in) :: self
       real(wp), intent(in), contiguous :: f(:)
       integer :: i
 
       force = 0.0_wp
-      do i = self%inside + 1, size(f)
+      do i = self%member_springs + 1, size(f)
          if (self%place(i)%kind == shear) force = force + f(i)
       end do
    end function ground_force

@@ -97,21 +97,21 @@ contains
       frame%shear_drift = member%shear_drift
       frame%lost_at = member%lost_at
       frame%may_lose = any(is_given(frame%failure_drift) .or. is_given(frame%lost_at))
-      frame%inside = count(node%panel%rule /= '')
+      frame%member_springs = count(node%panel%rule /= '')
       do i = 1, size(member)
-         frame%inside = frame%inside + size(member(i)%kind)
+         frame%member_springs = frame%member_springs + size(member(i)%kind)
       end do
       call number_unknowns(frame, node, member)
-      springs = frame%inside + frame%unknowns
+      springs = frame%member_springs + frame%unknowns
       allocate (spring(springs), frame%place(springs), frame%arm(springs), frame%constant_axial(springs), &
-                frame%spring_place(frame%inside))
-      allocate (frame%heads(frame%inside), source=.false.)
+                frame%spring_place(frame%member_springs))
+      allocate (frame%heads(frame%member_springs), source=.false.)
       frame%arm = 0.0_wp
       frame%constant_axial = 0.0_wp
       direction = 1
       if (present(vertical)) direction = merge(2, 1, vertical)
-      frame%arm(frame%inside + frame%number(direction, top)) = 1.0_wp
-      frame%control = frame%arm(frame%inside + 1:)
+      frame%arm(frame%member_springs + frame%number(direction, top)) = 1.0_wp
+      frame%control = frame%arm(frame%member_springs + 1:)
       call set_ground(frame, node, spring)
       call set_elements(frame, node, member, spring)
       call set_panels(frame, node, spring)
@@ -122,7 +122,7 @@ contains
       call frame%linearise(frame%initial_stiffness, frame%initial_tangent, i)
       frame%axially_loaded = kinematics == pdelta
       frame%axial_count = merge(size(member), 0, frame%axially_loaded)
-      frame%group = [unknown_group(1, frame%unknowns, 1, 1, frame%inside, 1.0_wp)]
+      frame%group = [unknown_group(1, frame%unknowns, 1, 1, frame%member_springs, 1.0_wp)]
    end subroutine new_frame
 
    !> Shares of the nodes in the drifts of the storeys.
@@ -228,14 +228,14 @@ contains
                frame%dead(at) = frame%dead(at) + node(i)%load(j)
                frame%part(at) = i
                if (j == 3) frame%reach(at) = frame%total_height
-               if (frame%place(frame%inside + at)%kind == 0) then
-                  frame%place(frame%inside + at) = spring_place(kind_of(j), 0, 0, index=i, &
+               if (frame%place(frame%member_springs + at)%kind == 0) then
+                  frame%place(frame%member_springs + at) = spring_place(kind_of(j), 0, 0, index=i, &
                                                                 owner='node '//node(i)%name)
-                  spring(frame%inside + at) = node(i)%ground(j)
+                  spring(frame%member_springs + at) = node(i)%ground(j)
                end if
-               if (spring(frame%inside + at)%rule == '') then
-                  spring(frame%inside + at)%rule = 'elastic'
-                  spring(frame%inside + at)%value(1) = of_no_account
+               if (spring(frame%member_springs + at)%rule == '') then
+                  spring(frame%member_springs + at)%rule = 'elastic'
+                  spring(frame%member_springs + at)%value(1) = of_no_account
                end if
                associate (push => [node(i)%push, 0.0_wp])
                   frame%pattern(lateral)%force(at) = frame%pattern(lateral)%force(at) + push(j)
@@ -248,9 +248,10 @@ contains
             if (at == 0) cycle
             frame%part(at) = i
             frame%reach(at) = frame%total_height
-            frame%place(frame%inside + at) = spring_place(flexure, 0, 0, index=i, owner='beam '//node(i)%name)
-            spring(frame%inside + at)%rule = 'elastic'
-            spring(frame%inside + at)%value(1) = of_no_account
+            frame%place(frame%member_springs + at) = spring_place(flexure, 0, 0, index=i, &
+                                                                  owner='beam '//node(i)%name)
+            spring(frame%member_springs + at)%rule = 'elastic'
+            spring(frame%member_springs + at)%value(1) = of_no_account
          end associate
       end do
       frame%pattern%last = frame%unknowns
@@ -267,7 +268,7 @@ contains
 
       associate (elements => size(member) + count(frame%beam_rotation > 0))
          allocate (frame%element(elements))
-         allocate (frame%dead_force(frame%inside), source=0.0_wp)
+         allocate (frame%dead_force(frame%member_springs), source=0.0_wp)
       end associate
       before = 0
       do i = 1, size(member)
@@ -302,7 +303,7 @@ contains
                   spring(before + j) = m%spring(j)
                   frame%spring_place(before + j) = m%place(j)
                   frame%place(before + j) = spring_place(m%kind(j), i, m%joint(j), index=i, owner=m%name)
-                  if (m%kind(j) == shear) call hear_flexure(m, j, before, frame%place(before + j))
+                  if (m%kind(j) == shear) call assign_work_source(m, j, before, frame%place(before + j))
                   frame%heads(before + j) = m%kind(j) == layer .and. findloc(m%joint, m%joint(j), dim=1) == j
                   if (m%kind(j) == flexure) e%share(:, j) = [m%place(j) - 1.0_wp, m%place(j)]
                   if (m%kind(j) == shear) e%share(:, j) = -1.0_wp/clear
@@ -318,7 +319,7 @@ contains
    end subroutine set_elements
 
    !> A shear spring hears of the work in the nearest flexural spring, or joint of layers, of its member.
-   pure subroutine hear_flexure(m, spring, before, place)
+   pure subroutine assign_work_source(m, spring, before, place)
       type(frame_member), intent(in) :: m
       !> Number in the member, and of springs before the member
       integer, intent(in) :: spring, before
@@ -329,11 +330,11 @@ contains
          if (.not. any(bends)) return
          nearest = minloc(abs(m%place - m%place(spring)), dim=1, mask=bends)
          associate (joint => m%joint == m%joint(nearest))
-            place%heard = before + findloc(joint, .true., dim=1)
-            place%heard_last = before + findloc(joint, .true., dim=1, back=.true.)
+            place%work_source = before + findloc(joint, .true., dim=1)
+            place%last_work_source = before + findloc(joint, .true., dim=1, back=.true.)
          end associate
       end associate
-   end subroutine hear_flexure
+   end subroutine assign_work_source
 
    !> A panel is an element of one spring, which "opens" by the rotation of the columns against the beams.
    subroutine set_panels(frame, node, spring)
@@ -343,7 +344,7 @@ contains
       integer :: i, element, at
 
       element = frame%members
-      at = frame%inside - count(frame%beam_rotation > 0)
+      at = frame%member_springs - count(frame%beam_rotation > 0)
       do i = 1, size(node)
          if (frame%beam_rotation(i) == 0) cycle
          element = element + 1
@@ -371,7 +372,8 @@ contains
       integer :: i, kind
 
       do kind = 1, 3
-         frame%listed(kind)%spring = pack([(i, i=1, frame%inside)], frame%place(:frame%inside)%kind == kind &
+         frame%listed(kind)%spring = pack([(i, i=1, frame%member_springs)], &
+                                          frame%place(:frame%member_springs)%kind == kind &
                                           .or. (frame%heads .and. kind /= shear))
       end do
    end subroutine list_springs

@@ -2,20 +2,20 @@
 !> of methods that resolve it. They do not depend on which rows are kept.
 !>
 !> Cubics on a step: through four values at its start, its thirds and its end.
-module rbs_solve_time_sight
+module rbs_solve_time_monitor
    use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_interaction_joints, only: opening_of, rest_of
    use rbs_hysteresis_springs, only: spring_array
    use rbs_loading_loads, only: lateral, horizontal
    use rbs_output_summary, only: peaks_type
-   use rbs_solve_time_motion, only: motion_type, motion_result
+   use rbs_solve_time_motion, only: equation_of_motion, motion_result
    use rbs_structure_spring_place, only: shear, flexure, layer
    use rbs_structure_structure, only: finite
    implicit none
    private
 
-   public :: sight_type, watch_type
+   public :: response_monitor, watch_type
 
    !> c(1) + c(2) s + c(3) s**2 + c(4) s**3, s from 0 to 1.
    type :: cubic_type
@@ -40,7 +40,7 @@ module rbs_solve_time_sight
       integer :: slips = 0, turns = 0
    end type watch_type
 
-   type, extends(peaks_type) :: sight_type
+   type, extends(peaks_type) :: response_monitor
       !> Displacement of the top [m] or drift of a storey at which the structure has collapsed, and whether it
       !> has
       real(wp) :: furthest = huge(1.0_wp), furthest_storey = huge(1.0_wp)
@@ -71,16 +71,16 @@ module rbs_solve_time_sight
    contains
       procedure :: watch_for
       procedure :: begin
-      procedure :: see
-      procedure :: see_within
-      procedure :: look
-   end type sight_type
+      procedure :: update
+      procedure :: update_within_step
+      procedure :: check_limits
+   end type response_monitor
 
 contains
 
    !> Limit states to watch for; to be called before `begin`.
    pure subroutine watch_for(self, watch, states)
-      class(sight_type), intent(inout) :: self
+      class(response_monitor), intent(inout) :: self
       type(watch_type), intent(in) :: watch(:)
       !> Number of limit states
       integer, intent(in) :: states
@@ -92,9 +92,9 @@ contains
 
    !> The start of a run.
    subroutine begin(self, motion, springs, q, v, load, clock, collapse_drift, floor)
-      class(sight_type), intent(inout) :: self
-      !> See `see`
-      type(motion_type), intent(in) :: motion
+      class(response_monitor), intent(inout) :: self
+      !> See `update`
+      type(equation_of_motion), intent(in) :: motion
       type(spring_array), intent(in) :: springs
       real(wp), intent(in), contiguous :: q(:), v(:)
       real(wp), intent(in) :: load(4), clock
@@ -142,13 +142,13 @@ contains
       self%clock = clock
       self%displacement = motion%structure%top_displacement(q)
       call fill_openings(self, springs, springs%d, 0.0_wp, self%openings)
-      call self%see(motion, springs, q, v, load, clock)
+      call self%update(motion, springs, q, v, load, clock)
    end subroutine begin
 
    !> The end of a step.
-   subroutine see(self, motion, springs, q, v, load, clock)
-      class(sight_type), intent(inout) :: self
-      type(motion_type), intent(in) :: motion
+   subroutine update(self, motion, springs, q, v, load, clock)
+      class(response_monitor), intent(inout) :: self
+      type(equation_of_motion), intent(in) :: motion
       type(spring_array), intent(in) :: springs
       !> Deformations and velocities (springs), loads
       real(wp), intent(in), contiguous :: q(:), v(:)
@@ -198,12 +198,12 @@ contains
             return
          end if
       end if
-      call self%look(springs, q, displacement, clock)
-   end subroutine see
+      call self%check_limits(springs, q, displacement, clock)
+   end subroutine update
 
    !> Limit states at the end of a step; between its ends deformations are straight in time.
-   subroutine look(self, springs, q, displacement, clock)
-      class(sight_type), intent(inout) :: self
+   subroutine check_limits(self, springs, q, displacement, clock)
+      class(response_monitor), intent(inout) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in), contiguous :: q(:)
       !> Of the top [m]
@@ -211,17 +211,17 @@ contains
 
       if (self%opens) call fill_openings(self, springs, springs%d, 0.0_wp, self%openings_now)
       if (self%opens .or. are_beyond(size(q), self%lowest, self%highest, q, q)) then
-         call look_closely(self, q, displacement, clock)
+         call check_limit_states(self, q, displacement, clock)
       end if
       self%clock = clock
       self%displacement = displacement
       self%q(:) = q
       if (self%opens) self%openings(:) = self%openings_now
-   end subroutine look
+   end subroutine check_limits
 
    !> Limit states that may have been reached.
-   subroutine look_closely(self, q, displacement, clock)
-      type(sight_type), intent(inout) :: self
+   subroutine check_limit_states(self, q, displacement, clock)
+      type(response_monitor), intent(inout) :: self
       real(wp), intent(in) :: q(:), displacement, clock
       real(wp) :: share, before, after, at
       logical :: open(size(self%reached))
@@ -239,13 +239,13 @@ contains
          call reach(self, i, at, self%displacement + share*(displacement - self%displacement))
       end do
       call set_bounds(self)
-   end subroutine look_closely
+   end subroutine check_limit_states
 
    !> A step from a state that has been checked, with springs on their lines; between its ends deformations
    !> are cubics in time.
-   subroutine see_within(self, motion, springs, q0, v0, q1, v1, h, clock)
-      class(sight_type), intent(inout) :: self
-      type(motion_type), intent(in) :: motion
+   subroutine update_within_step(self, motion, springs, q0, v0, q1, v1, h, clock)
+      class(response_monitor), intent(inout) :: self
+      type(equation_of_motion), intent(in) :: motion
       !> On the lines of the step
       type(spring_array), intent(in) :: springs
       !> Deformations and velocities at its start and its end (springs)
@@ -281,17 +281,17 @@ contains
          self%openings(:) = self%inner_openings(:, 4)
       end if
       call look_within(self, motion, h, clock)
-   end subroutine see_within
+   end subroutine update_within_step
 
    !> Whether the largest responses may grow within a step: each is a cubic in time, as the deformations are.
    !> With damping it is not, and every step is looked at.
    logical function peaks_may_grow(self, motion, springs, displacement, q0, v0, q1, v1, reach) result(grow)
-      type(sight_type), intent(inout) :: self
-      type(motion_type), intent(in) :: motion
+      type(response_monitor), intent(inout) :: self
+      type(equation_of_motion), intent(in) :: motion
       type(spring_array), intent(in) :: springs
       !> Of the top at both ends [m]
       real(wp), intent(in) :: displacement(2)
-      !> See `see_within`
+      !> See `update_within_step`
       real(wp), intent(in), contiguous :: q0(:), v0(:), q1(:), v1(:)
       !> How far a cubic goes beyond its ends, for the sum of both velocities there [s]
       real(wp), intent(in) :: reach
@@ -356,8 +356,8 @@ contains
 
    !> The largest responses within a step whose inner states are known.
    subroutine find_peaks(self, motion, springs)
-      type(sight_type), intent(inout) :: self
-      type(motion_type), intent(in) :: motion
+      type(response_monitor), intent(inout) :: self
+      type(equation_of_motion), intent(in) :: motion
       type(spring_array), intent(in) :: springs
       type(cubic_type) :: part
       real(wp) :: displacement(4), base(4), turn(4)
@@ -395,8 +395,8 @@ contains
 
    !> Limit states within a step whose inner states are known.
    subroutine look_within(self, motion, h, clock)
-      type(sight_type), intent(inout) :: self
-      type(motion_type), intent(in) :: motion
+      type(response_monitor), intent(inout) :: self
+      type(equation_of_motion), intent(in) :: motion
       real(wp), intent(in) :: h, clock
       type(cubic_type) :: along, top
       real(wp) :: value(4), share
@@ -422,7 +422,7 @@ contains
 
    !> Shares of the openings, and of the rotations at rest, in what is watched.
    pure subroutine fill_openings(self, springs, q, share, openings)
-      type(sight_type), intent(in) :: self
+      type(response_monitor), intent(in) :: self
       type(spring_array), intent(in) :: springs
       !> Deformations (springs), and the share of the step, see `opening_of`
       real(wp), intent(in) :: q(:), share
@@ -488,7 +488,7 @@ contains
 
    !> A limit state may be reached.
    pure subroutine reach(self, i, at, top)
-      type(sight_type), intent(inout) :: self
+      type(response_monitor), intent(inout) :: self
       !> Place of the watch
       integer, intent(in) :: i
       !> When [s], and displacement of the top [m]
@@ -501,7 +501,7 @@ contains
 
    !> The bounds of what is still watched for.
    pure subroutine set_bounds(self)
-      type(sight_type), intent(inout) :: self
+      type(response_monitor), intent(inout) :: self
       integer :: i
 
       self%lowest = -huge(1.0_wp)
@@ -626,4 +626,4 @@ contains
       s = high
    end function first_at
 
-end module rbs_solve_time_sight
+end module rbs_solve_time_monitor
