@@ -46,6 +46,8 @@ module rbs_base_band_matrix
       !> takes it
       real(wp), allocatable, private :: scale(:), general(:, :)
       integer, allocatable, private :: pivot(:)
+      !> Whether that has been done since `factor`
+      logical, private :: has_pivots = .false.
       !> Columns a and c of the border, and A^-1 times them (size, 2), scaled
       real(wp), allocatable, private :: border(:, :), flexible(:, :)
       !> Products of the two: once from the left, once from the right
@@ -107,6 +109,7 @@ contains
          self%triangle(:, :) = self%band
          call factor_wide(self%size, self%width, self%triangle, self%negative)
       end if
+      self%has_pivots = .false.
       self%positive = self%negative == 0
       ! The factor holds one over the pivots.
       if (self%positive .and. allocated(self%scale)) then
@@ -403,13 +406,19 @@ contains
          real(wp) :: right(self%size, m)
 
          right = b
-         call mirror(0.0_wp)
-         call solve_general_band(self%general, self%width, self%width, b, regular, self%pivot)
+         if (.not. self%has_pivots) call mirror(0.0_wp)
+         call solve()
          if (regular) return
          b = right
          call mirror(round_off)
-         call solve_general_band(self%general, self%width, self%width, b, regular, self%pivot)
+         call solve()
       end subroutine solve_with_pivots
+
+      subroutine solve()
+         call solve_general_band(self%general, self%width, self%width, b, regular, self%pivot, &
+                                 self%has_pivots)
+         self%has_pivots = regular
+      end subroutine solve
 
       !> The band as elimination with pivots takes it, both triangles.
       subroutine mirror(extra)

@@ -26,6 +26,16 @@ module rbs_base_linalg
          integer, intent(out) :: ipiv(*), info
       end subroutine dgbsv
 
+      subroutine dgbtrs(trans, n, kl, ku, nrhs, ab, ldab, ipiv, b, ldb, info)
+         import :: wp
+         implicit none
+         character(len=1), intent(in) :: trans
+         integer, intent(in) :: n, kl, ku, nrhs, ldab, ipiv(*), ldb
+         real(wp), intent(in) :: ab(ldab, *)
+         real(wp), intent(inout) :: b(ldb, *)
+         integer, intent(out) :: info
+      end subroutine dgbtrs
+
       subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
          import :: wp
          implicit none
@@ -60,8 +70,8 @@ contains
    end subroutine solve_tridiagonal
 
    !> Solve a general band system by elimination with pivots.
-   subroutine solve_general_band(band, below, above, b, regular, work)
-      !> Band (2 below + above + 1, n): band(below + above + 1 + i - j, j) = a(i, j); overwritten
+   subroutine solve_general_band(band, below, above, b, regular, work, is_factored)
+      !> Band (2 below + above + 1, n): band(below + above + 1 + i - j, j) = a(i, j); replaced by its factor
       real(wp), intent(inout), contiguous :: band(:, :)
       !> Number of diagonals below and above the main one
       integer, intent(in) :: below, above
@@ -69,10 +79,19 @@ contains
       real(wp), intent(inout), contiguous :: b(:, :)
       !> Whether the matrix has an inverse
       logical, intent(out) :: regular
-      !> Work array (n)
+      !> Pivots (n)
       integer, intent(inout), contiguous :: work(:)
+      !> Whether band and pivots are those that a regular solution has left
+      logical, intent(in), optional :: is_factored
       integer :: info
 
+      regular = .false.
+      if (present(is_factored)) regular = is_factored
+      if (regular) then
+         call dgbtrs('n', size(b, 1), below, above, size(b, 2), band, size(band, 1), work, b, size(b, 1), &
+                     info)
+         return
+      end if
       call dgbsv(size(b, 1), below, above, size(b, 2), band, size(band, 1), work, b, size(b, 1), info)
       regular = info == 0
    end subroutine solve_general_band
