@@ -64,7 +64,7 @@ contains
       end if
    end subroutine add
 
-   !> Append a message on what stands at a place, such as 'case.nml line 4:'; blank if there is none.
+   !> Append a message on the text at a place, such as 'case.nml line 4:'; blank if there is none.
    subroutine add_at(self, place, message)
       class(message_list), intent(inout) :: self
       character(len=*), intent(in) :: place, message

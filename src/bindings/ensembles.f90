@@ -25,7 +25,7 @@ module rbs_bindings_ensembles
 
 contains
 
-   !> What each motion takes for each column, and what is wrong with the columns. Rows: for each column
+   !> Time of each motion for each column, and messages on the columns. Rows: for each column
    !> expected seconds of each motion, then 1 for each that lanes take. Text: number of the column and message
    !> of each fault.
    subroutine plan_ensemble(request, answer)

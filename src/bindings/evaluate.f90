@@ -1,4 +1,4 @@
-!> What Python can ask for: the one table of it.
+!> Questions that Python can ask: the one table of them.
 module rbs_bindings_evaluate
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: message_list

@@ -1,4 +1,4 @@
-!> What crosses between Python and Fortran: a request, which names what is wanted and brings a text and
+!> Exchange between Python and Fortran: a request, which names what is wanted and brings a text and
 !> numbers, and its answer, a text and numbers of any length.
 module rbs_bindings_exchange
    use, intrinsic :: iso_c_binding, only: c_double
@@ -9,7 +9,7 @@ module rbs_bindings_exchange
    public :: request_type, answer_type
 
    type :: request_type
-      !> What is wanted
+      !> Name of the question
       character(len=:), allocatable :: what
       !> Groups of keys (see `rbs_bindings_statements`) or another text, and the numbers of the keys
       character(len=:), allocatable :: statement

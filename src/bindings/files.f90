@@ -44,7 +44,7 @@ contains
       allocate (answer%rows(1 + m, 0:drives), source=0.0_c_double)
       answer%rows(2:, 0) = history%time
       if (case%loadings == 0) then
-         ! What will shake it is not known yet: the method is left to that.
+         ! The motion is not known yet: the choice of the method waits for it.
          if (.not. case%analysis%named) case%analysis%method = 'auto'
       else if (case%analysis%dynamic()) then
          do i = 1, signals

@@ -222,8 +222,8 @@ contains
       end if
    end subroutine choose_method
 
-   !> What to watch for, from the numbers of the user: state, joint, factors of slip, rotation and opening,
-   !> threshold of each.
+   !> Limit states to watch for, from the numbers of the user: state, joint, factors of slip, rotation and
+   !> opening, threshold of each.
    pure function watches_of(numbers) result(watch)
       real(c_double), intent(in) :: numbers(:)
       type(watch_type) :: watch(size(numbers)/6)

@@ -1,4 +1,4 @@
-!> What is evaluated of a section and of its materials.
+!> Questions about a section and its materials, and their answers.
 module rbs_bindings_sections
    use, intrinsic :: iso_c_binding, only: c_double
    use rbs_base_error, only: error_type, message_list

@@ -218,7 +218,7 @@ contains
 
    contains
 
-      !> What is wrong with the frame, and what belongs to columns alone.
+      !> Messages on the frame, and on groups that belong to columns alone.
       subroutine validate_frame()
          integer :: i
 
@@ -278,7 +278,7 @@ contains
 
    end subroutine validate
 
-   !> What drifts are in proportion to: the height of the column or of the frame [m].
+   !> Height of the column or of the frame, to which drifts are in proportion [m].
    pure real(wp) function height(self)
       class(case_record), intent(in) :: self
 

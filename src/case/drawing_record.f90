@@ -1,5 +1,5 @@
-!> A drawing: a section, and what the model was told. The springs of a column are in the case as well, and the
-!> solver takes them; members of a frame are named after their drawings, and Python makes their springs.
+!> A drawing: a section, and the choices of the model. The springs of a column are in the case as well, and
+!> the solver takes them; members of a frame are named after their drawings, and Python makes their springs.
 module rbs_case_drawing_record
    use rbs_base_check, only: is_given
    use rbs_base_constants, only: unset, unset_integer

@@ -42,7 +42,7 @@ module rbs_case_group_reader
       type(case_record) :: case
       !> Whether `section_groups` are given, not those of a case
       logical :: of_section = .false.
-      !> What is asked of a section
+      !> Question about a section
       type(diagram_record) :: diagram
       type(hinge_record) :: springs
       type(shear_record) :: shear

@@ -9,7 +9,7 @@ module rbs_case_methods
    public :: method_type, methods, method_named, method_choices, takes, quoted_names, method_rows
    public :: usual_tolerance, usual_rho_infinity, methods_columns, responses_tried
 
-   !> What is usual: error of a step of rk45, spectral radius at infinite frequency.
+   !> Usual settings: error of a step of rk45, spectral radius at infinite frequency.
    real(wp), parameter :: usual_tolerance = 1.0e-6_wp, usual_rho_infinity = 0.8_wp
 
    !> Responses of studies/error_classes.py, with P-Delta, from which the errors of the methods come.

@@ -31,7 +31,7 @@ contains
       springs%press_to(:) = springs%press_at
    end subroutine vary_axial_loads
 
-   !> What becomes of a joint that has lost its axial load.
+   !> State of a joint that has lost its axial load.
    subroutine fall_of(springs, i, fall)
       type(spring_array), intent(in) :: springs
       integer, intent(in) :: i

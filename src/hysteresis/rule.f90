@@ -60,13 +60,13 @@ module rbs_hysteresis_rule
       class(rule_memory), allocatable :: memory
    end type memory_slot
 
-   !> What one spring is made of, side by side, as every new line needs all of it: its rule, its memory, and
+   !> Parts of one spring, side by side, as every new line needs all of them: its rule, its memory, and
    !> room for a copy of the memory from before a trial.
    type :: spring_slot
       !> Of the structure, which is there as long as the spring
       class(rule_type), pointer :: rule => null()
       class(rule_memory), allocatable :: memory, kept
-      !> Whether the memory is told of the work of the flexural spring
+      !> Whether the memory needs the work of the flexural spring
       logical :: needs_flexural_work = .false.
    contains
       procedure :: next_branch
@@ -175,7 +175,7 @@ contains
 
    end subroutine prepare
 
-   !> Whether a spring has yielded so far; told by rules that soften, of others it is not asked.
+   !> Whether a spring has yielded so far; rules that soften know it, for others it is false.
    pure logical function has_yielded(self, memory)
       class(rule_type), intent(in) :: self
       class(rule_memory), intent(in) :: memory

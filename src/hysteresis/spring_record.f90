@@ -51,7 +51,7 @@ module rbs_hysteresis_spring_record
 
 contains
 
-   !> What a message on the spring begins with: 'line 4: ', or nothing where it is not from a file.
+   !> Beginning of a message on the spring: 'line 4: ', or nothing where it is not from a file.
    subroutine place_of_spring(self, text)
       class(spring_record), intent(in) :: self
       character(len=:), allocatable, intent(out) :: text

@@ -24,7 +24,7 @@ module rbs_io_namelist_scan
    !> Largest numbers of groups, and of entries in a group; no case needs as many.
    integer, parameter :: most_groups = 100000, most_entries = 5000
 
-   !> One value: where it stands in the text, quotes included, and its repeat count.
+   !> One value: its place in the text, quotes included, and its repeat count.
    type :: nml_word
       integer :: first = 1, last = 0, times = 1
    end type nml_word

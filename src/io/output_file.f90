@@ -225,7 +225,7 @@ contains
             call fatal_error(error, analysis_failed, 'output: '//self%own//' is whole but could not be '// &
                              'renamed to '//self%path//'; move it by hand')
          else if (is_ours(self%path//partial)) then
-            ! What an earlier run has left would be taken for a part of this one.
+            ! A file that an earlier run has left would be taken for a part of this one.
             status = c_unlink(self%path//partial//c_null_char)
          end if
       else

@@ -16,14 +16,14 @@ module rbs_io_posix
    !> is the value of Linux; where it differs, as on macOS, a pipe is waited for.
    integer(c_int), parameter, public :: to_read = 0_c_int, to_write = 1_c_int, without_waiting = 2048_c_int
 
-   !> What `c_poll` waits for and what it reports.
+   !> Events that `c_poll` waits for and reports.
    integer(c_short), parameter, public :: poll_in = 1_c_short, poll_out = 4_c_short
 
    integer(c_int), parameter, public :: standard_output = 1_c_int
 
    character(len=*), parameter :: standard_input_path = '/dev/stdin'
 
-   !> What `poll` asks and answers for a descriptor.
+   !> Request and answer of `poll` for a descriptor.
    type, bind(c) :: poll_type
       integer(c_int) :: descriptor
       integer(c_short) :: asked, answered
@@ -238,7 +238,7 @@ contains
                       real_b(:findloc(real_a, c_null_char, dim=1)))
    end function same_file
 
-   !> Whether a path stands for standard output.
+   !> Whether a path means standard output.
    pure logical function is_standard_output(path)
       character(len=*), intent(in) :: path
 

@@ -28,7 +28,7 @@ module rbs_io_text_file
    !> Bytes that are made room for at first, and that are read at most, of a pipe, whose size is not known.
    integer, parameter :: first_of_pipe = 65536, most_of_pipe = 250000000
 
-   !> What `read_some` returns in place of a number of bytes.
+   !> Codes of `read_some` in place of a number of bytes.
    integer(c_size_t), parameter :: nobody_writes = -2_c_size_t, cannot_read = -1_c_size_t
 
    character(len=1), parameter :: cr = achar(13), lf = achar(10)

@@ -212,7 +212,7 @@ contains
          end if
       end subroutine validate_protocol
 
-      !> What does not go with a protocol of the literature; what it lacks is found where it is made.
+      !> Refuse keys that contradict a protocol of the literature; missing ones are found where it is made.
       subroutine validate_named()
 
          if (allocated(self%cycles) .or. allocated(self%negative_amplitudes)) then

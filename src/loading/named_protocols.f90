@@ -13,7 +13,7 @@ module rbs_loading_named_protocols
    !> The names, as the choices of a key.
    character(len=*), parameter, public :: protocol_names = 'aci_374_1 aci_374_2 atc_24 curee fema_461 sac'
 
-   !> What the amplitudes of a protocol are counted in.
+   !> Units that the amplitudes of a protocol are counted in.
    integer, parameter :: in_drift = 1, in_reference = 2
 
    !> Most steps; more are taken for a typing error.
@@ -22,7 +22,7 @@ module rbs_loading_named_protocols
    !> Amplitudes in ascending order with their cycles, and how they go on.
    type :: ladder_type
       integer :: counted = in_drift
-      !> What the reference of the protocol is
+      !> Meaning of the reference of the protocol
       character(len=40) :: reference = ''
       real(wp), allocatable :: amplitude(:)
       integer, allocatable :: cycles(:)

@@ -1,4 +1,4 @@
-!> What a row of a run holds: names, units and places of its values. The first are those of every structure,
+!> Channels of a row of a run: names, units and places of its values. The first are those of every structure,
 !> the others are stated by the structure. Solvers fill rows from a response; the csv, the summary and Python
 !> find what they need by the names of this list.
 module rbs_output_channels
@@ -15,7 +15,7 @@ module rbs_output_channels
 
    public :: channel_list, new_channels, channel_units
 
-   !> What the rows of every structure begin with; the first is the number of the row in a static analysis.
+   !> First channels of the rows of every structure; the first is the number of the row in a static analysis.
    type(channel_type), parameter :: first_channel(2) = [channel_type('step', ''), channel_type('time', 's')]
    type(channel_type), parameter :: common_channel(8) = [ &
       channel_type('displacement', 'm'), channel_type('force', 'N'), channel_type('input', 'J'), &
@@ -119,7 +119,7 @@ contains
       end do
    end function channel_units
 
-   !> A unit as it stands in a label: 'Nm'.
+   !> A unit as written in a label: 'Nm'.
    pure function without_blanks(unit) result(text)
       character(len=*), intent(in) :: unit
       character(len=len(unit)) :: text

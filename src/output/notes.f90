@@ -92,7 +92,7 @@ contains
       if (.not. summary%peak_rotation > largest_small) return
       kinematics = 'pdelta'
       if (structure%kinematics == small) kinematics = 'small'
-      ! Without a number of its own, so that a session that makes many runs is told once.
+      ! Without a number of its own, so that a session of many runs shows it once.
       if (summary%peak_rotation < 1.0_wp) then
          call notes%add("the rotation of a body goes beyond 0.1 rad; with kinematics = '"// &
                         trim(kinematics)//"' displacements and forces err by about 2 th^2/3 of them "// &

@@ -12,14 +12,14 @@ module rbs_output_recorder
 
    public :: recorder_type, array_recorder, observer_type
 
-   !> An observer of a long run, which is told now and then what share has been completed.
+   !> An observer of a long run; it is called now and then with the share that has been completed.
    type, abstract :: observer_type
    contains
       procedure(update_interface), deferred :: update
    end type observer_type
 
    type, abstract :: recorder_type
-      !> What a row holds; where this is not set no rows are kept
+      !> Channels of a row; where this is not set no rows are kept
       type(channel_list) :: channels
       !> Whether a static path has rows at its corners too, where a spring leaves its line between two targets
       logical :: corners = .false.

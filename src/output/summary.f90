@@ -1,4 +1,4 @@
-!> What is reported of a run besides its rows.
+!> Summary of a run: its figures besides the rows.
 module rbs_output_summary
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use rbs_base_kinds, only: wp

@@ -33,7 +33,7 @@ module rbs_section_concrete_law
    type(bound_type), parameter :: peak_strains = &
       bound_type(0.0_wp, 0.02_wp, least_open=.true., reason='(2 per mille is eps0 = 0.002)')
 
-   !> What is given of a concrete.
+   !> Input of a concrete.
    type, extends(visited_record) :: concrete_record
       !> Cylinder strength, tensile strength, modulus of elasticity [Pa]; strain at the peak; strain at which
       !> a cover has spalled

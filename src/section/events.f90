@@ -41,7 +41,7 @@ module rbs_section_events
       real(wp) :: eps_yield = 0.002_wp, eps_cover = 0.003_wp
    end type rule_type
 
-   !> What names the points of diagrams.
+   !> Names of the points of diagrams.
    type, extends(visited_record), abstract :: points_record
       !> Whether the core is confined and the cover spalls
       logical :: confined = .false.

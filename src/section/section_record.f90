@@ -1,4 +1,4 @@
-!> What is given of a section: its shape, cover, concrete, steels, bars and hoops, under the names of keys.
+!> Input of a section: its shape, cover, concrete, steels, bars and hoops, under the names of keys.
 module rbs_section_section_record
    use rbs_base_constants, only: unset, unset_integer
    use rbs_base_error, only: message_list

@@ -29,7 +29,7 @@ module rbs_section_steel_law
    type(bound_type), parameter :: rupture_strains = &
       bound_type(0.0_wp, 0.6_wp, least_open=.true., reason='(10 per cent is eps_u = 0.1)')
 
-   !> What is given of a steel.
+   !> Input of a steel.
    type, extends(visited_record) :: steel_record
       !> Number by which bars and hoops refer to it
       integer :: id = unset_integer

@@ -1,4 +1,4 @@
-!> The state that an analysis ended in, from which another one begins: where the structure stands, what its
+!> The state that an analysis ended in, from which another one begins: deformations of the structure, what its
 !> springs remember, and what the solver needs to go on with the same bits.
 !>
 !> It is one list of numbers. Its head says to which structure it belongs and how the rest adds up, so that it
@@ -190,7 +190,7 @@ contains
       end if
    end subroutine restore
 
-   !> Two numbers that tell structures with other springs or sizes apart.
+   !> Two numbers that differ between structures with other springs or sizes.
    subroutine find_stamp(structure, stamp)
       class(structure_type), intent(in) :: structure
       real(wp), intent(out) :: stamp(2)
@@ -225,7 +225,7 @@ contains
       do i = 1, len_trim(name)
          call mix(hash, real(iachar(name(i:i)), wp))
       end do
-      ! What a visit collects as defaults are the parameters, given or not.
+      ! The defaults that a visit collects are the parameters, given or not.
       allocate (visited, source=rule)
       call parameters%collect(name)
       call visited%visit(parameters)

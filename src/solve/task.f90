@@ -1,4 +1,4 @@
-!> What a run of any analysis is given besides the column and its loads, and what it gives back besides rows.
+!> Task of a run of any analysis: its settings besides structure and loads, and its answers besides rows.
 module rbs_solve_task
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_constants, only: unset, unset_integer
@@ -13,7 +13,7 @@ module rbs_solve_task
    public :: task_type
 
    type :: task_type
-      !> Where kept rows go, and who is told now and then how far the run is (null: nobody)
+      !> Recorder of the kept rows, and observer of the progress (null: none)
       class(recorder_type), pointer :: recorder => null()
       class(observer_type), pointer :: progress => null()
       !> Every n-th point is kept, and the last; `unset_integer`: all
@@ -44,7 +44,7 @@ contains
       resumes = self%before%is_given()
    end function resumes
 
-   !> Whether the run ends here, as another thread or the clock wants it. Rows up to here are kept.
+   !> Whether the run ends here, by another thread or by the clock. Rows up to here are kept.
    logical function stops(self)
       class(task_type), intent(inout) :: self
       integer(int64) :: now, rate

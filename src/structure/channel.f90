@@ -1,4 +1,4 @@
-!> What rows of a run hold, and what they are filled from.
+!> Channels of a row: names and units of its values, and the response that they are taken from.
 module rbs_structure_channel
    use rbs_base_kinds, only: wp
    implicit none
@@ -15,7 +15,7 @@ module rbs_structure_channel
       integer :: count = 0, first = 1
    end type channel_type
 
-   !> What the rows of a run are asked to hold: those of an analysis in time, on demand openings of layered
+   !> Contents of the rows of a run: those of an analysis in time, on demand openings of layered
    !> joints and how the top moves.
    type :: row_contents
       logical :: in_time = .false., openings = .false., motion = .false.

@@ -121,12 +121,12 @@ module rbs_structure_structure
       procedure(of_position), deferred :: potential_energy
       !> Rate of the axial force at a spring under the slopes of the loads, compression positive [N/s]
       procedure(press_spring), deferred :: axial_rate
-      !> What the loads of a moment and the forces in it may accelerate a spring by, in size
+      !> Bound of the acceleration of a spring under the present loads and forces
       procedure(scale_acceleration), deferred :: acceleration_scale
-      !> What rows hold besides what all structures have, and the values of one
+      !> Channels of a row besides those of all structures, and the values of a row
       procedure(list_channels), deferred :: channels
       procedure(fill_values), deferred :: fill_row
-      ! What follows from these where rotations are small
+      ! Defaults for small rotations
       procedure :: accelerations => accelerate_unknowns
       procedure :: speed
       procedure :: power_of_loads
@@ -139,7 +139,7 @@ module rbs_structure_structure
       procedure :: axial_force
       procedure :: check_loads
       procedure :: check_initial
-      ! Parts that are lost on the way
+      ! Members that fail during a run
       procedure :: next_failed_member
       procedure :: remove_member
       procedure :: has_collapsed
@@ -158,7 +158,8 @@ module rbs_structure_structure
       procedure :: work_of
    end type structure_type
 
-   !> What the equation of motion gives at one state. `create` allocates it once, before the first step.
+   !> Accelerations, forces and powers of the equation of motion at one state. `create` allocates it once,
+   !> before the first step.
    type :: motion_result
       !> Accelerations of the springs (springs) [m/s2, rad/s2]
       real(wp), allocatable :: a(:)
@@ -176,7 +177,7 @@ module rbs_structure_structure
       real(wp), allocatable :: axial(:)
       !> Work array of the structure (work_size)
       real(wp), allocatable :: work(:)
-      !> What depends on the stiffness of the springs (tangent_numbers), and deformations that bring what lies
+      !> Tangent for the stiffness of the springs (tangent_numbers), and deformations that bring what lies
       !> between the unknowns to equilibrium (springs, or none)
       real(wp), allocatable :: tangent(:), correction(:)
       !> Resistance of the springs against deformation from `anchor`, as a share of their initial stiffness,
@@ -353,7 +354,7 @@ contains
       if (self%mass_damping > 0.0_wp) result%a = result%a - self%mass_damping*v
    end subroutine accelerate_unknowns
 
-   !> What the lateral force or the acceleration of the ground does work on, per unit of time: velocity of the
+   !> Velocity that is conjugate to the lateral force or to the acceleration of the ground: velocity of the
    !> top along x [m/s], momentum along x relative to the ground with its sign turned [kg m/s].
    pure real(wp) function speed(self, signal, d, v)
       class(structure_type), intent(in) :: self
@@ -482,24 +483,24 @@ contains
                        to_text(size(self%place))//' springs; give one for each')
    end subroutine check_initial
 
-   !> A member that is to be lost where the springs are now, 0: none.
+   !> A member that fails in the present state of the springs, 0: none.
    integer function next_failed_member(self, springs, time) result(member)
       class(structure_type), intent(in) :: self
       type(spring_array), intent(in) :: springs
-      !> [s]; on a static path none is lost by time
+      !> [s]; on a static path no member is removed by time
       real(wp), intent(in), optional :: time
 
       member = 0
    end function next_failed_member
 
-   !> Let a member carry nothing from now on.
+   !> Take away all forces of a member.
    subroutine remove_member(self, member, springs)
       class(structure_type), intent(in) :: self
       integer, intent(in) :: member
       type(spring_array), intent(inout) :: springs
    end subroutine remove_member
 
-   !> Whether a part has fallen so far that small rotations do not describe it.
+   !> Whether a part has fallen beyond the range of small rotations.
    pure logical function has_collapsed(self, d)
       class(structure_type), intent(in) :: self
       !> Deformations of the springs (springs)
@@ -508,7 +509,7 @@ contains
       has_collapsed = .false.
    end function has_collapsed
 
-   !> A spring without mass that nothing in its part holds any more, 0: none.
+   !> A spring without mass whose deformation is unbounded, as nothing in its part resists it; 0: none.
    pure integer function unbounded_spring(self, d) result(spring)
       class(structure_type), intent(in) :: self
       !> Deformations of the springs (springs)
@@ -517,7 +518,7 @@ contains
       spring = 0
    end function unbounded_spring
 
-   !> What follows from the present stiffness of the springs; nothing, where it is not asked for.
+   !> Tangent on the present stiffness of the springs; none where deformations follow from the unknowns.
    subroutine linearise(self, k, tangent, unstable)
       class(structure_type), intent(in) :: self
       !> Stiffness of the springs (springs)
@@ -638,7 +639,7 @@ contains
    pure real(wp) function work_of(self, signal, moved) result(work)
       class(structure_type), intent(in) :: self
       integer, intent(in) :: signal
-      !> What the unknowns have moved (unknowns)
+      !> Displacements of the unknowns (unknowns)
       real(wp), intent(in), contiguous :: moved(:)
       integer :: i
 

@@ -1,4 +1,4 @@
-!> What becomes of a joint whose layers can no longer carry its axial load: the load that they can carry at
+!> Fall of a joint whose layers can no longer carry its axial load: the load that they can carry at
 !> that rotation, and where the joint comes to rest if it falls, if it does.
 !>
 !> At a fixed rotation the joint closes (or opens, where tension is lost) from end to end of the branches of
@@ -30,7 +30,7 @@ module rbs_hysteresis_layered_fibre_fall
 
 contains
 
-   !> Let a copy of a joint fall from where it stands.
+   !> Let a copy of a joint fall from its present state.
    subroutine find_fall(section, fall)
       type(fibre_section), intent(in) :: section
       type(layer_fall), intent(out) :: fall
@@ -52,7 +52,7 @@ contains
             call copy%go_on(i, way)
          end do
          call copy%sum_up()
-         ! What the layers carry beyond the load; it grows with their stiffness.
+         ! Force of the layers beyond the load; it grows with their stiffness.
          gain = way*(tension(copy, 0.0_wp) + copy%axial_load)
          step = no_step
          do i = 1, copy%count

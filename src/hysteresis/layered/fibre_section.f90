@@ -15,7 +15,7 @@
 !> hold until the first layer reaches an end of its own (`rbs_hysteresis_layered_fibre_path`). Nothing is
 !> added up along the path: w is corrected by what is missing from equilibrium wherever a branch changes.
 !>
-!> A layer that stands for several equal ones at one place counts with its weight.
+!> A layer that represents several equal ones at one place counts with its weight.
 module rbs_hysteresis_layered_fibre_section
    use rbs_base_constants, only: no_stiffness, unbounded
    use rbs_base_kinds, only: wp
@@ -37,7 +37,7 @@ module rbs_hysteresis_layered_fibre_section
    real(wp), parameter :: round_off = 4.0_wp*epsilon(1.0_wp)
    !> Branches without length that one layer may pass at one point.
    integer, parameter :: most_branches = 8
-   !> In the arrays of the ends, what stands for none.
+   !> In the arrays of the ends, the number for none.
    real(wp), parameter :: no_end = 1.0e140_wp
    !> Below this share, what is missing from equilibrium is not put right: its round-off would move the joint.
    real(wp), parameter :: firm = 1.0e-6_wp
@@ -83,7 +83,7 @@ module rbs_hysteresis_layered_fibre_section
       !> Distances from the middle of the section, positive where a positive rotation opens the joint (count)
       !> [m]
       real(wp), allocatable :: y(:)
-      !> How many equal layers each stands for (count)
+      !> Number of equal layers that each represents (count)
       real(wp), allocatable :: weight(:)
       !> The rules of the layers, and which of them each layer has (count)
       type(rule_slot), allocatable :: rule(:)
@@ -102,11 +102,11 @@ module rbs_hysteresis_layered_fibre_section
       real(wp) :: stiffness = 0.0_wp, turning = 0.0_wp, reach = 0.0_wp, centre = 0.0_wp
       !> Whether the layers can carry the axial load at the start
       logical :: carries = .true.
-      !> What `mark` has saved: state, and the layers that have changed since
+      !> Copy saved by `mark`: state, and the layers that have changed since
       type(section_state), private :: kept_state
       type(memory_slot), allocatable, private :: kept_slot(:)
       type(segment), allocatable, private :: kept_branch(:)
-      !> What `save_layer` has saved of each layer (count)
+      !> Copy of each layer saved by `save_layer` (count)
       type(memory_slot), allocatable, private :: tried_slot(:)
       type(segment), allocatable, private :: tried_branch(:)
       integer, allocatable, private :: kept(:)
@@ -258,7 +258,7 @@ contains
       end do
    end subroutine go_on
 
-   !> What the last digits of opening and rotation leave undecided of a deformation [m].
+   !> Uncertainty of a deformation by the last digits of opening and rotation [m].
    pure real(wp) function room_in_digits(self)
       class(fibre_section), intent(in) :: self
 

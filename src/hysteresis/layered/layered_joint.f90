@@ -21,7 +21,8 @@ module rbs_hysteresis_layered_layered_joint
 
    !> The layers are springs with rules of their own, which `set_layers` of the spring gives.
    type, extends(rule_type) :: layered_rule
-      !> Distances from the middle of the section [m], and how many equal layers each stands for (layers)
+      !> Distances from the middle of the section [m], and the number of equal layers that each represents
+      !> (layers)
       real(wp), allocatable :: y(:), weight(:)
       !> The rules of the layers, and which of them each layer has (layers)
       type(rule_slot), allocatable :: rule(:)
@@ -107,7 +108,7 @@ contains
 
       rotation = branch%end_toward(direction) + section%rest
       if (section%failed .and. abs(rotation - section%rotation) > 0.0_wp) then
-         ! What lies behind a failure has no meaning; the moment stays as it was.
+         ! The branch behind a failure has no meaning; the moment stays as it was.
          branch = segment(d0=branch%d0, f0=branch%f0)
          return
       end if
@@ -172,7 +173,7 @@ contains
       branch%f0 = 0.0_wp
    end subroutine find_rest
 
-   !> What is said of an axial load that the layers of a spring do not carry; blank if they do, or if there
+   !> Message on an axial load that the layers of a spring do not carry; blank if they do, or if there
    !> are none.
    subroutine check_axial_load(rule, axial_load, text)
       class(rule_type), intent(in) :: rule

@@ -197,7 +197,7 @@ contains
       select case (now%branch)
       case (virgin)
          if (direction*here%d > 0.0_wp) then
-            ! What the flexural spring did before counts for nothing: an uncracked spring has not decayed.
+            ! Earlier work of the flexural spring does not count: an uncracked spring has not decayed.
             now%work_at_cracking = now%flexural_work
             call follow_backbone(spring, direction, here)
          else
@@ -247,7 +247,7 @@ contains
          ! No turn of this side lies ahead any more.
          turns_of(s)%count = 0
          if (.not. now%yielded .and. s*here%d >= now%backbone(s)%d_y) then
-            ! What was dissipated before yield does not deteriorate.
+            ! Energy dissipated before yield does not deteriorate the spring.
             k = unloading_stiffness(spring, s, point(s*here%d, s*here%f))
             now%work_at_zero = now%work - 0.5_wp*here%f**2/k
             now%yielded = .true.

@@ -446,7 +446,7 @@ contains
    end subroutine open_up
 
    !> The crack has opened to a closing c: the wider it was, the earlier its faces touch, and the
-   !> strength falls with the way. There is no force, so neither is felt at once.
+   !> strength falls with the way. There is no force, so neither acts at once.
    subroutine widen(spring, c)
       type(concrete_spring), intent(inout) :: spring
       real(wp), intent(in) :: c

@@ -158,7 +158,7 @@ contains
       end if
    end subroutine check_relations
 
-   !> What follows from the parameters alone.
+   !> Values that follow from the parameters alone.
    subroutine prepare(self)
       class(steel_rule), intent(inout) :: self
 
@@ -293,7 +293,7 @@ contains
       !> Wear and force along a branch determine each other: the limits y_i lose e_i for each unit of plastic
       !> deformation d - f/k, and its share in the deformation follows from the slope that this gives.
       subroutine wear(times, limit, slips, growth, ahead)
-         !> What a unit of plastic deformation counts
+         !> Weight of a unit of plastic deformation
          real(wp), intent(in) :: times
          real(wp), intent(in) :: limit(elements)
          logical, intent(in) :: slips(elements)

@@ -32,7 +32,7 @@ module rbs_hysteresis_rules_takeda
    integer, parameter :: uncracked = 0, cracked_backbone = 1, yielded_backbone = 2
    integer, parameter :: outer_unloading = 3, reloading = 4, inner_unloading = 5
 
-   !> What B1 multiplies: the uncracked or the outer unloading stiffness; nothing is the third choice.
+   !> Stiffness that B1 multiplies: the uncracked or the outer unloading one; none is the third choice.
    integer, parameter :: of_uncracked = 1, of_outer = 2
 
    !> Below this share of the yield force a reversal counts as one at zero force.
@@ -69,7 +69,7 @@ module rbs_hysteresis_rules_takeda
       real(wp) :: k_c = unset, k_y = unset, k_u = unset, d_c = unset, d_y = unset
       !> Degradation factors
       real(wp) :: b0 = 0.4_wp, b1 = 1.0_wp
-      !> What B1 multiplies, the place of its name among the choices
+      !> Stiffness that B1 multiplies, the place of its name among the choices
       integer :: inner = of_uncracked
       !> Cracking and yield force [N or N m]
       real(wp), private :: f_c = 0.0_wp, f_y = 0.0_wp

@@ -22,7 +22,8 @@ module rbs_solve_begin_make_structure
    integer, parameter :: modes_along = 10
 
    !> Stiffness of an unknown over what is left of it where others are free, beyond which too few digits stay;
-   !> share of the softest member that others are taken down to where a mechanism is told from round-off.
+   !> share of the softest member that others are taken down to where a mechanism is distinguished from
+   !> round-off.
    real(wp), parameter :: most_lost = 1.0e10_wp, like_stiffness = 1.0e3_wp
 
 contains
@@ -119,7 +120,7 @@ contains
       end if
       call factor_stiffness()
       if (matrix%positive .and. maxval(matrix%triangle(1, :)) < most_lost) return
-      ! Members of like stiffness tell a mechanism from round-off.
+      ! With members of like stiffness a mechanism differs from round-off.
       do i = 1, frame%members
          associate (at_element => frame%element(i)%layout%stiffness, length => frame%element(i)%length)
             stiffness(i) = max(tangent(at_element), tangent(at_element + 4)/length**2, &

@@ -1,6 +1,6 @@
 !> The lines on which a structure leaves a corner of its static path.
 !>
-!> At a corner a spring stands at an end of its line, or on a one-way line against its way. Which springs
+!> At a corner a spring is at an end of its line, or on a one-way line against its way. Which springs
 !> go on and which turn back must be found together: a linear complementarity problem.
 module rbs_solve_static_corner
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
@@ -354,7 +354,7 @@ contains
 
    end subroutine follow_through
 
-   !> Whether a spring stands on an end that belongs to its line.
+   !> Whether a spring is on an end that belongs to its line.
    pure logical function is_on_closed_end(springs, i, way)
       type(spring_array), intent(in) :: springs
       integer, intent(in) :: i, way
@@ -366,7 +366,7 @@ contains
       end if
    end function is_on_closed_end
 
-   !> The way by which a spring can leave its line where it stands, 0 if it cannot.
+   !> Direction in which a spring can leave its line from its present deformation, 0 if it cannot.
    pure integer function exit_direction(springs, i)
       type(spring_array), intent(in) :: springs
       integer, intent(in) :: i

@@ -90,7 +90,7 @@ contains
       end do
    end function clean
 
-   !> Whether the stride has been small enough for its tangents to tell what lies between.
+   !> Whether the stride has been small enough for its tangents to determine the path between.
    pure logical function is_gentle(self, structure)
       class(curve_type), intent(in) :: self
       class(structure_type), intent(in) :: structure

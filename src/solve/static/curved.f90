@@ -40,7 +40,7 @@ module rbs_solve_static_curved
    !> method, whose points are off by round-off.
    real(wp), parameter :: close_by = 1.0e-9_wp
 
-   !> What round-off leaves of a displacement or force, as a share of the largest.
+   !> Round-off of a displacement or force, as a share of the largest.
    real(wp), parameter :: round_off = 32.0_wp*epsilon(1.0_wp)
 
    !> Newton's method has converged if a change is below this share of the largest deformation of its kind:
@@ -49,7 +49,7 @@ module rbs_solve_static_curved
    real(wp), parameter :: arrived = 1.0e-10_wp, no_progress = 1.0e-7_wp
    integer, parameter :: most_iterations = 15
 
-   !> What the slopes may correct of the work of a stride under a constant axial load, and what may be missing
+   !> Largest correction by slopes of the work of a stride under a constant axial load, and the most missing
    !> from its works under one that varies, with exact rotations and without; as shares of the largest energy
    !> so far.
    real(wp), parameter :: most_correction = 1.0e-5_wp, most_missing(2) = [1.0e-12_wp, 1.0e-13_wp]
@@ -57,7 +57,7 @@ module rbs_solve_static_curved
    type, extends(static_path) :: curved_path
       type(curved_equilibrium) :: equilibrium
       !> The present point and the one that is tried, the curve between the first and the farthest tried, and
-      !> the spring that stands on the end of its line there with its layer; 0 for none
+      !> the spring that is on the end of its line there with its layer; 0 for none
       type(path_point) :: here, there
       type(curve_type) :: curve
       integer :: spring = 0, layer = 0
@@ -531,7 +531,7 @@ contains
       end if
    end subroutine report_no_way
 
-   !> What takes the springs to equilibrium at the displacement of the top, under the present axial load.
+   !> Corrections that take the springs to equilibrium at the displacement of the top under the axial load.
    subroutine find_balance(self, correction, force, found)
       class(curved_path), intent(inout) :: self
       real(wp), intent(out) :: correction(:), force
@@ -561,7 +561,7 @@ contains
       unbalance = self%equilibrium%unbalance(self%springs, self%here)
    end function unbalance
 
-   !> The springs stand where the path begins.
+   !> The springs are where the path begins.
    subroutine reset_reference(self)
       class(curved_path), intent(inout) :: self
 

@@ -1,6 +1,6 @@
 !> Equilibrium of a column on a curved path, the springs on their present lines, and how it goes on.
 !>
-!> What is driven, c, and the axial load at the top are linear in the parameter t of the path,
+!> The driven quantity, c, and the axial load at the top are linear in the parameter t of the path,
 !>
 !>     c = c_0 + c' t,   N = N_0 + N' t + r F
 !>
@@ -12,8 +12,8 @@
 !>
 !> or, with the other kinematics, to second order without what the lateral force does on rotated bodies and
 !> the axial loads on openings of rotated joints; th_0 = 0. In absolute rotations joints meet only their
-!> neighbours: unknowns z stand joint by joint, slip, opening if there is one, absolute rotation. With the
-!> loads less the forces of the springs R(z, F, N) and their derivatives K = -dR/dz, a = dR/dF, p = dR/dN,
+!> neighbours: unknowns z are ordered joint by joint, slip, opening if there is one, absolute rotation. With
+!> the loads less the forces of the springs R(z, F, N) and their derivatives K = -dR/dz, a = dR/dF, p = dR/dN,
 !> rates and corrections follow from one band with a border,
 !>
 !>     [K    -(a + r p)] [dz]   [p N'         R             ]
@@ -34,7 +34,7 @@ module rbs_solve_static_curved_equilibrium
    !> Largest correction: rotation [rad], slip per height.
    real(wp), parameter :: most_change = 1.0_wp
 
-   !> Deformations [rad, m] below this are those of a column that stands straight under a load that varies,
+   !> Deformations [rad, m] below this are those of a straight column under a load that varies,
    !> but for round-off; those below the second share of the largest mean nothing.
    real(wp), parameter :: straight_column = 1.0e-12_wp, no_deformation = 1.0e-13_wp
 
@@ -53,16 +53,16 @@ module rbs_solve_static_curved_equilibrium
    type :: curved_equilibrium
       !> Whether the force is driven, else the displacement; whether the axial load varies
       logical :: by_force = .false., varies = .false.
-      !> What is driven and the axial load at t = 0, and their rates
+      !> Driven quantity and axial load at t = 0, and their rates
       real(wp) :: driven(2) = [0.0_wp, 1.0_wp], load(2) = 0.0_wp, ratio = 0.0_wp
       class(column_type), pointer :: column => null()
       !> Where the load at the top varies, the column under its weight alone, and weightless under a unit
       class(column_type), allocatable :: without_top_load, unit_top_load
-      !> Weight above the joints that layered joints feel (unknowns) [N]
+      !> Weight above the joints, which acts on layered joints (unknowns) [N]
       real(wp), allocatable :: above(:)
       !> Largest slip, relative rotation and opening so far
       real(wp) :: scale(3) = 0.0_wp
-      !> What takes the residual away: of the deformations (unknowns), and of the force [N]
+      !> Corrections that take the residual away: of the deformations (unknowns), and of the force [N]
       real(wp), allocatable :: correction(:)
       real(wp) :: force_correction = 0.0_wp
       !> Unknowns of a joint: also the number of diagonals beside the main one
@@ -102,7 +102,7 @@ contains
                 self%lift(m), self%correction(m), self%f(m), self%above(m), source=0.0_wp)
       call list_axial_forces(column, self%constant)
       if (varies) then
-         ! What is left when the load is taken off would depend on it by round-off, and a path that is cut
+         ! The rest after the load is taken off would depend on it by round-off, and a path that is cut
          ! begins under another load.
          self%ratio = column%axial_force_ratio
          allocate (self%without_top_load, self%unit_top_load, source=column)
@@ -189,7 +189,7 @@ contains
          band = 0.0_wp
          do i = 1, n
             if (i == n .and. self%column%held) then
-               ! What is held does not turn, and its joint moves along its directions.
+               ! A held body does not turn, and its joint moves along its directions.
                s = 0.0_wp
                c = 1.0_wp
             end if

@@ -266,7 +266,7 @@ contains
             call self%structure%spring_rates(self%tangent, self%change(:, 2), self%more)
             self%moved(:, j) = self%moved(:, j) + self%more
             self%change(:, 1) = self%change(:, 1) + self%change(:, 2)
-            ! What one more would add is about the square of this share.
+            ! One more would add about the square of this share.
             if (maxval(abs(self%change(:, 2))) <= few_digits*maxval(abs(self%change(:, 1)))) return
          end do
          regular = .false.

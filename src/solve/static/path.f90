@@ -1,4 +1,4 @@
-!> What the static paths have in common, whatever the structure: the springs, what is driven, the way from
+!> Common part of the static paths, whatever the structure: the springs, the driven quantity, the way from
 !> target to target, and the rows.
 !>
 !> Whether a point of a static path is a state of the structure: the top is where its springs are, each joint
@@ -27,7 +27,7 @@ module rbs_solve_static_path
    !> unloading.
    real(wp), parameter :: on_the_end = 1.0e-11_wp
 
-   !> What a point may miss: of the displacement, in shares of what all springs contribute; of equilibrium, in
+   !> Tolerances of a point: of the displacement, in shares of what all springs contribute; of equilibrium, in
    !> shares of the forces; of work, in shares of the works; each the largest so far. Where Newton's method
    !> follows a curve, and work is an integral over it, place and work have limits of their own.
    real(wp), parameter :: of_place = 1.0e-12_wp, of_force = 1.0e-9_wp, of_work = 1.0e-9_wp
@@ -49,12 +49,12 @@ module rbs_solve_static_path
       real(wp) :: farthest = 0.0_wp
       !> Force and work of the springs if they had their initial stiffness, the largest so far [N, J]
       real(wp) :: stiff_force = 0.0_wp, stiff_work = 0.0_wp
-      !> What a force of each spring is at the top: moments count by the height; those of axial springs not
+      !> Force at the top for a force of each spring: moments count by the height; those of axial springs not
       !> at all (springs)
       real(wp), allocatable :: share(:)
    end type row_check
 
-   !> What round-off alone moves the top, as a share of what all springs do.
+   !> Displacement of the top by round-off alone, as a share of the contributions of all springs.
    real(wp), parameter :: same_place = 2.0e-13_wp
 
    !> A force is reached if less than this share of it is missing.
@@ -103,15 +103,15 @@ module rbs_solve_static_path
       integer :: cuts = 0
       !> Axial load at the top without what follows the force [N], and energy that was damped before [J]
       real(wp) :: load_now = 0.0_wp, damped_before = 0.0_wp
-      !> What is driven where the way to the present target begins, and the number of the target, from 0
+      !> Driven quantity where the way to the present target begins, and the number of the target, from 0
       real(wp) :: way_begin = 0.0_wp
       integer, private :: number = 0
-      !> What a state of the structure may miss, and whether the present point was found to be none
+      !> Tolerances of a state of the structure, and whether the present point violates them
       type(row_check), private :: check
       logical, private :: violates_balance = .false.
       !> Rotations of the bodies, a work array (n)
       real(wp), allocatable, private :: rotation(:)
-      !> What is told of a corner between two targets: its summary, and its recorder if the row is to be kept
+      !> Report on a corner between two targets: its summary, and its recorder if the row is to be kept
       type(task_type), pointer :: task => null()
    contains
       procedure :: prepare
@@ -149,7 +149,7 @@ module rbs_solve_static_path
          logical, intent(out) :: found
       end subroutine solve_line_interface
 
-      !> What takes the springs, where they are and on their present lines, to equilibrium at the
+      !> Corrections that take the springs, where they are and on their present lines, to equilibrium at the
       !> displacement of the top.
       subroutine balance_interface(self, correction, force, found)
          import :: static_path, wp
@@ -207,7 +207,7 @@ contains
       allocate (self%rotation(self%structure%n))
    end subroutine prepare
 
-   !> The springs stand where the path begins: take their place as the present point.
+   !> Take the present deformations of the springs as the point where the path begins.
    subroutine reset_reference(self)
       class(static_path), intent(inout) :: self
 
@@ -299,7 +299,7 @@ contains
             call self%look(target(i), self%unbalance(), self%by_force .and. self%direction == 0, failure)
          end if
          if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message
-         ! What is no state of the structure is no row.
+         ! A point that is no state of the structure is no row.
          if (.not. self%violates_balance) then
             call see_peak(self)
             if (ends .or. mod(i - 1, every) == 0) then
@@ -394,7 +394,7 @@ contains
 
    contains
 
-      !> What misses more than round-off: place, forces, work; 0: nothing.
+      !> The balance that is violated by more than round-off: place, forces, work; 0: none.
       pure integer function balance_fault()
          balance_fault = 0
          if (gap > place*self%check%largest_place) then
@@ -408,7 +408,7 @@ contains
 
    end subroutine look
 
-   !> What springs move the top by, and their works, in size; their largest forces, which grow.
+   !> Displacements of the top by the springs, and their works, in size; their largest forces, which grow.
    pure subroutine measure_springs(n, arm, initial, share, d, d0, f0, k, ways, force, stiff_force, works)
       integer, intent(in) :: n
       real(wp), intent(in) :: arm(n), initial(n), share(n), d(n), d0(n), f0(n), k(n)

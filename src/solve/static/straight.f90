@@ -289,7 +289,7 @@ contains
       self%direction = 0
    end subroutine arrive
 
-   !> The spring that ends the line stands exactly on its end.
+   !> The deformation of the spring that ends the line is exactly that of its end.
    subroutine end_line(self)
       class(straight_path), intent(inout) :: self
       integer :: i
@@ -300,7 +300,7 @@ contains
       self%direction = 0
    end subroutine end_line
 
-   !> What takes the springs to equilibrium at the displacement of the top.
+   !> Corrections that take the springs to equilibrium at the displacement of the top.
    subroutine find_balance(self, correction, force, found)
       class(straight_path), intent(inout) :: self
       real(wp), intent(out) :: correction(:), force

@@ -1,4 +1,4 @@
-!> How long a run in time will take, told before it starts, and which method is faster.
+!> Expected duration of a run in time, noted before it starts, and the faster method.
 module rbs_solve_time_effort
    use rbs_base_constants, only: pi
    use rbs_base_check, only: is_given
@@ -51,7 +51,7 @@ contains
       if (method%adaptive) steps = max(steps, (plan%finish - plan%begin)/(method%limit_share*plan%limit))
    end function steps_of
 
-   !> What to say before a long run; empty for a short one.
+   !> Note before a long run; empty for a short one.
    subroutine long_run_note(structure, plan, text)
       class(structure_type), intent(in) :: structure
       type(time_plan), intent(in) :: plan

@@ -61,7 +61,7 @@ contains
       end associate
    end subroutine find_event
 
-   !> Whether a spring moves by no more in a step than round-off moves it: its velocity then tells no
+   !> Whether a spring moves by no more in a step than round-off moves it: its velocity then has no
    !> direction. The round-off of the forces has another sign on either side of an end, and a spring at rest
    !> would turn from line to line for ever.
    pure logical function keeps_still(state, scheme, i, h)

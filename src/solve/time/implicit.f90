@@ -185,7 +185,7 @@ contains
             energy = 0.0_wp
             if (condensed .and. self%converged) call find_loss(loss, energy)
             if (condensed .and. .not. (self%converged .and. abs(loss) <= far*energy)) then
-               ! What has no mass goes to the next state at which it rests, not to any.
+               ! Unknowns without mass go to the next state of rest, not to any.
                call state%springs%restore()
                self%runaway = 0
                call snap()

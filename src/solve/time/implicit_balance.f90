@@ -22,7 +22,7 @@ module rbs_solve_time_implicit_balance
 
    public :: family_type, step_balance, step_tangent
 
-   !> What round-off leaves of the terms of a sum, as a share of the largest.
+   !> Round-off of the terms of a sum, as a share of the largest.
    real(wp), parameter :: round_off = 32.0_wp*epsilon(1.0_wp)
 
    !> Parameters of the method; those of Newmark's average acceleration.
@@ -71,7 +71,7 @@ module rbs_solve_time_implicit_balance
       type(band_matrix) :: matrix
       !> Initial diagonal of unknowns without mass whose elements yield, 0 of the others (unknowns)
       real(wp), allocatable, private :: initial(:)
-      !> What each spring adds (springs)
+      !> Contribution of each spring (springs)
       real(wp), allocatable, private :: k(:)
       !> Step and lines that the factor belongs to
       real(wp), private :: factor_step = -1.0_wp, factor_resistance = 0.0_wp
@@ -186,7 +186,7 @@ contains
       call compare(self, state, relative)
    end subroutine find_first
 
-   !> What the trial leaves of the balance, relative to the forces.
+   !> Residual of the balance in the trial, relative to the forces.
    subroutine compare(self, state, relative)
       class(step_balance), intent(inout) :: self
       type(state_type), intent(in) :: state
@@ -239,7 +239,7 @@ contains
       real(wp), intent(in) :: alpha_m, alpha_f, mass(m), a0(m), a1(m), g0(m), g1(m)
       real(wp), intent(out) :: r(m)
 
-      ! What has no mass is in equilibrium at the end of the step, whatever it was at the start.
+      ! Unknowns without mass are in equilibrium at the end of the step, whatever it was at the start.
       r = (1.0_wp - alpha_f)*g1 + alpha_f*merge(g0, 0.0_wp, mass > 0.0_wp) &
           - mass*((1.0_wp - alpha_m)*a1 + alpha_m*a0)
    end subroutine balance
@@ -353,11 +353,11 @@ contains
                                           + sqrt(max(stiffness(i), 0.0_wp))*unit(i)*way
             end do
          end do
-         ! What members carry is a sum over whole displacements, not over those of the step.
+         ! Forces of members are sums over whole displacements, not over those of the step.
          call structure%size_of_parts(state%springs, 0.0_wp, force, terms, work)
          is_round_off = all(abs(self%r) <= round_off*(sqrt(max(stiffness, 0.0_wp))*reach(structure%part) &
                                                       + max(force, terms)/unit))
-         ! What lies between the unknowns is in equilibrium too.
+         ! Springs between the unknowns are in equilibrium too.
          if (size(self%now%correction) > 0) then
             is_round_off = is_round_off .and. &
                            all(structure%initial_stiffness*abs(self%now%correction) &
@@ -407,7 +407,7 @@ contains
           .not. abs(step%now%resistance - self%factor_resistance) > 0.0_wp .and. &
           .not. (state%motion%second_order .and. state%motion%varies)) return
       call set_tangent()
-      ! What lies between the unknowns is condensed by the new tangent.
+      ! Springs between the unknowns are condensed by the new tangent.
       if (size(step%now%tangent) == 0) return
       load = step%load
       call step%find_residual(state, h, load, relative)

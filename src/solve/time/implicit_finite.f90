@@ -46,7 +46,7 @@ module rbs_solve_time_implicit_finite
       integer, private :: per = 3, beside = 6
       !> Mass of the bodies, and the residual (3, n)
       real(wp), allocatable, private :: mass(:, :), r(:, :)
-      !> What the bodies, the ground (0) among them, have moved in the step; velocities, forces and
+      !> Displacements of the bodies, the ground (0) among them, in the step; velocities, forces and
       !> accelerations at its start and its end (3, 0:n)
       real(wp), allocatable, private :: moved(:, :), v0(:, :), v1(:, :), g0(:, :), g1(:, :), a0(:, :), &
                                         a1(:, :)
@@ -388,7 +388,7 @@ contains
       g(2, 1:) = g(2, 1:) - self%column%gravity*self%column%mass
       call add_loads(self, self%seen(n), load, .true., g, self%load_rate)
       if (self%column%held) then
-         ! What holds the top takes its moment.
+         ! The held top takes the moment.
          g(3, n) = 0.0_wp
          self%load_rate = 0.0_wp
       end if

@@ -29,7 +29,7 @@ module rbs_solve_time_located
       real(wp) :: next_step = 0.0_wp, shortest = 0.0_wp, longest = huge(1.0_wp)
       !> Largest energy so far, as the measure of errors [J]
       real(wp), private :: largest = 0.0_wp
-      !> The equation of motion where springs stand still, and where one turns back
+      !> The equation of motion where springs are at rest, and where one turns back
       type(motion_result), private :: now
       !> Deformations that are zero (springs)
       real(wp), allocatable, private :: at_rest(:)
@@ -242,7 +242,7 @@ contains
       most_idle = 20 + 10*state%springs%count
    end function most_idle
 
-   !> Springs that stand at an end of their line and go on, or have turned back already, change their line
+   !> Springs that are at an end of their line and go on, or have turned back already, change their line
    !> before the step.
    subroutine leave_at_once(self, state, part, error)
       class(located_stepper), intent(inout) :: self
@@ -262,7 +262,7 @@ contains
                way = direction_of(state%v(i))
                if (way /= 0) then
                   if (.not. goes_on(i, way)) cycle
-                  ! A velocity that round-off could have brought about in one step tells no direction.
+                  ! A velocity that round-off could have brought about in one step has no direction.
                   way = direction_of(felt(state%v(i), round_off_of(state, i)*part))
                end if
                if (way == 0) then

@@ -38,7 +38,7 @@ contains
       type(task_type), intent(inout) :: task
       !> On failure everything up to the last good state has been recorded
       type(error_type), allocatable, intent(out) :: error
-      !> What to watch for, and what has been seen
+      !> Monitor of peaks and limit states
       type(response_monitor), intent(inout), optional :: monitor
       type(checkpoint_type) :: checkpoint
       type(time_plan) :: plan

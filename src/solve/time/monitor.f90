@@ -456,7 +456,7 @@ contains
          do i = 1, m
             q(i, j) = q0(i) + s**2*(3.0_wp - 2.0_wp*s)*(q1(i) - q0(i)) &
                       + s*(1.0_wp - s)*h*((1.0_wp - s)*v0(i) - s*v1(i))
-            ! What the mean velocity has beyond that of the ends; in a very short step it would be round-off.
+            ! Excess of the mean velocity over that of the ends; in a very short step it would be round-off.
             bulge = (q1(i) - q0(i))/h - 0.5_wp*(v0(i) + v1(i))
             bulge = min(max(bulge, -abs(v1(i) - v0(i))), abs(v1(i) - v0(i)))
             v(i, j) = (1.0_wp - s)*v0(i) + s*v1(i) + 6.0_wp*s*(1.0_wp - s)*bulge

@@ -117,7 +117,7 @@ contains
       call self%structure%forces(q, load, result%axial(:m), result%tangent, result%f, g, result%correction)
    end subroutine forces_on_bodies
 
-   !> What else acts besides the forces of the springs on their lines.
+   !> Loads and damping besides the forces of the springs on their lines.
    subroutine find_others(self, springs, v, load, result, m)
       type(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
@@ -228,8 +228,8 @@ contains
       end associate
    end function damping_power
 
-   !> What the ground holds the structure with along x: forces of the lowest springs and of the damping, that
-   !> between the bodies and the ground included [N]; asked for in every step.
+   !> Base shear, the force of the ground on the structure along x: forces of the lowest springs and of the
+   !> damping, that between the bodies and the ground included [N]; asked for in every step.
    real(wp) function base_shear(self, springs, q, v) result(force)
       class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs

@@ -182,7 +182,7 @@ contains
       end do
    end subroutine halve
 
-   !> What may help where no step converges.
+   !> Remedy where no step converges.
    pure character(len=160) function remedy(structure)
       class(structure_type), intent(in) :: structure
 

@@ -55,7 +55,7 @@ contains
       call self%now%create(structure)
    end subroutine create
 
-   !> A step of h from the state. The last stage stands at the end of the step; works of loads and damping
+   !> A step of h from the state. The last stage is at the end of the step; works of loads and damping
    !> are integrated with the weights of order 5.
    subroutine attempt(self, state, h)
       class(pair45_scheme), intent(inout) :: self
@@ -77,7 +77,7 @@ contains
          self%of_loads = self%of_loads + h*row(stage, stages)*of_loads
          self%of_damping = self%of_damping + h*row(stage, stages)*of_damping
       end do
-      ! The last two stages stand at the same time.
+      ! The last two stages are at the same time.
       call reach_stage(self, state, stages, h, load)
       self%begun = .true.
       self%load = load

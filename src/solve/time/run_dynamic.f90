@@ -27,8 +27,8 @@ module rbs_solve_time_run_dynamic
 
    public :: plan_dynamic, run_dynamic, new_stepper
 
-   !> What `auto` assumes: an implicit step costs as much as this number of explicit ones, with small and with
-   !> finite rotations.
+   !> Assumption of `auto`: an implicit step costs as much as this number of explicit ones, with small and
+   !> with finite rotations.
    real(wp), parameter :: implicit_step_cost = 5.0_wp, finite_step_cost = 12.0_wp
 
    !> Numbers of explicit steps times bodies that take some hundredths of a second, and some minutes.
@@ -74,7 +74,7 @@ contains
 
    contains
 
-      !> What has no mass follows from an implicit step alone.
+      !> Unknowns without mass follow from an implicit step alone.
       subroutine choose_implicit()
          type(method_type) :: method
 
@@ -190,7 +190,7 @@ contains
       !> Without `every` each interval of the plan has a row
       type(task_type), intent(inout) :: task
       type(error_type), allocatable, intent(out) :: error
-      !> What to watch for, and what has been seen
+      !> Monitor of peaks and limit states
       type(response_monitor), intent(inout), optional :: monitor
       class(stepper_type), allocatable :: stepper
       integer :: i

@@ -1,4 +1,4 @@
-!> What an explicit scheme is: one step from a state, tried without moving it.
+!> An explicit scheme: one step from a state, tried without moving it.
 module rbs_solve_time_scheme
    use rbs_base_arrays, only: swap
    use rbs_base_kinds, only: wp

@@ -72,7 +72,7 @@ contains
       state%of_damping = checkpoint%damping
       state%at_begin = checkpoint%at_begin
       state%along_joints = checkpoint%along_joints
-      ! What is missing from the balance of energy
+      ! Missing part of the balance of energy
       missing = checkpoint%residual - (state%of_loads + state%at_begin &
                                      - (structure%kinetic_energy(state%q, state%v) + state%along_joints) &
                                      - sum(state%springs%work) - state%of_damping &
@@ -129,7 +129,7 @@ contains
          end if
          checkpoint%method = stepper%method
          checkpoint%setting = stepper%setting
-         ! The motion stands where its springs do.
+         ! The motion is where its springs are.
          call after%start_saving(structure, checkpoint, state%springs)
       end associate
       call stepper%resume(state, after%stream)

@@ -35,7 +35,7 @@ module rbs_solve_time_state
       !> spring, and its time [s]
       integer :: snaps = 0, snap_spring = 0
       real(wp) :: in_snaps = 0.0_wp, largest_snap = -huge(1.0_wp), snap_time = 0.0_wp
-      !> What has been seen of the run
+      !> Peaks and limit states so far
       type(response_monitor) :: monitor
    contains
       procedure :: begin_monitor
@@ -52,7 +52,7 @@ module rbs_solve_time_state
       real(wp) :: longest_step = 0.0_wp
       !> Whether what it needs before the first step has been found
       logical :: begun = .false.
-      !> What the method is and its setting: a run that goes on with the same remembers its steps
+      !> Method and its setting: a run that goes on with the same remembers its steps
       integer :: method = 0
       real(wp) :: setting = 0.0_wp
    contains

@@ -146,7 +146,7 @@ contains
          shear = k(i)
          flexure = k(n + i)
          low = lower(i)
-         ! Place of the rotation; its displacement stands before it.
+         ! Place of the rotation; its displacement comes before it.
          t = 2*i
          band(1, t - 1) = band(1, t - 1) + shear
          band(2, t - 1) = band(2, t - 1) - shear*low

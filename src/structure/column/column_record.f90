@@ -283,7 +283,7 @@ contains
 
       subroutine check_springs(springs, name, place)
          type(spring_record), intent(in), allocatable :: springs(:)
-         !> For messages: 'shear'; where they stand, see `rbs_hysteresis_rule`
+         !> For messages: 'shear'; their place, see `rbs_hysteresis_rule`
          character(len=*), intent(in) :: name, place
          integer :: i
 
@@ -296,7 +296,7 @@ contains
                               to_text(self%joints())//' joints; give one, or one for each joint')
          else
             do i = 1, size(springs)
-               ! Equal springs have equal faults; they are told once.
+               ! Equal springs have equal faults; they get one message.
                if (i > 1) then
                   if (springs(i)%same_as(springs(i - 1))) cycle
                end if

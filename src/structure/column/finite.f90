@@ -14,7 +14,7 @@
 !>     e_{i-1} . (b_i'' - T_{i-1}'') = w'' - 2 u' om - u om' - w om^2    (om of body i - 1)
 !>
 !> all in the directions of the two bodies, so that only sine and cosine of phi_i are needed. A
-!> field of acceleration that all bodies share (ground, weight) is felt by the first joint alone. No mass
+!> field of acceleration that all bodies share (ground, weight) acts on the first joint alone. No mass
 !> matrix is built and none is factored.
 module rbs_structure_column_finite
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan

@@ -129,7 +129,7 @@ contains
          if (p1 < 0.0_wp) below = below + 1
          p1 = 1.0_wp/p1
          if (held .and. i == n) then
-            ! What is held against rotation moves along only; its joint turns by minus what is below.
+            ! A body held against rotation moves along x only; its joint turns by minus the rotation below.
             joint(:, i) = [p1, 0.0_wp, t11, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
             t12 = 0.0_wp
             t22 = -k(2, n)

@@ -112,7 +112,7 @@ module rbs_structure_frame_element
 
 contains
 
-   !> What follows from the unknowns alone, when `number`, `to_basic` and `chord` are known.
+   !> Rows per unknown from `number`, `to_basic` and `chord`: zero where a support holds a displacement.
    pure subroutine leave_out_supports(self)
       class(frame_element), intent(inout) :: self
       integer :: k
@@ -241,7 +241,7 @@ contains
       integer, intent(in) :: m, n
       !> Of `find_tangent`
       real(wp), intent(in) :: stiffness(3, 3), rate(3, m + n), bent(m, m), opened(n, n)
-      !> What the deformations miss to add up to the motion of the ends; forces of the springs, the share of
+      !> Compatibility error: motion of the ends less the deformations; forces of the springs, the share of
       !> the dead load that acts, and what it does in them
       real(wp), intent(in) :: gap(3), f(m + n), dead, dead_force(m + n)
       real(wp), intent(out) :: s(3), correction(m + n)

@@ -2,7 +2,7 @@
 !> them, whose inside is condensed to their ends.
 !>
 !> The springs of the elements come first, then one from the ground to each unknown: soil, a brace, a
-!> bearing, or one of no account, whose deformation is the displacement.
+!> bearing, or one of negligible stiffness, whose deformation is the displacement.
 module rbs_structure_frame_frame
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_inner_product, only: inner_product
@@ -21,7 +21,7 @@ module rbs_structure_frame_frame
 
    public :: frame_type, frame_channel
 
-   !> What rows of a frame hold besides what all structures have: displacements of the nodes along x and
+   !> Channels of a frame besides those of all structures: displacements of the nodes along x and
    !> upward and clockwise rotations; axial forces of the members (compression positive) and moments of their
    !> ends; deformations and forces of their springs by kind, in the order of the members; on demand
    !> accelerations of the nodes along x relative to the ground, and that of the ground; 1 for members that
@@ -54,7 +54,7 @@ module rbs_structure_frame_frame
       real(wp), allocatable :: spring_place(:)
       !> Whether a spring is the first layer of a joint (inside)
       logical, allocatable :: heads(:)
-      !> Springs that rows tell, by kind; of a joint of layers the first one where it rotates and opens
+      !> Springs listed in rows, by kind; of a joint of layers the first one, which gives rotation and opening
       type(spring_list) :: listed(3)
       !> Number of the unknown of each displacement, 0 where a support holds it (3, nodes)
       integer, allocatable :: number(:, :)
@@ -158,7 +158,7 @@ module rbs_structure_frame_frame
          real(wp), intent(out), contiguous :: row(:)
       end subroutine fill_row
 
-      !> What supports and springs from the ground hold the frame with along x [N].
+      !> Base shear: forces along x of the supports and of the springs from the ground [N].
       pure real(wp) module function base_force(self, d, f) result(force)
          class(frame_type), intent(in) :: self
          real(wp), intent(in), contiguous :: d(:), f(:)

@@ -1,4 +1,4 @@
-!> What each group of a frame gives by itself, checked with messages and remedies.
+!> Checks of the groups of a frame one by one, with messages and remedies.
 module rbs_structure_frame_frame_checks
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use rbs_base_check, only: is_given
@@ -21,7 +21,7 @@ module rbs_structure_frame_frame_checks
 
 contains
 
-   !> What each group gives by itself.
+   !> Check the values of each group by itself.
    subroutine check_values(record, messages)
       type(frame_record), intent(inout) :: record
       type(message_list), intent(inout) :: messages

@@ -73,7 +73,7 @@ contains
       call add_opening(m, clear)
    end subroutine put_kind
 
-   !> What carries the axial force of a member that may be lost is a spring.
+   !> Give a member that may be removed a spring for its axial force.
    subroutine add_opening(m, clear)
       type(frame_member), intent(inout) :: m
       real(wp), intent(in) :: clear

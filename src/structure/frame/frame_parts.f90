@@ -111,13 +111,13 @@ contains
          end do
       end do
       self%grid_members = self%members
-      ! A group that is wrong has been told, and names nothing.
+      ! A wrong group has its message already, and names no cell.
       if (messages%count > known) return
       call check_named(self%member(:self%members), 'C', '&column_of, with line = 0', messages)
       call check_named(self%member(:self%members), 'B', '&beam_of, with bay = 0', messages)
    end subroutine lay_grid
 
-   !> Columns or beams of the grid that no group names, told once.
+   !> One message on all columns, or beams, of the grid that no group names.
    subroutine check_named(member, letter, group, messages)
       type(frame_member), intent(in) :: member(:)
       !> 'C' or 'B'
@@ -499,7 +499,7 @@ contains
       end do
    end subroutine put_losses
 
-   !> What members are of, where their lengths are known.
+   !> Kinds of the members, once their lengths are known.
    subroutine put_kinds(self, record, messages)
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
@@ -615,7 +615,7 @@ contains
       end do
    end subroutine hold_idle
 
-   !> The node that is controlled, and stands for the top.
+   !> The controlled node, whose displacement is that of the top.
    subroutine choose_top(self, record, messages)
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record

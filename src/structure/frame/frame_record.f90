@@ -1,4 +1,4 @@
-!> What the user asked of a frame: a grid of storeys and bays, single nodes and members, and kinds of members,
+!> Input of a frame: a grid of storeys and bays, single nodes and members, and kinds of members,
 !> each stated once. A grid only names its nodes and members: node N-2-1 is on line 2 of columns and floor 1,
 !> with floor 0 at the base; column C-2-1 is below it, beam B-2-1 is in bay 2 of that floor.
 module rbs_structure_frame_frame_record
@@ -32,7 +32,7 @@ module rbs_structure_frame_frame_record
       procedure :: visit => visit_floor
    end type floor_record
 
-   !> What members are of: an elastic beam, springs at the points of a Gauss-Lobatto rule that yield, or
+   !> A kind of member: an elastic beam, springs at the points of a Gauss-Lobatto rule that yield, or
    !> springs that are given one by one.
    type, extends(visited_record), public :: kind_record
       character(len=name_length) :: name = ''
@@ -88,7 +88,7 @@ module rbs_structure_frame_frame_record
    !> A spring of a kind of members, at places in shares of the clear length, from the ground to a node, or
    !> in the panel of a node, between its columns and its beams.
    type :: frame_spring
-      !> Group that it stands in: 'shear', 'flexure' or 'axial_spring'
+      !> Group that gives it: 'shear', 'flexure' or 'axial_spring'
       character(len=16) :: group = ''
       character(len=name_length) :: kind = '', node = '', panel = ''
       real(wp), allocatable :: place(:)

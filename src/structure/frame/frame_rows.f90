@@ -78,7 +78,7 @@ contains
    !> Deformation and force of a spring; of a joint of layers rotation and moment, or opening and axial force.
    pure subroutine spring_response(self, kind, spring, d, f, deformation, force)
       type(frame_type), intent(in) :: self
-      !> Kind that is told, and the spring, of a joint its first layer
+      !> Kind of response, and the spring; of a joint its first layer
       integer, intent(in) :: kind, spring
       real(wp), intent(in), contiguous :: d(:), f(:)
       real(wp), intent(out) :: deformation, force

@@ -115,8 +115,8 @@ contains
       integer, intent(in) :: m
       !> Of `layered_tangent`
       real(wp), intent(in) :: stiffness(3, 3), soft(of_joint, size(e%first) - 1)
-      !> What the joints miss to add up to the motion of the ends; deformations and forces of the springs; the
-      !> share of the dead load that acts, and what it does in them
+      !> Compatibility error: motion of the ends less that of the joints; deformations and forces of the
+      !> springs; the share of the dead load that acts, and what it does in them
       real(wp), intent(in) :: gap(3), d(m), f(m), dead, dead_force(m)
       real(wp), intent(out) :: s(3), correction(m)
       real(wp) :: all(3), more(3), force, moment, moved(2)
@@ -186,7 +186,7 @@ contains
       end do
    end subroutine add_up
 
-   !> What forces of the ends do in a joint.
+   !> Work of the forces of the ends per unit motion of a joint.
    pure real(wp) function work_on(arm, s)
       real(wp), intent(in) :: arm(3), s(3)
 
@@ -221,7 +221,7 @@ contains
       end do
    end subroutine take_joints_off
 
-   !> Opening in the middle and rotation of a joint of layers, told by its outermost ones; or the deformation
+   !> Opening in the middle and rotation of a joint of layers, from its outermost ones; or the deformation
    !> of a single spring.
    pure function joint_motion(e, joint, m, d) result(z)
       type(frame_element), intent(in) :: e

@@ -84,7 +84,7 @@ contains
       frame%storey = node%storey
       frame%x = node%x
       frame%y = node%y
-      ! What tells frames apart: each node by its distance from a point that is on no axis of it.
+      ! Distances of the nodes from a point on none of their axes: they differ between frames.
       frame%length = [(hypot(node(i)%x + 1.0_wp/3.0_wp, node(i)%y + 0.7_wp), i=1, size(node))]
       frame%height = maxval(node%y) - minval(node%y)
       ! A beam alone has none.
@@ -318,7 +318,7 @@ contains
       end do
    end subroutine set_elements
 
-   !> A shear spring hears of the work in the nearest flexural spring, or joint of layers, of its member.
+   !> The nearest flexural spring, or joint of layers, of a member: its work weakens a shear spring.
    pure subroutine assign_work_source(m, spring, before, place)
       type(frame_member), intent(in) :: m
       !> Number in the member, and of springs before the member
