@@ -134,6 +134,12 @@ class Tabular:
         return f"{type(self).__name__}({', '.join(filter(None, parts))})"
 
 
+def text_table(frame: DataFrame) -> str:
+    """Return a short table for `print`: four digits, and no more than twenty rows."""
+    shown: str = frame.head(20).to_string(index=False, float_format="{:.4g}".format)
+    return shown + (f"\n... {len(frame) - 20} more" if len(frame) > 20 else "")
+
+
 def _part(name: str, value: Any, unit: str) -> str:
     """Return a number, a word or the range of an array with its name; "" for what is long."""
     if isinstance(value, np.ndarray) and value.size and value.dtype.kind in "fi":

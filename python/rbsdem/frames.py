@@ -7,6 +7,7 @@ from rbsdem.model.frame import FrameSpring as FrameSpring
 from rbsdem.model.frame import Member as Member
 from rbsdem.model.frame import MemberGeometry as MemberGeometry
 from rbsdem.model.frame_result import FrameEvent as FrameEvent
+from rbsdem.model.frame_result import FrameEvents as FrameEvents
 from rbsdem.model.frame_result import FrameResult as FrameResult
 from rbsdem.model.frame_result import MemberHistory as MemberHistory
 from rbsdem.model.shape import TeeSection as TeeSection

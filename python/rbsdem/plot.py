@@ -9,6 +9,7 @@ from rbsdem.output.buildings import assessment as assessment
 from rbsdem.output.buildings import target as target
 from rbsdem.output.frames import frame as frame
 from rbsdem.output.frames import member_forces as member_forces
+from rbsdem.output.frames import mode as mode
 from rbsdem.output.frames import pushover as pushover
 from rbsdem.output.frames import storey_drift as storey_drift
 from rbsdem.output.loops import Subplot as Subplot

@@ -129,3 +129,48 @@ def test_state_at_a_drift_and_at_the_largest_force():
         push.at(1.0, drift=0.01)
     with pytest.raises(rbsdem.InputError, match="time = 'top'"):
         push.at("top")
+
+
+def test_periods_before_yield_and_of_the_secant():
+    """Rigid beam, hinges that never soften: one mass on a bilinear spring, T_e = T_1."""
+    column = frames.FrameMember(30e9, 0.16, 2e-3, yield_moment=100e3, hardening=0.0)
+    stiff = frames.FrameMember(30e9, 40.0, 400.0)
+    made = rbsdem.Frame.grid(
+        [4.0], [5.0], columns=column, beams=stiff, floor_mass=1e4, beam_load=2e4
+    )
+    push = rbsdem.pushover(made, drift=0.03)
+    stiffness = push.base_shear[1] / push.displacement[1]
+    assert push.periods["uncracked"] == pytest.approx(
+        2 * np.pi * np.sqrt(1e4 / stiffness), rel=1e-3
+    )
+    assert push.periods["secant at yield"] == pytest.approx(push.periods["uncracked"], rel=1e-3)
+
+
+def test_events_members_and_modes_are_printed_as_tables():
+    concrete, steel = rbsdem.Concrete(25e6), rbsdem.Steel(450e6, 600e6)
+    ties = rbsdem.Ties(0.008, 0.15, steel)
+    section = rbsdem.RectangularSection(
+        0.4, 0.4, concrete, layout=rbsdem.Layout(8, 0.018, steel), ties=ties, cover=0.03
+    )
+    made = rbsdem.Frame.grid([3.0], columns=section, floor_mass=1e5, kinematics="pdelta",
+                             nodes=[frames.FrameNode("N-1-1", load_y=-1e6)])  # fmt: skip
+    push = rbsdem.pushover(made, drift=0.03)
+    counts = push.events.to_pandas()["what"].value_counts()
+    # The cover is lost on the side that is pressed, after the bars have yielded.
+    assert counts["spalling"] == 1
+    order = [event.what for event in push.events]
+    assert order.index("yield") < order.index("spalling")
+    text = str(push.events)
+    assert "cracking" not in text
+    assert text.splitlines()[-1] == f"and {counts['cracking']} springs crack"
+    assert len(push.events.to_pandas(cracking=False)) == len(push.events) - counts["cracking"]
+    assert "chord_rotation_rad" in str(push.member("C-1-1"))
+    modes = rbsdem.modes(made, 1)
+    assert f"{modes.period[0]:.4g}" in str(modes)
+    # The cover of the frame's hinge is lost at the strain of its softening line.
+    (spalled,) = [event for event in push.events if event.what == "spalling"]
+    row = int(np.flatnonzero(push.time == spalled.step)[0])
+    hinge = made.kinds["C-1-1"].at("flexure", 0.0)
+    y, cover = max(hinge.layers, key=lambda one: abs(one[0]) if hasattr(one[1], "d_peak") else 0.0)
+    closed = push.springs["opening"][row, 0] - abs(y) * abs(push.springs["rotation"][row, 0])
+    assert closed <= -(cover.d_peak + cover.f_peak / cover.k_soft) * (1 - 1e-9)

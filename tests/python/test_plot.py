@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import matplotlib as mpl
@@ -126,6 +127,11 @@ def figures() -> dict[str, tuple[Callable[..., Any], tuple[Any, ...], list[Any]]
         "pushover": (plot.pushover, (pushed,), (roof, shear_of)),
         "storey_drift": (plot.storey_drift, (pushed,), (100 * pushed.storey_drift[-1, 0], 3.2)),
         "member_forces": (plot.member_forces, (pushed,), None),
+        "mode": (
+            plot.mode,
+            (rbsdem.modes(replace(pushed.frame, floor_mass=2e4, beam_load=1e4), 2), 2),
+            None,
+        ),
         "assessment": (plot.assessment, (codes.assess(bent_beams, at=0.01),), None),
         "target": (
             plot.target,
@@ -162,6 +168,7 @@ LABELS = {
     "pushover": ("Roof displacement (mm)", "Base shear (kN)"),
     "storey_drift": ("Storey drift (%)", "Height (m)"),
     "member_forces": ("Distance (m)", "Height (m)"),
+    "mode": ("Distance (m)", "Height (m)"),
     "assessment": ("Distance (m)", "Height (m)"),
     "target": ("Spectral displacement (mm)", "Spectral acceleration (g)"),
 }

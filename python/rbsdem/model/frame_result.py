@@ -9,11 +9,13 @@ from typing import Any, ClassVar, Literal, NamedTuple
 import numpy as np
 
 from rbsdem import _core
-from rbsdem._types import Array
+from rbsdem._files import Tabular, data_frame, text_table
+from rbsdem._types import Array, DataFrame
+from rbsdem.curves.envelope import Envelope
 from rbsdem.errors import InputError
 from rbsdem.model.frame import SCOPE_NOTE, Frame, FrameSpring, MemberGeometry, place_of
 from rbsdem.model.rows import ENERGIES, Rows
-from rbsdem.model.springs import Landmark, Layered
+from rbsdem.model.springs import ConcreteSpring, Landmark, LandmarkName, Layered
 
 #: Names of the springs' deformations and forces in rows, by group.
 _CHANNELS = {
@@ -68,7 +70,26 @@ class FrameEvent(NamedTuple):
     force: float
 
 
-@dataclass(frozen=True)
+class FrameEvents(tuple[FrameEvent, ...], Tabular):
+    """Events of a frame in the order in which they are reached; `print` makes a short table."""
+
+    def to_pandas(self, *, cracking: bool = True) -> DataFrame:
+        """Return a row for each event, those of cracking on request."""
+        rows = [one for one in self if cracking or one.what != "cracking"]
+        units = {"displacement": "displacement_m", "force": "force_N"}
+        return data_frame(rows, FrameEvent._fields).rename(columns=units)
+
+    def __str__(self) -> str:
+        table, cracks = self.to_pandas(cracking=False), sum(one.what == "cracking" for one in self)
+        return text_table(table) + (f"\nand {cracks} springs crack" if cracks else "")
+
+    def __repr__(self) -> str:
+        names = dict.fromkeys(one.what for one in self)
+        told = ", ".join(f"{sum(one.what == name for one in self)} {name}" for name in names)
+        return f"FrameEvents({told})"
+
+
+@dataclass(frozen=True, repr=False)
 class MemberHistory:
     """How a member goes: arrays with a row for each of the result.
 
@@ -107,6 +128,21 @@ class MemberHistory:
     deformation: Array
     force: Array
     ductility: Array
+
+    def __str__(self) -> str:
+        ends = {
+            "moment_Nm": self.moment,
+            "shear_N": self.shear,
+            "chord_rotation_rad": self.chord_rotation,
+            "plastic_rotation_rad": self.plastic_rotation,
+        }
+        rows = {name: np.abs(values).max(axis=0) for name, values in ends.items()}
+        axial = f"axial force {self.axial.min():.4g} to {self.axial.max():.4g} N"
+        table = text_table(data_frame({"end": ["start", "end"]} | rows))
+        return f"{self.name}, {axial}; largest at its ends:\n{table}"
+
+    def __repr__(self) -> str:
+        return f"MemberHistory({self.name}, {self.axial.size} rows)"
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -303,6 +339,22 @@ class FrameResult(Rows):
         return moment
 
     @cached_property
+    def periods(self) -> dict[str, float]:
+        """Periods of the first mode [s]: "uncracked", and "secant at yield" of a push-over.
+
+        The latter is T_e of ASCE 41: that of the mass which the first mode moves on K_e, the first
+        of the two lines up to the largest force.
+        """
+        answer = _core.evaluate("modes", self.frame._statement, count=1)
+        found = {"uncracked": 2 * np.pi / float(answer.values[1])}
+        if not self.dynamic:
+            u, v = self.displacement - self.displacement[0], self.base_shear - self.base_shear[0]
+            lines = Envelope(1, np.abs(u), np.abs(v)).idealise("asce_41")
+            mass = float(answer.rows[0, 3 * self.frame.n])
+            found["secant at yield"] = 2 * np.pi * float(np.sqrt(mass / lines.stiffness))
+        return found
+
+    @cached_property
     def storey_shear(self) -> Array:
         """What the members just above each floor carry along x, shape (rows, storeys) [N].
 
@@ -422,7 +474,7 @@ class FrameResult(Rows):
         return int(rows[0]) if rows.size else None
 
     def _yields(self, spring: FrameSpring, rotation: Array) -> list[tuple[Landmark, int | None]]:
-        """Return where the first layer of a joint yields in tension, for each way that it turns."""
+        """Return where layers of a joint yield in tension and spall, for each way that it turns."""
         made = (
             self.frame.kinds[spring.member].at(spring.group, spring.place)
             if spring.rule == "layered" and spring.group == "flexure"
@@ -437,24 +489,31 @@ class FrameResult(Rows):
             if (one.rule, one.member, one.place) == ("layered", spring.member, spring.place)
         )
         opening = self.springs["opening"][: rotation.size, at]
-        first: dict[Literal[1, -1], int] = {}
+        first: dict[tuple[LandmarkName, Literal[1, -1]], int] = {}
+        outer = min(y for y, _ in made.layers), max(y for y, _ in made.layers)
         for y, layer in made.layers:
-            for point in layer.landmarks():
+            points = [point for point in layer.landmarks() if point.name == "yield"]
+            if isinstance(layer, ConcreteSpring) and y in outer:
+                gone = layer.d_peak + (layer.f_peak - layer.f_res) / layer.k_soft
+                points = [Landmark("spalling", -1, gone, "d_peak + (f_peak - f_res)/k_soft")]
+            for point in points:
                 row = self._reached(point, opening + y * rotation)
-                if point.name == "yield" and point.side > 0 and row is not None:
+                if row is not None and (point.side > 0) == (point.name == "yield"):
                     side: Literal[1, -1] = 1 if rotation[row] >= 0 else -1
-                    first[side] = min(first.get(side, row), row)
+                    key = point.name, side
+                    first[key] = min(first.get(key, row), row)
         return [
-            (Landmark("yield", side, abs(float(rotation[row])), "first layer"), row)
-            for side, row in first.items()
+            (Landmark(name, side, abs(float(rotation[row])), "first layer"), row)
+            for (name, side), row in first.items()
         ]
 
     @cached_property
-    def events(self) -> tuple[FrameEvent, ...]:
+    def events(self) -> FrameEvents:
         """Limit states of the springs, in the order in which they are reached first.
 
-        Cracking, yield and cap of each side. On a path of `pushover` each is a row of its own;
-        else it is that of the first row kept beyond it.
+        Cracking, yield and cap of each side; of drawn members spalling, where an outer layer of
+        concrete has lost its strength; failures of members. On a path of `pushover` each of a
+        spring is a row of its own; else it is that of the first row kept beyond it.
         """
         forces = self.base_shear if self.dynamic else self.force
         found = []
@@ -494,7 +553,7 @@ class FrameResult(Rows):
             top, force = float(self.displacement[row]), float(forces[row])
             drift = top / self.frame.height
             found.append(FrameEvent(at, name, "member", "", what, 0, top, drift, force))
-        return tuple(sorted(found, key=lambda event: event.step))
+        return FrameEvents(sorted(found, key=lambda event: event.step))
 
     def _failures(self) -> list[tuple[str, str, float]]:
         """Return members that fail in shear, and that lose their axial load on a static path."""

@@ -26,7 +26,7 @@ AnySpring = TypeVar("AnySpring", bound="Spring")
 #: Classes of springs by the name of their rule.
 SPRINGS: dict[str, type[Spring]] = {}
 
-LandmarkName = Literal["cracking", "yield", "cap"]
+LandmarkName = Literal["cracking", "yield", "spalling", "cap"]
 
 #: A deformation that no spring reaches [m or rad].
 _NEVER = 1e30

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from rbsdem.output.style import (
     drift_axis,
     line_of,
 )
+from rbsdem.run.analysis import FrameModes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,6 +31,7 @@ _STATES = {
     "": ("not reached", "white"),
     "cracking": ("cracked", "0.7"),
     "yield": ("yielded", "black"),
+    "spalling": ("cover spalled", "#e67e22"),
     "cap": ("beyond its cap", "#c0392b"),
 }
 _HINGE: dict[str, Any] = {
@@ -55,11 +58,18 @@ _SUPPORT: dict[str, Any] = {"color": "black", "linewidth": 0.7, "zorder": 2}
 _MARKS: dict[str, dict[str, Any]] = {
     "cracking": {"marker": "v", "markerfacecolor": "white"},
     "yield": {"marker": "o", "markerfacecolor": "white"},
+    "spalling": {"marker": "^", "markerfacecolor": "#e67e22"},
     "cap": {"marker": "D", "markerfacecolor": "#c0392b"},
     "shear failure": {"marker": "s", "markerfacecolor": "#e67e22"},
     "lost": {"marker": "X", "markerfacecolor": "#c0392b", "markersize": 6.0},
 }
-_VERBS = {"cracking": "cracks", "yield": "yields", "cap": "reaches its cap", "lost": "is lost"}
+_VERBS = {
+    "cracking": "cracks",
+    "yield": "yields",
+    "spalling": "spalls",
+    "cap": "reaches its cap",
+    "lost": "is lost",
+}
 _VERBS |= {"shear failure": "fails in shear"}
 
 #: Size of a support and place of a hinge beside its node, in shares of the larger dimension.
@@ -143,6 +153,46 @@ def frame(
         _draw_hinges(drawn, structure, result, row, 0.0 if scale is None else scale)
         if result is None and len(structure.parts.members) <= _NAMED:
             _write_names(drawn, structure, size)
+        _dress(drawn, structure)
+    return drawn
+
+
+def mode(found: FrameModes, number: int = 1, *, ax: Axes | None = None) -> Axes:
+    """Draw the shape of a natural mode of a frame, its largest displacement a tenth of the frame.
+
+    Parameters
+    ----------
+    found : FrameModes
+        What `rbsdem.modes` returned for a frame.
+    number : int, optional
+        Which mode, from 1, the one with the longest period.
+    ax : matplotlib Axes, optional
+        Where to draw; a new figure without it.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes, in m.
+    """
+    _arguments.instance(found, "plot.mode", FrameModes, "as of rbsdem.modes(frame)")
+    count = found.period.size
+    at = _arguments.integer(number, "plot.mode: number") - 1
+    if not 0 <= at < count:
+        raise InputError(f"plot.mode: number = {number}: there are {count} modes, from 1")
+    structure, row = found.frame, at
+    scale = 0.1 * _size(structure) / float(np.hypot(found.x[:, at], found.y[:, at]).max())
+    still = SpringTurns({name: np.zeros(2) for name in structure.geometry}, {})
+    shapes: Any = SimpleNamespace(frame=structure, x=found.x.T, y=found.y.T, turn=found.turn.T)
+    with axes_or_new(ax, _figure_size(structure)) as drawn:
+        _draw_supports(drawn, structure, _size(structure))
+        moved = _undeformed(drawn, structure, False)
+        moved = moved + scale * np.column_stack((found.x[:, at], found.y[:, at]))
+        for member in structure.geometry.values():
+            bent = deformed(shapes, member, row, scale, still)
+            nodes = moved[[member.start, member.end]]
+            drawn.plot(*np.vstack((nodes[:1], bent, nodes[1:])).T, **_MEMBER)
+        share = 100 * found.participation[at]
+        drawn.set_title(f"Mode {number}: {found.period[at]:.3g} s, {share:.0f} % of the mass")
         _dress(drawn, structure)
     return drawn
 

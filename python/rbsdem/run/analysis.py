@@ -6,11 +6,12 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Literal, overload
+from typing import Any, ClassVar, Literal, overload
 
 import numpy as np
 
 from rbsdem import _arguments, _core
+from rbsdem._files import Tabular, text_table
 from rbsdem._types import Array, ArrayLike, Unpack
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError, warn
 from rbsdem.model.column import NOTES_ON, Column
@@ -81,9 +82,9 @@ class Matrices:
     damping: Array
 
 
-@dataclass(frozen=True)
-class FrameModes:
-    """Natural modes of a frame before anything yields, under its dead load.
+@dataclass(frozen=True, repr=False, eq=False)
+class FrameModes(Tabular):
+    """Natural modes of a frame before anything yields, under its dead load; `print` makes a table.
 
     Attributes
     ----------
@@ -96,6 +97,8 @@ class FrameModes:
         Modal mass that a motion of the ground along x moves [kg].
     participation : ndarray, shape (count,)
         Its share of the mass of the frame.
+    frame : Frame
+        The frame.
     """
 
     omega: Array
@@ -106,6 +109,11 @@ class FrameModes:
     turn: Array
     mass: Array
     participation: Array
+    frame: Frame
+    _columns: ClassVar[tuple[str, ...]] = ("frequency Hz", "period s", "mass kg", "participation")
+
+    def __str__(self) -> str:
+        return text_table(self.to_pandas())
 
 
 def _frame_modes(frame: Frame, count: int | None) -> FrameModes:
@@ -114,7 +122,7 @@ def _frame_modes(frame: Frame, count: int | None) -> FrameModes:
     x, y, turn, mass = np.split(answer.rows.T, np.arange(1, 4) * frame.n)
     share = mass[0] / (frame.parts.mass or 1.0)  # none moves along x
     return FrameModes(
-        omega, omega / (2 * np.pi), 2 * np.pi / omega, x, y, turn, mass[0].copy(), share
+        omega, omega / (2 * np.pi), 2 * np.pi / omega, x, y, turn, mass[0].copy(), share, frame
     )
 
 
