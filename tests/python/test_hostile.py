@@ -142,6 +142,7 @@ OWN: dict[str, dict[str, Any]] = {
     "motions.sequence": {"motions": [MOTION, MOTION]},
     "objects.fragility.probability": {"intensity": 1.5},
     "objects.case.joints": {"name": "shear"},
+    "objects.result.at": {"time": 1.0},
     "objects.hazard.exceeded": {"intensity": 1.5},
     "objects.motion.scaled": {"factor": 2.0},
 }
