@@ -89,42 +89,9 @@ contains
          call run_notes(run%structure, run%task%summary, notes)
          call print_notes(notes, error)
       end if
-      if (.not. allocated(error)) call report_end()
+      if (.not. allocated(error)) call report_end(run, error)
 
    contains
-
-      !> The error of a run that ended at the user's criterion of collapse, or where a joint lost its axial
-      !> load; the run itself has not failed.
-      subroutine report_end()
-         character(len=:), allocatable :: text
-
-         associate (summary => run%task%summary, fall => run%task%summary%fall)
-            if (summary%status() == 'completed' .or. summary%stopped) return
-            text = 'step '//to_text(nint(summary%last_time))
-            if (run%case%analysis%dynamic()) text = 'time '//to_text(summary%last_time)//' s'
-            if (summary%lost_joint > 0) then
-               text = 'axial failure at '//text//': the layers of joint '// &
-                      to_text(run%case%column%joint_number(summary%lost_joint))//' no longer carry the '// &
-                      'axial load of '//to_text(fall%axial_load)//' N; at that rotation they carry at '// &
-                      'most '//to_text(fall%capacity)//' N, and the joint would '
-               if (fall%rests) then
-                  text = text//'rest after '//to_text(abs(fall%drop))//' m. The'
-               else
-                  text = text//'fall without end. The'
-               end if
-            else if (summary%remark /= '') then
-               text = 'collapsed: '//trim(summary%remark)//'; the'
-            else if (run%structure%by_storeys) then
-               text = 'collapsed at '//text//': the drift of a storey is beyond collapse_drift = '// &
-                      to_text(run%case%analysis%collapse_drift)//'; the'
-            else
-               text = 'collapsed at '//text//': the top is at '//to_text(summary%peak_displacement)// &
-                      ' m, beyond collapse_drift = '//to_text(run%case%analysis%collapse_drift)// &
-                      ' of the height; the'
-            end if
-         end associate
-         call fatal_error(error, column_collapsed, text//' rows up to there are in '//run%recorder%file%path)
-      end subroutine report_end
 
       !> Solve the case and write its rows to a csv.
       subroutine solve()
@@ -254,6 +221,41 @@ contains
       end subroutine print_summary
 
    end subroutine run_case
+
+   !> The error of a run that ended at the user's criterion of collapse, or where a joint lost its axial
+   !> load; the run itself has not failed.
+   subroutine report_end(run, error)
+      type(run_type), intent(in) :: run
+      type(error_type), allocatable, intent(inout) :: error
+      character(len=:), allocatable :: text
+
+      associate (summary => run%task%summary, fall => run%task%summary%fall)
+         if (summary%status() == 'completed' .or. summary%stopped) return
+         text = 'step '//to_text(nint(summary%last_time))
+         if (run%case%analysis%dynamic()) text = 'time '//to_text(summary%last_time)//' s'
+         if (summary%lost_joint > 0) then
+            text = 'axial failure at '//text//': the layers of joint '// &
+                   to_text(run%case%column%joint_number(summary%lost_joint))//' no longer carry the '// &
+                   'axial load of '//to_text(fall%axial_load)//' N; at that rotation they carry at '// &
+                   'most '//to_text(fall%capacity)//' N, and the joint would '
+            if (fall%rests) then
+               text = text//'rest after '//to_text(abs(fall%drop))//' m. The'
+            else
+               text = text//'fall without end. The'
+            end if
+         else if (summary%remark /= '') then
+            text = 'collapsed: '//trim(summary%remark)//'; the'
+         else if (run%structure%by_storeys) then
+            text = 'collapsed at '//text//': the drift of a storey is beyond collapse_drift = '// &
+                   to_text(run%case%analysis%collapse_drift)//'; the'
+         else
+            text = 'collapsed at '//text//': the top is at '//to_text(summary%peak_displacement)// &
+                   ' m, beyond collapse_drift = '//to_text(run%case%analysis%collapse_drift)// &
+                   ' of the height; the'
+         end if
+      end associate
+      call fatal_error(error, column_collapsed, text//' rows up to there are in '//run%recorder%file%path)
+   end subroutine report_end
 
    !> rbsdem check: report all errors of the input without solving the case.
    subroutine check_case(path, quiet, as_json, error)

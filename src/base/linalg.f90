@@ -7,7 +7,7 @@ module rbs_base_linalg
    implicit none
    private
 
-   public :: solve_tridiagonal, solve_general_band, solve_dense, symmetric_modes
+   public :: solve_tridiagonal, solve_general_band, solve_dense
 
    interface
       subroutine dptsv(n, nrhs, d, e, b, ldb, info)
@@ -43,16 +43,6 @@ module rbs_base_linalg
          real(wp), intent(inout) :: a(lda, *), b(ldb, *)
          integer, intent(out) :: ipiv(*), info
       end subroutine dgesv
-
-      subroutine dsyev(jobz, uplo, n, a, lda, w, work, lwork, info)
-         import :: wp
-         implicit none
-         character(len=1), intent(in) :: jobz, uplo
-         integer, intent(in) :: n, lda, lwork
-         real(wp), intent(inout) :: a(lda, *)
-         real(wp), intent(out) :: w(*), work(*)
-         integer, intent(out) :: info
-      end subroutine dsyev
    end interface
 
 contains
@@ -107,18 +97,5 @@ contains
       call dgesv(size(b), 1, a, size(b), pivot, b, size(b), info)
       regular = info == 0
    end subroutine solve_dense
-
-   !> Eigenvalues of a symmetric matrix, ascending, and its eigenvectors.
-   subroutine symmetric_modes(a, w, found)
-      !> Matrix (n, n); its columns become the eigenvectors
-      real(wp), intent(inout), contiguous :: a(:, :)
-      real(wp), intent(out), contiguous :: w(:)
-      logical, intent(out) :: found
-      real(wp) :: work(8*size(w) + 8)
-      integer :: info
-
-      call dsyev('V', 'L', size(w), a, size(w), w, work, size(work), info)
-      found = info == 0
-   end subroutine symmetric_modes
 
 end module rbs_base_linalg

@@ -240,7 +240,7 @@ contains
             if (below < cracking) above = min(above, cracking)
             if (.not. below < cracking .and. .not. below > cracking) above = nearest(cracking, 1.0_wp)
             call balance(above, eps_2, tau_here, balanced)
-            if (balanced .and. tau_here > best%tau) best = state_of(above, eps_2, tau_here)
+            if (balanced .and. tau_here > best%tau) best = state_of(eps_x, above, eps_2, tau_here)
             if (balanced .and. tau_here >= tau) call close_in(tau, below, above, state, found)
             if (found) return
             below = above
@@ -263,7 +263,7 @@ contains
          do i = 1, most_bisections
             middle = 0.5_wp*(below + above)
             call balance(middle, eps_2, tau_here, balanced)
-            near = state_of(middle, eps_2, tau)
+            near = state_of(eps_x, middle, eps_2, tau)
             call iterate(eps_x, tau, near, found)
             ! Newton's method may have left the interval: only a state inside it is the first.
             if (found) found = in_between(near, bottom, top)
@@ -292,7 +292,7 @@ contains
          step = 0.02_wp*layer%concrete%eps0
          low = high - step
          do i = 1, 40
-            call stress_between(eps_1, low, sigma_z, tau)
+            call stress_between(layer, eps_x, eps_1, low, sigma_z, tau)
             if (sigma_z <= 0.0_wp) exit
             high = low
             step = 2.0_wp*step
@@ -300,7 +300,7 @@ contains
          end do
          do i = 1, most_bisections
             eps_2 = 0.5_wp*(low + high)
-            call stress_between(eps_1, eps_2, sigma_z, tau)
+            call stress_between(layer, eps_x, eps_1, eps_2, sigma_z, tau)
             if (abs(sigma_z) <= 0.1_wp*tolerance*layer%concrete%fc) exit
             if (.not. (eps_2 > low .and. eps_2 < high)) exit
             if (sigma_z > 0.0_wp) then
@@ -311,30 +311,30 @@ contains
          end do
          balanced = abs(sigma_z) <= tolerance*layer%concrete%fc
       end subroutine balance
-
-      !> Transverse and shear stress of two principal strains around eps_x.
-      pure subroutine stress_between(eps_1, eps_2, sigma_z, tau)
-         real(wp), intent(in) :: eps_1, eps_2
-         real(wp), intent(out) :: sigma_z, tau
-         real(wp) :: f_1, f_2, f11, f22, f21
-
-         call principal_stresses(layer%concrete, eps_1, eps_2, f_1, f_2, f11, f22, f21)
-         sigma_z = (f_1*(eps_1 - eps_x) + f_2*(eps_x - eps_2))/(eps_1 - eps_2) + &
-                   layer%rho_z*steel_stress(layer%stirrup, eps_1 + eps_2 - eps_x)
-         tau = (f_1 - f_2)*sqrt(max(0.0_wp, (eps_1 - eps_x)*(eps_x - eps_2)))/(eps_1 - eps_2)
-      end subroutine stress_between
-
-      !> The state of two principal strains around eps_x.
-      pure type(layer_state) function state_of(eps_1, eps_2, tau) result(state)
-         real(wp), intent(in) :: eps_1, eps_2, tau
-
-         state%eps_x = eps_x
-         state%tau = tau
-         state%eps_z = eps_1 + eps_2 - eps_x
-         state%gamma = 2.0_wp*sqrt(max(0.0_wp, (eps_1 - eps_x)*(eps_x - eps_2)))
-      end function state_of
-
    end subroutine solve_layer
+
+   !> Transverse and shear stress of two principal strains around eps_x.
+   pure subroutine stress_between(layer, eps_x, eps_1, eps_2, sigma_z, tau)
+      type(layer_type), intent(in) :: layer
+      real(wp), intent(in) :: eps_x, eps_1, eps_2
+      real(wp), intent(out) :: sigma_z, tau
+      real(wp) :: f_1, f_2, f11, f22, f21
+
+      call principal_stresses(layer%concrete, eps_1, eps_2, f_1, f_2, f11, f22, f21)
+      sigma_z = (f_1*(eps_1 - eps_x) + f_2*(eps_x - eps_2))/(eps_1 - eps_2) + &
+                layer%rho_z*steel_stress(layer%stirrup, eps_1 + eps_2 - eps_x)
+      tau = (f_1 - f_2)*sqrt(max(0.0_wp, (eps_1 - eps_x)*(eps_x - eps_2)))/(eps_1 - eps_2)
+   end subroutine stress_between
+
+   !> The state of two principal strains around eps_x.
+   pure type(layer_state) function state_of(eps_x, eps_1, eps_2, tau) result(state)
+      real(wp), intent(in) :: eps_x, eps_1, eps_2, tau
+
+      state%eps_x = eps_x
+      state%tau = tau
+      state%eps_z = eps_1 + eps_2 - eps_x
+      state%gamma = 2.0_wp*sqrt(max(0.0_wp, (eps_1 - eps_x)*(eps_x - eps_2)))
+   end function state_of
 
    !> Whether eps_1 of a state is in an interval, apart from round-off.
    elemental logical function in_between(state, bottom, top)

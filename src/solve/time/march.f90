@@ -91,7 +91,7 @@ contains
          finish = plan%begin
          do interval = 1, plan%intervals
             begin = finish
-            call interval_of(interval, finish, parts)
+            call interval_of(plan, time, interval, finish, parts)
             h = step_of(plan, (finish - begin)/parts)
             do part = 1, parts
                call stepper%advance(state, h, error)
@@ -174,22 +174,6 @@ contains
          end do
       end subroutine remove_members
 
-      !> End of an interval between kept times, and the number of its steps.
-      pure subroutine interval_of(interval, finish, parts)
-         integer, intent(in) :: interval
-         real(wp), intent(out) :: finish
-         integer, intent(out) :: parts
-
-         if (plan%free) then
-            parts = 1
-            finish = min(plan%origin + (plan%offset + interval)*plan%dt, plan%finish)
-            if (interval == plan%intervals) finish = plan%finish
-         else
-            parts = plan%parts(interval)
-            finish = time(interval + 1)
-         end if
-      end subroutine interval_of
-
       !> Record the last good state before a failure.
       subroutine keep_last(now)
          type(motion_result), intent(inout) :: now
@@ -226,6 +210,25 @@ contains
       end subroutine keep
 
    end subroutine march
+
+   !> End of an interval between kept times, and the number of its steps.
+   pure subroutine interval_of(plan, time, interval, finish, parts)
+      type(time_plan), intent(in) :: plan
+      !> Times of the loading (m) [s]
+      real(wp), intent(in) :: time(:)
+      integer, intent(in) :: interval
+      real(wp), intent(out) :: finish
+      integer, intent(out) :: parts
+
+      if (plan%free) then
+         parts = 1
+         finish = min(plan%origin + (plan%offset + interval)*plan%dt, plan%finish)
+         if (interval == plan%intervals) finish = plan%finish
+      else
+         parts = plan%parts(interval)
+         finish = time(interval + 1)
+      end if
+   end subroutine interval_of
 
    !> Where, when and how often members snapped.
    subroutine report_snaps(state, summary)

@@ -82,7 +82,7 @@ contains
       if (is_given(spec%axial_height)) column%axial_lever = spec%axial_height/spec%height
       call column%put_under(spec%axial_load)
       column%initial_stiffness = column%rules%initial_stiffness()
-      call set_unknowns()
+      call set_unknowns(column)
 
    contains
 
@@ -189,58 +189,58 @@ contains
          call add_rules(column%rules, spec%flexure, n)
          if (column%opens) call add_rules(column%rules, spec%axial_spring, n)
       end subroutine set_springs
-
-      !> The coordinates of the bodies, in which the mass is diagonal; see `rbs_structure_column_chain`.
-      subroutine set_unknowns()
-         integer :: i, n, m
-
-         n = column%n
-         m = column%unknowns
-         column%half_width = 3
-         allocate (column%inertias(m), column%is_held(m), column%part(m))
-         column%is_held = .false.
-         column%is_held(2*n) = column%held
-         column%has_held = column%held
-         do i = 1, n
-            column%inertias(2*i - 1:2*i) = [column%mass(i), column%inertia(i)]
-            column%part(2*i - 1:2*i) = i
-            if (.not. column%opens) cycle
-            column%inertias(2*n + i) = column%mass(i)
-            column%part(2*n + i) = n + i
-         end do
-         ! A column of static paths alone may have none.
-         allocate (column%inverse_mass(n), column%inverse_inertia(n), source=0.0_wp)
-         where (column%mass > 0.0_wp) column%inverse_mass = 1.0_wp/column%mass
-         where (column%inertia > 0.0_wp) column%inverse_inertia = 1.0_wp/column%inertia
-         if (column%held) column%inverse_inertia(n) = 0.0_wp
-         allocate (column%initial_tangent(0))
-         column%axial_count = 2*n
-         column%work_size = 5*n
-         column%base_spring = column%at(shear, 1)
-         allocate (column%group(merge(3, 2, column%opens)))
-         column%group(1) = unknown_group(1, n, 2, 1, n, 1.0_wp)
-         column%group(2) = unknown_group(2, n, 2, n + 1, 2*n, column%upper(n))
-         if (column%opens) column%group(3) = unknown_group(2*n + 1, n, 1, 2*n + 1, 3*n)
-         do i = 1, size(column%pattern)
-            allocate (column%pattern(i)%force(m), source=0.0_wp)
-         end do
-         column%pattern(lateral)%force(2*n - 1:2*n) = [1.0_wp, column%upper(n)]
-         if (column%held) column%pattern(lateral)%force(2*n) = 0.0_wp
-         column%control = column%pattern(lateral)%force
-         column%pattern(horizontal)%force(1:2*n:2) = -column%mass
-         if (column%opens) then
-            column%pattern(vertical)%force(2*n + 1:) = -column%mass
-            column%pattern(top_axial)%force(3*n) = -1.0_wp
-         end if
-         do i = 1, size(column%pattern)
-            associate (pattern => column%pattern(i))
-               pattern%first = findloc(abs(pattern%force) > 0.0_wp, .true., dim=1)
-               pattern%last = findloc(abs(pattern%force) > 0.0_wp, .true., dim=1, back=.true.)
-               if (pattern%first == 0) pattern%first = 1
-            end associate
-         end do
-      end subroutine set_unknowns
-
    end subroutine new_column
+
+   !> The coordinates of the bodies, in which the mass is diagonal; see `rbs_structure_column_chain`.
+   subroutine set_unknowns(column)
+      class(column_type), intent(inout) :: column
+      integer :: i, n, m
+
+      n = column%n
+      m = column%unknowns
+      column%half_width = 3
+      allocate (column%inertias(m), column%is_held(m), column%part(m))
+      column%is_held = .false.
+      column%is_held(2*n) = column%held
+      column%has_held = column%held
+      do i = 1, n
+         column%inertias(2*i - 1:2*i) = [column%mass(i), column%inertia(i)]
+         column%part(2*i - 1:2*i) = i
+         if (.not. column%opens) cycle
+         column%inertias(2*n + i) = column%mass(i)
+         column%part(2*n + i) = n + i
+      end do
+      ! A column of static paths alone may have none.
+      allocate (column%inverse_mass(n), column%inverse_inertia(n), source=0.0_wp)
+      where (column%mass > 0.0_wp) column%inverse_mass = 1.0_wp/column%mass
+      where (column%inertia > 0.0_wp) column%inverse_inertia = 1.0_wp/column%inertia
+      if (column%held) column%inverse_inertia(n) = 0.0_wp
+      allocate (column%initial_tangent(0))
+      column%axial_count = 2*n
+      column%work_size = 5*n
+      column%base_spring = column%at(shear, 1)
+      allocate (column%group(merge(3, 2, column%opens)))
+      column%group(1) = unknown_group(1, n, 2, 1, n, 1.0_wp)
+      column%group(2) = unknown_group(2, n, 2, n + 1, 2*n, column%upper(n))
+      if (column%opens) column%group(3) = unknown_group(2*n + 1, n, 1, 2*n + 1, 3*n)
+      do i = 1, size(column%pattern)
+         allocate (column%pattern(i)%force(m), source=0.0_wp)
+      end do
+      column%pattern(lateral)%force(2*n - 1:2*n) = [1.0_wp, column%upper(n)]
+      if (column%held) column%pattern(lateral)%force(2*n) = 0.0_wp
+      column%control = column%pattern(lateral)%force
+      column%pattern(horizontal)%force(1:2*n:2) = -column%mass
+      if (column%opens) then
+         column%pattern(vertical)%force(2*n + 1:) = -column%mass
+         column%pattern(top_axial)%force(3*n) = -1.0_wp
+      end if
+      do i = 1, size(column%pattern)
+         associate (pattern => column%pattern(i))
+            pattern%first = findloc(abs(pattern%force) > 0.0_wp, .true., dim=1)
+            pattern%last = findloc(abs(pattern%force) > 0.0_wp, .true., dim=1, back=.true.)
+            if (pattern%first == 0) pattern%first = 1
+         end associate
+      end do
+   end subroutine set_unknowns
 
 end module rbs_structure_column_new_column
