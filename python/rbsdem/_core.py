@@ -21,6 +21,7 @@ import numpy as np
 
 from rbsdem import _arguments, _rbsdem
 from rbsdem._arguments import boolean, number, vector
+from rbsdem._progress import bar_of_run
 from rbsdem._types import Array, NDArray
 from rbsdem.errors import InputError, SolveError
 
@@ -183,7 +184,8 @@ def _interruptible() -> Iterator[NDArray[np.int32]]:
         signal.set_wakeup_fd(before)
     _RUNNING.append(control)
     try:
-        yield control
+        with bar_of_run(control):
+            yield control
     finally:
         _RUNNING.pop()
         signal.set_wakeup_fd(before)

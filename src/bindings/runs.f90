@@ -13,7 +13,7 @@ module rbs_bindings_runs
    use rbs_loading_signal, only: signal_type
    use rbs_output_channels, only: new_channels
    use rbs_output_notes, only: run_notes
-   use rbs_output_recorder, only: array_recorder
+   use rbs_output_recorder, only: array_recorder, observer_type
    use rbs_output_summary, only: figure_type
    use rbs_solve_end_state, only: end_state
    use rbs_solve_static_run_static, only: run_static
@@ -33,16 +33,31 @@ module rbs_bindings_runs
    !> Code of the "error" that a long run of which the user has not been `told` was not started.
    integer, parameter :: long_run = 3
 
+   !> Share of the run that has been completed, in parts of a thousand, which another thread reads.
+   type, extends(observer_type) :: word_progress
+      integer(c_int), pointer :: word => null()
+   contains
+      procedure :: update
+   end type word_progress
+
    type :: run_type
       class(structure_type), allocatable :: structure
       !> Settings of analysis and output
       type(case_record) :: case
       type(array_recorder) :: recorder
       type(task_type) :: task
+      type(word_progress) :: progress
       type(response_monitor) :: monitor
    end type run_type
 
 contains
+
+   subroutine update(self, share)
+      class(word_progress), intent(inout) :: self
+      real(wp), intent(in) :: share
+
+      self%word = nint(1000.0_wp*share, c_int)
+   end subroutine update
 
    !> A static path or a response in time. Rows: those of the run. Values: when each of the `watches` is
    !> reached first [s] and the displacement of the top then [m], not numbers where it is not; figures of the
@@ -77,6 +92,8 @@ contains
          run%task%keeps_end = .true.
          run%task%most_seconds = run%case%analysis%max_seconds
          run%task%control => control(1)
+         run%progress%word => control(2)
+         run%task%progress => run%progress
          associate (before => request%array('before'))
             if (size(before) > 0) then
                run%task%before%stream%value = before

@@ -270,7 +270,7 @@ store._BEAT = {beat}
 @contextmanager
 def said(wanted, total):
     yield lambda done, text: print(done, flush=True)
-ensemble.work.progress_bar = said
+ensemble.progress_bar = said
 rbsdem.ensemble([column(), column(15e3)], motion(1, 4000, 0.005), store={folder!r},
                 scales=np.linspace(0.1, 3.0, 80), method="rk4", dt={dt}, jobs=1)
 """

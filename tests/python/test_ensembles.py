@@ -195,11 +195,34 @@ def test_measures_of_functions() -> None:
     assert warnings.filters == filters
 
 
+def test_runs_are_remarked_where_single_ones_warn() -> None:
+    found = rbsdem.ensemble(
+        {"small": column(), "finite": column(kinematics="finite")}, motion(1),
+        scales=[1.0, 3.0, 5.0, 10.0, 20.0, 30.0], method="newmark", collapse_drift=None,
+    )  # fmt: skip
+    remarked = list(found.to_pandas()["remark"] != "")
+    for run in range(len(found)):
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            found.history(run)
+        assert remarked[run] == any("rotation of a body" in str(one.message) for one in told)
+    assert 0 < sum(remarked) < len(found)
+    assert f"{sum(remarked)} with remarks" in repr(found)
+
+
 def test_table() -> None:
     pytest.importorskip("pandas")
     found = rbsdem.ensemble({"a": column()}, motion(1), scales=[1.0, 2.0], method="newmark")
     table = found.to_pandas()
-    assert list(table.columns) == ["column", "motion", "scale", "status", *MEASURES, "error"]
+    assert list(table.columns) == [
+        "column",
+        "motion",
+        "scale",
+        "status",
+        *MEASURES,
+        "remark",
+        "error",
+    ]
     assert list(table["column"]) == ["a", "a"]
     assert table["steps"].dtype.kind == "i"
     assert list(table["peak_drift"]) == list(found.measures["peak_drift"])

@@ -685,9 +685,13 @@ def records():
     many = {"levels": [0.5, 1.0, 2.0], "method": "newmark", "dt": 0.01}
     ida = rbsdem.ida(elastic, rbsdem.motions.synthetic(2), **many)
     yield ida, ("no record reached the limit state",), {}
+    runs = rbsdem.ensemble(
+        elastic, rbsdem.motions.synthetic(2), scales=[1, 60], method="newmark", dt=0.01
+    )
+    yield runs, ("completed", "peak_rotation"), {}
 
 
-@pytest.mark.parametrize("at", range(5))
+@pytest.mark.parametrize("at", range(6))
 def test_a_record_is_reported_with_its_tables_and_its_case(at, tmp_path):
     """Its case, run again, ends in the same point; csv files hold the tables; it stands alone."""
     record, words, asked = next(itertools.islice(records(), at, None))

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
+import sys
 import threading
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import rbsdem
+from rbsdem import _progress
 from rbsdem.springs import Elastic
 
 pytestmark = [
@@ -69,3 +73,27 @@ def test_ctrl_c_ends_a_static_path(interrupted):
     column = rbsdem.Column(2.0, 1e4, Elastic(2e7), [softening] * 50, n=50)
     with pytest.raises(KeyboardInterrupt):
         rbsdem.cyclic(column, displacement=path, every=10**6)
+
+
+def test_a_long_run_shows_how_far_it_is(monkeypatch):
+    """Parts of a hundred, which grow; beside a bar that is shown there is no other."""
+    shown = []
+
+    @contextlib.contextmanager
+    def bar(wanted, total, unit):
+        yield lambda done, text: shown.append((done, total, unit))
+
+    monkeypatch.setattr(_progress, "progress_bar", bar)
+    monkeypatch.setattr(_progress, "_PATIENCE", 0.0)
+    monkeypatch.setattr(_progress, "_BEAT", 1e-4)
+    monkeypatch.setattr(sys, "stderr", SimpleNamespace(isatty=lambda: True))
+    run = {"ground_acceleration": np.array([0.0, 1.0]), "method": "newmark", "every": 10**6}
+    rbsdem.time_history(COLUMN, np.array([0.0, 200.0]), dt=1e-3, **run)
+    done = [one for one, _, _ in shown]
+    assert done == sorted(done)
+    assert len(set(done)) > 5
+    assert 0 <= done[0] < done[-1] <= 100
+    shown.clear()
+    monkeypatch.setattr(_progress, "_SHOWN", [object()])
+    rbsdem.time_history(COLUMN, np.array([0.0, 200.0]), dt=1e-3, **run)
+    assert not shown

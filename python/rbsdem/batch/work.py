@@ -14,7 +14,6 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, TypeVar
 
@@ -250,60 +249,3 @@ class _Question:
         with suppress(Exception):  # Of a closed connection, of many kinds.
             self.answer = call()
         self.done.set()
-
-
-@dataclass(frozen=True)
-class Bar:
-    """A bar that is shown: its call takes the number that is done, and a text."""
-
-    show: Callable[[int, str], None]
-
-    def __call__(self, done: int, text: str) -> None:
-        """Show how much is done."""
-        self.show(done, text)
-
-
-@contextmanager
-def progress_bar(
-    wanted: bool | Bar, total: int, unit: str = "runs", between: bool = False
-) -> Iterator[Bar]:
-    """Show on stderr how much is done, how much a second, the time left, and a text.
-
-    Where stderr is a pipe or a file (and no notebook), nothing is shown. With `between` no thread
-    draws between two calls; seconds have no rate. A bar in place of `wanted` is that of a longer
-    work. More than the total that is done becomes the total.
-
-    Yields
-    ------
-    Bar
-    """
-    if isinstance(wanted, Bar):
-        yield wanted
-        return
-    console = None
-    if wanted:
-        from rich.console import Console  # noqa: PLC0415
-
-        console = Console(stderr=True)
-    if console is None or not (console.is_terminal or console.is_jupyter):
-        yield Bar(lambda done, text: None)
-        return
-    from rich import progress  # noqa: PLC0415
-
-    text = progress.TextColumn("{task.description}", markup=False)
-    columns = progress.BarColumn(bar_width=24), progress.MofNCompleteColumn(), text
-    how: Any = {"console": console, "auto_refresh": not between, "transient": True}
-    bar = progress.Progress(*columns, progress.TimeRemainingColumn(), **how)
-    with bar:
-        task = bar.add_task(unit, total=total)
-
-        def show(done: int, text: str) -> None:
-            speed = bar.tasks[task].speed
-            rate = "" if speed is None or unit == "s" else f"{speed:.3g} {unit}/s"
-            parts = [part for part in (rate, text) if part]
-            most = max(done, total)
-            bar.update(
-                task, completed=done, total=most, description=", ".join(parts), refresh=between
-            )
-
-        yield Bar(show)

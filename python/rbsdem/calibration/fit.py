@@ -11,8 +11,8 @@ import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._package import unwarned
+from rbsdem._progress import progress_bar
 from rbsdem._types import Array, ArrayLike
-from rbsdem.batch.work import progress_bar
 from rbsdem.calibration import determined
 from rbsdem.calibration.determined import Determined, without_effect
 from rbsdem.calibration.misfit import LOSSES, Misfit, Target

@@ -16,6 +16,7 @@ import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
+from rbsdem._progress import Bar, progress_bar
 from rbsdem._types import Array, ArrayLike, DataFrame, NDArray, Unpack
 from rbsdem.batch import work
 from rbsdem.errors import InputError, Interrupted, SolveError
@@ -31,12 +32,15 @@ from rbsdem.many.plan import (
     expected,
     one_run,
 )
-from rbsdem.model.frame import Structure
+from rbsdem.model.frame import Frame, Structure
 from rbsdem.run.result import Result
 from rbsdem.run.solver import COLLAPSE_DRIFT, Solver, checked_solver
 
 #: Seconds of a task at the most, as far as that is known: what a kill may cost.
 _LONGEST = 2.0
+
+#: What single runs warn of: rotations that are not small [rad], and energy that is missed.
+_LARGE_ROTATION, _MISSED_ENERGY = 0.1, 0.05
 
 #: Runs that advance side by side.
 _LANES = 32
@@ -95,9 +99,11 @@ class Ensemble(Tabular):
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{number} {status}" for status, number in self.counts.items())
+        noted = int((self.remarks != "").sum())
+        more = f", {noted} with remarks" if noted else ""
         return (
             f"Ensemble({len(self.columns)} columns x {len(self.motions)} motions, {len(self)} "
-            f"runs: {counts}; {self.seconds:.3g} s)"
+            f"runs: {counts}{more}; {self.seconds:.3g} s)"
         )
 
     @property
@@ -106,8 +112,29 @@ class Ensemble(Tabular):
         found = {status: int((self.status == status).sum()) for status in inputs.STATUSES}
         return {status or "not started": number for status, number in found.items() if number}
 
+    @property
+    def remarks(self) -> NDArray[np.str_]:
+        """Of each run, what `time_history` would warn of after it; "" where that is nothing.
+
+        Only what its measures show: rotations ("peak_rotation") of columns without kinematics
+        "finite" that did not collapse, and the balance of energy ("relative_energy_residual") of
+        frames.
+        """
+        each = list(self.columns.values())
+        frames = np.array([isinstance(one, Frame) for one in each])[self.column]
+        small = np.array([one.kinematics != "finite" for one in each])[self.column]
+        unknown = np.full(len(self), np.nan)
+        turned = self.measures.get("peak_rotation", unknown) > _LARGE_ROTATION
+        missed = self.measures.get("relative_energy_residual", unknown) > _MISSED_ENERGY
+        found = np.full(len(self), "", dtype="<U80")
+        found[turned & small & ~frames & (self.status != "collapsed")] = (
+            "rotations go beyond 0.1 rad; use kinematics = 'finite'"
+        )
+        found[missed & frames] = "the balance of energy misses more than 5 %; take a shorter dt"
+        return found
+
     def to_pandas(self) -> DataFrame:
-        """Return a DataFrame, a row for each run: what it is, its measures, its error."""
+        """Return a DataFrame, a row for each run: what it is, its measures, remark and error."""
         import pandas  # noqa: PLC0415
 
         values = {
@@ -122,7 +149,7 @@ class Ensemble(Tabular):
         errors = pandas.Series("", index=range(len(self)), dtype=object)
         for run, text in self.errors.items():
             errors[run] = text
-        return data_frame(values | {"error": errors})
+        return data_frame(values | {"remark": self.remarks.astype(object), "error": errors})
 
     def history(self, run: int) -> Result:
         """Solve one run again, with its history; the bits are those of the run.
@@ -257,7 +284,7 @@ def ensemble(
         if client is not None:
             work.check_client(client)
     switches = {
-        "progress": isinstance(progress, work.Bar) or progress,
+        "progress": isinstance(progress, Bar) or progress,
         "allow_partial": allow_partial,
     }
     for name, value in switches.items():
@@ -322,7 +349,7 @@ def _carried_out(
         missing = own[outcome.fates[own] == 0]
         each, lanes = (values[missing] for values in cost)
         pace = _TaskSizer(each, lanes, threads)
-        show = stack.enter_context(work.progress_bar(progress, missing.size))
+        show = stack.enter_context(progress_bar(progress, missing.size))
         workers = _Workers(plan.only(missing), client, threads)
         stack.enter_context(workers.executor)
 

@@ -17,8 +17,8 @@ from typing import Any, Literal
 import numpy as np
 
 from rbsdem import _arguments
+from rbsdem._progress import progress_bar
 from rbsdem._types import Array, ArrayLike, NDArray, Unpack
-from rbsdem.batch.work import progress_bar
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import InputError
 from rbsdem.many.fragility import Capacities, Counts, Fragility, WithFragility, fit_fragility

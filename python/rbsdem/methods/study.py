@@ -8,8 +8,8 @@ from dataclasses import asdict, dataclass, replace
 
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
+from rbsdem._progress import progress_bar
 from rbsdem._types import ArrayLike, DataFrame
-from rbsdem.batch.work import progress_bar
 from rbsdem.errors import InputError, SolveError
 from rbsdem.methods.ladder import Budget, Trials, checked_methods, ladders, own_setting, probe
 from rbsdem.methods.physics import Physics, find_physics

@@ -25,6 +25,7 @@ from rbsdem._types import DataFrame
 from rbsdem.checks.acceptance import Assessment
 from rbsdem.checks.code_values import code_values
 from rbsdem.errors import InputError, RbsdemError
+from rbsdem.many.ensemble import Ensemble
 from rbsdem.many.ida import IDA
 from rbsdem.many.target import Target
 from rbsdem.measured.specimens import Specimens
@@ -200,7 +201,7 @@ def report(
 
     Parameters
     ----------
-    record : Result, FrameResult, Assessment, Section or IDA
+    record : Result, FrameResult, Assessment, Section, Ensemble or IDA
         What it is about.
     path : path
         File to write; the names of the others begin with its own.
@@ -495,6 +496,25 @@ def _of_section(
         yield Sheet(f"Interaction {code}", words, drawn, strength.to_pandas(), beside=True)
     if length is not None:
         yield Sheet("Codes", table=code_values(drawing, length, axial_load).to_pandas())
+
+
+@sheets_of.register
+def _of_ensemble(found: Ensemble) -> Iterator[Sheet]:
+    yield _of_structure(next(iter(found.columns.values())))
+    table = found.to_pandas()
+    states = {"status": list(found.counts), "runs": list(found.counts.values())}
+    yield Sheet("Runs", str(found), table=data_frame(states))
+    noted = table[["remark", "error"]].melt(var_name="kind", value_name="text")
+    noted = noted[noted["text"] != ""].value_counts().rename("runs").reset_index()
+    if len(noted):
+        yield Sheet("Remarks and errors", table=noted.head(20))
+    names = list(found.measures)
+    measured = table.assign(**table[names].abs()).groupby("column", observed=True)[names]
+    shares = measured.quantile([0.0, 0.16, 0.5, 0.84, 1.0]).stack().unstack(1)
+    shares.columns = ["least", "16 %", "median", "84 %", "largest"]
+    words = "Their sizes over motions and scales, in SI; without runs that failed."
+    yield Sheet("Measures", words, table=shares.rename_axis(["column", "measure"]).reset_index())
+    yield Sheet("All runs", table=table, beside=True)
 
 
 @sheets_of.register

@@ -316,8 +316,11 @@ contains
          end if
          if (allocated(failure)) call move_alloc(failure, error)
          if (allocated(error) .or. ends) return
-         if (mod(i, 8192) == 0 .and. associated(task%progress)) then
-            call task%progress%update(real(i, wp)/size(target))
+         ! The way between two points of a frame is long.
+         if (associated(task%progress)) then
+            if (mod(i, 1024) == 0 .or. self%structure%tangent_numbers > 0) then
+               call task%progress%update(real(i, wp)/size(target))
+            end if
          end if
       end do
    end subroutine follow

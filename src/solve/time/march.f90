@@ -134,15 +134,13 @@ contains
                end if
                ! Steps of frames are long.
                if (iand(step, merge(15, 1023, state%motion%structure%tangent_numbers > 0)) == 0) then
+                  if (associated(task%progress)) call task%progress%update(real(step, wp)/plan%steps)
                   if (task%stops()) then
                      task%summary%remark = 'the run was stopped at time '//to_text(state%clock)// &
                                            ' s (max_seconds, or from outside)'
                      call keep_last(now)
                      return
                   end if
-               end if
-               if (iand(step, 8191) == 0 .and. associated(task%progress)) then
-                  call task%progress%update(real(step, wp)/plan%steps)
                end if
             end do
          end do
