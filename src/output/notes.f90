@@ -4,6 +4,7 @@
 !>
 !> Notes on a column: what is allowed but perhaps not intended.
 module rbs_output_notes
+   use rbs_base_check, only: is_given
    use rbs_base_constants, only: standard_gravity
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
@@ -39,6 +40,13 @@ module rbs_output_notes
 
    !> Radii of gyration above are those of no member [m].
    real(wp), parameter :: largest_radius = 10.0_wp
+
+   !> Stresses at the yield moment of a solid section of the same area and inertia [Pa]: a moment in kN m is
+   !> below.
+   real(wp), parameter :: least_stress = 1.0e5_wp, largest_stress = 1.0e10_wp
+
+   !> Bending stiffness over that of the softest kind, beyond which digits of the softer members are lost.
+   real(wp), parameter :: far_stiffer = 1.0e7_wp
 
    !> Masses [kg] and loads [N/m] below are those of no floor of storeys as high as that [m].
    real(wp), parameter :: least_mass = 200.0_wp, least_load = 100.0_wp, low_storey = 2.0_wp
@@ -132,6 +140,7 @@ contains
    subroutine frame_notes(frame, notes)
       type(frame_record), intent(in) :: frame
       type(message_list), intent(inout) :: notes
+      real(wp) :: stress
       integer :: i
       logical :: heavy, loaded
 
@@ -152,6 +161,18 @@ contains
                            '1e12 mm4 are 1, 1e6 mm2 are 1')
          end associate
       end do
+      do i = 1, size(frame%kind)
+         associate (kind => frame%kind(i))
+            if (.not. is_given(kind%yield_moment)) cycle
+            ! At the edge of a rectangle with this area and this inertia.
+            stress = kind%yield_moment*sqrt(3.0_wp/(kind%inertia*kind%area))
+            if (stress >= least_stress .and. stress <= largest_stress) cycle
+            call notes%add("member_kind '"//trim(kind%name)//"': yield_moment = "// &
+                           to_text(kind%yield_moment)//' N m is a stress of '//to_text(stress)// &
+                           ' Pa at its edge, that of no member; moments are in N m, and 170 kN m is 170e3')
+         end associate
+      end do
+      call check_alike()
       if (allocated(frame%storeys)) then
          do i = 1, size(frame%floor)
             call check_floor('mass', frame%floor(i)%mass, least_mass, 'kg', '40 t is 40e3')
@@ -170,6 +191,22 @@ contains
       end if
 
    contains
+
+      !> Kinds so much stiffer than others that the digits of the others are lost.
+      subroutine check_alike()
+         real(wp), allocatable :: bending(:)
+         integer :: soft, stiff
+
+         bending = pack(frame%kind%modulus*frame%kind%inertia, .true.)
+         if (size(bending) < 2) return
+         soft = minloc(bending, dim=1)
+         stiff = maxloc(bending, dim=1)
+         if (.not. bending(stiff) > far_stiffer*bending(soft)) return
+         call notes%add("member_kind '"//trim(frame%kind(stiff)%name)//"': it is "// &
+                        to_text(bending(stiff)/bending(soft))//" times as stiff in bending as '"// &
+                        trim(frame%kind(soft)%name)//"', which costs as many digits of the results; 1e5 "// &
+                        'times as stiff it is rigid')
+      end subroutine check_alike
 
       subroutine check_lengths(name, length)
          character(len=*), intent(in) :: name

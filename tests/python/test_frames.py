@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import itertools
+import re
 import warnings
 from dataclasses import replace
 from pathlib import Path
@@ -1487,3 +1488,21 @@ def test_a_frame_has_the_loops_of_a_column():
         [np.interp(0.5, rows.time, column) for column in rows.x.T], rel=1e-9, abs=1e-15
     )
     assert middle["springs"]["moment"].shape == coarse.springs["moment"].shape[1:]
+
+
+@pytest.mark.parametrize(
+    ("kind", "text"),
+    [
+        ({"yield_moment": 170.0}, r"yield_moment = 170 N m is a stress of 17000 Pa at its edge"),
+        ({"modulus": 30e3}, r"modulus = 30000 Pa is that of no building material"),
+        ({"inertia": 2e5, "area": 1e3}, r"1e\+08 times as stiff in bending as 'kind-2'"),
+    ],
+)
+def test_numbers_in_another_unit_and_members_too_unlike_are_told(kind, text):
+    given = {"modulus": 30e9, "area": 0.15, "inertia": 2e-3}
+    other = FrameMember(**given)
+    with pytest.warns(rbsdem.errors.AccuracyWarning) as told:
+        Frame.grid([3.0], [5.0], columns=FrameMember(**given | kind), beams=other)
+    assert any(re.search(text, str(one.message)) for one in told)
+    # Sound numbers are told nothing.
+    Frame.grid([3.0], [5.0], columns=FrameMember(**given, yield_moment=170e3), beams=other)

@@ -89,6 +89,10 @@ class Effect:
 class Physics(Tabular):
     """All effects, and the setting they were computed with.
 
+    Second-order effects are those of columns: a joint slips across the body below it, so that its
+    shear is the lateral force, V = F. A member of a frame deforms across its chord, where the axial
+    force N adds to the shear, V = F + N psi with the rotation psi of the chord.
+
     Attributes
     ----------
     effects : tuple of Effect
