@@ -232,6 +232,7 @@ contains
          end if
          if (allocated(self%drawing)) call stand_in(self%drawing%name)
          call self%parts%find(with_kinds, messages)
+         if (allocated(self%earlier) .or. allocated(self%drawing)) deallocate (self%parts)
          call self%column%damping%check('damping', messages)
          if (any(self%loading(:self%loadings)%drive == 'axial_load')) then
             call messages%add("loading: drive = 'axial_load' is for columns; in a frame they carry the "// &
