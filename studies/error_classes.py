@@ -24,8 +24,8 @@ from pathlib import Path
 import numpy as np
 
 import rbsdem
-from rbsdem.methods.scene import Setting as Way
-from rbsdem.methods.scene import make_scene
+from rbsdem.methods.study_case import Setting as Way
+from rbsdem.methods.study_case import study_case
 from rbsdem.run.accuracy import Answer, answer_of, errors_of
 from rbsdem.springs import Elastic, PeakOriented, Pinching
 
@@ -98,7 +98,7 @@ def errors(kinematics: str) -> None:
     for name, drawn in columns():
         column = dataclasses.replace(drawn, kinematics=kinematics)
         for motion, time, acceleration in motions(column):
-            scene = make_scene(column, time, {"ground_acceleration": acceleration}, None, None)
+            scene = study_case(column, time, {"ground_acceleration": acceleration}, None, None)
             try:
                 reference, *_ = answer(scene, {"method": "rk45", "tolerance": 1e-12})
                 step = Way("rk4", column.kinematics)

@@ -20,7 +20,8 @@ import numpy as np
 
 import rbsdem
 from rbsdem import plot
-from rbsdem.methods.study import MethodStudy, Row, compare_methods, seconds_text
+from rbsdem.methods.study import MethodStudy, compare_methods, seconds_text
+from rbsdem.methods.study_case import MethodRun
 from rbsdem.peer import shipped_reversals
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -80,7 +81,7 @@ SCENES = {
 }
 
 
-def cell(row: Row | None, given: str) -> str:
+def cell(row: MethodRun | None, given: str) -> str:
     """Return a setting and its time; the level of kinematics, if it is below the column's."""
     if row is None:
         return "none"
@@ -131,9 +132,9 @@ SHOWN = {
 }
 
 
-def same_settings(found: dict[str, MethodStudy]) -> dict[tuple[str, str], list[Row]]:
+def same_settings(found: dict[str, MethodStudy]) -> dict[tuple[str, str], list[MethodRun]]:
     """Return the rows of each setting, one for each column, at the columns' level of kinematics."""
-    families: dict[tuple[str, str], list[Row]] = {}
+    families: dict[tuple[str, str], list[MethodRun]] = {}
     for one in found.values():
         level = one.rows[0].setting.kinematics
         rung: dict[str, int] = {}
@@ -148,7 +149,7 @@ def same_settings(found: dict[str, MethodStudy]) -> dict[tuple[str, str], list[R
     return families
 
 
-def costs_table(families: dict[tuple[str, str], list[Row]]) -> None:
+def costs_table(families: dict[tuple[str, str], list[MethodRun]]) -> None:
     """Print wall times and errors of settings, least and largest of the four columns."""
     print("| method | setting | wall time | error |")
     print("| --- | --- | --- | --- |")
@@ -158,7 +159,7 @@ def costs_table(families: dict[tuple[str, str], list[Row]]) -> None:
     print()
 
 
-def sentences(title: str, families: dict[tuple[str, str], list[Row]]) -> None:
+def sentences(title: str, families: dict[tuple[str, str], list[MethodRun]]) -> None:
     """Print a summary in words."""
     print(f"{title}:")
     for (method, value), rows in families.items():
@@ -170,17 +171,17 @@ def sentences(title: str, families: dict[tuple[str, str], list[Row]]) -> None:
     print()
 
 
-def times(rows: list[Row]) -> str:
+def times(rows: list[MethodRun]) -> str:
     """Return the least and the largest time."""
     return span([row.seconds for row in rows], seconds_text)
 
 
-def errors(rows: list[Row]) -> str:
+def errors(rows: list[MethodRun]) -> str:
     """Return the least and the largest error."""
     return span([row.error for row in rows], lambda x: f"{x:.0e}" if x > 1e-12 else "round-off")
 
 
-def steps(rows: list[Row], value: str) -> str:
+def steps(rows: list[MethodRun], value: str) -> str:
     """Return the steps that differ from column to column."""
     given = [1e3 * row.setting.dt for row in rows if row.setting.dt]
     return f" ({span(given, lambda x: f'{x:.2g}')} ms)" if value.startswith("largest") else ""

@@ -30,7 +30,6 @@ from rbsdem.model.materials import Ties as Ties
 from rbsdem.model.shape import CircularSection as CircularSection
 from rbsdem.model.shape import RectangularSection as RectangularSection
 from rbsdem.motions.motion import GroundMotion as GroundMotion
-from rbsdem.motions.read import read_motions as read_motions
 from rbsdem.run.analysis import matrices as matrices
 from rbsdem.run.analysis import modes as modes
 from rbsdem.run.case import read_case as read_case

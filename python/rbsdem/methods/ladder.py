@@ -14,7 +14,7 @@ import numpy as np
 
 from rbsdem import _arguments
 from rbsdem.errors import InputError, RbsdemError
-from rbsdem.methods.scene import Attempt, Run, Scene, Setting
+from rbsdem.methods.study_case import MethodRun, Setting, SolvedRun, StudyCase
 from rbsdem.model.column import Column, Kinematics
 from rbsdem.run.accuracy import common_interval
 from rbsdem.run.analysis import no_thresholds, time_history
@@ -55,7 +55,7 @@ class Budget:
 
 @dataclass(frozen=True)
 class Probe:
-    """Costs and limits of a scene in time, from a first look at it.
+    """Costs and limits of a case in time, from a first look at it.
 
     Attributes
     ----------
@@ -91,28 +91,28 @@ class Probe:
         return step * self.duration / setting.dt if setting.dt else 0.0
 
 
-def probe(scene: Scene) -> Probe:
+def probe(case: StudyCase) -> Probe:
     """Return limit of stability and cost of a step, from short runs; of a static path nothing.
 
     Raises
     ------
     InputError
-        If the scene cannot be solved, as with an axial load above the critical one.
+        If the case cannot be solved, as with an axial load above the critical one.
     """
-    if scene.static:
+    if case.static:
         return Probe(0.0, 1.0, True, math.inf, 0.0, 0.0)
-    time = scene.time
+    time = case.time
     interval, regular = common_interval(time)
-    level = scene.column.kinematics
-    first = _beginning(scene, min(1e-6 * interval, time[1] - time[0]))
-    keywords = first.keywords(Setting("rk4", level), scene.column)
+    level = case.column.kinematics
+    first = _beginning(case, min(1e-6 * interval, time[1] - time[0]))
+    keywords = first.keywords(Setting("rk4", level), case.column)
     result = time_history(no_thresholds, first.column, first.time, **keywords)
     limit = float(result.summary["stable_step"])
     steps = min(300.0, (time[-1] - time[0]) / (0.5 * limit))
-    short = _beginning(scene, 0.5 * limit * max(steps, 1.0))
+    short = _beginning(case, 0.5 * limit * max(steps, 1.0))
     explicit = _seconds(short, Setting("rk4", level, dt=0.5 * limit)) / max(steps, 1.0)
     rows = min(100, time.size - 1)
-    short = _beginning(scene, float(time[rows] - time[0]))
+    short = _beginning(case, float(time[rows] - time[0]))
     try:
         implicit = _seconds(short, Setting("newmark", level, dt=interval)) / rows
     except RbsdemError:
@@ -121,17 +121,17 @@ def probe(scene: Scene) -> Probe:
     return Probe(duration, interval, regular, limit, explicit, implicit)
 
 
-def _beginning(scene: Scene, duration: float) -> Scene:
-    """Return the first part of the scene, up to a duration [s]."""
-    end = min(scene.time[0] + duration, scene.time[-1])
-    kept = np.append(scene.time[scene.time < end], end)
-    loads = {name: np.interp(kept, scene.time, load) for name, load in scene.loads.items()}
-    return dataclasses.replace(scene, time=kept, loads=loads)
+def _beginning(case: StudyCase, duration: float) -> StudyCase:
+    """Return the first part of the case, up to a duration [s]."""
+    end = min(case.time[0] + duration, case.time[-1])
+    kept = np.append(case.time[case.time < end], end)
+    loads = {name: np.interp(kept, case.time, load) for name, load in case.loads.items()}
+    return dataclasses.replace(case, time=kept, loads=loads)
 
 
-def _seconds(scene: Scene, setting: Setting) -> float:
+def _seconds(case: StudyCase, setting: Setting) -> float:
     begin = clock.perf_counter()
-    scene.solve(setting)
+    case.solve(setting)
     return clock.perf_counter() - begin
 
 
@@ -151,14 +151,14 @@ def dividing_steps(look: Probe, longest: float) -> Iterator[float]:
         step /= 2
 
 
-def ladders(scene: Scene, look: Probe, methods: Sequence[str]) -> list[list[Setting]]:
+def ladders(case: StudyCase, look: Probe, methods: Sequence[str]) -> list[list[Setting]]:
     """Return the settings to try, a list for each family from coarse to fine.
 
     Levels of kinematics below that of the column have a few settings each.
     """
-    level = scene.column.kinematics
+    level = case.column.kinematics
     lower = LEVELS[: LEVELS.index(level)]
-    if scene.static:
+    if case.static:
         parts = (0, 1, 2, 4, 8) if level == "finite" else (0, 1, 4)
         own = [Setting("static", level, parts=p) for p in parts]
         return [own, *([Setting("static", lower_level, parts=1)] for lower_level in lower)]
@@ -238,12 +238,12 @@ def checked_methods(methods: Sequence[str] | None) -> tuple[str, ...]:
 
 
 @dataclass
-class Trials:
-    """Settings that are tried on a scene, within a budget.
+class MethodRuns:
+    """Settings that are tried on a case, within a budget.
 
     Attributes
     ----------
-    scene : Scene
+    case : StudyCase
         The case.
     look : Probe
         Its costs and limits.
@@ -251,22 +251,22 @@ class Trials:
         The wall time allowed.
     told : callable
         Told in words what is being done.
-    runs : list of Attempt
+    runs : list of MethodRun
         What was tried, families together, coarse settings first.
     """
 
-    scene: Scene
+    case: StudyCase
     look: Probe
     budget: Budget
     told: Callable[[str], None]
-    runs: list[Attempt] = field(default_factory=list)
+    runs: list[MethodRun] = field(default_factory=list)
 
     @property
-    def solved(self) -> list[Run]:
+    def solved(self) -> list[SolvedRun]:
         """The runs that have an answer."""
-        return [run for run in self.runs if isinstance(run, Run)]
+        return [run for run in self.runs if isinstance(run, SolvedRun)]
 
-    def predicted(self, last: Attempt | None, setting: Setting) -> float:
+    def predicted(self, last: MethodRun | None, setting: Setting) -> float:
         """Return an estimate of the wall time of a setting [s], if possible from a coarser run."""
         if last is None or not last.seconds > 0:
             return self.look.seconds(setting)
@@ -285,8 +285,8 @@ class Trials:
         The first setting of a family that is too expensive stands in the list with its reason; the
         finer ones do not.
         """
-        runs: dict[Setting, Attempt] = {}
-        last: dict[int, Attempt] = {}
+        runs: dict[Setting, MethodRun] = {}
+        last: dict[int, MethodRun] = {}
         ended: set[int] = set()
         patience = share * self.budget.seconds / 40
         for rung in range(max(map(len, families))):
@@ -298,10 +298,10 @@ class Trials:
                 cost, left = self.predicted(last.get(place), setting), self.budget.left(share)
                 if cost > left:
                     reason = too_expensive(cost, left)
-                    runs[setting] = Attempt(setting, status="skipped", reason=reason)
+                    runs[setting] = MethodRun(setting, status="skipped", reason=reason)
                     ended.add(place)
                     continue
-                run = runs[setting] = self.scene.run(setting, repeats, seconds=patience)
+                run = runs[setting] = self.case.run(setting, repeats, seconds=patience)
                 if run.status != "refused":
                     last[place] = run
                 elif setting.method != "rk4" or rung > 0:

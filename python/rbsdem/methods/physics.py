@@ -13,9 +13,9 @@ import numpy as np
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import DataFrame
 from rbsdem.errors import InputError
-from rbsdem.methods.ladder import LEVELS, Trials, too_expensive
+from rbsdem.methods.ladder import LEVELS, MethodRuns, too_expensive
 from rbsdem.methods.reference import Reference
-from rbsdem.methods.scene import VERTICAL, Run, Scene, Setting
+from rbsdem.methods.study_case import VERTICAL, Setting, SolvedRun, StudyCase
 from rbsdem.model.column import PLACES, Column, bodies, notes_off
 from rbsdem.model.damping import Damping
 from rbsdem.model.springs import Spring
@@ -163,9 +163,9 @@ def _little_inertia(column: Column) -> Column:
     return dataclasses.replace(column, rotary_inertia=few, depth=0.0, top_inertia=0.0)
 
 
-def variants(scene: Scene, axial: Spring | None) -> Iterator[Variant]:
+def variants(case: StudyCase, axial: Spring | None) -> Iterator[Variant]:
     """Yield the models to compare with; each has one part changed."""
-    column, moving = scene.column, not scene.static
+    column, moving = case.column, not case.static
     switches: list[tuple[object, str, dict[str, object]]] = [
         (column.axial_load, "no axial load", {"axial_load": 0.0}),
         (column.self_weight, "no self-weight", {"self_weight": False}),
@@ -183,7 +183,7 @@ def variants(scene: Scene, axial: Spring | None) -> Iterator[Variant]:
         if there:
             yield Variant(name, _replacing(column, fields))
     for name in VERTICAL:
-        if name in scene.loads:
+        if name in case.loads:
             yield Variant(f"no {name}", lambda: column, name)
     if moving:
         yield Variant(f"rotary inertia x {LITTLE_INERTIA:g}", lambda: _little_inertia(column))
@@ -201,10 +201,10 @@ def _replacing(column: Column, fields: dict[str, Any]) -> Callable[[], Column]:
 
 
 def find_physics(
-    trials: Trials, reference: Reference | None, tolerance: float | None, axial: Spring | None
+    trials: MethodRuns, reference: Reference | None, tolerance: float | None, axial: Spring | None
 ) -> Physics | str:
     """Return the effect of each part of the model, or the reason why it is not known."""
-    several = list(variants(trials.scene, axial))
+    several = list(variants(trials.case, axial))
     weight = len(several) + TWICE_THE_BODIES + 1
     base = _base(trials, reference, trials.budget.left() / weight)
     if isinstance(base, str):
@@ -220,21 +220,21 @@ def find_physics(
     return Physics(tuple(effects), str(base.setting), resolution, limit)
 
 
-def _base(trials: Trials, reference: Reference | None, seconds: float) -> Run | str:
+def _base(trials: MethodRuns, reference: Reference | None, seconds: float) -> SolvedRun | str:
     """Return the run of the model as given, with which the others are compared.
 
     A fine run if the budget allows it, else the most accurate one that it allows. A method that
     chooses its step is preferred: a fixed step may be too long for a variant.
     """
-    scene = trials.scene
-    level = scene.column.kinematics
-    if scene.static:
+    case = trials.case
+    level = case.column.kinematics
+    if case.static:
         fine = Setting("static", level, parts=4 if level == "finite" else 1)
     else:
         fine = Setting("rk45", level, tolerance=FINE)
     if trials.predicted(None, fine) < seconds:
-        run = scene.run(fine, REPEATS, seconds=seconds / REPEATS)
-        if isinstance(run, Run):
+        run = case.run(fine, REPEATS, seconds=seconds / REPEATS)
+        if isinstance(run, SolvedRun):
             return run
     done = [r for r in trials.solved if r.setting.kinematics == level and r.seconds < seconds]
     # An implicit step suits any variant; a fixed explicit step may be beyond the limit.
@@ -248,18 +248,18 @@ def _base(trials: Trials, reference: Reference | None, seconds: float) -> Run | 
     return "the budget allows no setting for the comparisons; give more of it"
 
 
-def _effect(trials: Trials, variant: Variant, base: Run, tolerance: float) -> Effect:
+def _effect(trials: MethodRuns, variant: Variant, base: SolvedRun, tolerance: float) -> Effect:
     """Return the effect of one change of the model."""
     try:
         with notes_off():
             column = variant.make()
     except InputError as error:
         return Effect(variant.name, status="refused", reason=str(error))
-    scene, left = trials.scene, trials.budget.left()
-    loads = {load: values for load, values in scene.loads.items() if load != variant.without}
-    other = dataclasses.replace(scene, loads=loads)
+    case, left = trials.case, trials.budget.left()
+    loads = {load: values for load, values in case.loads.items() if load != variant.without}
+    other = dataclasses.replace(case, loads=loads)
     setting = dataclasses.replace(base.setting, kinematics=column.kinematics)
-    cost = base.seconds * (TWICE_THE_BODIES if column.n > scene.column.n else 1)
+    cost = base.seconds * (TWICE_THE_BODIES if column.n > case.column.n else 1)
     if cost > left:
         return Effect(variant.name, status="skipped", reason=too_expensive(cost, left))
     run = other.run(setting, REPEATS, column, base.seconds)
@@ -269,12 +269,12 @@ def _effect(trials: Trials, variant: Variant, base: Run, tolerance: float) -> Ef
         # The step is beyond the stability limit of this model.
         setting = dataclasses.replace(setting, dt=setting.dt / 2)
         run = other.run(setting, REPEATS, column, base.seconds)
-    if not isinstance(run, Run):
+    if not isinstance(run, SolvedRun):
         return Effect(variant.name, status=run.status, reason=run.reason)
     return _compare(variant.name, run, base, tolerance)
 
 
-def _compare(name: str, run: Run, base: Run, tolerance: float) -> Effect:
+def _compare(name: str, run: SolvedRun, base: SolvedRun, tolerance: float) -> Effect:
     old, new = base.answer, run.answer
 
     def change(quantity: str, scale: float) -> float:

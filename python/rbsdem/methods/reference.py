@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from rbsdem.errors import RbsdemError
-from rbsdem.methods.ladder import Budget, Trials
-from rbsdem.methods.scene import Run, Scene, Setting
+from rbsdem.methods.ladder import Budget, MethodRuns
+from rbsdem.methods.study_case import Setting, SolvedRun, StudyCase
 from rbsdem.run.accuracy import Answer, errors_of
 from rbsdem.run.solver import IMPLICIT
 
@@ -73,7 +73,7 @@ class Reference:
 class _Ladder:
     """One method of the reference, refined step by step from the runs so far."""
 
-    def __init__(self, first: Setting, trials: Trials) -> None:
+    def __init__(self, first: Setting, trials: MethodRuns) -> None:
         self._trials = trials
         done = [run for run in trials.solved if run.setting.family == first.family]
         #: The finest run so far, and how far the answer moved with the last refinement.
@@ -95,14 +95,14 @@ class _Ladder:
         if self.next is None:
             return
         self._trials.told(f"reference: {self.next}")
-        run = self._trials.scene.run(self.next)
-        if not isinstance(run, Run):
+        run = self._trials.case.run(self.next)
+        if not isinstance(run, SolvedRun):
             self.trouble = run.reason
             return
         self.moved = self.apart(run)
         self.run, self.next = run, finer(self.next)
 
-    def apart(self, other: Run | None) -> float:
+    def apart(self, other: SolvedRun | None) -> float:
         """Return how far the answer of another run is from the finest one; infinite without it."""
         if self.run is None or other is None:
             return math.inf
@@ -123,9 +123,9 @@ def digits(difference: float) -> float:
     return -math.log10(max(difference, 1e-16)) if math.isfinite(difference) else 0.0
 
 
-def find_reference(trials: Trials, share: float, wanted: float) -> Reference | str:
+def find_reference(trials: MethodRuns, share: float, wanted: float) -> Reference | str:
     """Return the reference, or why there is none."""
-    if trials.scene.static:
+    if trials.case.static:
         return _static_reference(trials, wanted)
     candidates = _candidates(trials)
     refined = 0
@@ -147,9 +147,9 @@ def find_reference(trials: Trials, share: float, wanted: float) -> Reference | s
     return compare(first, second, wanted, "")
 
 
-def _candidates(trials: Trials) -> list[_Ladder]:
+def _candidates(trials: MethodRuns) -> list[_Ladder]:
     """Return the methods that may make a reference, the most accurate first."""
-    level, look = trials.scene.column.kinematics, trials.look
+    level, look = trials.case.column.kinematics, trials.look
     parts = max(math.ceil(look.interval / look.limit), 1) * FIRST_SHARE
     first = [
         Setting("rk45", level, tolerance=FIRST_TOLERANCE),
@@ -178,7 +178,7 @@ def _bring_together(pair: list[_Ladder], budget: Budget, share: float, wanted: f
         apart = min(apart, now)
 
 
-def compare(first: Run, second: Run, wanted: float, note: str) -> Reference:
+def compare(first: SolvedRun, second: SolvedRun, wanted: float, note: str) -> Reference:
     """Return the reference that two runs make."""
     apart = errors_of(second.answer, first.answer)
     parts = [note] if note else []
@@ -201,24 +201,24 @@ def compare(first: Run, second: Run, wanted: float, note: str) -> Reference:
     return Reference(str(first.setting), str(second.setting), *found, kind, first.answer)
 
 
-def _static_reference(trials: Trials, wanted: float) -> Reference | str:
+def _static_reference(trials: MethodRuns, wanted: float) -> Reference | str:
     """Return the path by small increments, checked by driving it the other way round.
 
     The response is driven in turn: forces that driven displacements give are driven as forces, or
     the reverse. This solves the same equations in another way and must give back what was driven
     first. A force that falls cannot be driven; the path is then compared with longer increments.
     """
-    scene = trials.scene
-    level = scene.column.kinematics
+    case = trials.case
+    level = case.column.kinematics
     trials.told("reference: static")
-    runs: list[Run] = []
+    runs: list[SolvedRun] = []
     trouble = ""
     for parts in (16, 4, 1) if level == "finite" else (1, 4):
-        run = scene.run(Setting("static", level, parts=parts))
-        if not isinstance(run, Run):
+        run = case.run(Setting("static", level, parts=parts))
+        if not isinstance(run, SolvedRun):
             trouble = run.reason
             continue
-        back = _inverse(scene, run.answer, parts)
+        back = _inverse(case, run.answer, parts)
         if back is not None:
             return compare(run, back, wanted, "the second drives the response of the first")
         runs.append(run)
@@ -228,20 +228,20 @@ def _static_reference(trials: Trials, wanted: float) -> Reference | str:
     return compare(runs[0], runs[1], wanted, note)
 
 
-def _inverse(scene: Scene, answer: Answer, parts: int) -> Run | None:
+def _inverse(case: StudyCase, answer: Answer, parts: int) -> SolvedRun | None:
     """Return the path driven by the response, its answer in what was driven first."""
-    name, path = next(iter(scene.loads.items()))
+    name, path = next(iter(case.loads.items()))
     other = "force" if name == "displacement" else "displacement"
     rows = answer.response.size
     if np.any(np.diff(answer.response) * np.diff(path[:rows]) < 0):
         # The force falls, or the displacement goes back: driven, it would lead elsewhere.
         return None
-    inverse = replace(scene, time=scene.time[:rows], loads={other: answer.response})
+    inverse = replace(case, time=case.time[:rows], loads={other: answer.response})
     try:
-        back = inverse.run(Setting("static", scene.column.kinematics, parts=parts))
+        back = inverse.run(Setting("static", case.column.kinematics, parts=parts))
     except RbsdemError:
         return None
-    if not isinstance(back, Run) or back.answer.response.size != rows:
+    if not isinstance(back, SolvedRun) or back.answer.response.size != rows:
         return None
     # The difference from what was driven, on the scale of the response.
     lost = (back.answer.response - path[:rows]) / max(np.abs(path).max(), 1e-300)

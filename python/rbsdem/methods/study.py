@@ -11,10 +11,10 @@ from rbsdem._files import Tabular, data_frame
 from rbsdem._progress import progress_bar
 from rbsdem._types import ArrayLike, DataFrame
 from rbsdem.errors import InputError, SolveError
-from rbsdem.methods.ladder import Budget, Trials, checked_methods, ladders, own_setting, probe
+from rbsdem.methods.ladder import Budget, MethodRuns, checked_methods, ladders, own_setting, probe
 from rbsdem.methods.physics import Physics, find_physics
 from rbsdem.methods.reference import Reference, find_reference
-from rbsdem.methods.scene import Attempt, Run, Scene, make_scene
+from rbsdem.methods.study_case import MethodRun, SolvedRun, StudyCase, study_case
 from rbsdem.model.column import Column
 from rbsdem.model.springs import Spring
 from rbsdem.motions.motion import GroundMotion, acting
@@ -26,41 +26,6 @@ SETTINGS_SHARE, REFERENCE_SHARE = 0.4, 0.75
 
 
 @dataclass(frozen=True)
-class Row(Attempt):
-    """A setting with its cost and its errors.
-
-    Attributes
-    ----------
-    response_rms, response_max : float
-        Root mean square and largest difference of the top displacement (lateral force, if the
-        displacement is driven) from the reference over its peak, at the times of the loading.
-    moment : float
-        Root mean square difference of the base moment over its peak.
-    energy : float
-        Difference of the energy that springs and damping have taken by the end, over its largest
-        value.
-    peak : float
-        Relative difference of the peak response.
-    error : float
-        The largest of response_rms, moment, energy and peak.
-    move : float
-        `error` of this setting against the next finer one of its family, which a user without a
-        reference would see; nan if there is no finer one.
-    pareto : bool
-        Whether no other setting is both faster and more accurate.
-    """
-
-    response_rms: float = math.nan
-    response_max: float = math.nan
-    moment: float = math.nan
-    energy: float = math.nan
-    peak: float = math.nan
-    error: float = math.nan
-    move: float = math.nan
-    pareto: bool = False
-
-
-@dataclass(frozen=True)
 class Choice:
     """The cheapest setting for a tolerance.
 
@@ -68,18 +33,18 @@ class Choice:
     ----------
     tolerance : float
         The error allowed.
-    row : Row or None
+    row : MethodRun or None
         The cheapest setting within it, all finer ones of its family within it too; None if there
         is no such setting.
-    finer : Row or None
+    finer : MethodRun or None
         The next finer setting of its family.
     move : Errors or None
         The difference of the answers of the two.
     """
 
     tolerance: float
-    row: Row | None
-    finer: Row | None = None
+    row: MethodRun | None
+    finer: MethodRun | None = None
     move: Errors | None = None
 
     def __str__(self) -> str:
@@ -108,22 +73,21 @@ def seconds_text(seconds: float) -> str:
     return f"{value:.0f} {unit}" if value >= 10 else f"{value:.1f} {unit}"
 
 
-def make_rows(runs: Sequence[Attempt], reference: Reference | None) -> tuple[Row, ...]:
+def make_rows(runs: Sequence[MethodRun], reference: Reference | None) -> tuple[MethodRun, ...]:
     """Return the table, with errors and front."""
     rows = []
     for run in runs:
-        row = Row(run.setting, run.seconds, run.repeats, run.status, run.reason)
-        if isinstance(run, Run):
+        found: dict[str, float] = {}
+        if isinstance(run, SolvedRun):
             finer = _finer(runs, run)
             if finer is not None:
-                row = replace(row, move=errors_of(run.answer, finer.answer).largest)
+                found["move"] = errors_of(run.answer, finer.answer).largest
             if reference is not None:
                 errors = errors_of(run.answer, reference.answer)
                 # A run that ends at another time has another answer.
                 apart = abs(run.answer.response.size - reference.answer.response.size)
-                error = math.inf if apart > 1 else errors.largest
-                row = replace(row, **asdict(errors), error=error)
-        rows.append(row)
+                found |= asdict(errors) | {"error": math.inf if apart > 1 else errors.largest}
+        rows.append(replace(run, **found))  # type: ignore[arg-type]
     if reference is None:
         return tuple(rows)
     best = math.inf
@@ -138,17 +102,17 @@ def make_rows(runs: Sequence[Attempt], reference: Reference | None) -> tuple[Row
     return tuple(replace(row, pareto=row.setting in front) for row in rows)
 
 
-def _finer(runs: Sequence[Attempt], run: Run) -> Run | None:
+def _finer(runs: Sequence[MethodRun], run: SolvedRun) -> SolvedRun | None:
     """Return the next finer run of a family that has an answer."""
     for other in runs[runs.index(run) + 1 :]:
         if other.setting.family != run.setting.family:
             return None
-        if isinstance(other, Run):
+        if isinstance(other, SolvedRun):
             return other
     return None
 
 
-def cheapest(rows: Sequence[Row], tolerance: float) -> Row | None:
+def cheapest(rows: Sequence[MethodRun], tolerance: float) -> MethodRun | None:
     """Return the cheapest row within a tolerance whose finer rows are within it too, or None."""
     able = []
     for place, row in enumerate(rows):
@@ -158,14 +122,13 @@ def cheapest(rows: Sequence[Row], tolerance: float) -> Row | None:
     return min(able, key=lambda row: row.seconds, default=None)
 
 
-def choose(rows: Sequence[Row], runs: Sequence[Attempt], tolerance: float) -> Choice:
-    """Return the cheapest row within a tolerance, and what the next finer one changes."""
+def choose(rows: Sequence[MethodRun], tolerance: float) -> Choice:
+    """Return the cheapest row within a tolerance, and the change by the next finer one."""
     row = cheapest(rows, tolerance)
-    run = None if row is None else runs[rows.index(row)]
-    finer = _finer(runs, run) if isinstance(run, Run) else None
-    if finer is None or not isinstance(run, Run):
+    finer = _finer(rows, row) if isinstance(row, SolvedRun) else None
+    if finer is None or not isinstance(row, SolvedRun):
         return Choice(tolerance, row)
-    return Choice(tolerance, row, rows[runs.index(finer)], errors_of(run.answer, finer.answer))
+    return Choice(tolerance, row, finer, errors_of(row.answer, finer.answer))
 
 
 _OF_SETTING = ("method", "events", "kinematics", "dt", "tolerance", "parts")
@@ -181,7 +144,7 @@ class MethodStudy(Tabular):
 
     Attributes
     ----------
-    rows : tuple of Row
+    rows : tuple of MethodRun
         All settings, families together, coarse ones first.
     reference : Reference or None
         The solution that errors are measured against; None if there is none, as `notes` says.
@@ -197,7 +160,7 @@ class MethodStudy(Tabular):
         Further remarks.
     """
 
-    rows: tuple[Row, ...]
+    rows: tuple[MethodRun, ...]
     reference: Reference | None
     choice: Choice | None
     physics: Physics | None
@@ -206,7 +169,7 @@ class MethodStudy(Tabular):
     budget: float
     notes: tuple[str, ...] = ()
 
-    def cheapest(self, tolerance: float) -> Row | None:
+    def cheapest(self, tolerance: float) -> MethodRun | None:
         """Return the cheapest setting whose error is within a tolerance, or None.
 
         All finer settings of its family must be within it too, so that a setting which is accurate
@@ -316,7 +279,7 @@ def compare_methods(
         "axial_load": axial_load,
     }
     time, arrays = acting(time, loads, "compare_methods")
-    scene = make_scene(column, time, arrays, initial, collapse_drift)
+    case = study_case(column, time, arrays, initial, collapse_drift)
     clock = Budget(float(budget))
     wanted = _arguments.boolean(progress, "compare_methods: progress")
     # Drawn between runs only, so that no thread disturbs what is timed.
@@ -326,9 +289,9 @@ def compare_methods(
             show(int(clock.used()), text)
 
         told("first look")
-        trials = Trials(scene, probe(scene), clock, told)
-        families = ladders(scene, trials.look, tried)
-        if setting is not None and not scene.static:
+        trials = MethodRuns(case, probe(case), clock, told)
+        families = ladders(case, trials.look, tried)
+        if setting is not None and not case.static:
             families.insert(0, [own_setting(column, setting)])
         trials.climb(families, SETTINGS_SHARE, repeats)
         _need_one(trials.runs)
@@ -339,11 +302,11 @@ def compare_methods(
     if isinstance(physics, str):
         notes.append(f"physics: {physics}")
     rows = make_rows(trials.runs, known)
-    choice = None if tolerance is None else choose(rows, trials.runs, tolerance)
+    choice = None if tolerance is None else choose(rows, tolerance)
     found = physics if isinstance(physics, Physics) else None
-    notes += _notes(scene, rows, known)
+    notes += _notes(case, rows, known)
     spent = clock.used(), budget
-    return MethodStudy(rows, known, choice, found, scene.response_name, *spent, tuple(notes))
+    return MethodStudy(rows, known, choice, found, case.response_name, *spent, tuple(notes))
 
 
 def _check(tolerance: float | None, budget: float, digits: float, repeats: int) -> None:
@@ -355,9 +318,9 @@ def _check(tolerance: float | None, budget: float, digits: float, repeats: int) 
     _arguments.integer(repeats, f"{who}repeats", least=1)
 
 
-def _need_one(runs: Sequence[Attempt]) -> None:
+def _need_one(runs: Sequence[MethodRun]) -> None:
     """Raise the error of the last run if no setting has an answer."""
-    if any(isinstance(run, Run) for run in runs):
+    if any(isinstance(run, SolvedRun) for run in runs):
         return
     for status, error in (("failed", SolveError), ("refused", InputError)):
         for run in reversed(runs):
@@ -368,7 +331,7 @@ def _need_one(runs: Sequence[Attempt]) -> None:
     raise InputError(f"compare_methods: the budget is too small for any setting; {runs[0].reason}")
 
 
-def _notes(scene: Scene, rows: Sequence[Row], reference: Reference | None) -> list[str]:
+def _notes(case: StudyCase, rows: Sequence[MethodRun], reference: Reference | None) -> list[str]:
     """Return remarks that the table does not show."""
     notes = []
     third = None
@@ -385,6 +348,6 @@ def _notes(scene: Scene, rows: Sequence[Row], reference: Reference | None) -> li
         )
     if any(row.status == "skipped" for row in rows):
         notes.append("some settings did not fit into the budget; a larger one tries them")
-    if scene.static and scene.column.kinematics != "finite":
+    if case.static and case.column.kinematics != "finite":
         notes.append("the static path is exact; errors come from the points that are left out")
     return notes

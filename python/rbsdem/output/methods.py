@@ -16,7 +16,7 @@ from rbsdem.output.style import Line, axes_or_new, line_of, style
 from rbsdem.output.tables import console, plain, table
 
 if TYPE_CHECKING:
-    from rbsdem.methods.study import Row
+    from rbsdem.methods.study_case import MethodRun
 
 #: Marker, filling and gray of each method; located events are filled.
 MARKS: dict[tuple[str, str | None], Line] = {
@@ -93,7 +93,7 @@ def methods(study: MethodStudy, *, ax: Axes | None = None, **line: Any) -> Axes:
     return drawn
 
 
-def _points(rows: Sequence[Row], floor: float) -> tuple[list[float], list[float]]:
+def _points(rows: Sequence[MethodRun], floor: float) -> tuple[list[float], list[float]]:
     return [row.seconds for row in rows], [max(row.error, floor) for row in rows]
 
 
@@ -131,9 +131,9 @@ def save(study: MethodStudy, path: Path, title: str) -> Path | None:
     return path
 
 
-def _reasons(rows: Sequence[Row]) -> list[str]:
+def _reasons(rows: Sequence[MethodRun]) -> list[str]:
     """Return lines on the settings without an answer, one for each reason."""
-    found: dict[str, list[Row]] = {}
+    found: dict[str, list[MethodRun]] = {}
     for row in rows:
         if row.status not in ("completed", "collapsed"):
             found.setdefault(f"{row.status}: {row.reason}", []).append(row)

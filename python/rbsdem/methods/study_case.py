@@ -95,9 +95,9 @@ class Setting:
         return ", ".join(filter(None, (self.name, self.value, self.kinematics)))
 
 
-@dataclass(frozen=True)
-class Attempt:
-    """A setting that was tried, or the reason why it was not.
+@dataclass(frozen=True, eq=False)
+class MethodRun:
+    """A setting with its cost and its errors, or the reason why it was not run.
 
     Attributes
     ----------
@@ -111,6 +111,23 @@ class Attempt:
         "completed", "collapsed", "failed" (`SolveError`), "refused" (`InputError`) or "skipped".
     reason : str
         Why there is no answer; the choice of method "auto" if there is one.
+    response_rms, response_max : float
+        Root mean square and largest difference of the top displacement (lateral force, if the
+        displacement is driven) from the reference over its peak, at the times of the loading.
+    moment : float
+        Root mean square difference of the base moment over its peak.
+    energy : float
+        Difference of the energy that springs and damping have taken by the end, over its largest
+        value.
+    peak : float
+        Relative difference of the peak response.
+    error : float
+        The largest of response_rms, moment, energy and peak.
+    move : float
+        `error` of this setting against the next finer one of its family, which a user without a
+        reference would see; nan if there is no finer one.
+    pareto : bool
+        Whether no other setting is both faster and more accurate.
     """
 
     setting: Setting
@@ -118,10 +135,18 @@ class Attempt:
     repeats: int = 0
     status: str = "completed"
     reason: str = ""
+    response_rms: float = math.nan
+    response_max: float = math.nan
+    moment: float = math.nan
+    energy: float = math.nan
+    peak: float = math.nan
+    error: float = math.nan
+    move: float = math.nan
+    pareto: bool = False
 
 
 @dataclass(frozen=True, eq=False)
-class Run(Attempt):
+class SolvedRun(MethodRun):
     """A setting that has an answer.
 
     Attributes
@@ -134,7 +159,7 @@ class Run(Attempt):
 
 
 @dataclass(frozen=True)
-class Scene:
+class StudyCase:
     """One column under one loading.
 
     Attributes
@@ -226,7 +251,7 @@ class Scene:
 
     def run(
         self, setting: Setting, repeats: int = 1, column: Column | None = None, seconds: float = 1e9
-    ) -> Attempt:
+    ) -> MethodRun:
         """Return the answer of a setting and the median of its wall times, or why it has no answer.
 
         Parameters
@@ -236,7 +261,7 @@ class Scene:
         repeats : int
             Number of runs; more where they are very short.
         column : Column, optional
-            Another column in place of the scene's.
+            Another column in place of the case's.
         seconds : float
             Wall time after which the runs are not repeated any more [s].
         """
@@ -252,22 +277,22 @@ class Scene:
                 if enough or end - begin > seconds:
                     break
         except InputError as error:
-            return Attempt(setting, status="refused", reason=str(error))
+            return MethodRun(setting, status="refused", reason=str(error))
         except SolveError as error:
             taken = float(np.median(times or [clock.perf_counter() - begin]))
-            return Attempt(setting, taken, 1, "failed", str(error))
+            return MethodRun(setting, taken, 1, "failed", str(error))
         median, reason = float(np.median(times)), answer.reason
-        return Run(setting, median, len(times), answer.status, reason, answer=answer)
+        return SolvedRun(setting, median, len(times), answer.status, reason, answer=answer)
 
 
-def make_scene(
+def study_case(
     column: Column,
     time: ArrayLike | None,
     loads: Mapping[str, ArrayLike],
     initial: Mapping[str, ArrayLike] | None,
     collapse_drift: float | None,
-) -> Scene:
-    """Check a loading and return the scene.
+) -> StudyCase:
+    """Check a loading and return the case.
 
     Raises
     ------
@@ -296,7 +321,7 @@ def make_scene(
         if path.size < 2:
             raise InputError("compare_methods: the path has fewer than 2 points")
         points = np.arange(float(path.size))
-        return Scene(column, points, given, None, collapse_drift, static=True)
+        return StudyCase(column, points, given, None, collapse_drift, static=True)
     if "displacement" in given:
         raise InputError(
             "compare_methods: displacement drives a static path only; remove it, or time"
@@ -317,7 +342,7 @@ def make_scene(
         old = np.arange(times.size)
         given = {name: np.interp(place, old, values) for name, values in given.items()}
         times = np.interp(place, old, times)
-    return Scene(column, times, given, initial, collapse_drift)
+    return StudyCase(column, times, given, initial, collapse_drift)
 
 
 def reversals(path: Array) -> NDArray[np.intp]:
