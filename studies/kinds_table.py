@@ -39,7 +39,7 @@ FEW = 8
 
 def ends_of_properties(case: fit_model.Case) -> dict[str, bool]:
     """Return which kinds a test belongs to."""
-    section, test = case.column.recipe.section, case.specimen
+    section, test = case.column.drawing.section, case.specimen
     like, ties = likeness(section, test.length, test.axial_load), section.ties
     axial, span = like["axial_load_ratio"], like["span_depth_ratio"]
     bar = section.bar_diameter or np.nan

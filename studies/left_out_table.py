@@ -50,7 +50,7 @@ def numbers(i: int) -> list[float]:
     found.append(small_work(d, force, height) / small_work(d, test, height))
     ours, theirs = (float(np.max(np.abs(f * height + load * d))) for f in (force, test))
     try:
-        theory = diagram(column.recipe.section, load, confined=True).events.peak.moment
+        theory = diagram(column.drawing.section, load, confined=True).events.peak.moment
     except (RbsdemError, AttributeError):
         theory = np.nan
     peak = float(np.max(np.abs(test)) / np.max(np.abs(force)))
@@ -63,7 +63,7 @@ def parts() -> dict[str, np.ndarray]:
     kinds = np.array([one.kind for one in tests])
     found = {kind: kinds == kind for kind in sorted(set(kinds.tolist()))}
     bends = np.array([one.failure_mode == "Flexure" for one in tests])
-    sections = [case.column.recipe.section for case in fit_model._cases]
+    sections = [case.column.drawing.section for case in fit_model._cases]
     by = {
         "n": ([one.axial_load_ratio for one in tests], (0.05, 0.15, 0.3, 0.45)),
         "f'c, MPa": ([one.concrete.fc / 1e6 for one in sections], (40, 60, 90)),
