@@ -85,8 +85,8 @@ contains
       call v%key('allow_unstable', self%allow_unstable, &
                  'rk4: take a step beyond the stability limit all the same')
       call v%key('max_seconds', self%max_seconds, 's', above_zero, &
-                 'a run in time that is expected to take longer is not begun, one that does is stopped; '// &
-                       'without it 300 are expected', &
+                 'a run that takes longer is stopped; one in time that is expected to take longer is '// &
+                 'not begun, without it one of more than 300', &
                  optional=.true.)
       call v%long_text('initial', self%initial, &
                        'path of the state that another analysis ended in, to begin there')
@@ -158,7 +158,6 @@ contains
       if (method%name == '') return
       call refuse('dt', is_given(self%dt))
       call refuse('duration', is_given(self%duration))
-      call refuse('max_seconds', is_given(self%max_seconds))
       call refuse('events', self%events /= '')
       call refuse('tolerance', is_given(self%tolerance))
       call refuse('rho_infinity', is_given(self%rho_infinity))

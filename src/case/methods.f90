@@ -97,7 +97,7 @@ contains
       select case (key)
       case ('dt')
          takes = method%dt
-      case ('duration', 'max_seconds')
+      case ('duration')
          takes = method%in_time
       case ('events')
          takes = method%events

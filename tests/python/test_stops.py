@@ -7,6 +7,7 @@ import os
 import signal
 import sys
 import threading
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -67,12 +68,40 @@ def test_a_handler_that_goes_on_has_the_rows_so_far(interrupted):
     assert run.summary["relative_energy_residual"] < 1e-6
 
 
+SOFTENING = rbsdem.springs.Takeda(k_c=2.5e8, d_c=3e-4, k_y=6e7, d_y=2.7e-3, k_u=7e6, b1=0.3)
+STATIC = rbsdem.Column(2.0, 1e4, Elastic(2e7), [SOFTENING] * 50, n=50)
+PATH = np.tile([0.01, -0.01], 2 * 10**6)
+
+
 def test_ctrl_c_ends_a_static_path(interrupted):
-    path = np.tile([0.01, -0.01], 2 * 10**6)
-    softening = rbsdem.springs.Takeda(k_c=2.5e8, d_c=3e-4, k_y=6e7, d_y=2.7e-3, k_u=7e6, b1=0.3)
-    column = rbsdem.Column(2.0, 1e4, Elastic(2e7), [softening] * 50, n=50)
     with pytest.raises(KeyboardInterrupt):
-        rbsdem.cyclic(column, displacement=path, every=10**6)
+        rbsdem.cyclic(STATIC, displacement=PATH, every=10**6)
+
+
+@pytest.mark.parametrize("kinematics", ["small", "finite"])
+def test_max_seconds_end_a_static_path(kinematics):
+    """Rows up to there are those of the path that was not stopped, straight or curved."""
+    column = replace(STATIC, kinematics=kinematics)
+    run = rbsdem.cyclic(column, displacement=PATH, max_seconds=0.2)
+    assert run.summary["status"] == "stopped"
+    assert 0 < run.time.size < PATH.size
+    rows = min(run.time.size, 20)
+    whole = rbsdem.cyclic(column, displacement=PATH[:rows])
+    assert np.array_equal(run.force[:rows], whole.force)
+    assert run.summary["relative_energy_residual"] < 1e-6
+
+
+def test_max_seconds_end_a_static_path_of_a_case(run_cli, tmp_path):
+    """By the executable: the rows are in the file, and a note says where the path was stopped."""
+    text = STATIC.to_namelist() + (
+        "\n&loading drive = 'displacement', amplitudes = 0.01, cycles = 100000 /"
+        "\n&analysis method = 'static', max_seconds = 0.2 /\n"
+    )
+    (tmp_path / "long.nml").write_text(text)
+    run = run_cli(["run", "long.nml"], tmp_path)
+    assert run.returncode == 0
+    assert "the path was stopped on the way to row" in run.stdout
+    assert len((tmp_path / "long.csv").read_text().splitlines()) > 2
 
 
 def test_a_long_run_shows_how_far_it_is(monkeypatch):

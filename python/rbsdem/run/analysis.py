@@ -192,6 +192,7 @@ def cyclic(
     collapse_drift: float | None = None,
     openings: bool = False,
     corners: bool = False,
+    max_seconds: float | None = None,
 ) -> Response | FrameResult:
     """Follow the static path of a column through displacements of the top, or lateral forces.
 
@@ -230,6 +231,9 @@ def cyclic(
         `Result.layer_deformation`.
     corners : bool, optional
         Whether to keep rows between the points too, where a spring leaves its line.
+    max_seconds : float, optional
+        A path that takes longer [s] ends there: `summary["status"]` is "stopped", and its rows are
+        those up to there.
 
     Returns
     -------
@@ -263,12 +267,12 @@ def cyclic(
         raise InputError(f"{name} is empty; give at least one point")
     load = None if axial_load is None else _arguments.vector(axial_load, "axial_load")
     kept = not checked_structure(column).opens and _arguments.boolean(openings, "openings")
-    settings = settings_of(every, kept, collapse_drift=collapse_drift)
+    settings = settings_of(every, kept, collapse_drift=collapse_drift, max_seconds=max_seconds)
     state = None if initial is None else state_of(initial, "cyclic")
     wanted = _arguments.boolean(corners, "corners")
     run = _core.cyclic(column._statement + settings, name == "force", values, load, state, wanted)
     call = {name: values, "axial_load": load, "initial": _recorded_state(initial)}
-    call |= {"every": every, "collapse_drift": collapse_drift}
+    call |= {"every": every, "collapse_drift": collapse_drift, "max_seconds": max_seconds}
     return _return(column, run, {"analysis": "static", "driven": name}, call)
 
 

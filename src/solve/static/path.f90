@@ -20,7 +20,7 @@ module rbs_solve_static_path
    implicit none
    private
 
-   public :: static_path, kept_rows, is_on_end, state_of, weakest_spring, on_the_end, serialize_path
+   public :: static_path, kept_rows, is_on_end, state_of, target_of, weakest_spring, on_the_end, serialize_path
 
    !> A spring this close to an end of its line, relative to the end, is on it. Not a tolerance of the
    !> solution: where a cycle returns to its peak, round-off would otherwise decide between outer and inner
@@ -275,7 +275,11 @@ contains
          ! A path whose first target is not where it begins has a way to it.
          if (i == 1 .and. abs(target(1) - self%control) > 0.0_wp) call self%see_corner(0.0_wp)
          call self%advance(target(i), failure)
-         if (task%summary%stopped) return
+         if (task%summary%stopped) then
+            task%summary%remark = 'the path was stopped on the way to row '//to_text(i)// &
+                                  ' (max_seconds, or from outside)'
+            return
+         end if
          lost = self%springs%lost_joint()
          if (lost > 0) then
             task%summary%lost_joint = self%structure%place(lost)%index
@@ -388,8 +392,8 @@ contains
          fault = to_text(missing)//' J of its work are missing'
       end select
       self%violates_balance = .true.
-      call fatal_error(failure, analysis_failed, 'on the way to '//to_text(target)//' '//merge('N', 'm', &
-                       self%by_force)//' the arithmetic has lost the static path: at a displacement of '// &
+      call fatal_error(failure, analysis_failed, 'on the way to '//trim(target_of(self, target))// &
+                       ' the arithmetic has lost the static path: at a displacement of '// &
                        to_text(self%displacement)//' m '//fault//'. The path up to there is kept. The '// &
                        'stiffnesses of the springs are too far apart ('//trim(weakest_spring(self))// &
                        ' has the least left): give it more stiffness after yield, or take stiff springs '// &
@@ -538,8 +542,24 @@ contains
    pure character(len=80) function state_of(path) result(text)
       class(static_path), intent(in) :: path
 
-      text = 'force '//to_text(path%force)//' N, displacement '//to_text(path%displacement)//' m'
+      if (path%of_dead_load) then
+         text = 'a share '//to_text(path%force)//' of the dead load'
+      else
+         text = 'force '//to_text(path%force)//' N, displacement '//to_text(path%displacement)//' m'
+      end if
    end function state_of
+
+   !> A target, for a message.
+   pure character(len=40) function target_of(path, target) result(text)
+      class(static_path), intent(in) :: path
+      real(wp), intent(in) :: target
+
+      if (path%of_dead_load) then
+         text = to_text(target)//' of the dead load'
+      else
+         text = to_text(target)//merge(' N', ' m', path%by_force)
+      end if
+   end function target_of
 
    !> The spring that has least of its initial stiffness left, for a message; springs that yield before those
    !> that nothing has happened to.

@@ -9,8 +9,8 @@ module rbs_solve_static_straight
    use rbs_base_text, only: to_text
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_equilibrium, only: equilibrium_type
-   use rbs_solve_static_path, only: static_path, state_of, weakest_spring, is_on_end, on_the_end, &
-                                    serialize_path
+   use rbs_solve_static_path, only: static_path, state_of, target_of, weakest_spring, is_on_end, &
+                                    on_the_end, serialize_path
    use rbs_solve_static_resume, only: begin_path, end_path
    use rbs_solve_task, only: task_type
    use rbs_structure_structure, only: structure_type
@@ -25,6 +25,9 @@ module rbs_solve_static_straight
 
    !> A correction of equilibrium below this share of a deformation is round-off.
    real(wp), parameter :: round_off = 1.0e-10_wp
+
+   !> Lines without progress toward a target after which a path is given up: some, and some for each spring.
+   integer, parameter :: most_idle = 1000, most_idle_per_spring = 10
 
    !> The state of a path and the line it is on.
    type, extends(static_path) :: straight_path
@@ -86,13 +89,15 @@ contains
       !> Displacement [m] or force [N]
       real(wp), intent(in) :: target
       type(error_type), allocatable, intent(out) :: error
-      integer :: direction, lines
+      integer :: direction, idle
       logical :: went_back
 
       self%share = 0.0_wp
       direction = 0
-      do lines = 1, 10000 + 1000*self%springs%count
+      idle = 0
+      do while (idle <= most_idle + most_idle_per_spring*self%springs%count)
          if (self%task%stops()) return
+         idle = idle + 1
          if (.not. self%goes_back) then
             if (.not. abs(target - self%control) > 0.0_wp) return
             direction = merge(1, -1, target > self%control)
@@ -128,15 +133,21 @@ contains
             call end_line(self)
          end if
       end do
-      call fatal_error(error, analysis_failed, 'the static path makes no progress at '// &
-                       trim(state_of(self))//'; the parameters of the springs or the targets are too '// &
-                       'extreme for the arithmetic')
+      call fatal_error(error, analysis_failed, 'the equilibrium path to '// &
+                       trim(target_of(self, target))//' makes no progress at '//trim(state_of(self))// &
+                       ': the last '//to_text(idle)//' changes of stiffness led no nearer; '// &
+                       trim(weakest_spring(self))//' has the least stiffness left. The path up to there '// &
+                       'is kept; a response in time goes on')
 
    contains
 
       !> On a way back the number of rows between targets does not fall.
       subroutine tell_corner()
-         self%share = max(self%share, (self%control - self%way_begin)/(target - self%way_begin))
+         real(wp) :: share
+
+         share = (self%control - self%way_begin)/(target - self%way_begin)
+         if (share > self%share) idle = 0
+         self%share = max(self%share, share)
          call self%see_corner(self%share)
       end subroutine tell_corner
 
