@@ -20,7 +20,8 @@ module rbs_solve_static_path
    implicit none
    private
 
-   public :: static_path, kept_rows, is_on_end, state_of, target_of, weakest_spring, on_the_end, serialize_path
+   public :: static_path, kept_rows, is_on_end, state_of, target_of, weakest_spring, on_the_end, &
+             serialize_path
 
    !> A spring this close to an end of its line, relative to the end, is on it. Not a tolerance of the
    !> solution: where a cycle returns to its peak, round-off would otherwise decide between outer and inner
