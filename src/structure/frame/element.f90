@@ -257,13 +257,13 @@ contains
          correction(j) = rate(1, j)*left(1) + rate(2, j)*left(2) + rate(3, j)*left(3)
       end do
       do j = 1, m
-         force = unbalance(f(j) - dead*dead_force(j), [e%share(:, j)*s(2:), 0.0_wp])
+         force = unbalance(f(j) - dead*dead_force(j), 0.0_wp, e%share(1, j)*s(2), e%share(2, j)*s(3))
          do i = 1, m
             correction(i) = correction(i) - bent(i, j)*force
          end do
       end do
       do j = 1, n
-         force = unbalance(f(m + j) - dead*dead_force(m + j), [s(1), 0.0_wp, 0.0_wp])
+         force = unbalance(f(m + j) - dead*dead_force(m + j), s(1), 0.0_wp, 0.0_wp)
          do i = 1, n
             correction(m + i) = correction(m + i) - opened(i, j)*force
          end do
@@ -287,11 +287,11 @@ contains
 
    !> Force of a spring or joint less what forces of the ends do there, term by term. Round-off of it is none:
    !> a joint all but without stiffness would go far for it, and back in the next trial.
-   pure real(wp) function unbalance(force, of_ends)
-      real(wp), intent(in) :: force, of_ends(3)
+   pure real(wp) function unbalance(force, first, second, third)
+      real(wp), intent(in) :: force, first, second, third
 
-      unbalance = force - (of_ends(1) + of_ends(2) + of_ends(3))
-      associate (terms => abs(force) + (abs(of_ends(1)) + abs(of_ends(2)) + abs(of_ends(3))))
+      unbalance = force - (first + second + third)
+      associate (terms => abs(force) + (abs(first) + abs(second) + abs(third)))
          if (abs(unbalance) <= round_off*terms) unbalance = 0.0_wp
       end associate
    end function unbalance

@@ -143,11 +143,11 @@ contains
       all = gap - motion_of_rest(e, s)
       do j = 1, size(e%first) - 1
          associate (a => e%arm(:, :, j), of => e%first(j), last => e%first(j + 1) - 1)
-            force = unbalance(correction(of), a(:, 1)*s)
+            force = unbalance(correction(of), a(1, 1)*s(1), a(2, 1)*s(2), a(3, 1)*s(3))
             correction(of) = force
             all = all + a(:, 1)*(soft(1, j)*force)
             if (of == last) cycle
-            moment = unbalance(correction(of + 1), a(:, 2)*s)
+            moment = unbalance(correction(of + 1), a(1, 2)*s(1), a(2, 2)*s(2), a(3, 2)*s(3))
             correction(of + 1) = moment
             all = all + (a(:, 1)*(soft(2, j)*moment) + a(:, 2)*(soft(2, j)*force + soft(3, j)*moment))
          end associate
