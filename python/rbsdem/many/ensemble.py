@@ -32,6 +32,7 @@ from rbsdem.many.plan import (
     expected,
     one_run,
 )
+from rbsdem.model.citation import bibtex, parts_of
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.run.result import Result
 from rbsdem.run.solver import COLLAPSE_DRIFT, Solver, checked_solver
@@ -111,6 +112,19 @@ class Ensemble(Tabular):
         """Number of runs of each status that occurs."""
         found = {status: int((self.status == status).sum()) for status in inputs.STATUSES}
         return {status or "not started": number for status, number in found.items() if number}
+
+    def citation(self) -> str:
+        """Return the works behind the runs as BibTeX, as those of results.
+
+        With the method "auto" those of the methods that it chose for the first run of each column.
+        """
+        parts: set[str] = set()
+        for i, column in enumerate(self.columns.values()):
+            method, runs = self.settings["method"], np.flatnonzero(self.column == i)
+            if method == "auto" and runs.size:
+                method = self.history(int(runs[0])).summary["method"]
+            parts |= parts_of(column, method)
+        return bibtex(parts)
 
     @property
     def remarks(self) -> NDArray[np.str_]:

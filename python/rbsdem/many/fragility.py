@@ -18,6 +18,7 @@ from rbsdem.errors import InputError, warn
 from rbsdem.many.inputs import limit_states
 from rbsdem.many.lognormal import Bounds, bounds_of_counts, fit_bounds, fit_points
 from rbsdem.many.runs import Runs
+from rbsdem.model.citation import bibtex
 
 #: A frequency of which more than this part comes from beyond the given points is warned of.
 _BEYOND = 0.1
@@ -363,6 +364,10 @@ class Fragility:
     data: Any
     intensity_name: str = ""
     stated: bool = False
+
+    def citation(self) -> str:
+        """Return the works behind the fit as BibTeX; those of its runs are in their `citation`."""
+        return bibtex({"fragility"})
 
     def probability(self, intensity: ArrayLike) -> Array:
         """Return the probability of the limit state at intensities."""

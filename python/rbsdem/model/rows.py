@@ -21,6 +21,7 @@ from rbsdem.curves.envelope import Envelope, Idealisation, Method, strength_loss
 from rbsdem.curves.envelope import envelope as curve_envelope
 from rbsdem.curves.metrics import loop_pair
 from rbsdem.errors import InputError
+from rbsdem.model.citation import bibtex, parts_of
 from rbsdem.model.frame import Frame, Structure
 
 #: Names of the energies.
@@ -65,6 +66,14 @@ class Rows:
     def structure(self) -> Structure:
         """The column or the frame."""
         raise NotImplementedError
+
+    def citation(self) -> str:
+        """Return the works behind this result as BibTeX.
+
+        Those of the rules of its springs, of its method, of the relations and tests that drawn
+        columns and members were fitted to, and rbsdem itself. Values of codes name their sources.
+        """
+        return bibtex(parts_of(self.structure, str(self.summary["method"])))
 
     def columns(self) -> dict[str, Array]:
         """Return the columns of the table, the unit of each in its name."""
