@@ -180,7 +180,7 @@ contains
          logical, intent(in) :: all_of_them
          integer :: j
 
-         do j = 1, merge(springs_blocked, 1, all_of_them)
+         do j = 1, merge(springs_blocked, min(springs_blocked, 1), all_of_them)
             associate (i => blocked(j))
                path%changed(i) = path%changed(i) + 1
                call path%springs%leave(i, merge(1, -1, path%rate(i) > 0.0_wp))
