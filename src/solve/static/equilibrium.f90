@@ -37,6 +37,9 @@ module rbs_solve_static_equilibrium
    real(wp), parameter :: few_digits = 1.0e-8_wp
    integer, parameter :: refinements = 20
 
+   !> A displacement, in shares of the height, or a rotation that is no more than round-off.
+   real(wp), parameter :: of_round_off = 1.0e-12_wp
+
    type :: equilibrium_type
       !> Whether the dead load of a frame grows with the force, from 0 to 1, in place of the lateral one
       logical :: of_dead_load = .false.
@@ -251,6 +254,8 @@ contains
          y(j) = y(j) + more
          call self%structure%spring_rates(self%tangent, self%change(:, 1), self%moved(:, j))
          if (.not. self%refines) return
+         ! A correction that is round-off itself needs no digits of its own.
+         if (j == 2 .and. maxval(abs(self%change(:, 1))) <= of_round_off*self%structure%total_height) return
          signal = 0.0_wp
          do again = 1, refinements
             signal(lateral) = y(j)
