@@ -45,8 +45,7 @@ module rbs_hysteresis_springs
       real(wp), allocatable :: work_before(:)
       !> Number of lines left so far
       integer :: events = 0
-      !> Changes with every new line, and in `restore`: factors computed for the lines of one version are
-      !> valid while the version is the same
+      !> Changes with every new stiffness: factors computed for one version are valid while it is the same
       integer :: version = 0
       !> Whether a rule has exceeded `most_lines`; the state must not be used then
       logical :: stuck = .false.
@@ -114,7 +113,8 @@ contains
       allocate (self%slot(n), self%unload_on_reversal(n), self%includes_lower_end(n), &
                 self%includes_upper_end(n))
       allocate (self%d(n), self%work(n), self%work_before(n), source=0.0_wp)
-      allocate (self%d0(n), self%f0(n), self%k(n), self%first(n), self%last(n))
+      allocate (self%d0(n), self%f0(n), self%first(n), self%last(n))
+      allocate (self%k(n), source=0.0_wp)
       allocate (self%work_source(2, n), source=0)
       allocate (self%on_plane(n), source=.false.)
       allocate (self%layered(0))
@@ -151,7 +151,6 @@ contains
       self%work = 0.0_wp
       self%events = 0
       self%stuck = .false.
-      self%version = modulo(self%version + 1, huge(1))
       do i = 1, self%count
          call start_under(self%slot(i)%rule, axial_load(i), self%slot(i)%memory, line)
          call put_line(self, i, line)
@@ -241,7 +240,6 @@ contains
       end associate
       call self%slot(i)%next_branch(line, direction, flexural_work)
       self%events = self%events + 1
-      self%version = modulo(self%version + 1, huge(1))
       call put_line(self, i, line)
       if (self%journal%open) call self%journal%enter_branch(i, self%d(i), self%work(i))
    end subroutine change_line
@@ -396,7 +394,6 @@ contains
                call put_line(self, i, journal%line(j))
             end if
          end do
-         if (journal%changed > left) self%version = modulo(self%version + 1, huge(1))
          journal%changed = left
          do i = 1, self%count
             if (self%unload_on_reversal(i) > 0) self%first(i) = self%d(i)
@@ -454,6 +451,7 @@ contains
       integer, intent(in) :: i
       type(segment), intent(in) :: line
 
+      if (abs(line%k - self%k(i)) > 0.0_wp) self%version = modulo(self%version + 1, huge(1))
       self%d0(i) = line%d0
       self%f0(i) = line%f0
       self%k(i) = line%k
@@ -477,7 +475,6 @@ contains
       self%work(i) = work
       if (line%unload_on_reversal > 0) self%first(i) = d
       if (line%unload_on_reversal < 0) self%last(i) = d
-      self%version = modulo(self%version + 1, huge(1))
    end subroutine put
 
    !> Let a spring have a constant force from now on.

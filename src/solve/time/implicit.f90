@@ -23,15 +23,6 @@ module rbs_solve_time_implicit
    !> How often a spring may leave its lines while the residual does not decrease.
    integer, parameter :: most_returns = 5
 
-   !> Rounds in which a member snaps and trials of each, the residuals that they leave, that of a state at
-   !> rest, and the least and the largest resistance as shares of the initial stiffness.
-   integer, parameter :: most_rounds = 100, few_trials = 8
-   real(wp), parameter :: loose = 1.0e-6_wp, at_rest = 1.0e-8_wp, least_resistance = 1.0e-6_wp, &
-                          most_resistance = 1.0e4_wp
-
-   !> Shares of the energy that a step may lose without a jump, and that no jump loses.
-   real(wp), parameter :: far = 0.01_wp, no_loss = 1.0e-5_wp
-
    public :: implicit_stepper, new_newmark, new_generalised_alpha, new_hht, with_finite_rotations
 
    type, extends(newton_stepper) :: implicit_stepper
@@ -57,7 +48,20 @@ module rbs_solve_time_implicit
       procedure :: work_of_residual
       procedure :: is_round_off
       procedure :: serialize
+      procedure, private :: try_start
+      procedure, private :: check_runaway
+      procedure, private :: find_works
    end type implicit_stepper
+
+   interface
+      !> Judge the step by the energy that it loses. If it is not found, or if it loses more than a member
+      !> that yields, look for the state that members snap to.
+      module subroutine snap_unless_smooth(self, state)
+         implicit none
+         class(implicit_stepper), intent(inout) :: self
+         type(state_type), intent(inout) :: state
+      end subroutine snap_unless_smooth
+   end interface
 
 contains
 
@@ -165,55 +169,27 @@ contains
 
       !> Find the end of the step. If it is not found, the springs are as before.
       subroutine solve_step()
-         real(wp) :: loss, energy
 
          self%marked = .false.
          self%weighed = .false.
          call state%motion%press(state%springs, self%load)
-         call begin()
+         call self%try_start(state)
          call self%iterate(state)
-         if (self%converged) call find_runaway()
+         if (self%converged) call self%check_runaway(state)
          if (.not. self%marked) return
          associate (condensed => state%motion%structure%tangent_numbers > 0)
             if (.not. self%converged .and. self%runaway == 0) then
                call state%springs%restore()
                ! Joints under an axial load that varies have no lines that deformations alone could follow.
                if (.not. state%springs%pressed) call go_by_events()
-               if (self%converged) call find_runaway()
+               if (self%converged) call self%check_runaway(state)
             end if
-            loss = 0.0_wp
-            energy = 0.0_wp
-            if (condensed .and. self%converged) call find_loss(loss, energy)
-            if (condensed .and. .not. (self%converged .and. abs(loss) <= far*energy)) then
-               ! Unknowns without mass go to the next state of rest, not to any.
-               call state%springs%restore()
-               self%runaway = 0
-               call snap()
-               if (self%converged) then
-                  call find_loss(loss, energy)
-                  if (abs(loss) > no_loss*energy) call count_snap(loss)
-               end if
-            end if
+            if (condensed) call snap_unless_smooth(self, state)
             self%weighed = condensed
          end associate
          if (.not. self%converged) call state%springs%restore()
          call state%springs%forget_mark()
       end subroutine solve_step
-
-      !> A step in which a member slides or turns away is none.
-      subroutine find_runaway()
-
-         self%runaway = state%motion%structure%unbounded_spring(self%step%q1)
-         self%converged = self%runaway == 0
-      end subroutine find_runaway
-
-      !> The trial at the start of the step.
-      subroutine begin()
-
-         self%step%moved = 0.0_wp
-         self%step%q1 = state%q
-         call self%step%find_first(state, self%h, self%load, self%residual)
-      end subroutine begin
 
       !> The step from end to end of the springs' lines, where `iterate` has failed. On the present lines the
       !> tangent step is exact, so the residual decreases in proportion to the way. A spring that leaves its
@@ -224,7 +200,7 @@ contains
 
          before = huge(1.0_wp)
          least = huge(1.0_wp)
-         call begin()
+         call self%try_start(state)
          do
             if (self%residual < progress*least) then
                least = self%residual
@@ -251,82 +227,6 @@ contains
             before = self%residual
          end do
       end subroutine go_by_events
-
-      !> The step where the inside of a member, or nodes without mass, snap from one equilibrium to another.
-      !> Springs that resist their deformation, as if in a very viscous liquid, follow the way from the start
-      !> of the step down to the next state at which they rest, in equilibrium without resistance. It is as
-      !> small as the softening springs allow.
-      subroutine snap()
-         real(wp) :: resistance, wanted, tried, way, way_before, at_last
-         integer :: round, trials
-
-         wanted = self%wanted
-         trials = self%most_trials
-         self%most_trials = few_trials
-         resistance = 1.0_wp
-         at_last = resistance
-         tried = huge(1.0_wp)
-         way_before = huge(1.0_wp)
-         call begin()
-         do round = 1, most_rounds
-            self%step%now%anchor(:) = self%step%q1
-            self%anchor(:) = self%step%moved
-            self%step%now%resistance = 0.0_wp
-            call self%step%find_residual(state, self%h, self%load, self%residual)
-            if (resistance <= 0.1_wp .and. self%residual < 0.3_wp*tried) then
-               tried = self%residual
-               call self%iterate(state)
-               if (self%converged) exit
-               call go_back()
-               if (tried <= at_rest) call rest(at_last)
-               if (self%converged) exit
-            end if
-            self%step%now%resistance = resistance
-            self%wanted = loose
-            call self%step%find_residual(state, self%h, self%load, self%residual)
-            call self%iterate(state)
-            self%wanted = wanted
-            way = 0.0_wp
-            if (self%converged) way = sqrt(sum(state%motion%structure%initial_stiffness &
-                                               *(self%step%q1 - self%step%now%anchor)**2))
-            if (.not. self%converged .or. way > 5.0_wp*max(1.0_wp, at_last/resistance)*way_before) then
-               call go_back()
-               self%converged = .false.
-               resistance = 3.0_wp*resistance
-               if (resistance > most_resistance) exit
-               cycle
-            end if
-            self%converged = .false.
-            way_before = way
-            at_last = resistance
-            resistance = max(0.3_wp*resistance, least_resistance)
-            self%runaway = state%motion%structure%unbounded_spring(self%step%q1)
-            if (self%runaway > 0) exit
-         end do
-         self%step%now%resistance = 0.0_wp
-         self%most_trials = trials
-      end subroutine snap
-
-      !> A state in which the tangent is not definite is an equilibrium too. Its tangent for what follows is
-      !> that with resistance.
-      subroutine rest(resistance)
-         real(wp), intent(in) :: resistance
-
-         self%step%now%resistance = resistance
-         call self%tangent%fit(self%step, state, self%h)
-         self%step%now%resistance = 0.0_wp
-         call self%step%find_residual(state, self%h, self%load, self%residual)
-         self%converged = self%residual <= at_rest
-      end subroutine rest
-
-      !> Return to where the last round of `snap` began.
-      subroutine go_back()
-
-         self%step%q1(:) = self%step%now%anchor
-         self%step%moved(:) = self%anchor
-         call state%springs%restore()
-         call state%springs%move_all(self%step%q1)
-      end subroutine go_back
 
       !> The share of a correction up to the first end of a line that a spring reaches.
       subroutine first_end(q, dq, share, first, way)
@@ -358,64 +258,11 @@ contains
          end do
       end subroutine first_end
 
-      !> Works of the step by the trapezoidal rule along the way, which balances exactly for average
-      !> acceleration on straight lines; velocities of the springs at its end.
-      subroutine find_works()
-         real(wp) :: before, after
-         integer :: i
-
-         self%of_loads = 0.0_wp
-         self%of_damping = 0.0_wp
-         associate (motion => state%motion, h => self%h, load => self%load, &
-                    mean => 0.5_wp*(state%load + self%load))
-            do i = lateral, horizontal
-               if (motion%acts(i)) then
-                  self%of_loads = self%of_loads + mean(i)*motion%structure%work_of(i, self%step%moved)
-               end if
-            end do
-            call motion%structure%spring_rates(self%step%now%tangent, self%step%v1, self%step%w1)
-            if (motion%varies) then
-               before = motion%structure%power_of_loads(state%q, state%v, lifts(state%load))
-               after = motion%structure%power_of_loads(self%step%q1, self%step%w1, lifts(load))
-               self%of_loads = self%of_loads + 0.5_wp*h*(before + after)
-            end if
-            if (motion%damped) then
-               self%mean(:) = 0.5_wp*(state%v + self%step%w1)
-               self%of_damping = h*motion%damping_power(state%springs, self%step%q1, self%mean)
-               if (motion%structure%tangent_numbers > 0) then
-                  ! Elements damp as wholes; the residual is not needed any more.
-                  call motion%structure%unknown_rates(self%mean, self%dx)
-                  self%step%r = 0.0_wp
-                  call motion%structure%damp(self%dx, self%step%now%tangent, self%step%r)
-                  self%of_damping = self%of_damping - h*inner_product(size(self%dx), self%dx, self%step%r)
-               end if
-            end if
-         end associate
-      end subroutine find_works
-
-      !> Energy that is lost in a step, and that of springs and motion.
-      subroutine find_loss(loss, energy)
-         real(wp), intent(out) :: loss, energy
-         real(wp) :: kinetic
-
-         call find_works()
-         call state%springs%carry_to(self%step%q1)
-         associate (structure => state%motion%structure, work => state%springs%work, &
-                    work_before => state%springs%journal%work)
-            kinetic = structure%kinetic_energy(state%q, state%v)
-            loss = self%of_loads - self%of_damping &
-                   - (total(size(work), work) - total(size(work), work_before)) &
-                   - (structure%kinetic_energy(self%step%q1, self%step%w1) - kinetic) &
-                   - (structure%potential_energy(self%step%q1) - structure%potential_energy(state%q))
-            energy = abs(total(size(work), work)) + kinetic
-         end associate
-      end subroutine find_loss
-
       !> The end of the step becomes the state.
       subroutine commit()
 
          if (.not. self%weighed) then
-            call find_works()
+            call self%find_works(state)
             call state%springs%carry_to(self%step%q1)
          end if
          state%of_loads = state%of_loads + self%of_loads
@@ -427,21 +274,64 @@ contains
          call self%step%go_on()
       end subroutine commit
 
-      !> A member has snapped: the energy that the jump sets free is lost.
-      subroutine count_snap(loss)
-         real(wp), intent(in) :: loss
-
-         state%in_snaps = state%in_snaps + loss
-         state%snaps = state%snaps + 1
-         if (loss < state%largest_snap) return
-         state%largest_snap = loss
-         state%snap_time = state%begin + state%time + self%h
-         ! The spring that has gone farthest, by its energy on the first line.
-         state%snap_spring = maxloc(state%motion%structure%initial_stiffness &
-                                    *(self%step%q1 - state%q)**2, dim=1)
-      end subroutine count_snap
-
    end subroutine take_step
+
+   !> The trial at the start of the step.
+   subroutine try_start(self, state)
+      class(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(in) :: state
+
+      self%step%moved = 0.0_wp
+      self%step%resistance = 0.0_wp
+      self%step%q1 = state%q
+      call self%step%find_first(state, self%h, self%load, self%residual)
+   end subroutine try_start
+
+   !> A step in which a member slides or turns away is none.
+   subroutine check_runaway(self, state)
+      class(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(in) :: state
+
+      self%runaway = state%motion%structure%unbounded_spring(self%step%q1)
+      self%converged = self%runaway == 0
+   end subroutine check_runaway
+
+   !> Works of the step by the trapezoidal rule along the way, which balances exactly for average
+   !> acceleration on straight lines; velocities of the springs at its end.
+   subroutine find_works(self, state)
+      class(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      real(wp) :: before, after
+      integer :: i
+
+      self%of_loads = 0.0_wp
+      self%of_damping = 0.0_wp
+      associate (motion => state%motion, h => self%h, load => self%load, &
+                 mean => 0.5_wp*(state%load + self%load))
+         do i = lateral, horizontal
+            if (motion%acts(i)) then
+               self%of_loads = self%of_loads + mean(i)*motion%structure%work_of(i, self%step%moved)
+            end if
+         end do
+         call motion%structure%spring_rates(self%step%now%tangent, self%step%v1, self%step%w1)
+         if (motion%varies) then
+            before = motion%structure%power_of_loads(state%q, state%v, lifts(state%load))
+            after = motion%structure%power_of_loads(self%step%q1, self%step%w1, lifts(load))
+            self%of_loads = self%of_loads + 0.5_wp*h*(before + after)
+         end if
+         if (motion%damped) then
+            self%mean(:) = 0.5_wp*(state%v + self%step%w1)
+            self%of_damping = h*motion%damping_power(state%springs, self%step%q1, self%mean)
+            if (motion%structure%tangent_numbers > 0) then
+               ! Elements damp as wholes; the residual is not needed any more.
+               call motion%structure%unknown_rates(self%mean, self%dx)
+               self%step%r = 0.0_wp
+               call motion%structure%damp(self%dx, self%step%now%tangent, self%step%r)
+               self%of_damping = self%of_damping - h*inner_product(size(self%dx), self%dx, self%step%r)
+            end if
+         end if
+      end associate
+   end subroutine find_works
 
    !> Column, method and length of the step of one body.
    pure subroutine fit_one_body(body, step, motion, h)

@@ -44,6 +44,13 @@ module rbs_solve_time_implicit_balance
       logical, private :: known = .false.
       !> Forces of the present trial
       type(motion_result) :: now
+      !> Stiffness of the springs that the tangents of the elements belong to (springs), its version, and the
+      !> resistance in it as a share of the initial stiffness; none where there are no such tangents
+      real(wp), allocatable, private :: k(:)
+      integer, private :: version = -1
+      real(wp), private :: resistance_in = 0.0_wp
+      !> Resistance that belongs into the tangents
+      real(wp) :: resistance = 0.0_wp
       !> Largest force of each group of unknowns in the present trial and in all steps so far. Residuals are
       !> measured by them: where a motion passes through zero, or springs and damping cancel each other, all
       !> forces of the moment are round-off.
@@ -56,6 +63,7 @@ module rbs_solve_time_implicit_balance
       procedure :: start
       procedure :: find_residual
       procedure :: find_first
+      procedure, private :: fit_elements
       procedure, private :: measure
       procedure :: is_round_off
       procedure :: go_on
@@ -89,7 +97,7 @@ contains
       class(step_balance), intent(inout) :: self
       type(state_type), intent(in) :: state
       real(wp) :: relative, force, terms, work
-      integer :: m, springs, unstable
+      integer :: m, springs
 
       associate (structure => state%motion%structure)
          m = structure%unknowns
@@ -99,6 +107,7 @@ contains
                       self%moved(m), self%q1(springs), self%w1(springs), source=0.0_wp)
             allocate (self%scale(size(structure%group)), self%largest(size(structure%group)), source=0.0_wp)
             call self%now%create(structure)
+            if (structure%tangent_numbers > 0) allocate (self%k(springs))
             if (allocated(structure%reach)) then
                self%unit = 1.0_wp/structure%reach
                self%spring_unit = merge(1.0_wp/structure%total_height, 1.0_wp, &
@@ -107,7 +116,8 @@ contains
          end if
          self%known = .false.
          call structure%unknown_rates(state%v, self%v0)
-         call structure%linearise(state%springs%k, self%now%tangent, unstable)
+         self%version = -1
+         call self%fit_elements(state)
          call find_forces(state, state%q, state%v, self%v0, state%load, self%now, self%g0)
          self%a0 = 0.0_wp
          where (structure%inertias > 0.0_wp) self%a0 = self%g0/structure%inertias
@@ -141,6 +151,24 @@ contains
       call stream%item(self%largest)
    end subroutine serialize
 
+   !> Tangents of the elements on the present lines: what lies between the unknowns is condensed by them.
+   subroutine fit_elements(self, state)
+      class(step_balance), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      integer :: unstable
+
+      if (.not. allocated(self%k)) return
+      if (state%springs%version == self%version .and. &
+          .not. abs(self%resistance - self%resistance_in) > 0.0_wp) return
+      associate (structure => state%motion%structure)
+         self%k = state%springs%k
+         if (self%resistance > 0.0_wp) self%k = self%k + self%resistance*structure%initial_stiffness
+         call structure%linearise(self%k, self%now%tangent, unstable)
+      end associate
+      self%version = state%springs%version
+      self%resistance_in = self%resistance
+   end subroutine fit_elements
+
    !> Residual of the step for what the unknowns have moved, and its size relative to the forces.
    subroutine find_residual(self, state, h, load, relative)
       class(step_balance), intent(inout) :: self
@@ -149,6 +177,7 @@ contains
       real(wp), intent(out) :: relative
 
       self%load = load
+      call self%fit_elements(state)
       associate (structure => state%motion%structure)
          call end_of_step(self, h)
          ! Where elements damp as wholes, the springs do not by themselves.
@@ -401,34 +430,26 @@ contains
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: h
 
-      real(wp) :: relative, load(signals)
-
       if (state%springs%version == self%factor_version .and. abs(h - self%factor_step) <= 1.0e-14_wp*h .and. &
-          .not. abs(step%now%resistance - self%factor_resistance) > 0.0_wp .and. &
+          .not. abs(step%resistance - self%factor_resistance) > 0.0_wp .and. &
           .not. (state%motion%second_order .and. state%motion%varies)) return
+      call step%fit_elements(state)
       call set_tangent()
-      ! Springs between the unknowns are condensed by the new tangent.
-      if (size(step%now%tangent) == 0) return
-      load = step%load
-      call step%find_residual(state, h, load, relative)
 
    contains
 
       !> Tangent of the step on the present lines, and its factor.
       subroutine set_tangent()
          real(wp) :: of_mass, of_damping
-         integer :: i, unstable
+         integer :: i
 
          of_damping = step%gamma/(step%beta*h)
          associate (motion => state%motion, springs => state%springs, structure => state%motion%structure)
             of_mass = (1.0_wp - step%alpha_m)/(step%beta*h**2) &
                       + (1.0_wp - step%alpha_f)*of_damping*structure%mass_damping
             self%k = springs%k
-            if (structure%tangent_numbers > 0) then
-               ! The inside of an element has no mass: it is in equilibrium at the end of the step.
-               if (step%now%resistance > 0.0_wp) self%k = self%k &
-                  + step%now%resistance*structure%initial_stiffness
-               call structure%linearise(self%k, step%now%tangent, unstable)
+            if (allocated(step%k)) then
+               self%k = step%k
             else if (structure%tangent_damping) then
                self%k = self%k + (of_damping*structure%stiffness_damping)*max(springs%k, 0.0_wp)
             else if (motion%damped) then
@@ -452,7 +473,7 @@ contains
             if (allocated(self%initial)) call hold_free()
          end associate
          self%factor_step = h
-         self%factor_resistance = step%now%resistance
+         self%factor_resistance = step%resistance
          self%factor_version = state%springs%version
       end subroutine set_tangent
 

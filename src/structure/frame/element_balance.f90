@@ -221,19 +221,21 @@ contains
       real(wp), intent(in) :: compression
       real(wp), intent(inout), contiguous :: band(:, :)
       integer :: i, j
+      real(wp) :: along(6)
 
       do j = 1, 2
          associate (at => e%number(3*j))
             if (at > 0) band(1, at) = band(1, at) - compression*e%rigid(j)
          end associate
       end do
+      along = (compression*e%length)*e%chord
       do j = 1, 6
+         if (.not. abs(along(j)) > 0.0_wp) cycle
          associate (column => e%number(j))
-            if (column == 0) cycle
             do i = 1, 6
                if (e%number(i) < column) cycle
                associate (entry => band(1 + e%number(i) - column, column))
-                  entry = entry - compression*e%length*e%chord(i)*e%chord(j)
+                  entry = entry - along(i)*e%chord(j)
                end associate
             end do
          end associate

@@ -1,0 +1,164 @@
+!> Members that snap. Where a member softens faster than the rest of it can unload, no state near the last one
+!> is in equilibrium, although the motion of its ends goes on: in a test it would jump, with a bang. What lies
+!> inside has no mass that could govern the jump, so it goes as in a very viscous liquid, down to the next
+!> state at which it rests. The energy that the liquid takes is lost; it is an item of the balance.
+submodule (rbs_solve_time_implicit) rbs_solve_time_snap
+   implicit none
+
+   !> Rounds in which a member snaps and trials of each, the residuals that they leave, that of a state at
+   !> rest, and the least and the largest resistance as shares of the initial stiffness.
+   integer, parameter :: most_rounds = 100, few_trials = 8
+   real(wp), parameter :: loose = 1.0e-6_wp, at_rest = 1.0e-9_wp, least_resistance = 1.0e-6_wp, &
+                          most_resistance = 1.0e4_wp
+
+   !> Shares of the energy that a step may lose without a jump, and that no jump loses.
+   real(wp), parameter :: far = 0.01_wp, no_loss = 1.0e-5_wp
+
+contains
+
+   module subroutine snap_unless_smooth(self, state)
+      class(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      real(wp) :: loss, energy
+
+      if (self%converged) then
+         call find_loss(self, state, loss, energy)
+         if (abs(loss) <= far*energy) return
+      end if
+      ! What has no mass goes to the next state at which it rests, not to any.
+      call state%springs%restore()
+      self%runaway = 0
+      call snap(self, state)
+      if (.not. self%converged) return
+      call find_loss(self, state, loss, energy)
+      if (abs(loss) > no_loss*energy) call count_snap(self, state, loss)
+   end subroutine snap_unless_smooth
+
+   !> Springs resist a deformation from where the round began, by a share of their initial stiffness.
+   subroutine resist(self, share)
+      class(implicit_stepper), intent(inout) :: self
+      real(wp), intent(in) :: share
+
+      self%step%resistance = share
+      self%step%now%resistance = share
+   end subroutine resist
+
+   !> The step where the inside of a member, or nodes without mass, snap from one equilibrium to another.
+   !> Springs that resist their deformation, as if in a very viscous liquid, follow the way from the start
+   !> of the step down to the next state at which they rest, in equilibrium without resistance. It is as
+   !> small as the softening springs allow.
+   subroutine snap(self, state)
+      class(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      real(wp) :: resistance, wanted, tried, way, way_before, at_last
+      integer :: round, trials
+
+      wanted = self%wanted
+      trials = self%most_trials
+      self%most_trials = few_trials
+      resistance = 1.0_wp
+      at_last = resistance
+      tried = huge(1.0_wp)
+      way_before = huge(1.0_wp)
+      call self%try_start(state)
+      do round = 1, most_rounds
+         self%step%now%anchor(:) = self%step%q1
+         self%anchor(:) = self%step%moved
+         call resist(self, 0.0_wp)
+         call self%step%find_residual(state, self%h, self%load, self%residual)
+         if (resistance <= 0.1_wp .and. self%residual < 0.3_wp*tried) then
+            tried = self%residual
+            call self%iterate(state)
+            if (self%converged) exit
+            call go_back(self, state)
+            if (tried <= at_rest) call rest(self, state, at_last)
+            if (self%converged) exit
+         end if
+         call resist(self, resistance)
+         self%wanted = loose
+         call self%step%find_residual(state, self%h, self%load, self%residual)
+         call self%iterate(state)
+         self%wanted = wanted
+         way = 0.0_wp
+         if (self%converged) way = sqrt(sum(state%motion%structure%initial_stiffness &
+                                            *(self%step%q1 - self%step%now%anchor)**2))
+         if (.not. self%converged .or. way > 5.0_wp*max(1.0_wp, at_last/resistance)*way_before) then
+            call go_back(self, state)
+            self%converged = .false.
+            resistance = 3.0_wp*resistance
+            if (resistance > most_resistance) exit
+            cycle
+         end if
+         self%converged = .false.
+         way_before = way
+         at_last = resistance
+         resistance = max(0.3_wp*resistance, least_resistance)
+         self%runaway = state%motion%structure%unbounded_spring(self%step%q1)
+         if (self%runaway > 0) exit
+      end do
+      call resist(self, 0.0_wp)
+      self%most_trials = trials
+   end subroutine snap
+
+   !> A state in which the tangent is not definite is an equilibrium too. Its tangent for what follows is
+   !> that with resistance.
+   subroutine rest(self, state, resistance)
+      class(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      real(wp), intent(in) :: resistance
+
+      call resist(self, resistance)
+      self%step%now%resistance = 0.0_wp
+      call self%tangent%fit(self%step, state, self%h)
+      call self%step%find_residual(state, self%h, self%load, self%residual)
+      self%converged = self%residual <= at_rest
+   end subroutine rest
+
+   !> Return to where the last round of `snap` began.
+   subroutine go_back(self, state)
+      class(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+
+      self%step%q1(:) = self%step%now%anchor
+      self%step%moved(:) = self%anchor
+      call state%springs%restore()
+      call state%springs%move_all(self%step%q1)
+   end subroutine go_back
+
+   !> Energy that is lost in a step, and that of springs and motion.
+   subroutine find_loss(self, state, loss, energy)
+      class(implicit_stepper), intent(inout) :: self
+      type(state_type), intent(inout) :: state
+      real(wp), intent(out) :: loss, energy
+      real(wp) :: kinetic
+
+      call self%find_works(state)
+      call state%springs%carry_to(self%step%q1)
+      associate (structure => state%motion%structure, work => state%springs%work, &
+                 work_before => state%springs%journal%work)
+         kinetic = structure%kinetic_energy(state%q, state%v)
+         loss = self%of_loads - self%of_damping &
+                - (total(size(work), work) - total(size(work), work_before)) &
+                - (structure%kinetic_energy(self%step%q1, self%step%w1) - kinetic) &
+                - (structure%potential_energy(self%step%q1) - structure%potential_energy(state%q))
+         energy = abs(total(size(work), work)) + kinetic
+      end associate
+   end subroutine find_loss
+
+   !> A member has snapped: the energy that the jump sets free is lost.
+   subroutine count_snap(self, state, loss)
+      class(implicit_stepper), intent(in) :: self
+      type(state_type), intent(inout) :: state
+      real(wp), intent(in) :: loss
+
+      state%in_snaps = state%in_snaps + loss
+      state%snaps = state%snaps + 1
+      if (loss < state%largest_snap) return
+      state%largest_snap = loss
+      state%snap_time = state%begin + state%time + self%h
+      ! The spring that has gone farthest, by its energy on the first line.
+      state%snap_spring = maxloc(state%motion%structure%initial_stiffness &
+                                 *(self%step%q1 - state%q)**2, dim=1)
+   end subroutine count_snap
+
+end submodule rbs_solve_time_snap
