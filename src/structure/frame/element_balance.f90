@@ -115,11 +115,11 @@ contains
                tangent(layout%stiffness) = k(1)
                tangent(layout%rate) = 1.0_wp
             else if (e%layered) then
-               call layered_tangent(e, springs, k, k0, tangent(layout%stiffness), tangent(layout%rate), &
+               call layered_tangent(e, springs, k, k0, tangent(layout%stiffness:), tangent(layout%rate:), &
                                     stable)
             else
-               call find_tangent(e, m, n, k, k0, tangent(layout%stiffness), tangent(layout%rate), &
-                                 tangent(layout%bent), tangent(layout%opened), stable)
+               call find_tangent(e, m, n, k, k0, tangent(layout%stiffness:), tangent(layout%rate:), &
+                                 tangent(layout%bent:), tangent(layout%opened:), stable)
             end if
             known = k + k0
             ! That it snaps back is to be found again.
@@ -143,12 +143,12 @@ contains
 
       associate (layout => e%layout, m => e%bending, n => e%opening, first => e%before + 1)
          if (e%layered) then
-            call layered_forces(e, m + n, tangent(layout%stiffness), tangent(layout%rate), gap, d(first), &
-                                f(first), dead, dead_force(first), s, correction(first))
+            call layered_forces(e, m + n, tangent(layout%stiffness:), tangent(layout%rate:), gap, d(first:), &
+                                f(first:), dead, dead_force(first:), s, correction(first:))
          else
-            call find_forces(e, m, n, tangent(layout%stiffness), tangent(layout%rate), &
-                             tangent(layout%bent), tangent(layout%opened), gap, f(first), dead, &
-                             dead_force(first), s, correction(first))
+            call find_forces(e, m, n, tangent(layout%stiffness:), tangent(layout%rate:), &
+                             tangent(layout%bent:), tangent(layout%opened:), gap, f(first:), dead, &
+                             dead_force(first:), s, correction(first:))
          end if
       end associate
    end subroutine balance_ends
@@ -251,9 +251,9 @@ contains
 
       associate (layout => e%layout, m => e%bending + e%opening, first => e%before + 1)
          if (e%layered) then
-            call layered_rates(e, m, tangent(layout%stiffness), tangent(layout%rate), q, dd(first))
+            call layered_rates(e, m, tangent(layout%stiffness:), tangent(layout%rate:), q, dd(first:))
          else
-            call find_rates(m, tangent(layout%rate), q, dd(first))
+            call find_rates(m, tangent(layout%rate:), q, dd(first:))
          end if
       end associate
    end subroutine spring_motion
@@ -269,8 +269,8 @@ contains
 
       associate (layout => e%layout, m => e%bending + e%opening, first => e%before + 1)
          if (e%layered) then
-            call drop_small_rates(e, m, tangent(layout%stiffness), tangent(layout%rate), size_of, &
-                                            round_off, dd(first))
+            call drop_small_rates(e, m, tangent(layout%stiffness:), tangent(layout%rate:), size_of, &
+                                            round_off, dd(first:))
             return
          end if
          do j = 1, m
