@@ -356,7 +356,7 @@ class FrameResult(Rows):
 
     @cached_property
     def storey_shear(self) -> Array:
-        """What the members just above each floor carry along x, shape (rows, storeys) [N].
+        """Shear of the members just above each floor along x, shape (rows, storeys) [N].
 
         With the second-order work of their axial forces: on a static path the sum of the lateral
         loads above.

@@ -37,7 +37,7 @@ _DIFFER = 0.05
 
 @dataclass(frozen=True)
 class Building:
-    """What the members of a frame were drawn from.
+    """The drawings of the members of a frame.
 
     Attributes
     ----------

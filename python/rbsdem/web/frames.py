@@ -2,7 +2,7 @@
 
 A state is what JSON holds, in SI: storeys from the ground up, each with its height and the drawings
 of its columns and beams; widths of the bays; loads; members that are removed; and the demand of a
-code. What is wrong goes beside its field, as for columns.
+code. A fault is shown beside its field, as for columns.
 """
 
 from __future__ import annotations

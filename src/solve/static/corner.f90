@@ -80,9 +80,7 @@ contains
             call report_no_line(path, target, error)
             return
          end if
-         call path%springs%find_blocked(path%rate(:path%moving), blocked, springs_blocked)
-         stopped = springs_blocked
-         if (path%springs%pressed) call choose_planes(stopped)
+         call find_stopped()
          if (path%springs%lost_joint() > 0) return
          if (stopped == 0) then
             path%direction = direction
@@ -160,6 +158,13 @@ contains
                           'time, goes on')
       end subroutine report_snap_back
 
+      !> Springs without room on their lines for the present rates, and joints without room on their planes.
+      subroutine find_stopped()
+         call path%springs%find_blocked(path%rate(:path%moving), blocked, springs_blocked)
+         stopped = springs_blocked
+         if (path%springs%pressed) call choose_planes(stopped)
+      end subroutine find_stopped
+
       !> The layers of joints whose axial loads vary choose their lines for the present rates; a joint whose
       !> plane changes by that had no room on it.
       subroutine choose_planes(count)
@@ -202,9 +207,7 @@ contains
          do trial = 1, 2**size(tried)
             call path%solve_line(direction, found)
             if (found) then
-               call path%springs%find_blocked(path%rate(:path%moving), blocked, springs_blocked)
-         stopped = springs_blocked
-               if (path%springs%pressed) call choose_planes(stopped)
+               call find_stopped()
                found = stopped == 0
                if (found) return
             end if

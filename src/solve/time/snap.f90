@@ -25,7 +25,7 @@ contains
          call find_loss(self, state, loss, energy)
          if (abs(loss) <= far*energy) return
       end if
-      ! What has no mass goes to the next state at which it rests, not to any.
+      ! Parts without mass go to the next state of rest, not to any.
       call state%springs%restore()
       self%runaway = 0
       call snap(self, state)
