@@ -44,22 +44,17 @@ contains
    end subroutine fall_of
 
    !> Opening of a layered joint on its present line or plane [m]; 0 of other springs.
-   pure real(wp) function opening_of(springs, i, d, share) result(opening)
+   pure real(wp) function opening_of(springs, i, d) result(opening)
       type(spring_array), intent(in) :: springs
       !> Its flexural spring
       integer, intent(in) :: i
-      !> Rotation [rad], and the share of the way from the present axial load to that of the end of the step
-      real(wp), intent(in) :: d, share
+      !> Rotation [rad]
+      real(wp), intent(in) :: d
 
       opening = 0.0_wp
       select type (section => springs%slot(i)%memory)
       type is (fibre_section)
-         if (springs%pressed) then
-            opening = section%opening_at(d, springs%press_at(i) &
-                                         + share*(springs%press_to(i) - springs%press_at(i)))
-         else
-            opening = section%opening_at(d, section%axial_load)
-         end if
+         opening = section%opening_at(d, section%axial_load)
       end select
    end function opening_of
 

@@ -1,6 +1,7 @@
 !> The curve of a structure between two points of its path: values and rates at both ends, a cubic between.
 module rbs_solve_static_curve
    use rbs_base_constants, only: unbounded
+   use rbs_base_cubic, only: beyond_ends, cubic_at, turns_of
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_interaction_joints, only: least_forward_rate, nearest_layer
    use rbs_hysteresis_springs, only: spring_array
@@ -158,15 +159,6 @@ contains
       end do
    end function least_rate
 
-   !> Hermite's cubic; its change is reckoned from the near end.
-   elemental real(wp) function cubic(share, a, b, slope_a, slope_b)
-      real(wp), intent(in) :: share, a, b, slope_a, slope_b
-
-      associate (t => share, rest => 1.0_wp - share)
-         cubic = a + t*(slope_a*rest**2 + t*((b - a)*(3.0_wp - 2.0_wp*t) - slope_b*rest))
-      end associate
-   end function cubic
-
    !> Whether a spring or layer is beyond an end of its line at the far end, or goes beyond it or turns back
    !> and comes again in between.
    pure logical function hides_event(self, springs, above, with_layers) result(hides)
@@ -199,21 +191,17 @@ contains
       type(curve_type), intent(in) :: self
       integer, intent(in) :: i, side
       real(wp), intent(in) :: finish
-      real(wp) :: a, b, share, room
+      real(wp) :: c(4), turn(2), room
 
       passes = .false.
-      a = self%near%q(i)
-      b = self%far%q(i)
-      ! No cubic reaches farther; an end at infinity is never reached.
-      if (side*finish > max(side*a, side*b) + 0.25_wp*abs(self%length) &
-          *(abs(self%near%rate(i)) + abs(self%far%rate(i))) .or. .not. abs(finish) < unbounded) return
-      room = no_overshoot*(abs(b) + abs(b - a))
-      passes = side*(b - finish) > room
-      if (passes) return
-      share = farthest(self, i, side)
-      if (share > 0.0_wp) passes = side*(cubic(share, a, b, self%length*self%near%rate(i), &
-                                               self%length*self%far%rate(i)) - finish) &
-                                   > max(room, on_the_end*abs(finish))
+      c = cubic_of(self, i)
+      ! An end at infinity is never reached.
+      if (side*finish > max(side*c(1), side*c(2)) + beyond_ends*(abs(c(3)) + abs(c(4))) .or. &
+          .not. abs(finish) < unbounded) return
+      room = no_overshoot*(abs(c(2)) + abs(c(2) - c(1)))
+      turn = cubic_at(turns_of(c), c(1), c(2), c(3), c(4))
+      passes = side*(c(2) - finish) > room .or. &
+               any(side*(turn - finish) > max(room, on_the_end*abs(finish)))
    end function passes
 
    !> The same of the layers of joints whose axial loads vary, half way.
@@ -255,55 +243,26 @@ contains
 
    end function layer_passes
 
-   !> Whether a spring on a one-way line turns back and turns again between the ends. What it goes back
-   !> between the roots of the derivative a t^2 + b t + c is (b^2 - 4 a c)^(3/2)/(6 a^2).
+   !> Whether a spring on a one-way line turns back and turns again between the ends.
    pure logical function hides_turn(self, i, one_way)
       type(curve_type), intent(in) :: self
       integer, intent(in) :: i, one_way
-      real(wp) :: slope(3), back
+      real(wp) :: c(4), share(2), turn(2)
 
-      hides_turn = .false.
-      slope = one_way*slopes(self, i)
-      ! The least derivative lies between the ends.
-      if (.not. slope(1) > sqrt(tiny(1.0_wp))) return
-      if (slope(2) >= 0.0_wp .or. -slope(2) >= 2.0_wp*slope(1)) return
-      back = max(slope(2)**2 - 4.0_wp*slope(1)*slope(3), 0.0_wp)
-      back = back*sqrt(back)/(6.0_wp*slope(1)**2)
-      hides_turn = back > no_way*max(abs(self%near%q(i)), abs(self%far%q(i)))
+      c = cubic_of(self, i)
+      share = turns_of(c)
+      turn = cubic_at(share, c(1), c(2), c(3), c(4))
+      hides_turn = share(2) < 1.0_wp .and. one_way*(turn(1) - turn(2)) > no_way*max(abs(c(1)), abs(c(2)))
    end function hides_turn
 
-   !> Derivative of a deformation by the share t of the way, as a t^2 + b t + c.
-   pure function slopes(self, i)
+   !> Deformation of a spring at both ends, and its slopes there by the share of the way.
+   pure function cubic_of(self, i) result(c)
       type(curve_type), intent(in) :: self
       integer, intent(in) :: i
-      real(wp) :: slopes(3), rise, first, last
+      real(wp) :: c(4)
 
-      rise = self%far%q(i) - self%near%q(i)
-      first = self%length*self%near%rate(i)
-      last = self%length*self%far%rate(i)
-      slopes = [3.0_wp*(first + last) - 6.0_wp*rise, 6.0_wp*rise - 4.0_wp*first - 2.0_wp*last, first]
-   end function slopes
-
-   !> Where on the way a spring turns back from one side, 0 if it does not.
-   pure real(wp) function farthest(self, i, side) result(share)
-      type(curve_type), intent(in) :: self
-      integer, intent(in) :: i, side
-      real(wp) :: slope(3), root
-
-      share = 0.0_wp
-      slope = side*slopes(self, i)
-      root = slope(2)**2 - 4.0_wp*slope(1)*slope(3)
-      if (.not. root > 0.0_wp) return
-      root = sqrt(root)
-      ! The root where the derivative falls, in the form that does not cancel, if it is between the ends.
-      if (slope(2) < 0.0_wp) then
-         if (slope(3) > 0.0_wp .and. 2.0_wp*slope(3) <= root - slope(2)) then
-            share = 2.0_wp*slope(3)/(root - slope(2))
-         end if
-      else if (slope(2) + root <= -2.0_wp*slope(1)) then
-         share = (slope(2) + root)/(-2.0_wp*slope(1))
-      end if
-   end function farthest
+      c = [self%near%q(i), self%far%q(i), self%length*self%near%rate(i), self%length*self%far%rate(i)]
+   end function cubic_of
 
    !> The curve at a value of the parameter, as a guess of a point.
    pure subroutine guess(self, t, point)
@@ -314,7 +273,7 @@ contains
 
       share = (t - self%near%t)/self%length
       point%t = t
-      point%q = cubic(share, self%near%q, self%far%q, self%length*self%near%rate, &
+      point%q = cubic_at(share, self%near%q, self%far%q, self%length*self%near%rate, &
                       self%length*self%far%rate)
       point%force = self%near%force + share*(self%far%force - self%near%force)
    end subroutine guess

@@ -1,9 +1,8 @@
 !> Peaks of the response, collapse and limit states of a run: at the end of every step, and within the steps
 !> of methods that resolve it. They do not depend on which rows are kept.
-!>
-!> Cubics on a step: through four values at its start, its thirds and its end.
 module rbs_solve_time_monitor
    use rbs_base_check, only: is_given
+   use rbs_base_cubic, only: beyond_ends, bound_of, cubic_at, first_at, largest_of
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_interaction_joints, only: opening_of, rest_of
    use rbs_hysteresis_springs, only: spring_array
@@ -11,23 +10,10 @@ module rbs_solve_time_monitor
    use rbs_output_summary, only: peaks_type
    use rbs_solve_time_motion, only: equation_of_motion, motion_result
    use rbs_structure_spring_place, only: shear, flexure, layer
-   use rbs_structure_structure, only: finite
    implicit none
    private
 
    public :: response_monitor, watch_type
-
-   !> c(1) + c(2) s + c(3) s**2 + c(4) s**3, s from 0 to 1.
-   type :: cubic_type
-      real(wp) :: c(4) = 0.0_wp
-      !> Its value at the end, to the last bit
-      real(wp) :: last = 0.0_wp
-   contains
-      procedure :: at
-      procedure :: largest
-      procedure :: first_at
-      procedure, private :: turns
-   end type cubic_type
 
    !> A limit state is reached where a sum of a joint's deformations is at a threshold or beyond it.
    type :: watch_type
@@ -58,13 +44,10 @@ module rbs_solve_time_monitor
       !> openings in the watches (watches)
       real(wp) :: clock = 0.0_wp, displacement = 0.0_wp
       real(wp), allocatable :: q(:), openings(:)
-      !> Shares of the openings now (watches)
-      real(wp), allocatable, private :: openings_now(:)
       !> Whether openings are still watched
       logical, private :: opens = .false.
-      !> States within a step (springs, 4), shares of the openings there (watches, 4), and absolute rotations
-      !> of the bodies (n, 4)
-      real(wp), allocatable, private :: inner_q(:, :), inner_v(:, :), inner_openings(:, :), rotation(:, :)
+      !> Absolute rotations of the bodies at both ends of a step, and their rates (n, 4)
+      real(wp), allocatable, private :: rotation(:, :)
       !> Whether the acceleration of the top is looked at, and the equation of motion for it
       logical :: feels = .false.
       type(motion_result), private :: now
@@ -114,10 +97,8 @@ contains
       if (.not. allocated(self%watch)) call self%watch_for([watch_type ::], 0)
       m = size(q)
       if (.not. allocated(self%lowest)) then
-         allocate (self%lowest(m), self%highest(m), self%inner_q(m, 4), self%inner_v(m, 4), &
-                   self%openings(size(self%watch)), self%openings_now(size(self%watch)), &
-                   self%inner_openings(size(self%watch), 4), self%rotation(motion%structure%n, 4), &
-                   source=0.0_wp)
+         allocate (self%lowest(m), self%highest(m), self%openings(size(self%watch)), &
+                   self%rotation(motion%structure%n, 4), source=0.0_wp)
       end if
       do i = 1, size(self%watch)
          ! A kind that the structure does not have has the factor 0, with any spring.
@@ -141,7 +122,7 @@ contains
       self%q = q
       self%clock = clock
       self%displacement = motion%structure%top_displacement(q)
-      call fill_openings(self, springs, springs%d, 0.0_wp, self%openings)
+      call see_openings(self, springs, q)
       call self%update(motion, springs, q, v, load, clock)
    end subroutine begin
 
@@ -209,19 +190,19 @@ contains
       !> Of the top [m]
       real(wp), intent(in) :: displacement, clock
 
-      if (self%opens) call fill_openings(self, springs, springs%d, 0.0_wp, self%openings_now)
-      if (self%opens .or. are_beyond(size(q), self%lowest, self%highest, q, q)) then
-         call check_limit_states(self, q, displacement, clock)
+      if (self%opens .or. are_beyond(size(q), self%lowest, self%highest, q, q, q, q, 0.0_wp)) then
+         call check_limit_states(self, springs, q, displacement, clock)
       end if
       self%clock = clock
       self%displacement = displacement
       self%q(:) = q
-      if (self%opens) self%openings(:) = self%openings_now
+      if (self%opens) call see_openings(self, springs, q)
    end subroutine check_limits
 
    !> Limit states that may have been reached.
-   subroutine check_limit_states(self, q, displacement, clock)
+   subroutine check_limit_states(self, springs, q, displacement, clock)
       type(response_monitor), intent(inout) :: self
+      type(spring_array), intent(in) :: springs
       real(wp), intent(in) :: q(:), displacement, clock
       real(wp) :: share, before, after, at
       logical :: open(size(self%reached))
@@ -230,9 +211,12 @@ contains
       open = .not. self%reached < huge(1.0_wp)
       do i = 1, size(self%watch)
          if (.not. open(self%watch(i)%state)) cycle
-         after = value_of(self%watch(i), q, self%openings_now(i))
-         if (.not. after >= self%watch(i)%threshold) cycle
-         before = value_of(self%watch(i), self%q, self%openings(i))
+         associate (watch => self%watch(i))
+            after = value_of(watch, q(watch%slips), q(watch%turns), &
+                             opening_share(watch, springs, q(watch%turns)))
+            if (.not. after >= watch%threshold) cycle
+            before = value_of(watch, self%q(watch%slips), self%q(watch%turns), self%openings(i))
+         end associate
          share = 1.0_wp
          if (after > before) share = (self%watch(i)%threshold - before)/(after - before)
          at = self%clock + share*(clock - self%clock)
@@ -252,238 +236,131 @@ contains
       real(wp), intent(in), contiguous :: q0(:), v0(:), q1(:), v1(:)
       !> Its length, and the clock at its end [s]
       real(wp), intent(in) :: h, clock
-      real(wp) :: displacement(2), reach
-      integer :: i, m
+      real(wp) :: top(4), base(4), turn(4), spring(3)
+      integer :: i
 
       ! Steps up to an event may have no length.
       if (.not. h > tiny(1.0_wp)) return
-      m = size(q0)
-      ! No cubic goes further beyond its ends than that.
-      reach = 4.0_wp/27.0_wp*h
-      displacement = [motion%structure%top_displacement(q0), motion%structure%top_displacement(q1)]
-      if (peaks_may_grow(self, motion, springs, displacement, q0, v0, q1, v1, reach)) then
-         call fill_inner(m, q0, v0, q1, v1, h, self%inner_q, self%inner_v)
-         call find_peaks(self, motion, springs)
-      end if
-      if (.not. self%watching) return
-      self%clock = clock
-      self%displacement = displacement(2)
-      self%q(:) = q1
-      if (.not. self%opens) then
-         if (.not. are_beyond(m, self%lowest, self%highest, min(q0, q1) - reach*(abs(v0) + abs(v1)), &
-                              max(q0, q1) + reach*(abs(v0) + abs(v1)))) return
-      end if
-      call fill_inner(m, q0, v0, q1, v1, h, self%inner_q, self%inner_v)
-      if (self%opens) then
-         do i = 1, 4
-            call fill_openings(self, springs, self%inner_q(:, i), (i - 1)/3.0_wp, self%inner_openings(:, i))
-         end do
-         self%openings(:) = self%inner_openings(:, 4)
-      end if
-      call look_within(self, motion, h, clock)
-   end subroutine update_within_step
-
-   !> Whether the largest responses may grow within a step: each is a cubic in time, as the deformations are.
-   !> With damping it is not, and every step is looked at.
-   logical function peaks_may_grow(self, motion, springs, displacement, q0, v0, q1, v1, reach) result(grow)
-      type(response_monitor), intent(inout) :: self
-      type(equation_of_motion), intent(in) :: motion
-      type(spring_array), intent(in) :: springs
-      !> Of the top at both ends [m]
-      real(wp), intent(in) :: displacement(2)
-      !> See `update_within_step`
-      real(wp), intent(in), contiguous :: q0(:), v0(:), q1(:), v1(:)
-      !> How far a cubic goes beyond its ends, for the sum of both velocities there [s]
-      real(wp), intent(in) :: reach
-      real(wp) :: shear(2), more, longer
-      integer :: i
-
-      grow = .true.
-      if (motion%damped) return
       associate (structure => motion%structure)
-         if (structure%kinematics == finite) then
-            ! The top turns about a joint on the arm of the straight structure, longer by all slips and
-            ! openings; twice that, as a cubic through values overshoots them.
-            longer = 0.0_wp
-            do i = 1, size(q0)
-               if (structure%place(i)%kind /= flexure) longer = longer + abs(q0(i)) + way_of(i)
-            end do
-            more = 0.0_wp
-            do i = 1, size(q0)
-               more = more + 2.0_wp*(max(abs(structure%arm(i)), 1.0_wp) + longer)*way_of(i)
-            end do
-         else
-            more = reach*(abs(structure%speed(lateral, q0, v0)) + abs(structure%speed(lateral, q1, v1)))
+         top = [structure%top_displacement(q0), structure%top_displacement(q1), &
+                h*structure%speed(lateral, q0, v0), h*structure%speed(lateral, q1, v1)]
+         if (bound_of(top) > abs(self%peak_displacement)) then
+            call self%see_peak(largest_of(top), 0.0_wp)
+            self%collapsed = self%collapsed .or. abs(self%peak_displacement) >= self%furthest
          end if
-         if (goes_beyond(displacement(1), displacement(2), more, self%peak_displacement)) return
+         ! The force of the lowest springs is a cubic; what damping adds is taken as straight.
          i = structure%base_spring
-         if (i > 0) then
-            associate (f0 => springs%f0(i), k => springs%k(i))
-               shear = [f0 + k*(q0(i) - springs%d0(i)), f0 + k*(q1(i) - springs%d0(i))]
-               more = reach*abs(k)*(abs(v0(i)) + abs(v1(i)))
-            end associate
-            if (goes_beyond(shear(1), shear(2), more, self%peak_base_shear)) return
-         end if
+         spring = springs%k(i)*[q1(i) - q0(i), h*v0(i), h*v1(i)]
+         base(:2) = [motion%base_shear(springs, q0, v0), motion%base_shear(springs, q1, v1)]
+         base(3:) = spring(2:) + (base(2) - base(1) - spring(1))
+         if (bound_of(base) > abs(self%peak_base_shear)) call self%see_base(largest_of(base))
          call structure%rotations(q0, self%rotation(:, 1))
          call structure%rotations(q1, self%rotation(:, 2))
          call structure%rotations(v0, self%rotation(:, 3))
          call structure%rotations(v1, self%rotation(:, 4))
          do i = 1, structure%n
-            associate (r => self%rotation(i, :))
-               if (goes_beyond(r(1), r(2), reach*(abs(r(3)) + abs(r(4))), self%peak_rotation)) return
-            end associate
+            turn = [self%rotation(i, :2), h*self%rotation(i, 3:)]
+            if (bound_of(turn) > self%peak_rotation) call self%see_turn(abs(largest_of(turn)))
          end do
       end associate
-      grow = .false.
+      if (self%watching) call check_within(self, springs, q0, v0, q1, v1, top, h, clock)
+   end subroutine update_within_step
 
-   contains
-
-      !> How far a deformation may go from its values at the ends.
-      pure real(wp) function way_of(i)
-         integer, intent(in) :: i
-
-         way_of = abs(q1(i) - q0(i)) + reach*(abs(v0(i)) + abs(v1(i)))
-      end function way_of
-
-   end function peaks_may_grow
-
-   !> Whether a value between two others, or somewhat beyond them, may exceed a peak in size.
-   pure logical function goes_beyond(start, finish, more, peak)
-      real(wp), intent(in) :: start, finish, more, peak
-
-      goes_beyond = max(abs(start), abs(finish)) + more > abs(peak)*(1.0_wp - 1.0e-12_wp)
-   end function goes_beyond
-
-   !> The largest responses within a step whose inner states are known.
-   subroutine find_peaks(self, motion, springs)
+   !> Limit states within a step.
+   subroutine check_within(self, springs, q0, v0, q1, v1, top, h, clock)
       type(response_monitor), intent(inout) :: self
-      type(equation_of_motion), intent(in) :: motion
       type(spring_array), intent(in) :: springs
-      type(cubic_type) :: part
-      real(wp) :: displacement(4), base(4), turn(4)
-      integer :: i, j
-
-      do j = 1, 4
-         displacement(j) = motion%structure%top_displacement(self%inner_q(:, j))
-         base(j) = motion%base_shear(springs, self%inner_q(:, j), self%inner_v(:, j))
-         call motion%structure%rotations(self%inner_q(:, j), self%rotation(:, j))
-      end do
-      if (may_exceed(displacement, self%peak_displacement)) then
-         part = cubic_through(displacement)
-         call self%see_peak(part%largest(), 0.0_wp)
-         self%collapsed = self%collapsed .or. abs(self%peak_displacement) >= self%furthest
-      end if
-      if (may_exceed(base, self%peak_base_shear)) then
-         part = cubic_through(base)
-         call self%see_base(part%largest())
-      end if
-      do i = 1, size(self%rotation, 1)
-         turn = self%rotation(i, :)
-         if (.not. may_exceed(turn, self%peak_rotation)) cycle
-         part = cubic_through(turn)
-         call self%see_turn(abs(part%largest()))
-      end do
-   end subroutine find_peaks
-
-   !> Whether a cubic through four values may exceed another one in size: between them it is at most 1.64
-   !> times the largest of them (the Lebesgue constant of four equal distances).
-   pure logical function may_exceed(value, other)
-      real(wp), intent(in) :: value(4), other
-
-      may_exceed = 1.64_wp*max(abs(value(1)), abs(value(2)), abs(value(3)), abs(value(4))) > abs(other)
-   end function may_exceed
-
-   !> Limit states within a step whose inner states are known.
-   subroutine look_within(self, motion, h, clock)
-      type(response_monitor), intent(inout) :: self
-      type(equation_of_motion), intent(in) :: motion
-      real(wp), intent(in) :: h, clock
-      type(cubic_type) :: along, top
+      !> See `update_within_step`; displacement of the top as a cubic
+      real(wp), intent(in), contiguous :: q0(:), v0(:), q1(:), v1(:)
+      real(wp), intent(in) :: top(4), h, clock
       real(wp) :: value(4), share
       logical :: open(size(self%reached))
-      integer :: i, j
+      integer :: i
 
-      do j = 1, 4
-         value(j) = motion%structure%top_displacement(self%inner_q(:, j))
-      end do
-      top = cubic_through(value)
+      self%clock = clock
+      self%displacement = top(2)
+      self%q(:) = q1
+      if (.not. self%opens) then
+         if (.not. are_beyond(size(q0), self%lowest, self%highest, q0, v0, q1, v1, h*beyond_ends)) return
+      end if
       open = .not. self%reached < huge(1.0_wp)
       do i = 1, size(self%watch)
          if (.not. open(self%watch(i)%state)) cycle
-         do j = 1, 4
-            value(j) = value_of(self%watch(i), self%inner_q(:, j), self%inner_openings(i, j))
-         end do
-         along = cubic_through(value)
-         share = along%first_at(self%watch(i)%threshold)
-         if (share <= 1.0_wp) call reach(self, i, clock - (1.0_wp - share)*h, top%at(share))
+         value(:2) = [value_at(q0, v0, 0.0_wp), value_at(q1, v1, 0.0_wp)]
+         value(3:) = [value_at(q0, v0, h) - value(1), value_at(q1, v1, h) - value(2)]
+         share = first_at(value, self%watch(i)%threshold)
+         if (share <= 1.0_wp) call reach(self, i, clock - (1.0_wp - share)*h, &
+                                         cubic_at(share, top(1), top(2), top(3), top(4)))
       end do
       call set_bounds(self)
-   end subroutine look_within
+      if (self%opens) call see_openings(self, springs, q1)
 
-   !> Shares of the openings, and of the rotations at rest, in what is watched.
-   pure subroutine fill_openings(self, springs, q, share, openings)
-      type(response_monitor), intent(in) :: self
+   contains
+
+      !> Value of the watch, linear in the deformations, a time behind those that there are.
+      pure real(wp) function value_at(q, v, later)
+         real(wp), intent(in) :: q(:), v(:), later
+
+         associate (watch => self%watch(i))
+            associate (turn => q(watch%turns) + later*v(watch%turns))
+               value_at = value_of(watch, q(watch%slips) + later*v(watch%slips), turn, &
+                                   opening_share(watch, springs, turn))
+            end associate
+         end associate
+      end function value_at
+
+   end subroutine check_within
+
+   !> Remember the shares of the openings in what is watched.
+   pure subroutine see_openings(self, springs, q)
+      type(response_monitor), intent(inout) :: self
       type(spring_array), intent(in) :: springs
-      !> Deformations (springs), and the share of the step, see `opening_of`
-      real(wp), intent(in) :: q(:), share
-      !> (watches)
-      real(wp), intent(inout) :: openings(:)
+      !> Deformations (springs)
+      real(wp), intent(in) :: q(:)
       integer :: i
 
       do i = 1, size(self%watch)
-         associate (watch => self%watch(i))
-            if (.not. abs(watch%opening) > 0.0_wp) cycle
-            openings(i) = watch%opening*opening_of(springs, watch%turns, q(watch%turns), share) &
-                          + watch%rotation*rest_of(springs, watch%turns)
-         end associate
+         self%openings(i) = opening_share(self%watch(i), springs, q(self%watch(i)%turns))
       end do
-   end subroutine fill_openings
+   end subroutine see_openings
 
-   !> The states at the start of a step, at its thirds and at its end.
-   pure subroutine fill_inner(m, q0, v0, q1, v1, h, q, v)
+   !> Share of the opening, and of the rotation at rest, in what is watched.
+   pure real(wp) function opening_share(watch, springs, turn) result(share)
+      type(watch_type), intent(in) :: watch
+      type(spring_array), intent(in) :: springs
+      !> Rotation of the joint [rad]
+      real(wp), intent(in) :: turn
+
+      share = 0.0_wp
+      if (abs(watch%opening) > 0.0_wp) share = watch%opening*opening_of(springs, watch%turns, turn) &
+                                               + watch%rotation*rest_of(springs, watch%turns)
+   end function opening_share
+
+   !> Whether some deformation may be at a bound within a step.
+   pure logical function are_beyond(m, lowest, highest, q0, v0, q1, v1, reach)
       integer, intent(in) :: m
-      real(wp), intent(in) :: q0(m), v0(m), q1(m), v1(m), h
-      real(wp), intent(out) :: q(m, 4), v(m, 4)
-      real(wp) :: s, bulge
-      integer :: i, j
-
-      q(:, 1) = q0
-      v(:, 1) = v0
-      q(:, 4) = q1
-      v(:, 4) = v1
-      do j = 2, 3
-         s = (j - 1)/3.0_wp
-         do i = 1, m
-            q(i, j) = q0(i) + s**2*(3.0_wp - 2.0_wp*s)*(q1(i) - q0(i)) &
-                      + s*(1.0_wp - s)*h*((1.0_wp - s)*v0(i) - s*v1(i))
-            ! Excess of the mean velocity over that of the ends; in a very short step it would be round-off.
-            bulge = (q1(i) - q0(i))/h - 0.5_wp*(v0(i) + v1(i))
-            bulge = min(max(bulge, -abs(v1(i) - v0(i))), abs(v1(i) - v0(i)))
-            v(i, j) = (1.0_wp - s)*v0(i) + s*v1(i) + 6.0_wp*s*(1.0_wp - s)*bulge
-         end do
-      end do
-   end subroutine fill_inner
-
-   !> Whether some deformation may be at a bound.
-   pure logical function are_beyond(m, lowest, highest, least, most)
-      integer, intent(in) :: m
-      real(wp), intent(in) :: lowest(m), highest(m), least(m), most(m)
+      real(wp), intent(in) :: lowest(m), highest(m), q0(m), v0(m), q1(m), v1(m)
+      !> How far a cubic goes beyond its ends, for the sum of both velocities there [s]
+      real(wp), intent(in) :: reach
       integer :: i, beyond
 
       beyond = 0
       do i = 1, m
-         beyond = beyond + merge(1, 0, most(i) >= highest(i) .or. least(i) <= lowest(i))
+         associate (more => reach*(abs(v0(i)) + abs(v1(i))))
+            beyond = beyond + merge(1, 0, max(q0(i), q1(i)) + more >= highest(i) .or. &
+                                    min(q0(i), q1(i)) - more <= lowest(i))
+         end associate
       end do
       are_beyond = beyond > 0
    end function are_beyond
 
    !> Value of a watch, which is compared with its threshold.
-   pure real(wp) function value_of(watch, q, opening) result(value)
+   pure real(wp) function value_of(watch, slip, turn, opening) result(value)
       type(watch_type), intent(in) :: watch
-      !> Deformations (springs), and the share of the opening
-      real(wp), intent(in) :: q(:), opening
+      !> Deformations of its joint, and the share of the opening
+      real(wp), intent(in) :: slip, turn, opening
 
-      value = watch%slip*q(watch%slips) + watch%rotation*q(watch%turns) + opening
+      value = watch%slip*slip + watch%rotation*turn + opening
    end function value_of
 
    !> A limit state may be reached.
@@ -534,96 +411,5 @@ contains
       if (factor > 0.0_wp) highest = min(highest, threshold/factor)
       if (factor < 0.0_wp) lowest = max(lowest, threshold/factor)
    end subroutine narrow
-
-   pure type(cubic_type) function cubic_through(value) result(cubic)
-      !> At 0, 1/3, 2/3 and 1
-      real(wp), intent(in) :: value(4)
-      real(wp) :: d1, d2, d3
-
-      ! Differences: values that are equal have coefficients that vanish.
-      d1 = value(2) - value(1)
-      d2 = value(3) - value(2)
-      d3 = value(4) - value(3)
-      cubic%last = value(4)
-      cubic%c(1) = value(1)
-      cubic%c(2) = 0.5_wp*(11.0_wp*d1 - 7.0_wp*d2 + 2.0_wp*d3)
-      cubic%c(3) = 4.5_wp*(-2.0_wp*d1 + 3.0_wp*d2 - d3)
-      cubic%c(4) = 4.5_wp*(d1 - 2.0_wp*d2 + d3)
-   end function cubic_through
-
-   pure real(wp) function at(self, s)
-      class(cubic_type), intent(in) :: self
-      real(wp), intent(in) :: s
-
-      at = self%last
-      if (s < 1.0_wp) at = self%c(1) + s*(self%c(2) + s*(self%c(3) + s*self%c(4)))
-   end function at
-
-   !> Where it turns within the step, in order; 1 where it does not.
-   pure function turns(self) result(s)
-      class(cubic_type), intent(in) :: self
-      real(wp) :: s(2), a, half, root, q
-
-      s = 1.0_wp
-      a = 3.0_wp*self%c(4)
-      half = self%c(3)
-      root = half**2 - a*self%c(2)
-      if (.not. root > 0.0_wp) return
-      ! The larger of both in size first, so that nothing cancels.
-      q = -(half + sign(sqrt(root), half))
-      s(1) = share_of(self%c(2), q)
-      s(2) = share_of(q, a)
-      if (s(1) > s(2)) s = s([2, 1])
-   end function turns
-
-   !> A quotient, 1 where it is not between 0 and 1.
-   pure real(wp) function share_of(part, whole) result(share)
-      real(wp), intent(in) :: part, whole
-
-      share = 1.0_wp
-      if (abs(part) < abs(whole) .and. part*whole > 0.0_wp) share = part/whole
-   end function share_of
-
-   !> The value that is largest in size, with its sign.
-   pure real(wp) function largest(self)
-      class(cubic_type), intent(in) :: self
-      real(wp) :: value(4), s(2)
-
-      s = self%turns()
-      value = [self%c(1), self%at(s(1)), self%at(s(2)), self%last]
-      largest = value(maxloc(abs(value), dim=1))
-   end function largest
-
-   !> Where it first has a value or is above it; 2 if it does not within the step.
-   pure real(wp) function first_at(self, value) result(s)
-      class(cubic_type), intent(in) :: self
-      real(wp), intent(in) :: value
-      real(wp) :: way(3), low, high
-      integer :: i
-
-      s = 0.0_wp
-      if (self%c(1) >= value) return
-      way(:2) = self%turns()
-      way(3) = 1.0_wp
-      low = 0.0_wp
-      do i = 1, 3
-         high = way(i)
-         if (self%at(high) >= value) exit
-         low = high
-      end do
-      s = 2.0_wp
-      if (i > 3) return
-      ! It rises from the one to the other.
-      do
-         s = 0.5_wp*(low + high)
-         if (.not. (s > low .and. s < high)) exit
-         if (self%at(s) >= value) then
-            high = s
-         else
-            low = s
-         end if
-      end do
-      s = high
-   end function first_at
 
 end module rbs_solve_time_monitor

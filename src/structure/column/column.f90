@@ -530,7 +530,7 @@ contains
       end if
       if (.not. contents%openings .or. self%opens) return
       do i = 1, n
-         row(at + i) = opening_of(springs, self%at(flexure, i), d(self%at(flexure, i)), 0.0_wp)
+         row(at + i) = opening_of(springs, self%at(flexure, i), d(self%at(flexure, i)))
          row(at + n + i) = rest_of(springs, self%at(flexure, i))
       end do
    end subroutine fill_row

@@ -1,0 +1,92 @@
+!> Hermite's cubic over a step: values at both ends with their rates, over the share s of the step from 0 to 1.
+module rbs_base_cubic
+   use rbs_base_kinds, only: wp
+   implicit none
+   private
+
+   public :: cubic_at, turns_of, bound_of, largest_of, first_at
+
+   !> No cubic goes further beyond its ends than this share of the sum of its slopes there.
+   real(wp), parameter, public :: beyond_ends = 4.0_wp/27.0_wp
+
+contains
+
+   !> Value at a share of the step; its change is reckoned from the first end.
+   elemental real(wp) function cubic_at(s, first, last, first_slope, last_slope) result(value)
+      !> Values at the ends, and slopes by s
+      real(wp), intent(in) :: s, first, last, first_slope, last_slope
+
+      value = last
+      if (s < 1.0_wp) value = first + s*(first_slope*(1.0_wp - s)**2 &
+                                         + s*((last - first)*(3.0_wp - 2.0_wp*s) - last_slope*(1.0_wp - s)))
+   end function cubic_at
+
+   !> Where it turns within the step, in order; 1 where it does not.
+   pure function turns_of(c) result(s)
+      !> Both values, and both slopes
+      real(wp), intent(in) :: c(4)
+      real(wp) :: s(2), a, half, root, q
+
+      s = 1.0_wp
+      ! Half of the derivative is  a s**2/2 + half s + c(3)/2.
+      a = 3.0_wp*(c(3) + c(4) - 2.0_wp*(c(2) - c(1)))
+      half = 3.0_wp*(c(2) - c(1)) - 2.0_wp*c(3) - c(4)
+      root = half**2 - a*c(3)
+      if (.not. root > 0.0_wp) return
+      ! The larger of both in size first, so that nothing cancels.
+      q = -(half + sign(sqrt(root), half))
+      s(1) = share_of(c(3), q)
+      s(2) = share_of(q, a)
+      if (s(1) > s(2)) s = s([2, 1])
+   end function turns_of
+
+   !> A quotient, 1 where it is not between 0 and 1.
+   pure real(wp) function share_of(part, whole) result(share)
+      real(wp), intent(in) :: part, whole
+
+      share = 1.0_wp
+      if (abs(part) < abs(whole) .and. part*whole > 0.0_wp) share = part/whole
+   end function share_of
+
+   !> What it does not exceed in size.
+   pure real(wp) function bound_of(c) result(bound)
+      real(wp), intent(in) :: c(4)
+
+      bound = max(abs(c(1)), abs(c(2))) + beyond_ends*(abs(c(3)) + abs(c(4)))
+   end function bound_of
+
+   !> The value that is largest in size, with its sign.
+   pure real(wp) function largest_of(c) result(largest)
+      real(wp), intent(in) :: c(4)
+      real(wp) :: value(4)
+
+      value = [c(1), cubic_at(turns_of(c), c(1), c(2), c(3), c(4)), c(2)]
+      largest = value(maxloc(abs(value), dim=1))
+   end function largest_of
+
+   !> Where it first has a value or is above it; 2 if it does not within the step.
+   pure real(wp) function first_at(c, value) result(s)
+      real(wp), intent(in) :: c(4), value
+      real(wp) :: way(4), low, high
+      integer :: i
+
+      way = [0.0_wp, turns_of(c), 1.0_wp]
+      i = findloc(cubic_at(way, c(1), c(2), c(3), c(4)) >= value, .true., dim=1)
+      s = merge(0.0_wp, 2.0_wp, i == 1)
+      if (i < 2) return
+      ! It rises from the one to the other.
+      low = way(i - 1)
+      high = way(i)
+      do
+         s = 0.5_wp*(low + high)
+         if (.not. (s > low .and. s < high)) exit
+         if (cubic_at(s, c(1), c(2), c(3), c(4)) >= value) then
+            high = s
+         else
+            low = s
+         end if
+      end do
+      s = high
+   end function first_at
+
+end module rbs_base_cubic
