@@ -421,7 +421,7 @@ def batch(
 def plan_ensemble(
     batch: Mapping[str, Any],
 ) -> tuple[Array, NDArray[np.int32], list[tuple[int, str]]]:
-    """Return the seconds that a run is expected to take, whether lanes take it, and faults.
+    """Return the seconds that a run will take about, whether lanes take it, and faults.
 
     The first two have shape (motions, columns). A fault is the number of a column, from 0, and a
     message.

@@ -31,7 +31,7 @@ module rbs_case_analysis_record
       character(len=20) :: events = ''
       real(wp) :: tolerance = unset, rho_infinity = unset, collapse_drift = unset
       logical :: allow_unstable = .false.
-      !> A run in time that is expected to take longer is not begun [s]; `unset`: five minutes
+      !> A run that takes longer is stopped [s]; `unset`: none is
       real(wp) :: max_seconds = unset
       !> Path of the state that the analysis begins in; not allocated: at rest
       character(len=:), allocatable :: initial
@@ -85,9 +85,7 @@ contains
       call v%key('allow_unstable', self%allow_unstable, &
                  'rk4: take a step beyond the stability limit all the same')
       call v%key('max_seconds', self%max_seconds, 's', above_zero, &
-                 'a run that takes longer is stopped; one in time that is expected to take longer is '// &
-                 'not begun, without it one of more than 300', &
-                 optional=.true.)
+                 'a run that takes longer is stopped', optional=.true.)
       call v%long_text('initial', self%initial, &
                        'path of the state that another analysis ended in, to begin there')
    end subroutine visit_analysis

@@ -16,7 +16,6 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem import InputError
 from rbsdem import __main__ as command
 from rbsdem.run.accuracy import Answer, errors_of
 from rbsdem.run.solver import METHODS
@@ -147,7 +146,7 @@ LONG = """
 &shear rule = 'bilinear', k = 7.0387e8, d_y = 1.296e-4, k_post = 8.3185e6 /
 &flexure rule = 'elastic', k = 2.5e8 /
 &loading drive = 'ground_acceleration', unit = 'g', amplitudes = 0.1, 0.2, period = 0.5 /
-&analysis method = 'rk4', duration = 20, max_seconds = 1e5 /
+&analysis method = 'rk4', duration = 20 /
 """
 SAID = "steps with method = 'rk4' will take some .* s; the highest frequency limits the stable step"
 
@@ -164,39 +163,6 @@ def test_a_long_run_says_so_before_it_starts_and_names_the_faster_method(tmp_pat
     assert case.run(method="generalised_alpha").summary["status"] == "completed"
     with pytest.raises(rbsdem.errors.LongRunWarning, match="Faster: method = 'generalised_alpha'"):
         case.run(replace(case.column, kinematics="finite"))
-
-
-REFUSED = (
-    "will take some .*. It is not begun, .* more than 300 s; if it is wanted, give max_seconds"
-)
-
-
-def test_a_run_of_many_minutes_needs_a_yes(tmp_path, run_cli):
-    """The run above, half as long again, without the time that it is allowed: six minutes or so."""
-    allowed = LONG.replace("duration = 20", "duration = 30")
-    text = allowed.replace(", max_seconds = 1e5", "")
-    (tmp_path / "case.nml").write_text(text, "utf-8")
-    case = rbsdem.read_case(tmp_path / "case.nml")
-    with pytest.raises(InputError, match=REFUSED) as caught:
-        case.run()
-    assert "Faster: method = 'generalised_alpha'" in str(caught.value)
-    motion = np.linspace(0.0, 30.0, 100), np.ones(100)
-    with pytest.raises(InputError, match=REFUSED):
-        rbsdem.ensemble(case.column, motion, method="rk45")
-    for verb in ("check", "run"):
-        told = run_cli([verb, "case.nml"], tmp_path)
-        assert told.returncode == 2
-        assert "give max_seconds" in told.stderr
-    # Warnings are errors here: allowed, it would start.
-    with pytest.raises(rbsdem.errors.LongRunWarning, match="will take some"):
-        case.run(max_seconds=1e6)
-    (tmp_path / "allowed.nml").write_text(allowed, "utf-8")
-    assert run_cli(["check", "allowed.nml"], tmp_path).returncode == 0
-    # The bound is the user's.
-    with pytest.raises(InputError, match="more than 1e-09 s"):
-        shake(method="rk4", dt=1e-3, max_seconds=1e-9)
-    with pytest.raises(InputError, match="more than 1e-09 s"):
-        rbsdem.ensemble(COLUMN, (0.01, [0.0, 1.0, 0.0]), max_seconds=1e-9)
 
 
 def test_the_executable_says_so_too(run_cli, tmp_path):

@@ -104,6 +104,15 @@ def test_max_seconds_end_a_static_path_of_a_case(run_cli, tmp_path):
     assert len((tmp_path / "long.csv").read_text().splitlines()) > 2
 
 
+def test_max_seconds_end_runs_of_an_ensemble():
+    """A run that is stopped has no measures and says why; the others go on."""
+    short, long = (0.01, np.ones(3)), (0.01, np.sin(0.1 * np.arange(400_000)))
+    found = rbsdem.ensemble(COLUMN, [short, long], method="newmark", max_seconds=0.2)
+    assert found.status.ravel().tolist() == ["completed", "failed"]
+    assert "max_seconds" in found.errors[1]
+    assert np.isnan(found.measures["peak_drift"].ravel()[1])
+
+
 def test_a_long_run_shows_how_far_it_is(monkeypatch):
     """Parts of a hundred, which grow; beside a bar that is shown there is no other."""
     shown = []

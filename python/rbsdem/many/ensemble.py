@@ -261,7 +261,7 @@ def ensemble(
         Return the runs that were finished if Ctrl-C ends the work, the others with the status "".
     **solver
         Settings of the method, see `rbsdem.Solver`. Without a method "auto" chooses for each column
-        and motion; `max_seconds` is the longest that one run may be expected to take.
+        and motion; a run that takes longer than `max_seconds` has failed.
 
     Returns
     -------

@@ -362,8 +362,7 @@ def time_history(
     Raises
     ------
     InputError
-        For bad input, for a step beyond the stability limit (the message gives the limit), and for
-        a run that is expected to take more than `max_seconds`.
+        For bad input, and for a step beyond the stability limit (the message gives the limit).
     SolveError
         If the motion grows without bounds, or a step does not converge; its attribute `result`
         holds the rows up to that point.

@@ -44,9 +44,7 @@ class Solver(TypedDict, total=False):
     allow_unstable : bool
         For "rk4": accept a `dt` beyond the stability limit.
     max_seconds : float
-        A run that is expected to take longer is refused before it starts [s]; the message says how
-        long, and which method is faster. The default is 300. One that is given also ends a run that
-        takes longer than expected: it is "stopped", with the rows up to there.
+        A run that takes longer [s] is "stopped", with the rows up to there.
     """
 
     method: MethodName | None

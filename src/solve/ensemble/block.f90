@@ -227,6 +227,7 @@ contains
       end if
       task%recorder => no_rows
       task%collapse_drift = column%analysis%collapse_drift
+      task%most_seconds = column%analysis%max_seconds
       loads%signal(horizontal)%time = motion%time
       loads%signal(horizontal)%value = scale*motion%acceleration
       call take_before(column, task%before)

@@ -1,5 +1,6 @@
 !> Which runs lanes can take.
 module rbs_solve_ensemble_lane_choice
+   use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column, only: column_type, finite
    use rbs_solve_ensemble_ensemble_input, only: ensemble_column
@@ -13,7 +14,7 @@ module rbs_solve_ensemble_lane_choice
 contains
 
    !> Whether lanes can take a run: one body from rest, small rotations, a free top, joints that do not open
-   !> and are not layered, all steps equal, lines changed at the end of a step.
+   !> and are not layered, all steps equal, lines changed at the end of a step, no bound by the clock.
    pure logical function takes_lanes(of_runs, plan, time)
       type(ensemble_column), intent(in) :: of_runs
       type(time_plan), intent(in) :: plan
@@ -21,7 +22,7 @@ contains
       integer :: i
 
       takes_lanes = .false.
-      if (allocated(of_runs%before)) return
+      if (allocated(of_runs%before) .or. is_given(of_runs%analysis%max_seconds)) return
       select type (column => of_runs%structure)
       class is (column_type)
          if (column%unknowns /= 2 .or. column%held .or. column%kinematics == finite) return

@@ -50,9 +50,13 @@ contains
       real(wp) :: nothing
 
       nothing = ieee_value(nothing, ieee_quiet_nan)
-      if (allocated(error)) then
+      if (allocated(error) .or. summary%stopped) then
          result%fate = fate_failed
-         result%message = error%message
+         if (allocated(error)) then
+            result%message = error%message
+         else
+            result%message = summary%remark
+         end if
          result%value = nothing
          result%reached = spread(nothing, 1, size(reached))
          return

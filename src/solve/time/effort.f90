@@ -1,8 +1,7 @@
 !> Expected duration of a run in time, noted before it starts, and the faster method.
 module rbs_solve_time_effort
    use rbs_base_constants, only: pi
-   use rbs_base_check, only: is_given
-   use rbs_base_error, only: error_type, fatal_error, bad_input
+   use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_case_methods, only: method_type, method_named
@@ -12,13 +11,13 @@ module rbs_solve_time_effort
    implicit none
    private
 
-   public :: patience, expected_seconds, long_run_note, check_effort
+   public :: patience, expected_seconds, long_run_note
 
    !> Runs that are expected to be shorter start without a word [s].
    real(wp), parameter :: patience = 5.0_wp
 
-   !> Longer ones do not start unless the user allows it [s].
-   real(wp), parameter :: usual_max_seconds = 300.0_wp
+   !> Work for a spring, over that for a column of one body.
+   real(wp), parameter :: share_of_spring = 0.3_wp
 
    !> Exact rotations make a step this much longer.
    real(wp), parameter :: cost_of_finite = 6.0_wp
@@ -38,7 +37,7 @@ contains
       type(method_type) :: method
 
       method = method_named(plan%method)
-      seconds = steps_of(plan, method)*(structure%n + 1)*method%body_step
+      seconds = steps_of(plan, method)*(1.0_wp + share_of_spring*size(structure%place))*method%body_step
       if (structure%kinematics == finite) seconds = cost_of_finite*seconds
    end function expected_seconds
 
@@ -81,27 +80,6 @@ contains
              to_text(one_digit(expected_seconds(structure, short)))//' s, with errors of about '// &
              to_text(other%usual_error)//' in place of '//to_text(method%usual_error)
    end subroutine long_run_note
-
-   !> Refuse a run that is expected to take longer than the user allows.
-   subroutine check_effort(structure, max_seconds, plan, error)
-      class(structure_type), intent(in) :: structure
-      !> `unset`: the usual time [s]
-      real(wp), intent(in) :: max_seconds
-      type(time_plan), intent(in) :: plan
-      type(error_type), allocatable, intent(out) :: error
-      character(len=:), allocatable :: text
-      real(wp) :: most, seconds
-
-      most = usual_max_seconds
-      if (is_given(max_seconds)) most = max_seconds
-      seconds = expected_seconds(structure, plan)
-      if (.not. seconds > most) return
-      call long_run_note(structure, plan, text)
-      if (text == '') text = 'analysis: the run will take some '//to_text(one_digit(seconds))//' s'
-      call fatal_error(error, bad_input, text//'. It is not begun, as it is expected to take more than '// &
-                       to_text(most)//' s; if it is wanted, give max_seconds = '// &
-                       to_text(3.0_wp*one_digit(seconds)))
-   end subroutine check_effort
 
    !> One digit is all that is known.
    elemental real(wp) function one_digit(seconds)

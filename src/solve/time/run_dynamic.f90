@@ -9,7 +9,6 @@ module rbs_solve_time_run_dynamic
    use rbs_base_check, only: is_given, check_values
    use rbs_solve_task, only: task_type
    use rbs_solve_modal_modes, only: frequency_bounds, stability_limit
-   use rbs_solve_time_effort, only: check_effort
    use rbs_solve_time_implicit, only: implicit_stepper, new_newmark, new_hht, new_generalised_alpha, &
                                       with_finite_rotations
    use rbs_loading_loads, only: loads_type, lateral, vertical, top_axial, signals, signal_names
@@ -69,8 +68,6 @@ contains
          return
       end if
       call plan_steps()
-      if (allocated(error)) return
-      call check_effort(structure, analysis%max_seconds, plan, error)
 
    contains
 
