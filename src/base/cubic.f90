@@ -1,4 +1,4 @@
-!> Hermite's cubic over a step: values at both ends with their rates, over the share s of the step from 0 to 1.
+!> Hermite's cubic over a step: values at both ends with their rates, over the share s of the step, 0 to 1.
 module rbs_base_cubic
    use rbs_base_kinds, only: wp
    implicit none

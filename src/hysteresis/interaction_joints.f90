@@ -1,10 +1,9 @@
 !> Layered joints whose axial loads vary: they follow straight paths in rotation and axial load, and are on
 !> planes where other springs are on lines.
 module rbs_hysteresis_interaction_joints
-   use rbs_base_constants, only: unbounded
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_layered_fibre_fall, only: layer_fall, find_fall
-   use rbs_hysteresis_layered_fibre_path, only: choose_branches, way_to_event
+   use rbs_hysteresis_layered_fibre_path, only: choose_branches
    use rbs_hysteresis_layered_fibre_section, only: fibre_section
    use rbs_hysteresis_layered_layered_joint, only: branch_under
    use rbs_hysteresis_segment, only: segment
@@ -12,8 +11,17 @@ module rbs_hysteresis_interaction_joints
    implicit none
    private
 
-   public :: vary_axial_loads, fall_of, opening_of, rest_of, choose_lines, nearest_layer
-   public :: moment_on_plane, least_forward_rate, put_on_plane, go_under
+   public :: vary_axial_loads, fall_of, opening_of, rest_of, choose_lines, line_list, list_lines, place_lines
+   public :: moment_on_plane, put_on_plane, go_under
+
+   !> Lines of the springs, then those of the layers of joints on planes, joint by joint (lines).
+   type :: line_list
+      !> Ends, and direction of a branch that unloads on reversal, see `segment`
+      real(wp), allocatable :: lower(:), upper(:)
+      integer, allocatable :: one_way(:)
+      !> The spring that a layer belongs to; 0 of springs
+      integer, allocatable :: joint(:)
+   end type line_list
 
 contains
 
@@ -84,34 +92,65 @@ contains
       call read_plane(springs, i)
    end subroutine choose_lines
 
-   !> How far the layered joints can go from points of their planes along straight paths until the first layer
-   !> reaches the end of its line.
-   pure subroutine nearest_layer(springs, rotation, axial_load, turn, press, way, joint, layer)
+   !> The present lines of springs and of layers on planes.
+   pure subroutine list_lines(springs, lines)
       type(spring_array), intent(in) :: springs
-      !> Of the joints, and rates (count); rate of all axial loads
-      real(wp), intent(in) :: rotation(:), axial_load(:), turn(:), press
-      !> In units of the rates; `unbounded` if there is no end
-      real(wp), intent(out) :: way
-      !> The spring and its layer, 0 for none
-      integer, intent(out) :: joint, layer
-      real(wp) :: room
-      integer :: i, j, first
+      type(line_list), intent(inout) :: lines
+      integer :: i, j
 
-      way = unbounded
-      joint = 0
-      layer = 0
-      do j = 1, size(springs%layered)
-         i = springs%layered(j)
-         select type (section => springs%slot(i)%memory)
+      if (.not. allocated(lines%joint)) then
+         lines%joint = spread(0, 1, springs%count)
+         do j = 1, merge(size(springs%layered), 0, springs%pressed)
+            i = springs%layered(j)
+            select type (section => springs%slot(i)%memory)
+            type is (fibre_section)
+               lines%joint = [lines%joint, spread(i, 1, section%count)]
+            end select
+         end do
+         allocate (lines%lower(size(lines%joint)), lines%upper(size(lines%joint)), &
+                   lines%one_way(size(lines%joint)))
+      end if
+      do i = 1, springs%count
+         lines%lower(i) = springs%end_toward(i, -1)
+         lines%upper(i) = springs%end_toward(i, 1)
+         lines%one_way(i) = springs%unload_on_reversal(i)
+      end do
+      i = springs%count + 1
+      do while (i <= size(lines%joint))
+         select type (section => springs%slot(lines%joint(i))%memory)
          type is (fibre_section)
-            call way_to_event(section, rotation(i), axial_load(i), turn(i), press, room, first)
-            if (first == 0 .or. room >= way) cycle
-            way = room
-            joint = i
-            layer = first
+            j = i + section%count - 1
+            lines%lower(i:j) = section%lo
+            lines%upper(i:j) = section%hi
+            lines%one_way(i:j) = section%branch%unload_on_reversal
+            i = j + 1
          end select
       end do
-   end subroutine nearest_layer
+   end subroutine list_lines
+
+   !> Where they are at a point of a path, and their rates.
+   pure subroutine place_lines(springs, lines, q, axial_load, rate, axial_rate, d, v)
+      type(spring_array), intent(in) :: springs
+      type(line_list), intent(in) :: lines
+      !> Deformations and axial loads of the springs, and their rates; one of all axial loads (count)
+      real(wp), intent(in) :: q(:), axial_load(:), rate(:), axial_rate
+      !> Deformations and rates (lines)
+      real(wp), intent(inout) :: d(:), v(:)
+      integer :: i, j, joint
+
+      d(:springs%count) = q
+      v(:springs%count) = rate
+      i = springs%count + 1
+      do while (i <= size(lines%joint))
+         joint = lines%joint(i)
+         select type (section => springs%slot(joint)%memory)
+         type is (fibre_section)
+            j = i + section%count - 1
+            call section%look_at(q(joint), axial_load(joint), rate(joint), axial_rate, d(i:j), v(i:j))
+            i = j + 1
+         end select
+      end do
+   end subroutine place_lines
 
    !> Moment of a layered joint on its plane [N m].
    elemental real(wp) function moment_on_plane(springs, i, rotation, axial_load) result(moment)
@@ -122,19 +161,6 @@ contains
       moment = springs%f0(i) + springs%k(i)*(rotation - springs%d0(i)) &
                - springs%centre(i)*(axial_load - springs%press_at(i))
    end function moment_on_plane
-
-   !> The least forward rate of the layers of a joint that would unload on reversal, see `fibre_section`.
-   pure real(wp) function least_forward_rate(springs, i, turn, press, digits) result(least)
-      type(spring_array), intent(in) :: springs
-      integer, intent(in) :: i
-      real(wp), intent(in) :: turn(3), press(3), digits
-
-      least = 1.0_wp
-      select type (section => springs%slot(i)%memory)
-      type is (fibre_section)
-         least = section%least_forward_rate(turn, press, digits)
-      end select
-   end function least_forward_rate
 
    !> Move a layered joint on its plane to a point, where a layer (0: none) comes to the end of its line.
    !> Its work is left to the caller, who knows the path.
@@ -163,25 +189,22 @@ contains
       !> Whether the axial loads varied before
       logical, intent(in) :: from_planes
       type(segment) :: line
-      real(wp) :: load
       integer :: i, j
 
       do j = 1, size(springs%layered)
          i = springs%layered(j)
-         load = axial_load(i)
          select type (section => springs%slot(i)%memory)
          type is (fibre_section)
-            if (springs%pressed) then
-               if (abs(section%axial_load - load) > 0.0_wp .or. .not. from_planes) then
-                  call branch_under(section, springs%d(i), load, springs%work(i), line)
-                  call read_plane(springs, i)
-               end if
-               springs%press_to(i) = load
-            else if (abs(section%axial_load - load) > 0.0_wp .or. from_planes) then
-               call branch_under(section, springs%d(i), load, springs%work(i), line)
-               call put_line(springs, i, line)
-            end if
+            if (.not. abs(section%axial_load - axial_load(i)) > 0.0_wp .and. &
+                (springs%pressed .eqv. from_planes)) cycle
+            call branch_under(section, springs%d(i), axial_load(i), springs%work(i), line)
          end select
+         if (springs%pressed) then
+            call read_plane(springs, i)
+            springs%press_to(i) = axial_load(i)
+         else
+            call put_line(springs, i, line)
+         end if
       end do
       springs%version = modulo(springs%version + 1, huge(1))
    end subroutine go_under

@@ -8,15 +8,13 @@ module rbs_hysteresis_layered_fibre_path
    implicit none
    private
 
-   public :: choose_branches, go, way_to_event
+   public :: choose_branches, go
 
    !> Passes in which all layers without room change their branches at once, before both ways of each are
    !> weighed.
    integer, parameter :: most_passes = 4
    !> A way beyond this, in units of the rates, is none.
    real(wp), parameter :: beyond = 1.0e100_wp
-   !> Layers that are looked at together.
-   integer, parameter :: block = 64
 
 contains
 
@@ -53,44 +51,6 @@ contains
       end do
       self%failed = .true.
    end subroutine go
-
-   !> How far a path goes from a point on the present branches until a layer reaches the end of its branch.
-   pure subroutine way_to_event(self, rotation, axial_load, turn, press, way, first)
-      type(fibre_section), intent(in) :: self
-      real(wp), intent(in) :: rotation, axial_load
-      !> Rates of the rotation and of the axial load
-      real(wp), intent(in) :: turn, press
-      !> In units of the rates; `unbounded` if none does
-      real(wp), intent(out) :: way
-      !> The layer, 0 for none
-      integer, intent(out) :: first
-      real(wp) :: ahead(block), turned, opening, open, nearest, least_room, stiffness
-      integer :: i, begin, n
-      logical :: unload_on_reversal
-
-      way = unbounded
-      first = 0
-      turned = rotation + self%rest
-      opening = self%opening_at(rotation, axial_load)
-      open = self%rate_of_opening(turn, press)
-      do begin = 1, self%count, block
-         n = min(block, self%count - begin + 1)
-         associate (finish => begin + n - 1)
-            ! A layer that unloads on a reversal is an event of its own, see `least_forward_rate`.
-            call look_along(n, self%y(begin:finish), self%k(begin:finish), self%lo(begin:finish), &
-                            self%hi(begin:finish), self%slack(begin:finish), &
-                            self%unload_on_reversal(begin:finish), self%both_ways(begin:finish), opening, &
-                            turned, open, turn, self%least_rate(open, turn), 0.0_wp, ahead, nearest, &
-                            least_room, unload_on_reversal, stiffness)
-         end associate
-         if (.not. nearest < min(way, beyond)) cycle
-         do i = 1, n
-            if (ahead(i) <= nearest) exit
-         end do
-         first = begin + i - 1
-         way = nearest
-      end do
-   end subroutine way_to_event
 
    !> Put every layer on the branch on which it goes on along a straight path from the present point, and find
    !> how far the path goes on these branches.

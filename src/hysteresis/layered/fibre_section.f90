@@ -125,9 +125,8 @@ module rbs_hysteresis_layered_fibre_section
       procedure :: place
       procedure :: put
       procedure :: opening_at
-      procedure :: rate_of_opening
       procedure :: read_plane
-      procedure :: least_forward_rate
+      procedure :: look_at
       procedure :: mark
       procedure :: restore
       procedure :: forget
@@ -314,7 +313,7 @@ contains
 
    !> Rate of the opening on the present branches.
    pure real(wp) function rate_of_opening(self, turn, press) result(open)
-      class(fibre_section), intent(in) :: self
+      type(fibre_section), intent(in) :: self
       real(wp), intent(in) :: turn, press
 
       if (self%a > no_stiffness*self%stiffness) then
@@ -349,28 +348,20 @@ contains
       if (abs(stiffness) <= no_stiffness*self%turning) stiffness = 0.0_wp
    end subroutine read_plane
 
-   !> The least forward rate of layers that would unload on reversal on the first of three paths, in
-   !> shares of their largest on the other two; below zero a layer goes back.
-   pure real(wp) function least_forward_rate(self, turn, press, digits) result(least)
+   !> Layers at a point of the present branches, and how they move along a path with given rates.
+   pure subroutine look_at(self, rotation, axial_load, turn, press, d, v)
       class(fibre_section), intent(in) :: self
-      !> Rates of the rotation and of the axial load; below this number of the least rates that count, a rate
-      !> is none
-      real(wp), intent(in) :: turn(3), press(3), digits
-      real(wp) :: lift(3), v(3), least_rate
-      integer :: i
+      !> Rotation of the joint, counted from `rest`; axial load, and rates
+      real(wp), intent(in) :: rotation, axial_load, turn, press
+      !> Deformations [m] and their rates (count)
+      real(wp), intent(out), contiguous :: d(:), v(:)
+      real(wp) :: open
 
-      least_rate = 0.0_wp
-      do i = 1, 3
-         lift(i) = self%rate_of_opening(turn(i), press(i))
-         least_rate = max(least_rate, digits*self%least_rate(lift(i), turn(i)))
-      end do
-      least = 1.0_wp
-      do i = 1, self%count
-         if (.not. abs(self%unload_on_reversal(i)) > 0.0_wp) cycle
-         v = lift + self%y(i)*turn
-         least = min(least, self%unload_on_reversal(i)*v(1)/max(abs(v(2)), abs(v(3)), least_rate))
-      end do
-   end function least_forward_rate
+      open = rate_of_opening(self, turn, press)
+      d = self%opening_at(rotation, axial_load) + self%y*(rotation + self%rest)
+      v = open + self%y*turn
+      where (abs(v) <= self%least_rate(open, turn)) v = 0.0_wp
+   end subroutine look_at
 
    !> Put the joint on a point of its present branches that lies ahead on a path with given rates. Its work is
    !> left to the caller, who knows the path.
@@ -383,7 +374,7 @@ contains
       real(wp) :: opening
 
       opening = self%opening_at(rotation, axial_load)
-      self%open = self%rate_of_opening(turn, press)
+      self%open = rate_of_opening(self, turn, press)
       self%turn = turn
       self%press = press
       self%opening = opening

@@ -3,8 +3,7 @@ module rbs_solve_static_curve
    use rbs_base_constants, only: unbounded
    use rbs_base_cubic, only: beyond_ends, cubic_at, turns_of
    use rbs_base_kinds, only: wp
-   use rbs_hysteresis_interaction_joints, only: least_forward_rate, nearest_layer
-   use rbs_hysteresis_springs, only: spring_array
+   use rbs_hysteresis_interaction_joints, only: line_list
    use rbs_solve_static_curved_equilibrium, only: path_point
    use rbs_solve_static_path, only: on_the_end
    use rbs_structure_spring_place, only: shear, flexure
@@ -28,17 +27,21 @@ module rbs_solve_static_curve
    real(wp), parameter :: least_motion = 1.0e-4_wp
 
    !> A spring that goes back less than this share of its deformation has not turned; one that is beyond its
-   !> end by less than the second share of its way is not beyond it.
-   real(wp), parameter :: no_way = 1.0e-10_wp, no_overshoot = 1.0e-9_wp
+   !> end by less than the second share of its way is not beyond it, nor a layer by less than the third of the
+   !> largest deformation of a layer.
+   real(wp), parameter :: no_way = 1.0e-10_wp, no_overshoot = 1.0e-9_wp, layer_digits = 1.0e-13_wp
 
    type :: curve_type
       !> Change of the parameter from end to end
       real(wp) :: length = 0.0_wp
-      !> Its ends
+      !> Its ends, and the lines of springs and layers on it
       type(path_point) :: near, far
-      !> Rates that still count for slips and openings, and for rotations, and which springs rotations act on
+      type(line_list) :: lines
+      !> Rates that still count for slips and openings, and for rotations; lines of flexural springs (lines)
       real(wp), private :: least(2) = 0.0_wp
       logical, allocatable, private :: turns(:)
+      !> Round-off of the deformations of layers [m]
+      real(wp), private :: digits = 0.0_wp
    contains
       procedure :: set
       procedure :: is_gentle
@@ -55,10 +58,15 @@ contains
       class(structure_type), intent(in) :: structure
       type(path_point), intent(in) :: near, far
 
-      if (.not. allocated(self%turns)) self%turns = structure%place%kind == flexure
+      if (.not. allocated(self%turns)) then
+         allocate (self%turns(size(near%d)), source=.false.)
+         self%turns(:size(near%q)) = structure%place%kind == flexure
+      end if
       self%length = far%t - near%t
       self%near = near
       self%far = far
+      self%digits = layer_digits*max(maxval(abs(near%d(size(near%q) + 1:))), &
+                                     maxval(abs(far%d(size(near%q) + 1:))))
       ! Well above what `clean` takes for round-off, so that a motion found to have turned counts as turned.
       self%least(1) = 30.0_wp*noise*max(motion_of(structure, near), motion_of(structure, far))
       self%least(2) = self%least(1)/structure%total_height
@@ -133,57 +141,39 @@ contains
    !> The least forward rate of springs and layers on one-way lines, in shares of their largest, and
    !> `same_rate` more: below zero a motion has clearly turned back. The error of the spring until then is
    !> the square of that.
-   pure real(wp) function least_rate(self, springs, point) result(least)
+   pure real(wp) function least_rate(self, point) result(least)
       class(curve_type), intent(in) :: self
-      type(spring_array), intent(in) :: springs
       type(path_point), intent(in) :: point
       real(wp) :: largest, way
-      integer :: i, j
+      integer :: i
 
       least = 1.0_wp
       way = sign(1.0_wp, self%length)
-      do i = 1, springs%count
-         if (springs%unload_on_reversal(i) == 0) cycle
-         largest = max(abs(self%near%rate(i)), abs(self%far%rate(i)), &
+      do i = 1, size(self%turns)
+         if (self%lines%one_way(i) == 0) cycle
+         largest = max(abs(self%near%v(i)), abs(self%far%v(i)), &
                        self%least(merge(2, 1, self%turns(i)))/same_rate)
-         if (largest > 0.0_wp) then
-            least = min(least, springs%unload_on_reversal(i)*way*point%rate(i)/largest + same_rate)
-         end if
-      end do
-      if (.not. springs%pressed) return
-      do j = 1, size(springs%layered)
-         i = springs%layered(j)
-         least = min(least, same_rate + least_forward_rate(springs, i, &
-                     [point%rate(i), self%near%rate(i), self%far%rate(i)], &
-                     [point%axial_rate, self%near%axial_rate, self%far%axial_rate], 30.0_wp/same_rate))
+         if (largest > 0.0_wp) least = min(least, self%lines%one_way(i)*way*point%v(i)/largest + same_rate)
       end do
    end function least_rate
 
    !> Whether a spring or layer is beyond an end of its line at the far end, or goes beyond it or turns back
    !> and comes again in between.
-   pure logical function hides_event(self, springs, above, with_layers) result(hides)
+   pure logical function hides_event(self) result(hides)
       class(curve_type), intent(in) :: self
-      type(spring_array), intent(in) :: springs
-      !> Axial loads of the joints less that of the top (unknowns)
-      real(wp), intent(in) :: above(:)
-      !> Whether the layers of joints whose axial loads vary are looked at too
-      logical, intent(in) :: with_layers
-      integer :: i, side
+      integer :: i
 
       hides = .false.
       ! Round-off of a column that stands.
       if (maxval(abs(self%far%q - self%near%q)) <= noise*least_motion) return
-      do i = 1, springs%count
-         hides = springs%unload_on_reversal(i) /= 0
-         if (hides) hides = hides_turn(self, i, springs%unload_on_reversal(i))
-         do side = -1, 1, 2
-            if (springs%unload_on_reversal(i) == -side .or. hides) cycle
-            hides = passes(self, i, side, springs%end_toward(i, side))
-         end do
+      do i = 1, size(self%turns)
+         associate (one_way => self%lines%one_way(i))
+            if (one_way /= 0) hides = hides_turn(self, i, one_way)
+            if (one_way >= 0 .and. .not. hides) hides = passes(self, i, 1, self%lines%upper(i))
+            if (one_way <= 0 .and. .not. hides) hides = passes(self, i, -1, self%lines%lower(i))
+         end associate
          if (hides) return
       end do
-      hides = .false.
-      if (springs%pressed .and. with_layers) hides = layer_passes(self, springs, above)
    end function hides_event
 
    !> Whether a deformation is beyond an end at the far point or between.
@@ -199,49 +189,11 @@ contains
       if (side*finish > max(side*c(1), side*c(2)) + beyond_ends*(abs(c(3)) + abs(c(4))) .or. &
           .not. abs(finish) < unbounded) return
       room = no_overshoot*(abs(c(2)) + abs(c(2) - c(1)))
+      if (i > size(self%near%q)) room = room + self%digits
       turn = cubic_at(turns_of(c), c(1), c(2), c(3), c(4))
       passes = side*(c(2) - finish) > room .or. &
                any(side*(turn - finish) > max(room, on_the_end*abs(finish)))
    end function passes
-
-   !> The same of the layers of joints whose axial loads vary, half way.
-   pure logical function layer_passes(self, springs, above) result(passes)
-      type(curve_type), intent(in) :: self
-      type(spring_array), intent(in) :: springs
-      real(wp), intent(in) :: above(:)
-      real(wp) :: load, load_rate, way
-      integer :: j, spring, layer
-      real(wp), dimension(size(above)) :: q, rate
-
-      call middle(self%near%axial_load, self%far%axial_load, self%near%axial_rate, self%far%axial_rate, &
-                  load, load_rate)
-      call middle(self%near%q, self%far%q, self%near%rate, self%far%rate, q, rate)
-      call nearest_layer(springs, q, load + above, rate, load_rate, way, spring, layer)
-      ! As a share of the way between two targets: near an end round-off of a short stride is no event.
-      passes = way < -no_overshoot
-      do j = 1, size(springs%layered)
-         associate (i => springs%layered(j))
-            if (.not. passes) passes = least_forward_rate(springs, i, &
-                [rate(i), self%near%rate(i), self%far%rate(i)], &
-                [load_rate, self%near%axial_rate, self%far%axial_rate], 30.0_wp/same_rate) < -same_rate
-         end associate
-      end do
-
-   contains
-
-      !> Value and slope of a cubic half way.
-      elemental subroutine middle(a, b, rate_a, rate_b, value, slope)
-         real(wp), intent(in) :: a, b, rate_a, rate_b
-         real(wp), intent(out) :: value, slope
-
-         value = 0.5_wp*(a + b) + 0.125_wp*self%length*(rate_a - rate_b)
-         slope = 0.0_wp
-         if (abs(rate_a) + abs(rate_b) > 0.0_wp) then
-            slope = 1.5_wp*(b - a)/self%length - 0.25_wp*(rate_a + rate_b)
-         end if
-      end subroutine middle
-
-   end function layer_passes
 
    !> Whether a spring on a one-way line turns back and turns again between the ends.
    pure logical function hides_turn(self, i, one_way)
@@ -261,7 +213,7 @@ contains
       integer, intent(in) :: i
       real(wp) :: c(4)
 
-      c = [self%near%q(i), self%far%q(i), self%length*self%near%rate(i), self%length*self%far%rate(i)]
+      c = [self%near%d(i), self%far%d(i), self%length*self%near%v(i), self%length*self%far%v(i)]
    end function cubic_of
 
    !> The curve at a value of the parameter, as a guess of a point.

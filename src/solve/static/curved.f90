@@ -13,7 +13,8 @@ module rbs_solve_static_curved
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_hysteresis_interaction_joints, only: moment_on_plane, nearest_layer, put_on_plane
+   use rbs_hysteresis_interaction_joints, only: moment_on_plane, put_on_plane, list_lines, &
+                                               place_lines
    use rbs_structure_column_column, only: column_type
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_line_search, only: false_position
@@ -32,9 +33,8 @@ module rbs_solve_static_curved
    !> A stride below this share of what is driven, or of what was tried, does not count as one.
    real(wp), parameter :: no_stride = 1.0e-11_wp
 
-   !> A stride may be cut at least this often, however short it becomes; this often for its work, and for what
-   !> a cubic shows of layers.
-   integer, parameter :: fewest_cuts = 20, most_cuts_for_work = 8, most_looks = 6
+   !> A stride may be cut at least this often, however short it becomes; this often for its work.
+   integer, parameter :: fewest_cuts = 20, most_cuts_for_work = 8
 
    !> A way below this share of the largest value is straight to the last digit, and too short for Newton's
    !> method, whose points are off by round-off.
@@ -57,10 +57,10 @@ module rbs_solve_static_curved
    type, extends(static_path) :: curved_path
       type(curved_equilibrium) :: equilibrium
       !> The present point and the one that is tried, the curve between the first and the farthest tried, and
-      !> the spring that is on the end of its line there with its layer; 0 for none
+      !> the spring or layer that is on the end of its line there; 0 for none
       type(path_point) :: here, there
       type(curve_type) :: curve
-      integer :: spring = 0, layer = 0
+      integer :: line = 0
       !> Axial load at the top at each target (m) where it varies [N], and the number of the target
       real(wp), allocatable :: load(:)
       integer :: row = 0
@@ -185,6 +185,11 @@ contains
       integer :: cuts
       logical :: done, near
 
+      call list_lines(self%springs, self%curve%lines)
+      if (.not. allocated(self%here%d)) then
+         allocate (self%here%d(size(self%curve%lines%joint)), self%here%v(size(self%curve%lines%joint)))
+      end if
+      call place(self%here)
       way = abs(self%goal - self%here%t)
       turn = self%structure%largest_turn(self%here%rate)
       length = min(way, self%next_length)
@@ -218,7 +223,7 @@ contains
          turns = .false.
          self%there = self%here
          call find_event(limit)
-         near = (self%spring > 0 .or. .not. abs(self%goal - limit) > 0.0_wp) .and. &
+         near = (self%line > 0 .or. .not. abs(self%goal - limit) > 0.0_wp) .and. &
                 abs(self%there%t - self%here%t) <= close_by*self%extent .and. &
                 abs(self%there%t - self%here%t)*self%structure%largest_turn(self%here%rate) <= close_by
          done = near
@@ -226,15 +231,12 @@ contains
          if (done) call self%curve%set(self%structure, self%here, self%there)
          if (done .and. .not. near) then
             done = self%curve%is_gentle(self%structure)
-            if (done) turns = self%curve%least_rate(self%springs, self%there) < 0.0_wp
+            if (done) turns = self%curve%least_rate(self%there) < 0.0_wp
             if (turns) then
                call find_turn()
                if (done) call self%curve%set(self%structure, self%here, self%there)
             end if
-            ! With small rotations the curve is so slight that no layer goes out of its line and back.
-            if (done) done = .not. self%curve%hides_event(self%springs, self%equilibrium%above, &
-                                                          self%structure%kinematics == finite .and. &
-                                                          cuts < most_looks)
+            if (done) done = .not. self%curve%hides_event()
          end if
          if (.not. done) return
          call find_works(cuts < most_cuts_for_work .and. .not. near, works)
@@ -250,7 +252,7 @@ contains
          logical :: closed, stands
          integer :: side
 
-         associate (there => self%there, here => self%here, spring => self%spring)
+         associate (there => self%there, here => self%here, spring => self%line)
             ! An end that is met where the path goes to, but for round-off, is met there: beyond it, the path
             ! would turn back.
             if (abs(self%goal - there%t) <= on_the_end*abs(self%goal) + round_off*self%extent) then
@@ -267,7 +269,7 @@ contains
             self%most_work = max(self%most_work, abs(self%work))
             stands = .not. abs(there%t - here%t) > 0.0_wp
             self%stalled_strides = merge(self%stalled_strides + 1, 0, stands)
-            if (spring > 0 .and. self%layer == 0) then
+            if (spring > 0 .and. spring <= self%springs%count) then
                side = merge(1, -1, self%direction*there%rate(spring) > 0.0_wp)
                closed = merge(self%springs%includes_upper_end(spring), &
                         self%springs%includes_lower_end(spring), side > 0)
@@ -314,58 +316,67 @@ contains
                i = springs%layered(j)
                work = work_of_joint(i)
                call put_on_plane(springs, i, there%q(i), there%axial_load + self%equilibrium%above(i), &
-                                 there%rate(i), there%axial_rate, merge(self%layer, 0, i == self%spring))
+                                 there%rate(i), there%axial_rate, layer_of(i))
                springs%work(i) = springs%work(i) + work
             end do
          end associate
       end subroutine put_springs
 
       !> Go from the point that is tried along its tangent to the first end of a line, if there is one before
-      !> the
-      !> limit, else to the limit; not back beyond the present point.
+      !> the limit, else to the limit; not back beyond the present point.
       subroutine find_event(limit, change)
          real(wp), intent(in) :: limit
          !> Of the deformations, to be added to
          real(wp), intent(inout), optional :: change(:)
-         real(wp) :: room, way
-         integer :: i, side, spring, layer
+         real(wp) :: room, way, finish
+         integer :: i, side
 
-         self%spring = 0
-         self%layer = 0
-         associate (there => self%there)
+         self%line = 0
+         associate (there => self%there, lines => self%curve%lines)
             room = self%direction*(limit - there%t)
-            do i = 1, self%springs%count
-               associate (rise => self%direction*there%rate(i))
+            do i = 1, size(there%v)
+               associate (rise => self%direction*there%v(i))
                   if (.not. abs(rise) > 0.0_wp) cycle
                   side = merge(1, -1, rise > 0.0_wp)
-                  if (self%springs%unload_on_reversal(i) == -side) cycle
-                  way = side*(self%springs%end_toward(i, side) - there%q(i))
+                  if (lines%one_way(i) == -side) cycle
+                  way = side*(merge(lines%upper(i), lines%lower(i), side > 0) - there%d(i))
                   if (way < room*abs(rise)) then
                      room = way/abs(rise)
-                     self%spring = i
+                     self%line = i
+                     finish = merge(lines%upper(i), lines%lower(i), side > 0)
                   end if
                end associate
             end do
-            if (self%springs%pressed) then
-               call nearest_layer(self%springs, there%q, there%axial_load + self%equilibrium%above, &
-                                  there%rate, there%axial_rate, way, spring, layer)
-               if (way < room) then
-                  room = way
-                  self%spring = spring
-                  self%layer = layer
-               end if
-            end if
             room = max(room, self%direction*(self%here%t - there%t))
             if (present(change)) change = change + there%rate*(self%direction*room)
             call move(self%direction*room)
-            if (self%spring > 0 .and. self%layer == 0) then
-               there%q(self%spring) = self%springs%end_toward(self%spring, &
-                       merge(1, -1, self%direction *there%rate(self%spring) > 0.0_wp))
-            else if (self%spring == 0) then
+            if (self%line == 0) then
                there%t = limit
+            else if (self%line <= self%springs%count) then
+               there%q(self%line) = finish
             end if
          end associate
       end subroutine find_event
+
+      !> Place springs and layers at a point.
+      subroutine place(point)
+         type(path_point), intent(inout) :: point
+
+         call place_lines(self%springs, self%curve%lines, point%q, &
+                          point%axial_load + self%equilibrium%above, point%rate, point%axial_rate, &
+                          point%d, point%v)
+      end subroutine place
+
+      !> The layer of a joint that is on the end of its line at the point that is tried, 0 for none.
+      pure integer function layer_of(joint)
+         integer, intent(in) :: joint
+
+         layer_of = 0
+         if (self%line == 0) return
+         associate (of => self%curve%lines%joint)
+            if (of(self%line) == joint) layer_of = self%line - findloc(of, joint, dim=1) + 1
+         end associate
+      end function layer_of
 
       !> Move the point that is tried along its tangent.
       subroutine move(step)
@@ -375,6 +386,7 @@ contains
          associate (there => self%there)
             there%t = there%t + step
             there%q = there%q + there%rate*step
+            there%d = there%d + there%v*step
             there%force = there%force + there%force_rate*step
             there%displacement = there%displacement + there%displacement_rate*step
             there%axial_load = there%axial_load + there%axial_rate*step
@@ -401,6 +413,7 @@ contains
                there%q = there%q + change
                there%force = there%force + equilibrium%force_correction
                there%axial_load = there%axial_load + equilibrium%ratio*equilibrium%force_correction
+               call place(there)
                if (with_events) call find_event(limit, change)
                share = equilibrium%size_of(change, there%q - change)
                found = share <= arrived .or. (share <= no_progress .and. share > 0.25_wp*last_share)
@@ -424,10 +437,9 @@ contains
          real(wp) :: value, reached
          integer :: i
 
-         self%spring = 0
-         self%layer = 0
-         line = false_position(self%here%t, self%there%t, self%curve%least_rate(self%springs, self%here), &
-                               self%curve%least_rate(self%springs, self%there))
+         self%line = 0
+         line = false_position(self%here%t, self%there%t, self%curve%least_rate(self%here), &
+                               self%curve%least_rate(self%there))
          done = line%at_low > 0.0_wp .and. line%at_high < 0.0_wp
          if (.not. done) return
          do i = 1, 60
@@ -436,7 +448,7 @@ contains
             call self%curve%guess(reached, self%there)
             call find_point(reached, .false., done)
             if (.not. done) return
-            value = self%curve%least_rate(self%springs, self%there)
+            value = self%curve%least_rate(self%there)
             if (abs(value) < 0.9_wp*same_rate) return
             call line%narrow(reached, value)
          end do

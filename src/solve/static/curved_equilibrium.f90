@@ -48,6 +48,8 @@ module rbs_solve_static_curved_equilibrium
       real(wp) :: force_rate = 0.0_wp, displacement_rate = 0.0_wp, axial_rate = 0.0_wp
       !> Of the potential of a unit of the axial load [m]
       real(wp) :: lift_rate = 0.0_wp
+      !> Deformations and rates of springs and layers (lines)
+      real(wp), allocatable :: d(:), v(:)
    end type path_point
 
    type :: curved_equilibrium
