@@ -10,6 +10,9 @@ from importlib.metadata import version as installed_version
 from importlib.util import find_spec
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
+import key_tables
+
 project = "rbsdem"
 author = "the rbsdem authors"
 project_copyright = author
@@ -70,8 +73,15 @@ def _make_gallery(app) -> None:
     )
 
 
+def _fill_tables(app, page: str, source: list[str]) -> None:
+    """Put the tables of the keys where a page has their marks."""
+    if key_tables.BLOCK.search(source[0]):
+        source[0] = key_tables.filled(source[0])
+
+
 def setup(app) -> None:
     """Connect the above; the first comes before napoleon."""
     app.connect("builder-inited", _make_gallery)
+    app.connect("source-read", _fill_tables)
     app.connect("autodoc-process-docstring", _split_names, priority=400)
     app.connect("autodoc-process-docstring", _escape_bars)

@@ -1,11 +1,8 @@
-"""Write the tables of keys in docs/input.md from the list of keys of the program.
+"""Tables of the keys of a case, for docs/input.md as it is built.
 
-    python scripts/key_tables.py            write them
-    python scripts/key_tables.py --check    only say whether they are up to date
-
-A table stands between ``<!-- keys: NAME -->`` and ``<!-- end of keys -->``. NAME is a group of a
-case file, ``rule`` and the name of a rule, ``shape`` and that of a section's, or ``places``: the
-groups where each rule may stand. The list is that of ``rbsdem keys --json``.
+A table stands at ``<!-- keys: NAME -->``. NAME is a group of a case file, ``rule`` and the name
+of a rule, ``shape`` and that of a section's, or ``places``: the groups where each rule may stand.
+The list is that of ``rbsdem keys --json``.
 """
 
 from __future__ import annotations
@@ -15,11 +12,9 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
-DOCUMENT = Path(__file__).resolve().parents[1] / "docs" / "input.md"
-BLOCK = re.compile(r"(<!-- keys: (?P<name>[\w ]+) -->\n).*?(<!-- end of keys -->)", re.DOTALL)
+BLOCK = re.compile(r"<!-- keys: (?P<name>[\w ]+) -->\n")
 
 HEAD = "| key | value | unit | allowed | default | meaning |\n" + "| --- " * 6 + "|\n"
 
@@ -110,22 +105,8 @@ def table(known: dict[str, Any], name: str) -> str:
     return HEAD + "".join(rows(keys))
 
 
-def filled(text: str, known: dict[str, Any]) -> str:
-    """Return a document with its tables as the keys are."""
-    return BLOCK.sub(lambda block: block[1] + table(known, block["name"]) + block[3], text)
-
-
-def main() -> int:
-    """Write the tables, or check them; return 1 if they are not up to date."""
+def filled(text: str) -> str:
+    """Return a page with its tables."""
     command = [sys.executable, "-m", "rbsdem", "keys", "--json"]
     known = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
-    text = DOCUMENT.read_text(encoding="utf-8")
-    new = filled(text, known)
-    if "--check" in sys.argv[1:]:
-        return int(new != text)
-    DOCUMENT.write_text(new, encoding="utf-8")
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    return BLOCK.sub(lambda block: f"\n{table(known, block['name'])}\n", text)
