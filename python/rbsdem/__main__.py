@@ -29,6 +29,16 @@ def executable() -> str:
     return path
 
 
+def drawn_frame(words: list[str]) -> str:
+    """Return the path of the case of `check` or `modes` if its frame is drawn by sections."""
+    path = next((word for word in words[1:] if os.path.isfile(word)), "")
+    if words[:1] not in (["check"], ["modes"]) or not path:
+        return ""
+    with open(path, encoding="utf-8", errors="replace") as file:
+        text = file.read().lower()
+    return path if "&frame" in text and "&drawing" in text else ""
+
+
 def main() -> int:
     """Run the executable with the arguments of the command line, or a command of the package."""
     words = sys.argv[1:]
@@ -51,6 +61,10 @@ def main() -> int:
     except FileNotFoundError as error:
         print(error, file=sys.stderr)
         return 2
+    if path := drawn_frame(words):
+        from rbsdem.cli.columns import on_springs  # noqa: PLC0415
+
+        return on_springs(program, words, path)
     if sys.stdout is not None:  # as it is if it was closed
         sys.stdout.flush()
     if os.name == "nt":  # where a process that is replaced returns to the shell at once

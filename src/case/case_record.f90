@@ -243,6 +243,13 @@ contains
       subroutine stand_in(name)
          character(len=*), intent(in) :: name
 
+         if (allocated(with_kinds%kind)) then
+            if (name /= '' .and. any(with_kinds%kind%name == name)) then
+               call messages%add("drawing '"//trim(name)//"': another drawing or member_kind has this "// &
+                                 'name; give each a name of its own')
+               return
+            end if
+         end if
          call with_kinds%open_group('member_kind')
          associate (kind => with_kinds%kind(size(with_kinds%kind)))
             kind%name = name

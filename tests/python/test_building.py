@@ -1,5 +1,8 @@
 """Frames from the sections of their members, held against frames that were put together by hand."""
 
+import json
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -215,6 +218,12 @@ def test_a_drawn_frame_comes_back_from_a_case_file_with_its_sections(more):
     assert case_of_text(lost.to_namelist() + LOADING).column == lost
 
 
+def command(*words):
+    """Return what the command of the package has done."""
+    words = [sys.executable, "-m", "rbsdem", *words]
+    return subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
+
+
 def test_a_drawn_case_is_the_same_by_python_and_the_executable(drawn, tmp_path, run_cli):
     path = tmp_path / "house.nml"
     loading = "&loading drive = 'displacement', values = 0.03, 0.06, -0.06 /\n"
@@ -225,6 +234,21 @@ def test_a_drawn_case_is_the_same_by_python_and_the_executable(drawn, tmp_path, 
     refused = run_cli(["run", path])
     assert refused.returncode == 2
     assert "rbsdem draw CASE.nml" in refused.stderr
+    # The command of the package checks the springs of its members, and lists faults as for others.
+    assert command("check", path).stdout == f"{path}: no errors\n"
+    told = json.loads(command("check", path, "--json").stdout)
+    assert told == {"case": str(path), "errors": [], "notes": []}
+    assert "nothing has mass" in command("modes", path).stderr
+    wrong = tmp_path / "wrong.nml"
+    for old, new, text in (
+        ("kind = 'section-1'", "kind = 'section-9'", "section-9"),
+        ("version = '2026.6'", "version = '2020.1'", "'2020.1' is not known"),
+    ):
+        wrong.write_text(path.read_text().replace(old, new, 1))
+        found = command("check", wrong)
+        assert (found.returncode, found.stdout) == (2, "")
+        assert text in found.stderr
+        assert text in json.loads(command("check", wrong, "--json").stdout)["errors"][0]["message"]
     springs = tmp_path / "springs.nml"
     springs.write_text(case.to_namelist(springs=True))
     assert run_cli(["run", springs, "--quiet"]).returncode == 0
@@ -243,6 +267,7 @@ def test_a_drawn_case_is_the_same_by_python_and_the_executable(drawn, tmp_path, 
         (("version = '2026.6'", "version = '2020.1'"), "version = '2020.1' is not known"),
         (("name = 'section-1', ", ""), "drawing: name is missing"),
         (("kind = 'section-1'", "kind = 'section-9'"), "section-9"),
+        (("name = 'section-2', v", "name = 'section-1', v"), "'section-1': another drawing"),
         (
             ("&drawing name = 'section-2'", "&drawing n = 3, name = 'section-2'"),
             "name and version alone",

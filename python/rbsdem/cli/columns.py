@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import math
+import subprocess
 import sys
 import threading
 import webbrowser
@@ -66,6 +68,44 @@ def draw(case: Path) -> int:
     """
     print(read_case(case).to_namelist(springs=True), end="")
     return 0
+
+
+def on_springs(program: str, words: Sequence[str], path: str) -> int:
+    """Run the executable on a drawn case: as it is, and once it is sound with its springs.
+
+    Parameters
+    ----------
+    program : str
+        The executable.
+    words : sequence of str
+        Arguments of the command line.
+    path : str
+        The one of them that is the case.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    told: dict[str, Any] = {"capture_output": True, "encoding": "utf-8"}
+    done = subprocess.run([program, *words], check=False, **told)
+    if "rbsdem draw" in done.stdout + done.stderr:
+        try:
+            springs = read_case(path).to_namelist(springs=True)
+        except InputError as error:
+            lines = str(error).splitlines()
+            if "--json" in words:
+                found = [{"line": None, "message": line} for line in lines]
+                print(json.dumps({"case": path, "errors": found, "notes": []}))
+            else:
+                sys.stderr.writelines(f"rbsdem: {line}\n" for line in lines)
+            return 2
+        names = ["-" if word == path else word for word in words]
+        done = subprocess.run([program, *names], input=springs, check=False, **told)
+    text = done.stdout.replace('{"case": "-"', f'{{"case": {json.dumps(path)}', 1)
+    sys.stdout.write(f"{path}{text[1:]}" if text.startswith("-:") else text)
+    sys.stderr.write(done.stderr)
+    return done.returncode
 
 
 # ---- methods ------------------------------------------------------------------------------------
