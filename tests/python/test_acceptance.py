@@ -48,7 +48,7 @@ def test_table_10_7(conforming, bars, psi, printed):
 
 def demand(section, **change):
     given = {
-        "member": "B-1-1", "end": "start", "column": False, "length": 5.0, "section": section,
+        "member": "B-1-1", "end": "start", "kind": "beam", "length": 5.0, "section": section,
         "other": section, "axial": 0.0, "moment": 100e3, "shear": 50e3, "rotation": 0.03,
         "span": 2.5,
     }  # fmt: skip
@@ -102,13 +102,88 @@ def test_a_beam_by_hand_en_1998_3():
 
 
 def test_a_column_by_hand():
-    d = demand(COLUMN, column=True, length=2.7, span=1.35, axial=600e3)
+    d = demand(COLUMN, kind="column", length=2.7, span=1.35, axial=600e3)
     found = acceptance._asce_41(d, 1.0)
     q = formulas.quantities(COLUMN, 1.35, 600e3)
     moment = rbsdem.section.interaction(COLUMN, "aci318").moment_at(600e3)
     ratio = 2 * moment / 2.7 / formulas.asce_41_shear_strength(q)
     rotations = formulas.asce_41_rotations(q.axial_load_ratio, q.tie_ratio, ratio, q.fc, q.fyt)
     assert found.rotations == pytest.approx((rotations.io, rotations.ls, rotations.cp), rel=0.02)
+
+
+def test_a_joint_by_hand_en_1998_1():
+    # eta = 0.6 (1 - 25/250) = 0.54; b_j = min(400, 300 + 400/2); h_jc from bar to bar 306 mm;
+    # nu_d = 461.273/4000: 0.54 x 25 x 400 x 306 x sqrt(1 - 0.1153183/0.54).
+    joint = demand(COLUMN, kind="interior joint", other=BEAM, axial=461273.0)
+    assert acceptance._en_1998_3(joint, True).shear == pytest.approx(1465379.4, rel=1e-7)
+    above = joint._replace(axial=0.0)
+    assert acceptance._en_1998_3(above, True).shear == pytest.approx(1652400.0, rel=1e-12)
+    # 0.8 of it where a beam is missing; a strut that the axial load crushes has no strength.
+    outer = above._replace(kind="exterior joint")
+    assert acceptance._en_1998_3(outer, True).shear == pytest.approx(1321920.0, rel=1e-12)
+    assert acceptance._en_1998_3(joint._replace(axial=3e6), True).shear == 0.0
+    # (5.34) the other way round: a beam of 600 mm over this column counts with 400 + 400/2.
+    wide = replace(BEAM, width=0.6)
+    assert acceptance._en_1998_3(above._replace(other=wide), True).shear == pytest.approx(
+        1.5 * 1652400.0, rel=1e-12
+    )
+
+
+def test_shear_beyond_its_strength_is_explained_where_no_spring_fails(push):
+    found = assess(push, "en_1998_3", at=0.1)
+    assert not found.counts()["shear"]
+    assert found.notes == ()
+    weak = [row | {"ratio_shear": 1.1} if row["end"] == "start" else row for row in found.rows]
+    (note,) = replace(found, rows=weak).notes
+    assert f"at {sum(row['ratio_shear'] == 1.1 for row in weak)} ends" in note
+    assert "A.12" in note
+    assert str(replace(found, rows=weak)).endswith(note)
+    # A joint is no spring, and where a spring fails there is nothing to explain.
+    joints = [row | {"ratio_shear": 1.1} if row["end"] == "joint" else row for row in found.rows]
+    assert replace(found, rows=joints).notes == ()
+
+
+def test_shear_of_joints_by_statics(frame, push):
+    found = assess(push, "en_1998_3", at=0.1).to_pandas().set_index("member")
+    state = push.at(drift=0.1 / frame.height)
+    first, last = (
+        dict(zip(frame.parts.members, state[name], strict=True))
+        for name in ("moment_from", "moment_to")
+    )
+    # At the roof nothing stands above: the moment of the beam at the face over 0.9 d.
+    beam = frame.geometry["B-1-2"]
+    inside = max(0.2 - beam.rigid[0], 0.0) / beam.clear
+    moment = abs(float(beam.moment(first["B-1-2"], last["B-1-2"], inside)))
+    assert found.loc["N-1-2", "shear_N"] == pytest.approx(moment / (0.9 * 0.45), rel=0.01)
+    # Below, the shear of the column above is taken off.
+    lower, column = frame.geometry["B-1-1"], frame.geometry["C-1-2"]
+    inside = max(0.2 - lower.rigid[0], 0.0) / lower.clear
+    moment = abs(float(lower.moment(first["B-1-1"], last["B-1-1"], inside)))
+    taken = abs(first["C-1-2"] + last["C-1-2"]) / column.clear
+    assert found.loc["N-1-1", "shear_N"] == pytest.approx(moment / (0.9 * 0.45) - taken, rel=0.02)
+    assert "N-1-1" not in set(assess(push, "asce_41", at=0.1).to_pandas()["member"])
+
+
+@pytest.mark.filterwarnings("ignore:member .* its clear length")
+def test_panels_are_judged_by_limits_that_are_given(push):
+    house = replace(push.frame, panel=rbsdem.frames.JointPanel(COLUMN, BEAM, "exterior").spring())
+    pushed = rbsdem.pushover(house, drift=0.02, points=30)
+    open_ = assess(pushed, "asce_41", at=0.1)
+    rows = open_.to_pandas().set_index("member")
+    assert rows.loc["N-2-1", "status"].startswith("table 10-11 is not built in")
+    assert open_.counts()["not evaluated"] == 6
+    at = [one.member for one in house.parts.springs_of("flexure") if one.group == "panel"]
+    turned = pushed.at(drift=0.1 / house.height)["springs"]["rotation"][-len(at) :]
+    limits = {"N-*": (0.001, 0.002, 0.003), "N-2-1": (0.002, 0.004, 0.008)}
+    given = assess(pushed, "asce_41", at=0.1, limits=limits)
+    assert given.counts()["not evaluated"] == 0
+    rows = given.to_pandas().set_index("member")
+    for name, rotation in zip(at, turned, strict=True):
+        # The panel without hoops yields at a shear strain of 0.0002.
+        plastic = max(abs(rotation) - 0.0002, 0.0)
+        limit = 0.008 if name == "N-2-1" else 0.003
+        assert rows.loc[name, "ratio_CP"] == pytest.approx(plastic / limit, rel=1e-6), name
+    assert rows.loc["N-2-1", "ratio_CP"] > 0
 
 
 @pytest.fixture(scope="module")
@@ -145,10 +220,16 @@ def test_mirrored_frames_swap_their_ends(frame, push):
     for code in ("asce_41", "en_1998_3"):
         one = assess(push, code, at=0.1).to_pandas().set_index(["member", "end"])
         two = assess(back, code, at=-0.1).to_pandas().set_index(["member", "end"])
-        pairs = (("C-1-1", "start"), ("C-3-1", "start")), (("B-1-1", "end"), ("B-2-1", "start"))
+        pairs: tuple = (
+            (("C-1-1", "start"), ("C-3-1", "start")),
+            (("B-1-1", "end"), ("B-2-1", "start")),
+        )
+        if code == "en_1998_3":
+            pairs += ((("N-1-1", "joint"), ("N-3-1", "joint")),)
         for first, second in pairs:
             for name in ("rotation_rad", "ratio_shear", "shear_span_m"):
-                assert one.loc[first, name] == pytest.approx(two.loc[second, name], rel=1e-4), name
+                expected = pytest.approx(two.loc[second, name], rel=1e-4, nan_ok=True)
+                assert one.loc[first, name] == expected, name
 
 
 def test_a_target_is_assessed(push):
@@ -159,7 +240,8 @@ def test_a_target_is_assessed(push):
     assert set(whole.counts()) == {"DL", "SD", "NC", "shear", "not evaluated"}
     worst = whole.worst(3)
     assert list(worst["ratio"]) == sorted(worst["ratio"], reverse=True)
-    assert len(whole.states()) == 2 * len(push.frame.parts.members)
+    # Both ends of the members, and the joints above the base.
+    assert len(whole.states()) == 2 * len(push.frame.parts.members) + 6
     # Below yield the plastic rotation is zero, and evaluated.
     small = assess(push, "asce_41", at=0.005)
     assert small.accepted("IO")
@@ -173,6 +255,7 @@ def test_a_record_is_judged_by_its_envelope(frame):
     record = rbsdem.motions.synthetic(1)[0]
     quake = rbsdem.time_history(frame, record, method="newmark", dt=0.01)
     found = assess(quake, "en_1998_3").to_pandas()
+    found = found[found["end"] != "joint"]
     # Both sides of an end that turns to and fro.
     assert (found.groupby(["member", "end"]).size() == 2).all()
     row = found[(found.member == "C-2-1") & (found.end == "start")]["rotation_rad"].max()
@@ -216,8 +299,9 @@ def test_what_a_code_does_not_cover_is_said():
     assert found.states()["C-1-1", "start"] == -1
     # They may be given.
     own = dict.fromkeys(("C-1-1", "C-2-1"), (0.005, 0.02, 0.03))
-    given = assess(push, "en_1998_3", at=0.02, limits=own)
-    assert given.counts()["not evaluated"] == 0
+    given = assess(push, "en_1998_3", at=0.02, limits=own).to_pandas()
+    assert set(given[given["status"] != "evaluated"]["member"]) == {"N-1-1", "N-2-1"}
+    assert given["status"].iloc[-1] == "5.5.3.3 has no strength for this column (circle)"
     assert assess(push, "asce_41", at=0.02).counts()["not evaluated"] == 0
 
 
@@ -229,7 +313,15 @@ def test_refusals(push):
         (lambda: assess(push, "fema_356"), "asce_41"),
         (lambda: assess(push, at=9.0), "beyond the end"),
         (lambda: assess(push, knowledge=2.0), "knowledge"),
-        (lambda: assess(push, limits={"C-9-9": (1, 2, 3)}), "C-9-9"),
+        (lambda: assess(push, limits={"C-9-9": (0.1, 0.2, 0.3)}), "C-9-9"),
+        (lambda: assess(push, limits={"N-1-1": (0.1, 0.2, 0.3)}), "no node with a panel"),
+        (lambda: assess(push, limits={"C-1-1": (0.3, 0.2, 0.1)}), "3 ascending rotations"),
+        (lambda: assess(push, limits={"C-1-1": (-0.1, 0.2, 0.3)}), "ascending"),
+        (lambda: assess(push, limits={"C-1-1": (0.1, np.nan, 0.3)}), "value 2 of 3 is nan"),
+        (lambda: assess(push, limits={"C-1-1": 0.1}), "one dimension"),
+        (lambda: assess(push, limits={"C-1-1": ("IO", "LS", "CP")}), "array of numbers"),
+        (lambda: assess(push, limits=[0.1, 0.2, 0.3]), "mapping of names"),
+        (lambda: assess(push, limits={3: (0.1, 0.2, 0.3)}), "limits of 3"),
         (lambda: assess(push).worst(level="XX"), "CP"),
         (lambda: assess(3), "pushover"),
     ]:

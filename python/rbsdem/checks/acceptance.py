@@ -1,15 +1,17 @@
-"""Acceptance of the members of a frame: demands at their ends over the limits of a code.
+"""Acceptance of the members and joints of a frame: their demands over the limits of a code.
 
 ASCE 41-17: plastic rotations of beams (table 10-7, row i or ii) and columns (tables 10-8, 10-9),
-and shear. EN 1998-3:2005: chord rotations (A.1, A.10b) and shear (A.12). Where a code does not
-cover a member, its row says why.
+and shear. EN 1998-3:2005: chord rotations (A.1, A.10b), shear (A.12), and shear of joints. Where a
+code does not cover a member, its row says why.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fnmatch import fnmatchcase
+from functools import partial
 from typing import Any, Literal, NamedTuple, Protocol, get_args
 
 import numpy as np
@@ -19,8 +21,9 @@ from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame
 from rbsdem.checks import formulas
 from rbsdem.errors import InputError
+from rbsdem.model.frame import MemberGeometry
 from rbsdem.model.frame_result import FrameResult
-from rbsdem.model.shape import Section, TeeSection
+from rbsdem.model.shape import RectangularSection, Section, TeeSection
 from rbsdem.section.axial_moment import nominal_moment
 
 AcceptanceCode = Literal["asce_41", "en_1998_3"]
@@ -84,11 +87,11 @@ def beam_rotations(
 
 
 class _Demand(NamedTuple):
-    """What an end of a member undergoes."""
+    """What an end of a member undergoes, or a joint with its column and a beam as sections."""
 
     member: str
     end: str
-    column: bool
+    kind: Literal["column", "beam", "interior joint", "exterior joint"]
     length: float
     section: Section
     other: Section
@@ -102,6 +105,8 @@ class _Demand(NamedTuple):
 def demands(result: FrameResult, rows: Array) -> list[_Demand]:
     """Return the demands of all ends that have a section, largest to each side of some rows.
 
+    Those of the joints follow.
+
     Parameters
     ----------
     result : FrameResult
@@ -109,12 +114,7 @@ def demands(result: FrameResult, rows: Array) -> list[_Demand]:
     rows : ndarray of float
         Rows; between two of them with the share of the way.
     """
-    at, frame = np.arange(result.time.size), result.frame
-
-    def of(values: Array) -> Array:
-        """Return what a member has in the rows."""
-        return np.column_stack([np.interp(rows, at, one) for one in np.atleast_2d(values.T)])
-
+    frame, of = result.frame, partial(_between, rows)
     found = []
     for i, (name, one) in enumerate(frame.geometry.items()):
         sections, length = frame.kinds[name].sections, one.clear
@@ -137,12 +137,64 @@ def demands(result: FrameResult, rows: Array) -> list[_Demand]:
                 moved = abs(float(moments[row])) / max(abs(float(sway[row])), 1e-9)
                 found.append(
                     _Demand(
-                        name, ("start", "end")[j], one.upright, length, near, far,
+                        name, ("start", "end")[j], "column" if one.upright else "beam", length,
+                        near, far,
                         float(axial[row]), abs(float(moments[row])), float(shear.max()),
                         abs(float(rotation[row])), min(max(moved, most), max(length, most)),
                     )
                 )  # fmt: skip
-    return found
+    return [*found, *_joints(result, rows)]
+
+
+def _between(rows: Array, values: Array) -> Array:
+    """Return the columns of an array in some rows, between two with the share of the way."""
+    at = np.arange(len(values))
+    return np.column_stack([np.interp(rows, at, one) for one in np.atleast_2d(values.T)])
+
+
+def _joints(result: FrameResult, rows: Array) -> Iterator[_Demand]:
+    """Yield the demands of the nodes in which drawn columns and beams meet.
+
+    The shear is that of the beams' moments at the faces of the column over 0.9 d, less that of the
+    column above; the rotation is that of a panel beyond its yield.
+    """
+    frame, parts, of = result.frame, result.frame.parts, partial(_between, rows)
+    panels = [one.member if one.group == "panel" else "" for one in parts.springs_of("flexure")]
+    for node, name in enumerate(parts.nodes):
+        columns: list[tuple[int, int, MemberGeometry, Section]] = []
+        beams: list[tuple[int, int, MemberGeometry, Section]] = []
+        for i, (member, one) in enumerate(frame.geometry.items()):
+            for j, section in enumerate(frame.kinds[member].sections or ()):
+                if (one.start, one.end)[j] == node:
+                    (columns if one.upright else beams).append((i, j, one, section))
+        if not columns or not beams:
+            continue
+        column = max((one[3] for one in columns), key=lambda own: own.depth)
+        thrust, moment = np.zeros(rows.size), np.zeros(rows.size)
+        for i, j, one, section in beams:
+            ends = of(result.moment_from[:, i])[:, 0], of(result.moment_to[:, i])[:, 0]
+            share = max(0.5 * column.depth - one.rigid[j], 0.0) / one.clear
+            faced = one.moment(*ends, abs(j - share)) * (1.0 - 2.0 * j)
+            arm = 0.9 * min(section.effective_depth, section.mirrored.effective_depth)
+            thrust, moment = thrust + faced / arm, moment + faced
+        axial = np.zeros(rows.size)
+        for i, _, one, _ in columns:
+            if max(parts.y[one.start], parts.y[one.end]) > parts.y[node]:
+                ends = of(result.moment_from[:, i])[:, 0], of(result.moment_to[:, i])[:, 0]
+                thrust, axial = thrust + one.shear(*ends, 0.5), of(result.member_axial[:, i])[:, 0]
+        turned = math.nan
+        if name in panels:
+            turns = of(result.springs["rotation"][:, panels.index(name)])[:, 0]
+            spring = parts.springs_of("flexure")[panels.index(name)]
+            yields = [m.deformation for m in frame.landmarks[spring] if m.name == "yield"]
+            turned = max(float(np.abs(turns).max()) - min(yields, default=0.0), 0.0)
+        beam = max((one[3] for one in beams), key=lambda own: own.depth)
+        row = int(np.abs(thrust).argmax())
+        yield _Demand(
+            name, "panel" if name in panels else "joint",
+            "interior joint" if len(beams) > 1 else "exterior joint", math.nan, column, beam,
+            float(axial[row]), abs(float(moment[row])), abs(float(thrust[row])), turned, math.nan,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -157,14 +209,16 @@ class _Limits:
 
 
 def _asce_41(d: _Demand, knowledge: float) -> _Limits:
+    if "joint" in d.kind:
+        raise InputError("table 10-11 is not built in; give limits of the node")
     load = max(d.axial, 0.0)
     section = d.section
-    moment = nominal_moment(section, load if d.column else 0.0)
-    opposite = nominal_moment(d.other, load if d.column else 0.0)
+    moment = nominal_moment(section, load if d.kind == "column" else 0.0)
+    opposite = nominal_moment(d.other, load if d.kind == "column" else 0.0)
     law, fc = section.concrete_law, section.concrete.fc / 1e6
     gross, ties = section.gross_area, section.ties
     ratio = load / (gross * section.concrete.fc)
-    stiffness = formulas.asce_41_stiffness(ratio) if d.column else 0.3
+    stiffness = formulas.asce_41_stiffness(ratio) if d.kind == "column" else 0.3
     yielding = moment * d.length / (6.0 * stiffness * law["ec"] * section.inertia)
     plastic = max(d.rotation - yielding, 0.0)
     at_yield = (moment + opposite) / d.length
@@ -172,7 +226,7 @@ def _asce_41(d: _Demand, knowledge: float) -> _Limits:
     legs = ties.legs * math.pi * (1e3 * ties.diameter) ** 2 / 4.0 if ties else 0.0
     spacing = 1e3 * ties.spacing if ties else math.inf
     hoops = legs * (ties.steel.fy / 1e6 if ties else 0.0) * depth / spacing
-    if d.column:
+    if d.kind == "column":
         if isinstance(section, TeeSection):
             raise InputError("columns with a flange are not in tables 10-8 and 10-9")
         q = formulas.quantities(section, d.span, load)
@@ -208,6 +262,8 @@ def _asce_41(d: _Demand, knowledge: float) -> _Limits:
 
 
 def _en_1998_3(d: _Demand, primary: bool) -> _Limits:
+    if "joint" in d.kind:
+        return _ec_8_joint(d)
     if d.section.shape != "rectangle":
         raise InputError(f"annex A has no relations for this section ({d.section.shape})")
     turned, sheared = _PRIMARY if primary else (1.0, 1.0)
@@ -221,9 +277,23 @@ def _en_1998_3(d: _Demand, primary: bool) -> _Limits:
     return _Limits(d.rotation, yielding, limits, strength, "A.1, A.10b, A.12")
 
 
+def _ec_8_joint(d: _Demand) -> _Limits:
+    column, beam = d.section, d.other
+    if not isinstance(column, RectangularSection):
+        raise InputError(f"5.5.3.3 has no strength for this column ({column.shape})")
+    places, fc = [y for y, _, _ in column.bars], column.concrete.fc
+    # (5.34): the wider of column and beam, up to half the depth of the column beyond the other.
+    narrow, wide = sorted((column.width, beam.web_width))
+    strength = formulas.ec_8_joint_strength(
+        fc / 1e6, 1e3 * min(wide, narrow + 0.5 * column.depth), 1e3 * (max(places) - min(places)),
+        max(d.axial, 0.0) / (column.gross_area * fc), exterior=d.kind == "exterior joint",
+    )  # fmt: skip
+    return _Limits(d.rotation, math.nan, (math.nan,) * 3, strength, "EN 1998-1, 5.5.3.3, strut")
+
+
 @dataclass(frozen=True, repr=False, eq=False)
 class Assessment(Tabular):
-    """Members of a frame beside the limits of a code.
+    """Members and joints of a frame beside the limits of a code.
 
     Attributes
     ----------
@@ -246,7 +316,7 @@ class Assessment(Tabular):
     rows: list[dict[str, Any]]
 
     def to_pandas(self) -> DataFrame:
-        """Return a row for each end and each side that it turned to.
+        """Return a row for each end and each side that it turned to, and one for each joint.
 
         Demand (plastic or chord rotation), rotation at yield, limits, and ratios of rotation and of
         shear; `status` is "evaluated", or why the code does not cover the end. NaN is no ratio.
@@ -254,7 +324,7 @@ class Assessment(Tabular):
         return data_frame(self.rows)
 
     def worst(self, count: int = 10, level: str | None = None) -> DataFrame:
-        """Return the ends with the largest ratios.
+        """Return the ends and joints with the largest ratios.
 
         Parameters
         ----------
@@ -304,6 +374,21 @@ class Assessment(Tabular):
             found[at] = max(found.get(at, -1), passed)
         return found
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Explanations that a reader needs: of shear beyond its strength where no spring fails."""
+        ends = sum(row["ratio_shear"] > 1.0 for row in self.rows if row["end"] in ("start", "end"))
+        most = math.inf if self.displacement is None else abs(self.displacement)
+        failures = (one for one in self.result.events if one.what == "shear failure")
+        if not ends or any(abs(one.displacement) <= most for one in failures):
+            return ()
+        annex = " (A.12: over gamma_el, with a fifth of the concrete from L_V = 5 h on)"
+        annex = "" if self.code == "asce_41" else annex
+        return (
+            f"Shear is beyond its strength at {ends} ends, and no spring fails in shear: the code "
+            f"has a lower bound that falls with ductility{annex}, the springs the mean of tests.",
+        )
+
     def _level(self, level: str | None) -> str:
         name = self.levels[-1] if level is None else level
         return str(_arguments.choice(name, "level", self.levels))
@@ -314,6 +399,9 @@ class Assessment(Tabular):
         )
         where = "envelope" if self.displacement is None else f"{self.displacement:.4g} m"
         return f"Assessment({self.code}, {where}, {len(self.rows)} ends: {told or 'all within'})"
+
+    def __str__(self) -> str:
+        return "\n".join((repr(self), *self.notes))
 
 
 def assess(
@@ -341,8 +429,9 @@ def assess(
     primary : bool, optional
         Whether members are primary ones of EN 1998-3: gamma_el of 1.5 and 1.15, else 1.
     limits : mapping, optional
-        Rotations [rad], one for each level, by names of members, in place of those of the code:
-        for members that it does not cover, or with splices.
+        Rotations [rad], one for each level, by names of members and nodes or patterns of them (the
+        last that fits counts), in place of those of the code: for members that it does not cover,
+        with splices, and for panels of nodes.
 
     Returns
     -------
@@ -360,8 +449,10 @@ def assess(
     is M/V of the end moments, from 1.5 h to the clear length. ASCE 41: plastic rotation beyond
     M_y L/(6 E I) with the nominal moment and the stiffness of table 10-5; a beam whose shear at
     yield is above its strength is one of row ii; splices and embedment (rows iii, iv), the factors
-    of force-controlled actions and plastic strains of nodes are left out. Strengths are those of
-    the drawing: give expected ones.
+    of force-controlled actions and the limits of joints (table 10-11) are left out: panels of
+    nodes have rows whose limits are to be given, rigid nodes have none. EN 1998-3: the shear of
+    each joint beside its strut (EN 1998-1, 5.5.3.3), not its hoops. Strengths are those of the
+    drawing: give expected ones.
     """
     result = _arguments.instance(result, "assess", FrameResult, "as of rbsdem.pushover")
     code = _arguments.choice(code, "assess: code", get_args(AcceptanceCode))
@@ -374,12 +465,11 @@ def assess(
             "assess: the members of the frame have no sections; make it of them, as by "
             "rbsdem.Frame.grid(columns=section, ...)"
         )
-    levels, own = LEVELS[code], dict(limits or {})
-    for name, values in own.items():
-        if name not in result.frame.parts.members or len(tuple(values)) != len(levels):
-            raise InputError(
-                f"assess: limits of {name!r}: give {len(levels)} rotations of a member of the frame"
-            )
+    levels = LEVELS[code]
+    own = _given(limits, found, levels)
+    if code == "asce_41":
+        # Joints are judged by their rotation, and a rigid one has none.
+        found = [d for d in found if d.end != "joint"]
     made = []
     for d in found:
         status = "evaluated"
@@ -389,10 +479,7 @@ def assess(
         except InputError as error:
             status = str(error)
         if d.member in own:
-            given = tuple(float(one) for one in own[d.member])
-            bound = _Limits(
-                bound.demand, bound.yielding, given, bound.shear, "limits that were given"
-            )
+            bound = replace(bound, rotations=own[d.member], source="limits that were given")
             status = "evaluated"
         ratios = [math.inf if one == 0 else bound.demand / one for one in bound.rotations]
         sheared = d.shear / bound.shear
@@ -417,6 +504,32 @@ def assess(
             }
         )
     return Assessment(code, levels, result, place, made)
+
+
+def _given(
+    limits: Any, found: Sequence[_Demand], levels: tuple[str, ...]
+) -> dict[str, tuple[float, ...]]:
+    """Return the limits that were given, by names of members and nodes."""
+    # A rigid node has no rotation.
+    known = dict.fromkeys(d.member for d in found if not math.isnan(d.rotation))
+    own: dict[str, tuple[float, ...]] = {}
+    if not isinstance(limits or {}, Mapping):
+        raise InputError(f"assess: limits = {_arguments.shown(limits)} must be a mapping of names")
+    for name, values in (limits or {}).items():
+        rotations = _arguments.finite_vector(values, f"assess: limits of {name!r}")
+        if rotations.size != len(levels) or (np.diff(rotations, prepend=0.0) < 0.0).any():
+            raise InputError(
+                f"assess: limits of {name!r} = {_arguments.shown(values)} must be "
+                f"{len(levels)} ascending rotations [rad], of {', '.join(levels)}"
+            )
+        matching = [one for one in known if fnmatchcase(one, str(name))]
+        if not matching:
+            raise InputError(
+                f"assess: limits of {name!r}: no member with sections and no node with a panel has "
+                "this name; give one, or a pattern, as 'C-*-1' for the columns of a storey"
+            )
+        own |= dict.fromkeys(matching, tuple(rotations.tolist()))
+    return own
 
 
 def _place(result: FrameResult, at: Any) -> tuple[float | None, Array]:

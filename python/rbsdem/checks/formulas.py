@@ -397,6 +397,30 @@ def ec_8_shear_resistance(q: Quantities, plastic_ductility: float = 0.0) -> floa
     return strut + falling * (concrete * math.sqrt(q.fc) * area + ties)
 
 
+def ec_8_joint_strength(
+    fc: float, width: float, depth: float, axial_load_ratio: float, *, exterior: bool
+) -> float:
+    """Return the horizontal shear at which the diagonal strut of a joint crushes [N].
+
+    EN 1998-1:2004, 5.5.3.3: eta f_c sqrt(1 - nu_d/eta) b_j h_jc with eta = 0.6 (1 - f_c/250), and
+    0.8 of it where beams do not come from both sides.
+
+    Parameters
+    ----------
+    fc : float
+        Strength of the concrete [MPa].
+    width, depth : float
+        b_j, and h_jc between the outer bars of the column [mm].
+    axial_load_ratio : float
+        nu_d of the column above the joint.
+    exterior : bool
+        Whether a side is without a beam.
+    """
+    eta = 0.6 * (1.0 - fc / 250.0)
+    left = math.sqrt(max(1.0 - axial_load_ratio / eta, 0.0))
+    return (0.8 if exterior else 1.0) * eta * fc * width * depth * left
+
+
 def _nu(q: Quantities) -> float:
     return q.load / (q.width * q.depth * q.fc)
 

@@ -91,7 +91,7 @@ def _inside(found: Target, period: float) -> bool:
 
 
 def assessment(found: Assessment, *, ax: Axes | None = None, **line: Any) -> Axes:
-    """Draw a frame with the ends of its members in the colours of the levels that they have passed.
+    """Draw a frame with ends of members and joints in the colours of the levels they have passed.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def assessment(found: Assessment, *, ax: Axes | None = None, **line: Any) -> Axe
     Returns
     -------
     matplotlib.axes.Axes
-        The axes, in m. An end beyond its shear strength has the colour of the last level.
+        The axes, in m. What is beyond its shear strength has the colour of the last level.
     """
     _arguments.instance(found, "plot.assessment", Assessment, "as of rbsdem.codes.assess")
     structure, states = found.result.frame, found.states()
@@ -119,6 +119,16 @@ def assessment(found: Assessment, *, ax: Axes | None = None, **line: Any) -> Axe
                 if (member.name, end) in states:
                     at = member.foot + share * member.clear * member.axis
                     places.setdefault(states[member.name, end], []).append(at)
+        nodes = dict(
+            zip(
+                structure.parts.nodes,
+                np.column_stack((structure.parts.x, structure.parts.y)),
+                strict=True,
+            )
+        )
+        for (name, _), passed in states.items():
+            if name in nodes:
+                places.setdefault(passed, []).append(nodes[name])
         for passed, points in sorted(places.items()):
             face = _NOT_COVERED if passed < 0 else _PASSED[passed]
             name = "not covered" if passed < 0 else names[passed]

@@ -58,9 +58,10 @@ _OF_RULES = {
 _MOST_MEMBERS, _MOST_SECTIONS = 40, 6
 _LEFT_OUT = (
     "Strengths are those of the drawings. Left out: torsion and motion across the frame, infills, "
-    "the ground, splices that were not named, factors of force-controlled actions, plastic "
-    "rotations of nodes. Tested frames were 10 to 20 % off in their peaks in the median, and a "
-    "factor of 1.5 in the drift at the peak (docs/frames.md)."
+    "the ground, splices that were not named, factors of force-controlled actions, of joints all "
+    "but the strut (EN 1998) or limits that were given (ASCE 41). Tested frames were 10 to 20 % "
+    "off in their peaks in the median, and a factor of 1.5 in the drift at the peak "
+    "(docs/frames.md)."
 )
 #: Letters of a text that a report takes with it.
 _MOST_TEXT = 400_000
@@ -448,8 +449,9 @@ def _of_assessment(
     if target is not None and result.frame.storeys:
         drifts = ", ".join(f"{100 * one:.2f}" for one in target.storey_drift)
         text += f"Storey drifts at the target, from the ground up: {drifts} %. "
-    text += "Ends beyond their strength in shear have the colour of the last level. "
-    yield Sheet("Members", f"{text}The ten largest ratios follow.", tuple(drawn), found.worst(10))
+    told = ["What is beyond its strength in shear has the colour of the last level.", *found.notes]
+    text += " ".join((*told, "The ten largest ratios follow."))
+    yield Sheet("Members", text, tuple(drawn), found.worst(10))
     yield Sheet("All members", table=found.to_pandas(), beside=True)
     yield Sheet("Assumed", f"{result.scope_note} {_LEFT_OUT}")
 

@@ -199,7 +199,7 @@ function showResponse() {
 function showChecks() {
   const found = checks(), ends = (found?.ends ?? []).toSorted((a, b) => b.ratio - a.ratio);
   get("attarget").hidden = !found?.target?.reached;
-  const told = found && `${found.levels?.at(-1) ?? ""} of ${found.code === "asce_41" ? "ASCE 41-17" : "EN 1998-3"}, ${found.at_target ? "at the target displacement" : "largest of all rows"}`;
+  const told = found && `${found.levels?.at(-1) ?? ""} of ${found.code === "asce_41" ? "ASCE 41-17" : "EN 1998-3"}, ${found.at_target ? "at the target displacement" : "largest of all rows"}${(found.notes ?? []).map(one => `. ${one}`).join("")}`;
   get("membertable").replaceChildren(ends.length ? table(["Member", "end", "ratio", "levels passed", "by"], ends.slice(0, 12).map(one => ({ cells: [one.member, one.end, one.status === "evaluated" ? shown(one.ratio, 3) : "–", found.levels.slice(0, Math.max(0, one.passed)).join(", ") || "none", { text: one.status === "evaluated" ? one.governed_by : one.status }] })), told)
     : element("p", { className: "empty" }, found ? "No member is judged." : "Computing"));
   showMessages();
