@@ -29,7 +29,7 @@ import rbsdem
 from rbsdem import peer
 from rbsdem.calibration.misfit import Target
 from rbsdem.errors import RbsdemError
-from rbsdem.run.analysis import reached_force
+from rbsdem.run.result import reached_force
 from rbsdem.section.parameters import table
 
 # Bounds as factors of the value, or as values where it may be zero.

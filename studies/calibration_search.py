@@ -22,7 +22,7 @@ from rbsdem.calibration.misfit import Misfit, Target, rms
 from rbsdem.calibration.paths import Parameters, free_parameters
 from rbsdem.calibration.search import Search, SearchStopped
 from rbsdem.peer import find_history, read_peer
-from rbsdem.run.analysis import reached_force
+from rbsdem.run.result import reached_force
 
 FREE = [f"flexure.{name}" for name in ("k_c", "k_y", "d_y", "k_u", "b0", "b1")]
 MOST, SEEDS, DRAWN = 800, 3, 2

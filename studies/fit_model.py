@@ -40,7 +40,7 @@ import numpy as np
 from rbsdem import peer
 from rbsdem.calibration.misfit import Target
 from rbsdem.errors import AccuracyWarning, RbsdemError
-from rbsdem.run.analysis import reached_force
+from rbsdem.run.result import reached_force
 from rbsdem.section.parameters import ModelParameters, parameters, table
 
 ROOT = Path(__file__).resolve().parents[1]

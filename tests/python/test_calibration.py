@@ -19,7 +19,7 @@ from rbsdem.calibration.search import COARSE, Search
 from rbsdem.curves.cycles import half_cycle_numbers
 from rbsdem.errors import AccuracyWarning
 from rbsdem.peer import find_history, read_peer
-from rbsdem.run import analysis
+from rbsdem.run import result as run_result
 from rbsdem.springs import Bilinear, ConcreteSpring, Elastic, Layered, Pinching, SteelSpring, Takeda
 
 PEER = os.environ.get("RBSDEM_PEER_DIR") or Path(__file__).resolve().parents[3] / "shared" / "peer"
@@ -348,7 +348,7 @@ def test_interrupt_keeps_the_best(monkeypatch):
     start = COLUMNS["zahn_7"]
     flexure = replace(start.flexure, k_y=4e7, d_y=4e-3)
     test = response(replace(start, flexure=flexure), path(start))
-    calls, whole = [], analysis.cyclic
+    calls, whole = [], run_result.cyclic
 
     def interrupted(column, displacement):
         calls.append(column)
@@ -356,30 +356,30 @@ def test_interrupt_keeps_the_best(monkeypatch):
             raise KeyboardInterrupt
         return whole(column, displacement=displacement)
 
-    monkeypatch.setattr(analysis, "cyclic", interrupted)
+    monkeypatch.setattr(run_result, "cyclic", interrupted)
     fit = quiet(start, test, ["flexure.k_y", "flexure.d_y"])
     assert fit.status == "interrupted"
     assert fit.nrmse < fit.before.nrmse
 
 
 def test_paths_that_break_off_count_as_errors_of_the_peak(monkeypatch):
-    whole = analysis.cyclic
+    whole = run_result.cyclic
 
     def broken(column, displacement):
         result = whole(column, displacement=displacement)
         if column.shear.k > 4e7:
             half = displacement.size // 2
             # The last row is a state on the way to the next one.
-            part = replace(result, force=result.force[: half + 1])
+            part = replace(result, channels={"force": result.force[: half + 1]})
             raise SolveError("broken off", part)
         return result
 
     test = response(replace(ELASTIC, shear=Elastic(k=5e7)), path(ELASTIC))
-    monkeypatch.setattr(analysis, "cyclic", broken)
+    monkeypatch.setattr(run_result, "cyclic", broken)
     fit = quiet(ELASTIC, test, ["shear.k"])
     assert fit.failed > 0
     assert 3.9e7 < fit.values["shear.k"] < 4e7
-    force, error = analysis.reached_force(replace(ELASTIC, shear=Elastic(k=5e7)), test[0])
+    force, error = run_result.reached_force(replace(ELASTIC, shear=Elastic(k=5e7)), test[0])
     assert (force.size, str(error)) == (test[0].size // 2, "broken off")
     assert force == pytest.approx(test[1][: force.size])
 

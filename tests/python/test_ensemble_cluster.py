@@ -14,7 +14,6 @@ import pytest
 from test_ensembles import column, motion
 
 import rbsdem
-from rbsdem.batch import work
 from rbsdem.many import ensemble
 
 distributed = pytest.importorskip("distributed", reason="the extra 'cluster' brings distributed")
@@ -98,36 +97,3 @@ def test_ctrl_c_keeps_what_came_back(client: Any, monkeypatch: pytest.MonkeyPatc
     )
     assert found.interrupted
     assert 0 < (found.status != "").sum() < len(found)
-
-
-class Silent:
-    """A cluster whose scheduler answers once, and never again."""
-
-    def __init__(self) -> None:
-        self.asked = 0
-        self.status = "running"
-
-    def ncores(self) -> dict[str, int]:
-        self.asked += 1
-        if self.asked > 2:
-            self.status = "connecting"
-            threading.Event().wait()
-        return {"a": 1}
-
-    def submit(self, function: Any, *args: Any, **more: Any) -> Any:
-        class Remote:
-            add_done_callback = staticmethod(lambda call: None)
-            done = staticmethod(lambda: False)
-
-        return Remote()
-
-    def cancel(self, remotes: Any) -> None:
-        threading.Event().wait()
-
-
-def test_a_scheduler_that_is_silent_ends_the_work(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(work, "_QUESTIONS", 0.05)
-    monkeypatch.setattr(work, "_SILENT", 0.1)
-    monkeypatch.setattr(work, "_PATIENCE", 0.5)
-    with pytest.raises(rbsdem.SolveError, match="the cluster has had no scheduler for"):
-        rbsdem.ensemble(column(), motion(1, 200), client=Silent(), **GIVEN)

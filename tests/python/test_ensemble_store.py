@@ -16,8 +16,7 @@ from test_ensembles import column, motion
 
 import rbsdem
 from rbsdem import InputError
-from rbsdem.batch import store
-from rbsdem.many import ensemble
+from rbsdem.many import ensemble, store
 from rbsdem.many.inputs import MEASURES
 from rbsdem.many.plan import Plan
 from rbsdem.springs import Elastic
@@ -263,7 +262,7 @@ sys.path.insert(0, {tests!r})
 from test_ensembles import column, motion
 import numpy as np, rbsdem
 from contextlib import contextmanager
-from rbsdem.batch import store
+from rbsdem.many import store
 from rbsdem.many import ensemble
 ensemble._LONGEST = {longest}
 store._BEAT = {beat}

@@ -137,7 +137,7 @@ def test_missing_later_and_damaged_files_are_told(tmp_path):
     written(about=np.array(json.dumps(about | {"format": "another"})))
     with pytest.raises(InputError, match="no saved result"):
         rbsdem.read_result(path)
-    del arrays["slip"]
+    del arrays["channels/slip"]
     written()
     with pytest.raises(InputError, match="slip"):
         rbsdem.read_result(path)

@@ -33,7 +33,10 @@ from rbsdem import _core
 from rbsdem.springs import SPRINGS, Elastic, Layered, Spring
 
 ARRAYS = ("time", "displacement", "force", "slip", "rotation", "opening", "shear", "moment")
-ARRAYS += ("base_shear", "base_moment", "axial_force", "top", "motion", "rest")
+ARRAYS += ("base_shear", "base_moment", "axial_force", "top", "rest")
+#: How the top moves, where it was kept.
+MOTION = ("velocity", "acceleration", "ground_acceleration")
+EVERY = ARRAYS + MOTION
 
 #: Arrays that two results are compared in but for round-off.
 SIZED = ("displacement", "force", "slip", "rotation", "shear", "moment")
@@ -57,10 +60,15 @@ def move(column: rbsdem.Column, loading: dict[str, Any], **more: Any) -> rbsdem.
     return ended(lambda: rbsdem.time_history(column, **loading, **more))
 
 
-def same_bits(one: rbsdem.Result, other: rbsdem.Result, names: tuple[str, ...] = ARRAYS) -> None:
+def value(run: rbsdem.Result, name: str) -> np.ndarray | None:
+    """Return an array of a result; None where it was not kept."""
+    return run.channels.get(name) if name in MOTION else getattr(run, name)
+
+
+def same_bits(one: rbsdem.Result, other: rbsdem.Result, names: tuple[str, ...] = EVERY) -> None:
     """Hold two results to the same rows, energies and figures."""
     for name in names:
-        a, b = getattr(one, name), getattr(other, name)
+        a, b = value(one, name), value(other, name)
         assert (a is None) == (b is None), name
         assert a is None or np.array_equal(a, b, equal_nan=True), difference(name, a, b)
     for name, values in one.energy.items():
@@ -279,9 +287,14 @@ def test_mirror(rng: Rng) -> None:
     )
 
 
+def with_channels(run: rbsdem.Result, values: dict[str, np.ndarray]) -> rbsdem.Result:
+    """Return a result with other values in some of its channels."""
+    return replace(run, channels=run.channels | values)
+
+
 def turned_back(run: rbsdem.Result) -> rbsdem.Result:
     """Return the result of the mirrored column as that of the column."""
-    return replace(run, **{name: -getattr(run, name) for name in SIZED})
+    return with_channels(run, {name: -getattr(run, name) for name in SIZED})
 
 
 def scaled(
@@ -362,7 +375,7 @@ def unscaled(
     force = mass * length / time**2 * amplitude
     sizes = {"displacement": length * amplitude, "slip": length * amplitude, "rotation": amplitude}
     sizes |= {"force": force, "shear": force, "moment": force * length}
-    return replace(run, **{name: getattr(run, name) / size for name, size in sizes.items()})
+    return with_channels(run, {name: getattr(run, name) / size for name, size in sizes.items()})
 
 
 @relation(400, judged=0.9)
@@ -415,7 +428,7 @@ def test_points_on_the_way(rng: Rng) -> None:
 
     def coarse() -> rbsdem.Result:
         run = follow(column, fine)
-        return replace(run, **{name: getattr(run, name)[parts - 1 :: parts] for name in SIZED})
+        return with_channels(run, {name: getattr(run, name)[parts - 1 :: parts] for name in SIZED})
 
     one = follow(column, loading)
     if one.summary["status"] != "completed":
@@ -476,8 +489,8 @@ def few_rows(whole: rbsdem.Result, kept: rbsdem.Result, every: int) -> None:
     """Hold a result to the rows and to all figures of the one that has every row."""
     last = whole.time.size - 1
     places = sorted({*range(0, last + 1, every), last})
-    for name in ARRAYS:
-        a, b = getattr(whole, name), getattr(kept, name)
+    for name in EVERY:
+        a, b = value(whole, name), value(kept, name)
         assert a is None or np.array_equal(a[places], b, equal_nan=True), difference(
             name, a[places], b
         )
@@ -749,7 +762,7 @@ def test_a_huge_footing_changes_nothing(rng: Rng) -> None:
     def upper() -> rbsdem.Result:
         run = follow(other, loading)
         names = ("slip", "rotation", "shear", "moment")
-        return replace(run, **{name: getattr(run, name)[:, 1:] for name in names})
+        return with_channels(run, {name: getattr(run, name)[:, 1:] for name in names})
 
     same_but_round_off(
         lambda: follow(column, loading), upper, lambda: follow(column, changed(loading)), 1e-6
@@ -907,8 +920,8 @@ def test_cut_and_restart_in_time(rng: Rng) -> None:
     if first.state is None or first.summary["status"] != "completed":
         raise Discard
     rest = move(column, {n: v[cut:] for n, v in loading.items()}, initial=first, every=1, **chosen)
-    for name in ARRAYS:
-        a, b = getattr(rest, name), getattr(whole, name)
+    for name in EVERY:
+        a, b = value(rest, name), value(whole, name)
         if a is not None:
             at = b[first.time.size - 1 :]
             assert np.array_equal(a, at), difference(name, a, at)
@@ -1004,7 +1017,7 @@ def test_points_on_the_way_of_a_motion(rng: Rng) -> None:
 
     def coarse() -> rbsdem.Result:
         run = move(column, fine, **chosen)
-        return replace(run, **{name: getattr(run, name)[::2] for name in SIZED})
+        return with_channels(run, {name: getattr(run, name)[::2] for name in SIZED})
 
     same_but_round_off(
         lambda: move(column, loading, **chosen),

@@ -44,12 +44,7 @@ def sound(run: FrameResult) -> FrameResult:
 
 def rows_of(run: FrameResult, rows: slice) -> FrameResult:
     """Return some rows of a result."""
-    values = {
-        one.name: getattr(run, one.name)[rows]
-        for one in fields(run)
-        if isinstance(getattr(run, one.name), np.ndarray) and one.name != "state"
-    }
-    return replace(run, **values, springs={name: part[rows] for name, part in run.springs.items()})
+    return replace(run, channels={name: values[rows] for name, values in run.channels.items()})
 
 
 def apart(one: FrameResult, other: FrameResult) -> float:
@@ -305,11 +300,10 @@ def seen_in_a_mirror(run: FrameResult) -> FrameResult:
     beams = np.array([name.startswith("B") for name in parts.members])
     start = np.where(beams, run.moment_to[:, members], run.moment_from[:, members])
     end = np.where(beams, run.moment_from[:, members], run.moment_to[:, members])
-    return replace(
-        run, displacement=-run.displacement, force=-run.force, base_shear=-run.base_shear,
-        x=-run.x[:, nodes], y=run.y[:, nodes], turn=-run.turn[:, nodes],
-        member_axial=run.member_axial[:, members], moment_from=-start, moment_to=-end,
-    )  # fmt: skip
+    other = {name: -run.channels[name] for name in ("displacement", "force", "base_shear")}
+    other |= {"x": -run.x[:, nodes], "y": run.y[:, nodes], "turn": -run.turn[:, nodes]}
+    other |= {"member_axial": run.member_axial[:, members]}
+    return replace(run, channels=run.channels | other | {"moment_from": -start, "moment_to": -end})
 
 
 @relation(40, judged=0.6, bar=1e-7)
@@ -361,7 +355,8 @@ def as_grid(run: FrameResult, made: Frame) -> FrameResult:
     parts, other = made.parts, run.frame.parts
     places = np.column_stack((other.x - other.x.min(), other.y - other.y.min()))
     order = [np.abs(places - at).sum(axis=1).argmin() for at in np.column_stack((parts.x, parts.y))]
-    return replace(run, x=run.x[:, order], y=run.y[:, order], turn=run.turn[:, order])
+    moved = {name: run.channels[name][:, order] for name in ("x", "y", "turn")}
+    return replace(run, channels=run.channels | moved)
 
 
 @relation(40, judged=0.6, bar=1e-7)
@@ -489,7 +484,9 @@ def test_rotations_without_inertia_are_in_equilibrium_in_time(rng: Rng) -> float
     """Moments at nodes, which have neither mass nor damping against rotation."""
     made, time, load = shaken(rng, any_family(rng), panels=False, kinematics="small")
     run = move(made, time, **load)
-    missing = off_balance(replace(run, force=np.zeros(run.time.size)))[..., 2]
+    missing = off_balance(replace(run, channels=run.channels | {"force": np.zeros(run.time.size)}))[
+        ..., 2
+    ]
     return float(np.abs(missing[:, free(made)[:, 2]]).max() / moment_size(run))
 
 
@@ -561,12 +558,11 @@ def powers(rng: Rng) -> tuple[float, float, float]:
 def out_of_units(run: FrameResult, length: float, mass: float, time: float) -> FrameResult:
     """Return a result of `in_units` in the units of the frame."""
     force = mass * length / time**2
-    return replace(
-        run, displacement=run.displacement / length, x=run.x / length, y=run.y / length,
-        force=run.force / force, base_shear=run.base_shear / force,
-        member_axial=run.member_axial / force, moment_from=run.moment_from / (force * length),
-        moment_to=run.moment_to / (force * length),
-    )  # fmt: skip
+    units = dict.fromkeys(("displacement", "x", "y"), length)
+    units |= dict.fromkeys(("force", "base_shear", "member_axial"), force)
+    units |= dict.fromkeys(("moment_from", "moment_to"), force * length)
+    values = {name: run.channels[name] / unit for name, unit in units.items()}
+    return replace(run, channels=run.channels | values)
 
 
 @relation(40, judged=0.5, bar=1e-8)

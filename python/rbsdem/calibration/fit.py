@@ -22,7 +22,7 @@ from rbsdem.calibration.search import Search
 from rbsdem.curves.scores import Comparison, compare
 from rbsdem.errors import InputError, warn
 from rbsdem.model.column import Column, Parameter
-from rbsdem.run.analysis import reached_force
+from rbsdem.run.result import reached_force
 
 #: Number of random points, besides the start, at which the effect of a parameter is tried.
 _LOOKS = 3

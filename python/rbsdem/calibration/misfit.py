@@ -15,7 +15,7 @@ from rbsdem.curves.cycles import half_cycle_numbers
 from rbsdem.curves.metrics import N_POINTS, PathPoints, work
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column, Parameter
-from rbsdem.run.analysis import reached_force
+from rbsdem.run.result import reached_force
 
 #: Points along the path of displacement at which the error is taken, as in a comparison.
 POINTS = N_POINTS

@@ -20,7 +20,6 @@ from rbsdem._files import data_frame, save_frame, write_figure
 from rbsdem._package import extra, recorded
 from rbsdem._tables import read_table
 from rbsdem._types import DataFrame
-from rbsdem.batch.store import store_status
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
 from rbsdem.errors import InputError, RepairWarning
@@ -29,6 +28,7 @@ from rbsdem.many.fragility import Fragility, Hazard
 from rbsdem.many.ida import IDA
 from rbsdem.many.ida import ida as run_ida
 from rbsdem.many.runs import NAMES
+from rbsdem.many.store import store_status
 from rbsdem.methods.ladder import OF_SETTING
 from rbsdem.methods.physics import Physics
 from rbsdem.methods.study import compare_methods

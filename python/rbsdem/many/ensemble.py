@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import heapq
 import os
 import time
 from collections.abc import Mapping, Sequence
 from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Any
@@ -18,9 +16,8 @@ from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
 from rbsdem._progress import Bar, progress_bar
 from rbsdem._types import Array, ArrayLike, DataFrame, NDArray, Unpack
-from rbsdem.batch import work
 from rbsdem.errors import InputError, Interrupted, SolveError
-from rbsdem.many import inputs
+from rbsdem.many import inputs, work
 from rbsdem.many.plan import (
     Outcome,
     Piece,
@@ -293,7 +290,7 @@ def ensemble(
     part = checked_part(shard, store, faults)
     with _arguments.collected(faults):
         if jobs is not None:
-            work.check_jobs(jobs)
+            _arguments.integer(jobs, "jobs", least=1)
     with _arguments.collected(faults):
         if client is not None:
             work.check_client(client)
@@ -317,7 +314,7 @@ def ensemble(
     if store is not None:
         own_names = column_names, [item.name for item in motion_items]
         kept = RunStore(_arguments.path(store), plan, own_names, part, seeds)
-    own = _of_part(each, lanes, part)
+    own = _of_part(each.size, part)
     outcome, resumed, end = _carried_out(plan, own, (each, lanes), kept, client, jobs, progress)
     states = zip(column_names, before, strict=True)
     whole = Ensemble(
@@ -376,7 +373,7 @@ def _carried_out(
                 kept.add(runs, result)
 
         def beat() -> None:
-            show(workers.done(), workers.waited_for())
+            show(workers.done(), "")
             if kept is not None:
                 kept.write_if_due()
 
@@ -386,7 +383,7 @@ def _carried_out(
 
 
 class _Workers:
-    """Threads, whose solver releases the interpreter's lock, or a cluster."""
+    """Threads, whose solver releases the interpreter's lock, or the workers of a Dask cluster."""
 
     executor: Executor
 
@@ -395,54 +392,44 @@ class _Workers:
         self._done = 0
         # Shared with the threads: the first number ends a task, the second counts its runs.
         self._controls: list[NDArray[np.int32]] = []
-        self._cluster = None if client is None else work.Cluster(client)
-        if self._cluster is None:
+        self._remote = client is not None
+        if client is None:
             self.executor = ThreadPoolExecutor(threads)
             #: Tasks under way or next in line, so that no thread waits for one.
             self.ahead = 2 * threads
         else:
-            self.executor = self._cluster
-            self.ahead = 3 * self._cluster.workers
+            self.executor = client.get_executor(pure=False)
+            self.ahead = 3 * int(sum(client.ncores().values()))
 
     def submit(self, piece: Piece) -> Future[Outcome]:
         """Give a task to them."""
-        if self._cluster is not None:
-            return self._cluster.submit(compute, self._plan.task(*piece))
+        if self._remote:
+            return self.executor.submit(compute, self._plan.task(*piece))
         control = np.zeros(2, dtype=np.int32)
         self._controls.append(control)
-        return self.executor.submit(_computed, self._plan, piece, control)
+        return self.executor.submit(lambda: compute(self._plan.task(*piece), control))
 
     def result(self, piece: Piece, future: Future[Outcome]) -> Outcome:
-        """Return what a task has come to."""
+        """Return the outcome of a task."""
         self._done += piece[1] - piece[0]
         try:
             return future.result()
         except CancelledError:
             raise SolveError("client: the cluster has lost its tasks; start it again") from None
-        except BrokenProcessPool as error:
-            text = f"{error} of this run; run it alone to see why"
+        except Exception as error:
+            if type(error).__name__ != "KilledWorker":
+                raise
+            text = "several worker processes died at the task of this run; run it alone to see why"
             return Outcome.none(self._plan.task(*piece), "failed", text)
 
     def done(self) -> int:
         """Return the number of runs that are done."""
-        if self._cluster is not None:
-            return self._done
-        return sum(int(control[1]) for control in self._controls)
-
-    def waited_for(self) -> str:
-        """Return what the work waits for, or nothing; raise `SolveError` after a minute of it."""
-        return "" if self._cluster is None else self._cluster.waited_for()
+        return self._done if self._remote else sum(int(control[1]) for control in self._controls)
 
     def stop(self) -> None:
         """Finish the runs under way, and start no others: every task ends with what it has."""
-        if self._cluster is not None:
-            self._cluster.cancel()
         for control in self._controls:
             control[0] = 1
-
-
-def _computed(plan: Plan, piece: Piece, control: NDArray[np.int32]) -> Outcome:
-    return compute(plan.task(*piece), control)
 
 
 def _longest(each: Array, lanes: NDArray[np.int32], workers: int) -> float:
@@ -472,25 +459,11 @@ class _TaskSizer:
         return min(self._most, _LONGEST / max(self._slower, 1e-3))
 
 
-def _of_part(each: Array, lanes: NDArray[np.int32], part: tuple[int, int]) -> NDArray[np.int_]:
-    """Return the runs of part i of n, which follow from the input, whoever computes them.
-
-    Blocks go in order of their length, each to the part that has least so far.
-    """
-    place, parts = part
-    if parts == 1 or isinstance(part, Share):
-        return np.arange(each.size)
-    longest = min(_LONGEST, _longest(each, lanes, parts))
-    blocks = list(cut(each, lambda: longest))
-    lengths = [float(each[slice(*block)].sum()) for block in blocks]
-    total = [(0.0, number) for number in range(parts)]
-    own = []
-    for number in np.argsort([-length for length in lengths], kind="stable"):
-        least, taker = heapq.heappop(total)
-        heapq.heappush(total, (least + lengths[number], taker))
-        if taker == place - 1:
-            own.append(np.arange(*blocks[number]))
-    return np.sort(np.concatenate(own)) if own else np.empty(0, dtype=int)
+def _of_part(runs: int, part: tuple[int, int]) -> NDArray[np.int_]:
+    """Return the runs of part i of n, drawn so that each has long and short ones."""
+    place, parts = (1, 1) if isinstance(part, Share) else part
+    drawn = np.random.default_rng(1).permutation(runs)
+    return np.sort(drawn[place - 1 :: parts])
 
 
 def _told(found: Ensemble, store: Any) -> str:

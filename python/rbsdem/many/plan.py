@@ -10,7 +10,6 @@ import inspect
 import json
 import time
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -20,10 +19,10 @@ import numpy as np
 from rbsdem import _core
 from rbsdem._package import code_digest, extra
 from rbsdem._types import Array, NDArray
-from rbsdem.batch.store import PARQUET, Store, digest
 from rbsdem.checks.criteria import criteria, thresholds
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.many import inputs
+from rbsdem.many.store import Store, digest
 from rbsdem.model.column import Column, notes_off
 from rbsdem.model.frame import Structure
 from rbsdem.model.springs import Layered
@@ -253,7 +252,7 @@ def watched(column: Structure, states: tuple[str, ...]) -> Array:
     return thresholds(column, found, [numbers[each.name] for each in found])
 
 
-class RunStore:
+class RunStore(Store):
     """A folder for the runs of ensembles with the same settings and measures.
 
     Parameters
@@ -291,9 +290,7 @@ class RunStore:
         self._motions = [
             digest(motion.time.tobytes(), motion.acceleration.tobytes()) for motion in plan.motions
         ]
-        growing = ("columns", "motions")
-        self._store = Store(folder, PARQUET, self._manifest(seeds), growing, part)
-        self.write_if_due = self._store.write_if_due
+        super().__init__(folder, self._manifest(seeds), ("columns", "motions"), part)
 
     def _manifest(self, seeds: Any) -> dict[str, Any]:
         plan = self._plan
@@ -320,13 +317,9 @@ class RunStore:
             "motions": dict(zip(self._motions, map(str, motions), strict=True)),
         }
 
-    def open(self) -> AbstractContextManager[None]:
-        """Keep other processes from the same part while the block lasts."""
-        return self._store.open()
-
     def read(self, into: Outcome) -> int:
         """Put the runs that the store has into the outcome; return their number."""
-        tables = self._store.read()
+        tables = list(self.tables())
         if not tables:
             return 0
         import pyarrow as pa  # noqa: PLC0415
@@ -376,7 +369,7 @@ class RunStore:
             "column_key": coded(plan.column[runs], self._columns),
             "motion_key": coded(plan.motion[runs], self._motions),
         }
-        self._store.add(pa.table(data), done.size)
+        self.keep(pa.table(data))
 
 
 def _column_key(plan: Plan, i: int) -> str:

@@ -17,7 +17,7 @@ from rbsdem.errors import InputError, RbsdemError
 from rbsdem.methods.study_case import MethodRun, Setting, SolvedRun, StudyCase
 from rbsdem.model.column import Column, Kinematics
 from rbsdem.run.accuracy import common_interval
-from rbsdem.run.analysis import no_thresholds, time_history
+from rbsdem.run.result import time_history
 from rbsdem.run.solver import IMPLICIT, IN_TIME, METHODS, Solver
 
 #: Levels of kinematics, each with more physics than the one before.
@@ -106,7 +106,7 @@ def probe(case: StudyCase) -> Probe:
     level = case.column.kinematics
     first = _beginning(case, min(1e-6 * interval, time[1] - time[0]))
     keywords = first.keywords(Setting("rk4", level), case.column)
-    result = time_history(no_thresholds, first.column, first.time, **keywords)
+    result = time_history(first.column, first.time, **keywords)
     limit = float(result.summary["stable_step"])
     steps = min(300.0, (time[-1] - time[0]) / (0.5 * limit))
     short = _beginning(case, 0.5 * limit * max(steps, 1.0))

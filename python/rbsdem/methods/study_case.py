@@ -18,7 +18,7 @@ from rbsdem._types import Array, ArrayLike, NDArray
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError
 from rbsdem.model.column import Column, Kinematics, checked_column, notes_off
 from rbsdem.run.accuracy import Answer, answer_of
-from rbsdem.run.analysis import cyclic, no_thresholds, time_history
+from rbsdem.run.result import cyclic, time_history
 from rbsdem.run.solver import Solver
 
 #: Least number of times at which histories are compared; a loading with fewer is interpolated.
@@ -199,9 +199,7 @@ class StudyCase:
         with unwarned(AccuracyWarning, LongRunWarning):
             if self.static:
                 return self._solve_static(setting, column)
-            result: Any = time_history(
-                no_thresholds, column, self.time, **self.keywords(setting, column)
-            )
+            result = time_history(column, self.time, **self.keywords(setting, column))
         return answer_of(result, self.time)
 
     def keywords(self, setting: Setting, column: Column) -> dict[str, Any]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, Literal, NamedTuple
 
@@ -14,7 +15,7 @@ from rbsdem._types import Array, DataFrame
 from rbsdem.curves.envelope import Envelope
 from rbsdem.errors import InputError
 from rbsdem.model.frame import SCOPE_NOTE, Frame, FrameSpring, MemberGeometry, place_of
-from rbsdem.model.rows import ENERGIES, Rows
+from rbsdem.model.rows import Rows
 from rbsdem.model.springs import ConcreteSpring, Landmark, LandmarkName, Layered
 
 #: Names of the springs' deformations and forces in rows, by group.
@@ -170,9 +171,9 @@ class FrameResult(Rows):
     springs : dict of ndarray, shape (rows, springs)
         Deformations and forces of the springs in members: rotation and moment, slip and shear,
         opening and axial_force, in the order of `Frame.parts`.
-    summary : dict
-        As that of `Result`.
-    frame : Frame
+    summary, channels, reached, case
+        As those of `Result`.
+    frame, structure : Frame
         The frame.
     call : dict
         The loading and the settings that were given.
@@ -186,31 +187,33 @@ class FrameResult(Rows):
         (`FrameMember.failure_drift`, `Frame.losses`).
     """
 
-    time: Array
-    displacement: Array
-    force: Array
-    base_shear: Array
-    energy: dict[str, Array]
-    x: Array
-    y: Array
-    turn: Array
-    member_axial: Array
-    moment_from: Array
-    moment_to: Array
-    springs: dict[str, Array]
-    summary: dict[str, Any]
-    frame: Frame
-    call: dict[str, Any]
-    acceleration: Array | None = None
-    state: Array | None = None
-    lost: Array | None = None
-    scope_note: str = field(default=SCOPE_NOTE, init=False)
-    _of_column: ClassVar[bool] = False
+    scope_note: ClassVar[str] = SCOPE_NOTE
+    _derived: ClassVar[tuple[str, ...]] = ("energy", "springs", "acceleration")
+
+    @property
+    def frame(self) -> Frame:
+        """The frame."""
+        frame: Frame = self.structure
+        return frame
 
     @property
     def column(self) -> Frame:
         """The structure, by the name that results of columns have for it."""
         return self.frame
+
+    @property
+    def springs(self) -> dict[str, Array]:
+        """Deformations and forces of the springs, by the names of their channels."""
+        names = [name for pair in _CHANNELS.values() for name in pair]
+        return {name: self.channels[name] for name in names if name in self.channels}
+
+    @property
+    def acceleration(self) -> Array | None:
+        """Accelerations of the nodes along x in space [m/s2], if they were kept."""
+        if "node_acceleration" not in self.channels:
+            return None
+        ground = self.channels["ground_acceleration"][:, None]
+        return np.asarray(self.channels["node_acceleration"] + ground)
 
     @property
     def storey_drift(self) -> Array:
@@ -589,42 +592,13 @@ class FrameResult(Rows):
             if column.any()
         }
 
-    @property
-    def structure(self) -> Frame:
-        """The frame."""
-        return self.frame
-
-    def _again(self, arrays: dict[str, Array]) -> FrameResult:
-        return frame_result_of(arrays, self.frame, self.summary, self.call, self.state)
-
-    def columns(self) -> dict[str, Array]:
-        """Return the columns of the table: nodes and members by their names."""
-        columns: dict[str, Array] = {
-            "time" if self.dynamic else "step": self.time,
-            "displacement_m": self.displacement,
-            "force_N": self.force,
-            "base_shear_N": self.base_shear,
-        }
-        columns |= {f"{name}_J": values for name, values in self.energy.items()}
-        parts, units = self.frame.parts, _core.units()
-        named = (
-            (parts.nodes, ("x", "y", "turn")),
-            (parts.members, ("member_axial", "moment_from", "moment_to")),
-        )
-        for owners, channels in named:
-            for channel in channels:
-                unit = units[channel].replace(" ", "")
-                for i, owner in enumerate(owners):
-                    columns[f"{channel}_{owner}_{unit}"] = getattr(self, channel)[:, i]
-        if self.lost is not None:
-            columns |= {f"lost_{one}": self.lost[:, i] for i, one in enumerate(parts.members)}
-        for group, pair in _CHANNELS.items():
-            for channel in pair:
-                unit = units[channel].replace(" ", "")
-                for i, spring in enumerate(parts.springs_of(group)):
-                    name = f"{channel}_{spring.member}_{spring.place:g}_{unit}"
-                    columns[name] = self.springs[channel][:, i]
-        return columns
+    def _owners(self, channel: str) -> Sequence[object]:
+        parts = self.frame.parts
+        if channel in ("x", "y", "turn", "node_acceleration"):
+            return parts.nodes
+        groups = [group for group, pair in _CHANNELS.items() if channel in pair]
+        springs = parts.springs_of(groups[0]) if groups else []
+        return [f"{one.member}_{one.place:g}" for one in springs] if groups else parts.members
 
     def __repr__(self) -> str:
         about = self.summary
@@ -692,38 +666,3 @@ def _yield_moment(frame: Frame, spring: FrameSpring) -> float:
     if own is None:
         return spring.stiffness * max(turned)
     return max(float(abs(own.response([turn])[-1])) for turn in turned)
-
-
-def frame_result_of(
-    arrays: dict[str, Array],
-    frame: Frame,
-    summary: dict[str, Any],
-    call: dict[str, Any],
-    state: Array | None = None,
-) -> FrameResult:
-    """Return the result of the arrays of a run."""
-    acceleration = None
-    if "node_acceleration" in arrays:
-        ground = arrays["ground_acceleration"]
-        acceleration = arrays["node_acceleration"] + ground[:, None]
-    names = [name for pair in _CHANNELS.values() for name in pair]
-    return FrameResult(
-        time=arrays["time" if "time" in arrays else "step"],
-        displacement=arrays["displacement"],
-        force=arrays["force"],
-        base_shear=arrays["base_shear"],
-        energy={name: arrays[name] for name in ENERGIES},
-        x=arrays["x"],
-        y=arrays["y"],
-        turn=arrays["turn"],
-        member_axial=arrays["member_axial"],
-        moment_from=arrays["moment_from"],
-        moment_to=arrays["moment_to"],
-        springs={name: arrays[name] for name in names if name in arrays},
-        summary=summary,
-        frame=frame,
-        call=call,
-        acceleration=acceleration,
-        state=state,
-        lost=arrays.get("lost"),
-    )

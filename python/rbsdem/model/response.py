@@ -3,32 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol, TypeVar
+from typing import ClassVar
 
 import numpy as np
 
-from rbsdem import _arguments, _core
-from rbsdem._types import Array, Self
+from rbsdem import _arguments
+from rbsdem._types import Array
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
-from rbsdem.model.rows import ENERGIES, Rows
+from rbsdem.model.rows import Rows
 from rbsdem.model.springs import Gauge, Layered, Strains, strains_of
-
-_CHANNELS = ("displacement", "force", "slip", "rotation", "shear", "moment")
-
-R = TypeVar("R", bound="Response")
-
-
-class Recorded(Protocol):
-    """The case of which a response is: `rbsdem.run.case.Case`."""
-
-    @property
-    def title(self) -> str:
-        """Title of the case."""
-
-    def to_namelist(self) -> str:
-        """Return the text of the case file."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -83,21 +69,18 @@ class Response(Rows):
         Forces of the axial springs, tension positive [N]; None if joints do not open.
     top : ndarray, shape (steps, 2)
         Position (x, y) of the top relative to the ground [m].
-    column : Column
+    column, structure : Column
         The column.
     call : dict
         The loading and the settings that were given, as keywords of `cyclic` or `time_history`.
-    channels : tuple of str
-        Names of the quantities that the rows hold, in the order of the executable's csv.
+    channels : dict of ndarray
+        The quantities that the rows hold, by name, in the order of the executable's csv.
     case : rbsdem.run.case.Case or None
         The case that was run; None if the analysis was called for the column.
     state : ndarray or None
         The state at the end, in numbers whose meaning is the program's own: what the springs
         remember, where the column is and how it moves. ``initial=result`` begins another analysis
         from it. None after a failure, and where a joint has lost its axial load.
-    motion : ndarray, shape (steps, 3), or None
-        Velocity [m/s] and acceleration [m/s2] of the top relative to the ground, and acceleration
-        of the ground [m/s2]; None if they were not kept (``motion=True``).
     rest : ndarray, shape (steps, n), or None
         Rotations of layered joints under their first axial load, from which `rotation` counts
         [rad]; zero but for unsymmetric sections. None if the openings were not kept.
@@ -107,28 +90,28 @@ class Response(Rows):
         count, whatever rows are kept.
     """
 
-    time: Array
-    displacement: Array
-    force: Array
-    slip: Array
-    rotation: Array
-    shear: Array
-    moment: Array
-    base_shear: Array
-    base_moment: Array
-    energy: dict[str, Array]
-    summary: dict[str, Any]
-    opening: Array
-    axial_force: Array | None
-    top: Array
-    column: Column
-    call: dict[str, Any]
-    channels: tuple[str, ...]
-    case: Recorded | None = None
-    rest: Array | None = None
-    state: Array | None = None
-    motion: Array | None = None
-    reached: Array | None = None
+    _derived: ClassVar[tuple[str, ...]] = ("energy", "base_shear", "base_moment", "opening", "top")
+
+    @property
+    def column(self) -> Column:
+        """The column."""
+        column: Column = self.structure
+        return column
+
+    @property
+    def base_moment(self) -> Array:
+        """Moment of the ground on the column about the lowest joint [N m]."""
+        return self.channels.get("base_moment", self.moment[:, 0])
+
+    @property
+    def opening(self) -> Array:
+        """Openings of the joints at the middle of the section [m]."""
+        return self.channels.get("opening", np.zeros(self.slip.shape))
+
+    @property
+    def top(self) -> Array:
+        """Position (x, y) of the top relative to the ground [m]."""
+        return np.column_stack((self.displacement, self.channels["top_height"]))
 
     @property
     def elongation(self) -> Array:
@@ -217,7 +200,7 @@ class Response(Rows):
         InputError
             For a static path, and if the motion was not kept (``motion=True``).
         """
-        return self._motion("velocity")[:, 0]
+        return self._kept("velocity", "velocity")
 
     @property
     def acceleration(self) -> Array:
@@ -230,7 +213,7 @@ class Response(Rows):
         InputError
             For a static path, and if the motion was not kept (``motion=True``).
         """
-        return self._motion("acceleration")[:, 1]
+        return self._kept("acceleration", "acceleration")
 
     @property
     def absolute_acceleration(self) -> Array:
@@ -241,15 +224,15 @@ class Response(Rows):
         InputError
             For a static path, and if the motion was not kept (``motion=True``).
         """
-        motion = self._motion("absolute_acceleration")
-        return np.asarray(motion[:, 1] + motion[:, 2])
+        moved = self._kept("acceleration", "absolute_acceleration")
+        return np.asarray(moved + self.channels["ground_acceleration"])
 
-    def _motion(self, name: str) -> Array:
+    def _kept(self, channel: str, name: str) -> Array:
         if not self.dynamic:
             raise InputError(f"{name}: nothing moves in a static path; use time_history")
-        if self.motion is None:
+        if channel not in self.channels:
             raise InputError(f"{name} was not kept; run the analysis with motion=True")
-        return self.motion
+        return self.channels[channel]
 
     @property
     def residual_drift(self) -> float:
@@ -265,29 +248,8 @@ class Response(Rows):
             return float(self.displacement[-1]) / self.column.height
         return _last_zero(self.path.displacement, self.path.force) / self.column.height
 
-    @property
-    def structure(self) -> Column:
-        """The column."""
-        return self.column
-
-    def _again(self, arrays: dict[str, Array]) -> Self:
-        return response_of(type(self), arrays, self.column, self.summary, self.call, self.state)
-
-    def columns(self) -> dict[str, Array]:
-        """Return the columns of the executable's csv, the unit of each in its name."""
-        known = self.energy | {"step": self.time, "top_height": self.top[:, 1]}
-        if self.motion is not None:
-            known["ground_acceleration"] = self.motion[:, 2]
-        found = {}
-        for name in self.channels:
-            values = known[name] if name in known else getattr(self, name)
-            unit = f"_{_core.units()[name]}".replace(" ", "").rstrip("_")
-            if values.ndim == 1:
-                found[name + unit] = values
-            else:
-                for at, joint in enumerate(self.column.joint_numbers):
-                    found[f"{name}_{joint}{unit}"] = values[:, at]
-        return found
+    def _owners(self, channel: str) -> Sequence[object]:
+        return self.column.joint_numbers
 
 
 def _last_zero(displacement: Array, force: Array) -> float:
@@ -302,38 +264,3 @@ def _last_zero(displacement: Array, force: Array) -> float:
     row = int(changes[-1])
     share = force[row] / (force[row] - force[row + 1])
     return float(displacement[row] + share * (displacement[row + 1] - displacement[row]))
-
-
-def response_of(
-    kind: type[R],
-    arrays: dict[str, Array],
-    column: Column,
-    summary: dict[str, Any],
-    call: dict[str, Any],
-    state: Array | None = None,
-    reached: Array | None = None,
-) -> R:
-    """Return the response of the arrays of a run."""
-    channels: Any = {name: arrays[name] for name in _CHANNELS}
-    motion = None
-    if "velocity" in arrays:
-        names = ("velocity", "acceleration", "ground_acceleration")
-        motion = np.column_stack([arrays[name] for name in names])
-    return kind(
-        time=arrays["time" if "time" in arrays else "step"],
-        **channels,
-        base_shear=arrays.get("base_shear", arrays["shear"][:, 0]),
-        base_moment=arrays.get("base_moment", arrays["moment"][:, 0]),
-        energy={name: arrays[name] for name in ENERGIES},
-        summary=summary,
-        opening=arrays.get("opening", np.zeros(arrays["slip"].shape)),
-        axial_force=arrays.get("axial_force"),
-        rest=arrays.get("rest"),
-        top=np.column_stack((arrays["displacement"], arrays["top_height"])),
-        column=column,
-        call=call,
-        channels=tuple(arrays),
-        state=state,
-        motion=motion,
-        reached=reached,
-    )

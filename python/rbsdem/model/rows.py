@@ -6,10 +6,10 @@ import json
 import math
 import os
 import zipfile
-from collections.abc import Mapping
-from dataclasses import fields
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any, ClassVar, Literal, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -22,17 +22,19 @@ from rbsdem.curves.envelope import envelope as curve_envelope
 from rbsdem.curves.metrics import loop_pair
 from rbsdem.errors import InputError
 from rbsdem.model.citation import bibtex, parts_of
-from rbsdem.model.frame import Frame, Structure
+from rbsdem.model.column import Column
+from rbsdem.model.frame import Frame
 
 #: Names of the energies.
 ENERGIES = ("input", "kinetic", "spring", "damping", "axial", "residual")
 
 #: First line of a file with a state.
 STATE_HEAD = "# rbsdem state"
-_NO_ROWS, _DICTS = ("state", "reached"), ("energy", "springs")
 
 FORMAT = "rbsdem result"
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
+#: What a file holds as it is.
+SAVED = ("channels", "summary", "call", "state", "reached")
 
 
 @runtime_checkable
@@ -48,24 +50,79 @@ class HasEndState(Protocol):
         """What was done."""
 
 
-class Rows:
-    """What results of columns and of frames have in common: a path or a response, row by row."""
+class _Channels:
+    """The channels of a result are its attributes too; None where some were not kept."""
 
-    time: Array
+    channels: dict[str, Array]
     displacement: Array
     force: Array
-    base_shear: Array
-    energy: dict[str, Array]
+    rotation: Array
+    moment: Array
+    shear: Array
+    slip: Array
+    axial_force: Array | None
+    rest: Array | None
+    x: Array
+    y: Array
+    turn: Array
+    member_axial: Array
+    moment_from: Array
+    moment_to: Array
+    lost: Array | None
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """Return a channel."""
+            channels = self.__dict__.get("channels", {})
+            if name in channels or name in _OPTIONAL:
+                return channels.get(name)
+            raise AttributeError(f"a {type(self).__name__} has no {name!r}")
+
+
+#: Channels that are None where they were not kept, or do not belong to the structure.
+_OPTIONAL = ("axial_force", "rest", "lost")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Rows(_Channels):
+    """The result of an analysis of a column or a frame: a path or a response, row by row.
+
+    Attributes
+    ----------
+    channels : dict of ndarray
+        What was kept, by name, as the columns of the executable's csv: one number a row, or one for
+        each joint, node, member or spring.
+    summary, call, state, case
+        As those of `rbsdem.Result`.
+    structure : Column or Frame
+        The structure.
+    """
+
+    channels: dict[str, Array]
     summary: dict[str, Any]
+    structure: Any
     call: dict[str, Any]
-    state: Array | None
-    #: Whether it is of a column: rows can hold openings of joints, and the force does the input.
-    _of_column: ClassVar[bool] = True
+    state: Array | None = None
+    reached: Array | None = None
+    case: Any = None
+    #: What a state has besides the channels.
+    _derived: ClassVar[tuple[str, ...]] = ("energy",)
 
     @property
-    def structure(self) -> Structure:
-        """The column or the frame."""
-        raise NotImplementedError
+    def time(self) -> Array:
+        """Time [s]; on a static path the number of the point."""
+        return self.channels["time" if "time" in self.channels else "step"]
+
+    @property
+    def base_shear(self) -> Array:
+        """What the ground holds the structure with along x [N]."""
+        return self.channels["base_shear"] if "base_shear" in self.channels else self.shear[:, 0]
+
+    @property
+    def energy(self) -> dict[str, Array]:
+        """Energies by name [J]."""
+        return {name: self.channels[name] for name in ENERGIES}
 
     def citation(self) -> str:
         """Return the works behind this result as BibTeX.
@@ -77,10 +134,18 @@ class Rows:
 
     def columns(self) -> dict[str, Array]:
         """Return the columns of the table, the unit of each in its name."""
-        raise NotImplementedError
+        found = {}
+        for name, values in self.channels.items():
+            unit = f"_{_core.units()[name]}".replace(" ", "").rstrip("_")
+            if values.ndim == 1:
+                found[name + unit] = values
+            else:
+                for owner, one in zip(self._owners(name), values.T, strict=True):
+                    found[f"{name}_{owner}{unit}"] = one
+        return found
 
-    def _again(self, arrays: dict[str, Array]) -> Self:
-        """Return the same result with the rows of another run."""
+    def _owners(self, channel: str) -> Sequence[object]:
+        """Return the numbers or names of what a channel has columns for."""
         raise NotImplementedError
 
     @property
@@ -109,7 +174,7 @@ class Rows:
         by_force = self.summary["driven"] == "force"
         run = _core.cyclic(
             self.structure._statement
-            + settings_of(None, self._of_column, collapse_drift=call.get("collapse_drift")),
+            + settings_of(None, self._is_column, collapse_drift=call.get("collapse_drift")),
             by_force,
             call["force" if by_force else "displacement"],
             call.get("axial_load"),
@@ -117,13 +182,17 @@ class Rows:
             corners=True,
         )
         # Where the path broke off, the result has been told of it.
-        path = self._again(run[0])
+        path = replace(self, channels=run[0])
         vars(path)["_is_path"] = True
         return path
 
     def __getstate__(self) -> dict[str, Any]:
         """Leave out the path: it is found again."""
         return {name: value for name, value in vars(self).items() if name != "_path"}
+
+    @property
+    def _is_column(self) -> bool:
+        return isinstance(self.structure, Column)
 
     @property
     def dynamic(self) -> bool:
@@ -138,7 +207,7 @@ class Rows:
     @property
     def drift(self) -> Array:
         """Displacement of the top over the height, shape (rows,)."""
-        return self.displacement / self.structure.height
+        return np.asarray(self.displacement / self.structure.height)
 
     def at(
         self, time: float | Literal["peak"] | None = None, *, drift: float | None = None
@@ -190,11 +259,9 @@ class Rows:
             mixed = values[row] if share == 0 else (1 - share) * values[row] + share * values[after]
             return float(mixed) if np.ndim(mixed) == 0 else np.array(mixed)
 
-        state = {
-            name: between(value)
-            for name, value in vars(path).items()
-            if name in _DICTS or (isinstance(value, np.ndarray) and name not in _NO_ROWS)
-        }
+        names = [n for n in (*path.channels, *path._derived) if n not in (*ENERGIES, "step")]
+        values = {name: getattr(path, name) for name in names}
+        state = {name: between(value) for name, value in values.items() if value is not None}
         return state | {"time": at}
 
     def _time_of(self, drift: float) -> float:
@@ -228,7 +295,7 @@ class Rows:
         See `rbsdem.curves.half_cycles`. The energy of a frame is the work of the force over the
         displacement of the top, as the loop shows it.
         """
-        done = self.path.energy["input"] if self._of_column and not self.dynamic else None
+        done = self.path.energy["input"] if self._is_column and not self.dynamic else None
         return half_cycles(*loop_pair(self, "result"), done=done)
 
     def strength_loss(self, share: float = 0.2) -> float:
@@ -256,7 +323,7 @@ class Rows:
         path : path
             File to write.
         """
-        table, about, case = self.columns(), self.summary, getattr(self, "case", None)
+        table, about, case = self.columns(), self.summary, self.case
         head = [
             f"# rbsdem {_core.version()}",
             f"# case: {case.title if case is not None else ''}".rstrip(),
@@ -315,8 +382,7 @@ class Rows:
         if not isinstance(other, Rows):
             return NotImplemented
         return all(
-            same(getattr(self, field.name), getattr(other, field.name))
-            for field in fields(self)  # type: ignore[arg-type]
+            same(getattr(self, field.name), getattr(other, field.name)) for field in fields(self)
         )
 
     __hash__ = None  # type: ignore[assignment]
@@ -445,26 +511,15 @@ def _parts(result: Any) -> tuple[dict[str, Any], dict[str, Any]]:
     arrays: dict[str, Any] = {}
     about: dict[str, Any] = {"format": FORMAT, "format_version": FORMAT_VERSION}
     about |= {"version": _core.version(), "units": _core.units()}
-    structure = result.column
+    structure = result.structure
     plain = structure._statement if isinstance(structure, Frame) else structure._groups()
     about |= {
         "column": _core.evaluate("to_namelist", plain).text,
         # Springs stay as they were solved; sections come back where they still give these springs.
         "drawing": structure.to_namelist() if structure._groups() != plain else None,
-        "summary": result.summary,
-        "arrays": {},
-        "case": None,
+        "case": None if result.case is None else result.case.to_namelist(),
     }
-    for field in fields(result):
-        value = getattr(result, field.name)
-        if isinstance(value, np.ndarray) or (value is None and field.name != "case"):
-            about["arrays"][field.name] = value is not None
-            arrays |= {} if value is None else {field.name: value}
-        elif field.name in ("energy", "springs", "call", "channels"):
-            about[field.name] = _apart(field.name, value, arrays)
-        elif field.name == "case" and value is not None:
-            about["case"] = value.to_namelist()
-    return about, arrays
+    return about | {name: _apart(name, getattr(result, name), arrays) for name in SAVED}, arrays
 
 
 def _apart(name: str, value: Any, arrays: dict[str, Any]) -> Any:

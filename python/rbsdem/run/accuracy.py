@@ -2,25 +2,12 @@
 
 from __future__ import annotations
 
-import math
-import sys
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
-from rbsdem._package import unwarned
 from rbsdem._types import Array
 from rbsdem.model.response import Response
-from rbsdem.run.analysis import cyclic, no_thresholds, time_history
-from rbsdem.run.solver import METHODS
-
-#: By how much a tolerance is sharpened, at least to where it and not the stability limits the
-#: steps, and the least one.
-_SHARPER, _SHARP, _LEAST = 100.0, 1e-9, 1e-13
-
-#: Tolerance by default.
-_USUAL_TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -153,60 +140,6 @@ def at_times(wanted: Array, time: Array, values: Array) -> Array:
                 weight *= (wanted - at[:, j]) / (at[:, i] - at[:, j])
         result += weight * values[first + i]
     return result
-
-
-def refined_error(result: Response) -> Errors:
-    """Return the differences of a result from that of the next finer setting."""
-    with unwarned():
-        # They were told with the result itself.
-        if result.dynamic:
-            finer: Any = time_history(no_thresholds, result.column, **_finer(result))
-        else:
-            finer = cyclic(result.column, **_divided(result))
-    driven = "displacement" in result.call
-    one, other = (answer_of(run, result.time, driven) for run in (result, finer))
-    found = asdict(errors_of(one, other))
-    # Two runs with the same digits say no more than that the error is within their last ones.
-    least = math.sqrt(one.time.size) * sys.float_info.epsilon
-    return Errors(**{name: max(error, least) for name, error in found.items()})
-
-
-def _finer(result: Response) -> dict[str, Any]:
-    """Return the keywords of `time_history` for the next finer setting."""
-    call, about = dict(result.call), result.summary
-    method = METHODS[about["method"]]
-    if call.get("method", "auto") == "auto":
-        call.pop("tolerance", None)
-        if method.name == "rk4" and "events located" in about["reason"]:
-            call["events"] = "located"
-        if method.adaptive and "tolerance" in result.call:
-            call["tolerance"] = result.call["tolerance"]
-    call["method"] = method.name
-    if method.adaptive:
-        tolerance = call.get("tolerance", _USUAL_TOLERANCE)
-        sharper = max(min(tolerance / _SHARPER, _SHARP), _LEAST)
-        # Where there is none that is much sharper, the distance to one that is not bounds it.
-        return call | {"tolerance": sharper if 10 * sharper <= tolerance else _SHARPER * tolerance}
-    if "every" in call:
-        call["every"] *= 2
-    if "dt" in call:
-        return call | {"dt": call["dt"] / 2}
-    # Rows stay at the times of the loading if the step divides all intervals.
-    interval, regular = common_interval(call["time"])
-    step = about["time_step"]
-    parts = 2 * max(math.ceil(interval / step * (1 - 1e-9)), 1)
-    return call | {"dt": interval / parts if regular else step / 2}
-
-
-def _divided(result: Response) -> dict[str, Any]:
-    """Return the keywords of `cyclic` with each increment cut in two."""
-    call = dict(result.call)
-    name = "displacement" if "displacement" in call else "force"
-    path = np.concatenate([[0.0], call[name]])
-    fine = np.repeat(call[name], 2)
-    fine[::2] = 0.5 * (path[:-1] + path[1:])
-    # From the middle of the first increment, every second point is one of the path.
-    return call | {name: fine, "every": None}
 
 
 def answer_of(run: Response, times: Array, driven: bool = False) -> Answer:

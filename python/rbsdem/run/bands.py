@@ -30,7 +30,7 @@ from rbsdem.curves.metrics import PathPoints, work
 from rbsdem.errors import InputError, warn
 from rbsdem.model.column import Column
 from rbsdem.model.shape import Section
-from rbsdem.run.analysis import reached_force
+from rbsdem.run.result import reached_force
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.parameters import VERSION
 from rbsdem.section.strength import shear_sizes

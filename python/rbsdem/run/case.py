@@ -21,7 +21,7 @@ from rbsdem.model.column import Column, Footing, notes_off
 from rbsdem.model.damping import Damping
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.model.frame_result import FrameResult
-from rbsdem.model.rows import FORMAT, FORMAT_VERSION, check_ending
+from rbsdem.model.rows import FORMAT, FORMAT_VERSION, SAVED, check_ending
 from rbsdem.run.groups import (
     SPRING_GROUPS,
     frame_of,
@@ -118,10 +118,10 @@ class Case:
                 given |= {"time": self.time, "method": self.method}
                 result = time_history(column, **(given | changes))
         except SolveError as error:
-            if isinstance(error.result, Result):
+            if error.result is not None:
                 error.result = replace(error.result, case=self)
             raise
-        return replace(result, case=self) if isinstance(result, Result) else result
+        return replace(result, case=self)
 
     def plain_column(self, what: str) -> Column:
         """Return the column; `InputError` for a frame, which an analysis does not take."""
@@ -259,9 +259,8 @@ def case_of(result: Result | FrameResult) -> Case:
     result : Result or FrameResult
         The result. The state that it began in is no part of its case.
     """
-    known = getattr(result, "case", None)
-    if isinstance(known, Case):
-        return known
+    if isinstance(result.case, Case):
+        return result.case
     given = {name: value for name, value in result.call.items() if name not in _NO_SETTINGS}
     loads = {name: given.pop(name, None) for name in _DRIVES}
     size = next(values.size for values in loads.values() if values is not None)
@@ -347,11 +346,7 @@ def _result(about: dict[str, Any], arrays: dict[str, Any]) -> Result | FrameResu
             with contextlib.suppress(InputError):
                 drawn = case_of_text(about["drawing"] + _LOADING).column
                 structure = drawn if drawn == structure else structure
-    own: dict[str, Any] = {
-        name: arrays[name] if there else None for name, there in about["arrays"].items()
-    }
-    own |= {name: _together(about[name], arrays) for name in ("energy", "call")}
-    own["summary"] = about["summary"]
-    if isinstance(structure, Frame):
-        return FrameResult(**own, springs=_together(about["springs"], arrays), frame=structure)
-    return Result(**own, column=structure, channels=tuple(about["channels"]), case=case)
+    own = {name: _together(about[name], arrays) for name in SAVED}
+    return (FrameResult if isinstance(structure, Frame) else Result)(
+        structure=structure, case=case, **own
+    )

@@ -1,33 +1,46 @@
-"""The result of an analysis: its rows, what they reach and mean, how they are kept."""
+"""Static paths and responses in time, and the results that they return."""
 
 from __future__ import annotations
 
 import contextlib
-import functools
-import inspect
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Any, Concatenate, ParamSpec, Protocol, cast, overload
+import os
+import sys
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from typing import Any, Concatenate, ParamSpec, Protocol, overload
 
 import numpy as np
 
-from rbsdem import _arguments
+from rbsdem import _arguments, _core
+from rbsdem._package import unwarned
+from rbsdem._types import Array, ArrayLike, Unpack
 from rbsdem.checks.criteria import all_thresholds
 from rbsdem.checks.limit_states import Hinge, LimitStates
 from rbsdem.checks.limit_states import hinge as hinge_of
 from rbsdem.checks.limit_states import limit_states as find_limit_states
-from rbsdem.errors import InputError, SolveError
-from rbsdem.model.column import Column
-from rbsdem.model.frame import Frame, Structure
-from rbsdem.model.frame_result import FrameResult
+from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError, warn
+from rbsdem.model.column import NOTES_ON, Column
+from rbsdem.model.frame import Frame, Structure, checked_structure
+from rbsdem.model.frame_result import FrameResult, span_note
 from rbsdem.model.response import Response
-from rbsdem.run import analysis
-from rbsdem.run.accuracy import Errors, refined_error
-from rbsdem.run.solver import METHODS
+from rbsdem.model.rows import HasEndState, Rows, settings_of, state_of
+from rbsdem.motions.motion import GroundMotion, acting
+from rbsdem.run.accuracy import Errors, answer_of, common_interval, errors_of
+from rbsdem.run.solver import METHODS, Solver, checked_solver
 
 P = ParamSpec("P")
 
+#: By how much a tolerance is sharpened, at least to where it and not the stability limits the
+#: steps, and the least one.
+_SHARPER, _SHARP, _LEAST = 100.0, 1e-9, 1e-13
+
+#: Tolerance by default.
+_USUAL_TOLERANCE = 1e-6
+_DEFORMATIONS = ("slip", "rotation", "opening")
+_NONE = np.empty(0)
+_NONE.flags.writeable = False
 #: Most steps times bodies of a run that is short enough to be done once more.
 _SHORT = 50_000
 
@@ -155,17 +168,10 @@ class Result(Response):
         SolveError
             If the finer setting does not solve the case.
         """
-        return refined_error(self)
+        return _refined_error(self)
 
 
 Result.__doc__ = Response.__doc__
-
-
-def result_of(response: Any) -> Any:
-    """Return a response as the object that users get; that of a frame is one already."""
-    if not isinstance(response, Response):
-        return response
-    return Result(**{field: getattr(response, field) for field in response.__dataclass_fields__})
 
 
 class Analysis(Protocol[P]):
@@ -181,29 +187,306 @@ class Analysis(Protocol[P]):
     ) -> Result | FrameResult: ...
 
 
-#: An analysis that returns plain responses.
-Plain = Callable[Concatenate[Structure, P], Response | FrameResult]
+def _typed(run: Callable[Concatenate[Structure, P], Any]) -> Analysis[P]:
+    """State to type checkers that an analysis returns the result of its structure."""
+    return run  # type: ignore[return-value]
 
 
-def _public(run: Plain[P], documented: Callable[..., Any]) -> Analysis[P]:
-    """Return an analysis with a `Result` in place of the plain response."""
+@_typed
+def cyclic(
+    column: Structure,
+    *,
+    displacement: ArrayLike | None = None,
+    force: ArrayLike | None = None,
+    axial_load: ArrayLike | None = None,
+    initial: Rows | str | os.PathLike[str] | None = None,
+    every: int | None = None,
+    collapse_drift: float | None = None,
+    openings: bool = False,
+    corners: bool = False,
+    max_seconds: float | None = None,
+) -> Any:
+    """Follow the static path of a column through displacements of the top, or lateral forces.
 
-    @functools.wraps(documented)
-    def analyse(column: Structure, *arguments: P.args, **options: P.kwargs) -> Any:
-        try:
-            return result_of(run(column, *arguments, **options))
-        except SolveError as error:
-            error.result = result_of(error.result)
-            raise
+    With `kinematics` "small" and "pdelta" the path goes from event to event (a spring reaches the
+    end of its line) without increments or tolerance. With "finite", and where the axial load
+    varies, equilibrium is solved for at each point and at each event. The path starts at zero, or
+    in the state that another analysis ended in.
 
-    signature = inspect.signature(run).replace(return_annotation="Result | FrameResult")
-    analyse.__signature__ = signature  # type: ignore[attr-defined]
-    return cast("Analysis[P]", analyse)
+    Parameters
+    ----------
+    column : Column or Frame
+        The structure.
+    displacement, force : array_like, shape (m,)
+        The loading, exactly one of the two: displacement of the top [m] or lateral force [N].
+    axial_load : array_like, shape (m,), optional
+        Axial load at the top at each point [N], compression positive, in place of the constant one
+        of the column; it changes in proportion on the way from point to point, and the path starts
+        under its first value. With `Column(axial_force_ratio=r)` the load is this one plus r F.
+        With `kinematics` "small" it acts on axial springs and layered joints alone.
+    initial : Result or path, optional
+        The result of this column in whose end the path begins, or a file that
+        `Result.save_state` or the executable wrote. A static result that was driven by the same
+        quantity gives the same numbers as one path, to the last bit. After a response in time the
+        top is held where the motion has brought it, the velocities vanish, and the joints come to
+        equilibrium; so do they where the axial load is another. Axial load, loading, method, masses
+        and damping may differ, springs, lengths, number of bodies and kinematics not. Energies are
+        counted from the virgin column; rows and peaks are those of this path.
+    every : int, optional
+        Keep every n-th point and the last one. By default all points are kept.
+    collapse_drift : float, optional
+        Drift at which the structure counts as collapsed, of a storey of a frame
+        (`Frame.collapse`), of a column displacement of the top over the height: the path ends
+        there, and `summary["status"]` is "collapsed".
+    openings : bool, optional
+        Whether to keep the openings of layered joints, for `Result.elongation` and
+        `Result.layer_deformation`.
+    corners : bool, optional
+        Whether to keep rows between the points too, where a spring leaves its line.
+    max_seconds : float, optional
+        A path that takes longer [s] ends there: `summary["status"]` is "stopped", and its rows are
+        those up to there.
+
+    Returns
+    -------
+    Result or FrameResult
+        A row for each point kept. Where the layers of a joint can no longer carry the axial load,
+        the path ends with the state there as its last row; `summary["status"]` is "axial_failure"
+        and `summary["lost_joint"]` is the number of the joint. `summary` has then also the
+        load that was lost, `axial_capacity` at that rotation [N], and the `fall` of the joint until
+        it would rest [m; NaN: it does not] with its `fall_energy` [J].
+
+    Raises
+    ------
+    InputError
+        For bad input.
+    SolveError
+        If the path cannot be continued (a force beyond the capacity); its attribute `result` holds
+        the path up to that point, with the last good state as its last row.
+
+    Warns
+    -----
+    AccuracyWarning
+        If a body turns by more than 0.1 rad with `kinematics` "small" or "pdelta", or the top goes
+        beyond half of the height.
+    """
+    given = {"displacement": displacement, "force": force}
+    driven = [(name, values) for name, values in given.items() if values is not None]
+    if len(driven) != 1:
+        raise InputError("cyclic: give exactly one of displacement and force")
+    name, values = driven[0][0], _arguments.vector(driven[0][1], driven[0][0])
+    if values.size == 0:
+        raise InputError(f"{name} is empty; give at least one point")
+    load = None if axial_load is None else _arguments.vector(axial_load, "axial_load")
+    kept = not checked_structure(column).opens and _arguments.boolean(openings, "openings")
+    settings = settings_of(every, kept, collapse_drift=collapse_drift, max_seconds=max_seconds)
+    state = None if initial is None else state_of(initial, "cyclic")
+    wanted = _arguments.boolean(corners, "corners")
+    run = _core.cyclic(column._statement + settings, name == "force", values, load, state, wanted)
+    call = {name: values, "axial_load": load, "initial": _recorded_state(initial)}
+    call |= {"every": every, "collapse_drift": collapse_drift, "max_seconds": max_seconds}
+    return _return(column, run, {"analysis": "static", "driven": name}, call)
 
 
-def _watched(run: Callable[Concatenate[analysis.Watch, Structure, P], Any]) -> Plain[P]:
-    """Return the analysis in time that watches the limit states of its column."""
-    return functools.partial(run, all_thresholds)
+def reached_force(column: Column, displacement: ArrayLike) -> tuple[Array, SolveError | None]:
+    """Return the lateral forces along a path up to its end or the first that is not finite [N].
+
+    The last row of an analysis that stopped is where it failed, and left out; the error is returned
+    with the forces.
+    """
+    error = None
+    try:
+        force = cyclic(column, displacement=displacement).force
+    except SolveError as stopped:
+        error = stopped
+        force = np.empty(0) if stopped.result is None else stopped.result.force[:-1]
+    force = force[: np.size(displacement)]
+    bad = np.flatnonzero(~np.isfinite(force))
+    return (force[: bad[0]] if bad.size else force), error
+
+
+@_typed
+def time_history(
+    column: Structure,
+    time: ArrayLike | GroundMotion | None = None,
+    *,
+    force: ArrayLike | None = None,
+    ground_acceleration: ArrayLike | GroundMotion | None = None,
+    initial: Mapping[str, ArrayLike] | Rows | str | os.PathLike[str] | None = None,
+    vertical_acceleration: ArrayLike | GroundMotion | None = None,
+    axial_load: ArrayLike | None = None,
+    collapse_drift: float | None = None,
+    every: int | None = None,
+    openings: bool = False,
+    motion: bool = False,
+    **solver: Unpack[Solver],
+) -> Any:
+    """Compute the response in time to forces at the top and motions of the ground.
+
+    Parameters
+    ----------
+    column : Column or Frame
+        The structure; a frame needs an implicit method ("newmark", "hht", "generalised_alpha").
+    time : array_like of shape (m,), or GroundMotion, optional
+        Times of the loading, ascending [s]; two are enough for a free vibration. A `GroundMotion`
+        brings its own, and may stand here: ``time_history(column, motion)``.
+    force : array_like, shape (m,), optional
+        Lateral force at the top [N], linear between the times.
+    ground_acceleration : array_like of shape (m,), or GroundMotion, optional
+        Acceleration of the ground [m/s2], linear between the times.
+    initial : mapping, Result or path, optional
+        State at the start. As a mapping: "slip" [m], "rotation" [rad], "opening" [m], and
+        "slip_velocity", "rotation_velocity", "opening_velocity", each of shape (n,). The springs
+        are loaded from zero to this state. Without "opening" the joints start in equilibrium under
+        axial load and weight. As a `Result` of this column, or a file that `Result.save_state` or
+        the executable wrote: the state that it ended in. Times that begin where those of the
+        result end give the numbers of one analysis, if the method is the same. After a
+        static path the column starts at rest; its lateral force is let go, unless `force` holds
+        it. `cyclic` says what may differ.
+    vertical_acceleration : array_like of shape (m,), or GroundMotion, optional
+        Vertical acceleration of the ground, upward positive [m/s2].
+    axial_load : array_like, shape (m,), optional
+        Axial load at the top [N], compression positive, in place of the constant one of the column.
+    collapse_drift : float, optional
+        Drift at which the structure counts as collapsed, of a storey of a frame
+        (`Frame.collapse`), of a column displacement of the top over the height: the analysis ends
+        there, and `summary["status"]` is "collapsed".
+    every : int, optional
+        Keep every n-th step and the last one. By default rows are kept as described for `dt` of
+        `Solver`.
+    openings : bool, optional
+        Whether to keep the openings of layered joints, for `Result.elongation` and
+        `Result.layer_deformation`.
+    motion : bool, optional
+        Whether to keep how the top moves, for `Result.velocity`, `Result.acceleration` and
+        `Result.absolute_acceleration`; `summary` then has "peak_floor_acceleration" [m/s2], the
+        largest absolute acceleration of the top at the ends of all steps, in size.
+    **solver
+        Settings of the method, see `rbsdem.Solver`: method, dt, events, tolerance, rho_infinity,
+        allow_unstable, max_seconds.
+
+    Returns
+    -------
+    Result
+        A row for each time kept; the first row is the start. Where the layers of a joint can no
+        longer carry the axial load, the analysis ends; `summary["status"]` is "axial_failure".
+
+    Raises
+    ------
+    InputError
+        For bad input, and for a step beyond the stability limit (the message gives the limit).
+    SolveError
+        If the motion grows without bounds, or a step does not converge; its attribute `result`
+        holds the rows up to that point.
+
+    Warns
+    -----
+    AccuracyWarning
+        If a body turns by more than 0.1 rad with `kinematics` "small" or "pdelta", and if vertical
+        loads have no effect on the column.
+    LongRunWarning
+        Before a run starts that is expected to take more than 5 s; it names the faster method.
+    """
+    given = {
+        "force": force,
+        "ground_acceleration": ground_acceleration,
+        "vertical_acceleration": vertical_acceleration,
+        "axial_load": axial_load,
+    }
+    time, arrays = acting(time, given, "time_history")
+    loads = {name: _arguments.vector(values, name) for name, values in arrays.items()}
+    for name, values in loads.items():
+        if values.size == 0:
+            raise InputError(f"{name} is empty; give one value for each time")
+    if not loads and not initial:
+        raise InputError(
+            "time_history: nothing acts; give a load (" + ", ".join(given) + ") or an initial state"
+        )
+    if time is None:
+        raise InputError("time_history: time is missing; give the times of the loading")
+    chosen = checked_solver(solver, "time_history") | {"collapse_drift": collapse_drift}
+    kept = not checked_structure(column).opens and _arguments.boolean(openings, "openings")
+    moves = _arguments.boolean(motion, "motion")
+    settings = settings_of(every, kept, moves, **chosen)
+    times = _arguments.vector(time, "time")
+    if initial is None or isinstance(initial, Mapping):
+        begin, state, kept_initial = _initial_state(initial, column), None, initial
+    else:
+        begin, state = (_NONE, False), state_of(initial, "time_history")
+        kept_initial = _recorded_state(initial)
+    statement, thresholds = column._statement + settings, all_thresholds(column, kept)
+    tell = partial(_tell, kind=LongRunWarning)
+    run, reached = _core.time_history(statement, times, loads, *begin, state, thresholds, tell)
+    call = {"time": times, **loads, "initial": kept_initial, **chosen, "every": every}
+    return _return(column, run, {"analysis": "dynamic"}, call, reached)
+
+
+def _tell(note: str, kind: type[Warning] = AccuracyWarning) -> None:
+    if NOTES_ON.get():
+        warn(note, kind)
+
+
+def _recorded_state(initial: Any) -> Any:
+    """Return what a result records of `initial`: a path as text, of a result its state."""
+    if isinstance(initial, HasEndState):
+        return initial.state
+    return os.fspath(initial) if isinstance(initial, (str, os.PathLike)) else initial
+
+
+def _initial_state(
+    initial: Mapping[str, ArrayLike] | None, column: Structure
+) -> tuple[Array, bool]:
+    """Return deformations and velocities at the start, and whether openings are given.
+
+    An empty array means a column at rest.
+    """
+    if not initial:
+        return _NONE, False
+    if isinstance(column, Frame):
+        raise InputError(
+            "time_history: a frame begins under its dead load, or with initial= in the state that "
+            "another analysis ended in; it takes no deformations of joints"
+        )
+    n = len(column.joint_numbers)
+    known = _DEFORMATIONS if column.opens else _DEFORMATIONS[:2]
+    parts = {name: np.zeros(n) for name in (*known, *(f"{name}_velocity" for name in known))}
+    for name, values in initial.items():
+        if name not in parts:
+            if name in ("opening", "opening_velocity"):
+                raise InputError(
+                    f"initial: {name!r} needs joints that open; give the column axial_spring"
+                )
+            raise InputError(f"initial: {name!r} is not known; it is one of {', '.join(parts)}")
+        array = _arguments.finite_vector(np.atleast_1d(values), f"initial: {name}")
+        if array.shape != (n,):
+            raise InputError(f"initial: {name} has {array.size} values for n = {n} joints")
+        parts[name] = array
+    return np.concatenate([*parts.values()]), "opening" in initial
+
+
+def _return(
+    column: Structure,
+    run: _core.Run,
+    about: dict[str, str],
+    call: dict[str, Any],
+    reached: Array | None = None,
+) -> Result | FrameResult:
+    arrays, state, summary, error, note = run
+    summary |= about
+    summary["kinematics"] = column.kinematics
+    if "lost_joint" in summary and isinstance(column, Column):
+        summary["lost_joint"] = column.joint_numbers[summary["lost_joint"] - 1]
+    given = {name: value for name, value in call.items() if value is not None}
+    kind = FrameResult if isinstance(column, Frame) else Result
+    result = kind(arrays, summary, column, given, state, reached)
+    if error is not None:
+        error.result = result
+        raise error
+    told = span_note(result) if isinstance(result, FrameResult) else ""
+    for text in (note, told):
+        if text:
+            _tell(text)
+    return result
 
 
 def pushover(
@@ -266,5 +549,55 @@ def pushover(
         return error.result
 
 
-cyclic = _public(analysis.cyclic, analysis.cyclic)
-time_history = _public(_watched(analysis.time_history), analysis.time_history)
+def _refined_error(result: Response) -> Errors:
+    """Return the differences of a result from that of the next finer setting."""
+    with unwarned():
+        # They were told with the result itself.
+        if result.dynamic:
+            finer: Any = time_history(result.column, **_finer(result))
+        else:
+            finer = cyclic(result.column, **_divided(result))
+    driven = "displacement" in result.call
+    one, other = (answer_of(run, result.time, driven) for run in (result, finer))
+    found = asdict(errors_of(one, other))
+    # Two runs with the same digits say no more than that the error is within their last ones.
+    least = math.sqrt(one.time.size) * sys.float_info.epsilon
+    return Errors(**{name: max(error, least) for name, error in found.items()})
+
+
+def _finer(result: Response) -> dict[str, Any]:
+    """Return the keywords of `time_history` for the next finer setting."""
+    call, about = dict(result.call), result.summary
+    method = METHODS[about["method"]]
+    if call.get("method", "auto") == "auto":
+        call.pop("tolerance", None)
+        if method.name == "rk4" and "events located" in about["reason"]:
+            call["events"] = "located"
+        if method.adaptive and "tolerance" in result.call:
+            call["tolerance"] = result.call["tolerance"]
+    call["method"] = method.name
+    if method.adaptive:
+        tolerance = call.get("tolerance", _USUAL_TOLERANCE)
+        sharper = max(min(tolerance / _SHARPER, _SHARP), _LEAST)
+        # Where there is none that is much sharper, the distance to one that is not bounds it.
+        return call | {"tolerance": sharper if 10 * sharper <= tolerance else _SHARPER * tolerance}
+    if "every" in call:
+        call["every"] *= 2
+    if "dt" in call:
+        return call | {"dt": call["dt"] / 2}
+    # Rows stay at the times of the loading if the step divides all intervals.
+    interval, regular = common_interval(call["time"])
+    step = about["time_step"]
+    parts = 2 * max(math.ceil(interval / step * (1 - 1e-9)), 1)
+    return call | {"dt": interval / parts if regular else step / 2}
+
+
+def _divided(result: Response) -> dict[str, Any]:
+    """Return the keywords of `cyclic` with each increment cut in two."""
+    call = dict(result.call)
+    name = "displacement" if "displacement" in call else "force"
+    path = np.concatenate([[0.0], call[name]])
+    fine = np.repeat(call[name], 2)
+    fine[::2] = 0.5 * (path[:-1] + path[1:])
+    # From the middle of the first increment, every second point is one of the path.
+    return call | {name: fine, "every": None}

@@ -9,16 +9,12 @@ from __future__ import annotations
 import os
 import signal
 import threading
-import time
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager, suppress
-from functools import partial
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
-from rbsdem import _arguments
-from rbsdem.errors import InputError, SolveError
+from rbsdem.errors import InputError
 
 #: How often the display is renewed, and a signal seen [s].
 BEAT = 0.2
@@ -136,12 +132,6 @@ def available_processors() -> int:
     return os.cpu_count() or 1
 
 
-def check_jobs(jobs: Any) -> int:
-    """Return the number of threads or processes, or raise `InputError` if it is none."""
-    _arguments.integer(jobs, "jobs", least=1)
-    return int(jobs)
-
-
 def check_client(client: Any) -> None:
     """Raise `InputError` for what is not a client of a cluster with workers."""
     if not callable(getattr(client, "submit", None)) or not hasattr(client, "ncores"):
@@ -150,102 +140,3 @@ def check_client(client: Any) -> None:
         )
     if not client.ncores():
         raise InputError("client: its cluster has no workers; start some first")
-
-
-class Cluster(Executor):
-    """The workers of a Dask cluster.
-
-    It gives the task of a worker that dies to another one. A task at which several workers have
-    died raises `BrokenProcessPool`.
-
-    Parameters
-    ----------
-    client : dask.distributed.Client
-        The way to the cluster, which belongs to it.
-    """
-
-    def __init__(self, client: Any) -> None:
-        self._client = client
-        self._remote: set[Any] = set()
-        self._question: _Question | None = None
-        self._answered = time.monotonic()
-
-    @property
-    def workers(self) -> int:
-        """Number of threads of the cluster."""
-        return max(1, int(sum(self._client.ncores().values())))
-
-    def submit(self, function: Callable[..., Any], /, *args: Any, **more: Any) -> Future[Any]:
-        """Give a task to the cluster."""
-        future: Future[Any] = Future()
-        remote = self._client.submit(function, *args, pure=False, **more)
-        self._remote.add(remote)
-        remote.add_done_callback(partial(self._hand_over, future))
-        return future
-
-    def _hand_over(self, future: Future[Any], remote: Any) -> None:
-        """Give the outcome of a task to the future that its caller has."""
-        self._remote.discard(remote)
-        # The caller may have cancelled it in between.
-        if remote.cancelled() or not future.set_running_or_notify_cancel():
-            future.cancel()
-            return
-        error = remote.exception()
-        if error is None:
-            future.set_result(remote.result())
-        elif type(error).__name__ == "KilledWorker":
-            future.set_exception(BrokenProcessPool("several worker processes died at the task"))
-        else:
-            future.set_exception(error)
-
-    def waited_for(self) -> str:
-        """Ask the scheduler for its workers; return what is waited for, if they are long in coming.
-
-        Raises
-        ------
-        SolveError
-            If there was no scheduler, or no worker, for a minute.
-        """
-        question, now = self._question, time.monotonic()
-        if question is not None and question.done.is_set():
-            if question.answer:
-                self._answered = now
-            if now - question.asked > _QUESTIONS:
-                self._question = None
-        if self._question is None:
-            self._question = _Question(self._client.ncores)
-        silent = now - self._answered
-        if silent < _SILENT:
-            return ""
-        answers = question is not None and question.answer is not None
-        what = "workers" if answers and self._client.status == "running" else "scheduler"
-        if silent > _PATIENCE:
-            raise SolveError(
-                f"client: the cluster has had no {what} for {_PATIENCE:.0f} s; start it again. "
-                "With store= the next call computes what is missing"
-            )
-        return f"waiting for a {what.removesuffix('s')} of the cluster"
-
-    def cancel(self) -> None:
-        """Take back the tasks that have not ended; a cluster that is silent is not waited for."""
-        remotes = [remote for remote in self._remote.copy() if not remote.done()]
-        _Question(partial(self._client.cancel, remotes)).done.wait(_SILENT)
-
-
-#: How often a cluster is asked, when it counts as silent, and how long it may be [s].
-_QUESTIONS, _SILENT, _PATIENCE = 1.0, 5.0, 60.0
-
-
-class _Question:
-    """A call to the scheduler in a thread of its own, since it may never come back."""
-
-    def __init__(self, call: Callable[[], Any]) -> None:
-        self.asked = time.monotonic()
-        self.answer: Any = None
-        self.done = threading.Event()
-        threading.Thread(target=self._ask, args=(call,), daemon=True).start()
-
-    def _ask(self, call: Callable[[], Any]) -> None:
-        with suppress(Exception):  # Of a closed connection, of many kinds.
-            self.answer = call()
-        self.done.set()

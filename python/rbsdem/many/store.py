@@ -14,9 +14,8 @@ import os
 import re
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +31,7 @@ except ImportError:  # Windows
 
 _MANIFEST = "manifest.json"
 _LOCK = "manifest.lock"
+_SHARDS = "*.parquet"
 _PART = "part-{}-of-{}.lock"
 #: What a store without its manifest may hold.
 _OWN = re.compile(r"shards|manifest\.lock|part-\d+-of-\d+\.lock")
@@ -51,40 +51,8 @@ def digest(*parts: bytes) -> str:
     return whole.hexdigest()[:_LETTERS]
 
 
-@dataclass(frozen=True)
-class Format:
-    """How rows become a file.
-
-    Attributes
-    ----------
-    ending : str
-        Of the name of a file.
-    encode : callable
-        Returns the bytes of a file from what was added.
-    decode : callable
-        Returns the rows from the bytes of a file.
-    """
-
-    ending: str
-    encode: Callable[[Sequence[Any]], bytes]
-    decode: Callable[[bytes], Any]
-
-
-def _parquet_bytes(tables: Sequence[Any]) -> bytes:
-    parquet = extra("pyarrow.parquet")
-    import pyarrow as pa  # noqa: PLC0415
-
-    file = io.BytesIO()
-    parquet.write_table(pa.concat_tables(tables), file)
-    return file.getvalue()
-
-
-def _parquet_table(data: bytes) -> Any:
+def _table_of(data: bytes) -> Any:
     return extra("pyarrow.parquet").read_table(io.BytesIO(data))
-
-
-#: Tables of pyarrow, of one kind.
-PARQUET = Format(".parquet", _parquet_bytes, _parquet_table)
 
 
 class Store:
@@ -94,8 +62,6 @@ class Store:
     ----------
     folder : path
         It is made if it is not there.
-    form : Format
-        Of the shards.
     manifest : mapping
         About the rows, for JSON. "digests" of another store of this folder must be the same, and
         so must "version" and "code", if they are there.
@@ -113,16 +79,14 @@ class Store:
     def __init__(
         self,
         folder: Path,
-        form: Format,
         manifest: Mapping[str, Any],
         growing: Sequence[str] = (),
         part: tuple[int, int] = (1, 1),
     ) -> None:
         self.folder = folder
         self._shards = folder / "shards"
-        self._form = form
         self._part = part
-        self._waiting: list[tuple[Any, int]] = []
+        self._waiting: list[Any] = []
         self._written = time.monotonic()
         self._check_folder()
         wanted = dict(manifest)
@@ -229,18 +193,15 @@ class Store:
     def _prefix(self) -> str:
         return "{}-of-{}-".format(*self._part)
 
-    def read(self) -> list[Any]:
-        """Return the rows of each whole shard; its name has the digest of its bytes."""
-        return [rows for _, rows in self._whole()]
-
-    def _whole(self) -> Iterator[tuple[Path, Any]]:
-        for path in sorted(self._shards.glob(f"*{self._form.ending}")):
+    def tables(self) -> Iterator[Any]:
+        """Yield the rows of each whole shard; its name has the digest of its bytes."""
+        for path in sorted(self._shards.glob(_SHARDS)):
             with suppress(OSError, KeyError, ValueError, TypeError):  # Those of pyarrow among them.
                 data = path.read_bytes()
                 if path.stem.endswith(digest(data)):
-                    yield path, self._form.decode(data)
+                    yield _table_of(data)
 
-    def add(self, rows: Any, number: int = 1) -> None:
+    def keep(self, rows: Any) -> None:
         """Take rows that are done; they are written a few seconds later.
 
         Raises
@@ -248,13 +209,13 @@ class Store:
         OSError
             If the disk does not take them; what was there before stays.
         """
-        self._waiting.append((rows, number))
+        self._waiting.append(rows)
         self.write_if_due()
 
     def write_if_due(self) -> None:
         """Write a shard of what waits if the last one is some seconds old."""
         due = time.monotonic() - self._written > _BEAT
-        if self._waiting and (due or sum(number for _, number in self._waiting) >= _MOST_ROWS):
+        if self._waiting and (due or sum(len(rows) for rows in self._waiting) >= _MOST_ROWS):
             self._write()
 
     def _write(self) -> None:
@@ -263,10 +224,15 @@ class Store:
         self._written = time.monotonic()
         if not waiting:
             return
-        data = self._form.encode([rows for rows, _ in waiting])
-        path = self._shards / f"{self._prefix}{digest(data)}{self._form.ending}"
-        with _clear(self.folder), atomic_write(path) as file:
-            file.write(data)
+        parquet = extra("pyarrow.parquet")
+        import pyarrow as pa  # noqa: PLC0415
+
+        file = io.BytesIO()
+        parquet.write_table(pa.concat_tables(waiting), file)
+        data = file.getvalue()
+        path = self._shards / f"{self._prefix}{digest(data)}.parquet"
+        with _clear(self.folder), atomic_write(path) as shard:
+            shard.write(data)
 
 
 def store_status(folder: Path) -> list[str]:
@@ -287,11 +253,9 @@ def store_status(folder: Path) -> list[str]:
     counts: Counter[str] = Counter()
     parts: dict[str, tuple[int, float]] = {}
     failures: list[str] = []
-    for path in sorted((folder / "shards").glob(f"*{PARQUET.ending}")):
+    for path in sorted((folder / "shards").glob(_SHARDS)):
         with suppress(OSError, ValueError):
-            table = PARQUET.decode(path.read_bytes()).select(
-                ["status", "error", "column", "motion"]
-            )
+            table = _table_of(path.read_bytes()).select(["status", "error", "column", "motion"])
             rows = table.to_pylist()
             counts.update(row["status"] for row in rows)
             failures += [f"{row['column']}, {row['motion']}: {row['error']}"
