@@ -55,7 +55,7 @@ def case(kind: str, seed: int) -> Case | None:
         loads |= drawn[0]
         settings |= drawn[1]
         time = loads.pop("time")
-        if rng.random() < 0.15:
+        if rng.random() < 0.15 and strategies.may_vary(column, settings):
             loads["vertical_acceleration"] = 3 * strategies.waves(rng, len(time))
         if rng.random() < 0.3:
             settings["motion"] = True

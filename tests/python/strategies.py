@@ -310,13 +310,8 @@ def static_path(rng: Rng, made: rbsdem.Column) -> dict[str, np.ndarray]:
 
 
 def methods(rng: Rng, made: rbsdem.Column, stable: float, interval: float) -> dict[str, Any]:
-    """Return a method in time and its settings, of steps that are a binary fraction.
-
-    Located steps are not for layered joints whose axial load varies.
-    """
+    """Return a method in time and its settings, of steps that are a binary fraction."""
     kinds = [name for name in rbsdem.run.solver.IN_TIME if name != "auto"] + ["located"]
-    if any(isinstance(spring, Layered) for spring in made.joints("flexure")):
-        kinds = [name for name in kinds if name not in ("rk45", "located")]
     name = str(rng.choice(kinds))
     settings: dict[str, Any] = {"method": "rk4" if name == "located" else name}
     if name in ("rk4", "located"):
@@ -331,6 +326,12 @@ def methods(rng: Rng, made: rbsdem.Column, stable: float, interval: float) -> di
 
 #: Steps of a motion at the most: a stiff column with exact rotations takes many.
 MOST_STEPS = 4000
+
+
+def may_vary(made: rbsdem.Column, settings: dict[str, Any]) -> bool:
+    """Whether the axial load may vary: layers are no events of steps that stop at events."""
+    stops = settings["method"] == "rk45" or settings.get("events") == "located"
+    return not (stops and any(isinstance(spring, Layered) for spring in made.joints("flexure")))
 
 
 def motion(

@@ -19,6 +19,7 @@ from strategies import (
     MOST_STEPS,
     any_column,
     between,
+    may_vary,
     motion,
     rules,
     scaled_spring,
@@ -809,7 +810,7 @@ def motion_case(
         raise Discard
     loading, chosen = found
     points = loading["time"].size
-    if axial_matters(column) and rng.random() < 0.2:
+    if axial_matters(column) and may_vary(column, chosen) and rng.random() < 0.2:
         loading["vertical_acceleration"] = 2 * waves(rng, points)
         if column.axial_load:
             loading["axial_load"] = column.axial_load * (1 + 0.3 * waves(rng, points))
@@ -964,7 +965,7 @@ def test_zero_loads_change_nothing(rng: Rng) -> None:
     """A load that is zero is none: round-off, as the steps add it."""
     column, loading, chosen = motion_case(rng)
     names = {"ground_acceleration", "force"}
-    if axial_matters(column):
+    if axial_matters(column) and may_vary(column, chosen):
         names |= {"vertical_acceleration"}
     zeros = {name: np.zeros(loading["time"].size) for name in names - set(loading)}
     if not zeros:
@@ -981,7 +982,7 @@ def test_zero_loads_change_nothing(rng: Rng) -> None:
 def test_a_constant_axial_history_in_time(rng: Rng) -> None:
     """A load is stated as a number or as a history: round-off."""
     column, loading, chosen = motion_case(rng)
-    if not axial_matters(column):
+    if not axial_matters(column) or not may_vary(column, chosen):
         raise Discard
     loading.pop("axial_load", None)
     history = loading | {"axial_load": np.full(loading["time"].size, column.axial_load)}
@@ -1011,6 +1012,9 @@ def test_points_on_the_way_of_a_motion(rng: Rng) -> None:
     """A motion is a line, not its points: round-off."""
     column, loading, chosen = motion_case(rng)
     if chosen["method"] == "rk45" or chosen["dt"] == loading["time"][1]:
+        raise Discard
+    # Two layers come to their ends at once: round-off chooses between chords that differ by 1e-5.
+    if not may_vary(column, chosen):
         raise Discard
     half = np.arange(2 * loading["time"].size - 1) / 2
     fine = {name: np.interp(half, half[::2], values) for name, values in loading.items()}
