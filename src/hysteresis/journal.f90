@@ -12,7 +12,7 @@ module rbs_hysteresis_journal
    type :: journal_type
       !> Whether changes are being saved
       logical :: open = .false.
-      !> Deformations and works at the start (count) [m or rad, J]
+      !> Deformations with what is behind them, and works (count) at the start [m or rad, J]
       real(wp), allocatable :: d(:), work(:)
       !> Number of branches left at the start; number of springs that have changed their branches since, and
       !> which (changed)
@@ -47,17 +47,19 @@ contains
       integer, intent(in) :: events
       integer :: i, n
 
-      n = size(d)
+      n = size(work)
       if (.not. allocated(self%is_kept)) then
          allocate (self%is_kept(n), source=.false.)
-         allocate (self%spring(n), self%line(n), self%d(n), self%work(n))
+         allocate (self%spring(n), self%line(n), self%d(size(d)), self%work(n))
          allocate (self%direction(n), self%branches(n), self%beyond(n), self%d_entered(n), &
                    self%work_entered(n))
       end if
       if (self%changed > 0) call self%forget()
       self%open = .true.
-      do i = 1, n
+      do i = 1, size(d)
          self%d(i) = d(i)
+      end do
+      do i = 1, n
          self%work(i) = work(i)
       end do
       self%events = events

@@ -28,7 +28,8 @@ module rbs_hysteresis_springs
    type :: spring_array
       !> Number of springs
       integer :: count = 0
-      !> Present deformation (count) [m or rad]; present line: anchor and slope (count)
+      !> Present deformations (count) [m or rad], and behind them what the structure keeps with them, which
+      !> moves as they do; present line: anchor and slope (count)
       real(wp), allocatable :: d(:), d0(:), f0(:), k(:)
       !> First and last deformation that belong to the present line (count). Where the end itself does not
       !> belong to it, they are the numbers next to it.
@@ -68,6 +69,7 @@ module rbs_hysteresis_springs
       procedure :: create
       procedure :: restart
       procedure :: force
+      procedure :: forces
       procedure :: end_toward
       procedure :: advance_to
       procedure :: advance_on_branch
@@ -96,7 +98,7 @@ module rbs_hysteresis_springs
 contains
 
    !> Virgin springs with rules that have been made.
-   subroutine create(self, rules, work_source, axial_load)
+   subroutine create(self, rules, work_source, axial_load, coordinates)
       class(spring_array), intent(out) :: self
       !> They stay where they are, and must be there as long as the springs
       type(spring_rules), intent(in), target :: rules
@@ -104,6 +106,8 @@ contains
       integer, intent(in) :: work_source(:, :)
       !> Axial load that the layers of each spring begin under, compression positive (count) [N]
       real(wp), intent(in) :: axial_load(:)
+      !> Numbers that `d` has, as many as springs or more
+      integer, intent(in) :: coordinates
       type(segment) :: line
       integer :: i, n, before
 
@@ -112,7 +116,7 @@ contains
       self%rules => rules
       allocate (self%slot(n), self%unload_on_reversal(n), self%includes_lower_end(n), &
                 self%includes_upper_end(n))
-      allocate (self%d(n), self%work(n), self%work_before(n), source=0.0_wp)
+      allocate (self%d(coordinates), self%work(n), self%work_before(n), source=0.0_wp)
       allocate (self%d0(n), self%f0(n), self%first(n), self%last(n))
       allocate (self%k(n), source=0.0_wp)
       allocate (self%work_source(2, n), source=0)
@@ -164,6 +168,16 @@ contains
 
       force = self%f0(i) + self%k(i)*(self%d(i) - self%d0(i))
    end function force
+
+   !> Forces of all springs at deformations on their present lines (count).
+   pure function forces(self, d) result(f)
+      class(spring_array), intent(in) :: self
+      !> They come first
+      real(wp), intent(in), contiguous :: d(:)
+      real(wp) :: f(self%count)
+
+      f = self%f0 + self%k*(d(:self%count) - self%d0)
+   end function forces
 
    !> The end of the present line in a direction, +1 or -1 [m or rad]. The rear end of one that unloads on
    !> reversal is the present deformation.
@@ -348,8 +362,7 @@ contains
          call self%advance_to(i, d(i))
       end do
       if (self%stuck) return
-      call advance_all(self%count, d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
-                       self%first, self%last)
+      call advance_all(self, d)
    end subroutine retry
 
    !> Put a spring where it entered its present branch.
@@ -373,8 +386,10 @@ contains
       integer :: i, j, left
 
       associate (journal => self%journal)
-         do i = 1, self%count
+         do i = 1, size(self%d)
             self%d(i) = journal%d(i)
+         end do
+         do i = 1, self%count
             self%work(i) = journal%work(i)
          end do
          self%events = journal%events
@@ -503,7 +518,7 @@ contains
       integer :: i
 
       if (self%pressed) call press_joints(self, d)
-      if (self%count == 2) then
+      if (size(self%d) == 2) then
          ! One body: while both springs stay on their lines, neither a loop nor a call is needed.
          if (d(1) <= self%last(1) .and. d(1) >= self%first(1) .and. &
              d(2) <= self%last(2) .and. d(2) >= self%first(2)) then
@@ -519,8 +534,7 @@ contains
          if (self%stuck) return
       end if
       ! Springs that have arrived do not move any more.
-      call advance_all(self%count, d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
-                       self%first, self%last)
+      call advance_all(self, d)
    end subroutine move_all
 
    !> Whether all springs can go to new deformations on their present lines, within the bounds of all meaning.
@@ -539,13 +553,12 @@ contains
       real(wp), intent(in), contiguous :: d(:)
 
       if (self%pressed) call press_joints(self, d)
-      if (self%count == 2) then
+      if (size(self%d) == 2) then
          call advance_pair(d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
                            self%first, self%last)
          return
       end if
-      call advance_all(self%count, d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
-                       self%first, self%last)
+      call advance_all(self, d)
    end subroutine carry_to
 
    pure logical function are_within(n, d, first, last)
@@ -576,8 +589,17 @@ contains
       end do
    end subroutine advance_pair
 
-   !> `advance_on_branch` for all springs at once.
-   pure subroutine advance_all(n, to, d0, f0, k, unload_on_reversal, d, work, first, last)
+   !> `advance_on_branch` for all springs at once, and what is behind them.
+   pure subroutine advance_all(self, d)
+      type(spring_array), intent(inout) :: self
+      real(wp), intent(in), contiguous :: d(:)
+
+      call advance_each(self%count, d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
+                        self%first, self%last)
+      if (size(d) > self%count) self%d(self%count + 1:) = d(self%count + 1:)
+   end subroutine advance_all
+
+   pure subroutine advance_each(n, to, d0, f0, k, unload_on_reversal, d, work, first, last)
       integer, intent(in) :: n, unload_on_reversal(n)
       real(wp), intent(in) :: to(n), d0(n), f0(n), k(n)
       real(wp), intent(inout) :: d(n), work(n), first(n), last(n)
@@ -591,7 +613,7 @@ contains
          if (unload_on_reversal(i) > 0) first(i) = to(i)
          if (unload_on_reversal(i) < 0) last(i) = to(i)
       end do
-   end subroutine advance_all
+   end subroutine advance_each
 
    !> Springs that cannot go the way they should on their lines.
    pure subroutine find_blocked(self, rate, blocked, count)
@@ -682,18 +704,24 @@ contains
       if (way < 0.5_wp*huge(1.0_wp)*min(rate, 1.0_wp)) distance = max(way, 0.0_wp)/rate
    end function distance
 
-   !> Springs go at constant rates from given deformations, each on its own line and not beyond its end.
-   pure subroutine go_along(self, q, rate, way, slack, near, count)
+   !> Springs go at constant rates from given deformations, each on its own line and not beyond its end, and
+   !> what is behind them goes too.
+   pure subroutine go_along(self, moving, q, rate, way, slack, near, count)
       class(spring_array), intent(inout) :: self
-      !> Deformations of the first springs, rates of these and more; in units of the rates
+      !> Number of springs that go, the first ones
+      integer, intent(in) :: moving
+      !> From where (size of `d`), and the rates; in units of the rates
       real(wp), intent(in), contiguous :: q(:), rate(:)
       real(wp), intent(in) :: way
       !> Springs that come closer than this to the end of their line, in shares of the end, are near it
       real(wp), intent(in) :: slack
       !> The springs near the ends that they go to, and how many they are
-      integer, intent(out) :: near(size(q)), count
+      integer, intent(out) :: near(moving), count
 
-      call advance_along(size(q), q, rate, way, slack, self%d0, self%f0, self%k, self%unload_on_reversal, &
+      associate (behind => self%count + 1)
+         self%d(behind:) = q(behind:) + rate(behind:)*way
+      end associate
+      call advance_along(moving, q, rate, way, slack, self%d0, self%f0, self%k, self%unload_on_reversal, &
                          self%d, self%work, self%first, self%last, near, count)
    end subroutine go_along
 
@@ -800,7 +828,7 @@ contains
       integer :: j
 
       call add_rules(rules, [spec], 1)
-      call spring%create(rules, spread([0], 1, 2), [spec%axial_load])
+      call spring%create(rules, spread([0], 1, 2), [spec%axial_load], 1)
       do j = 1, size(d)
          call spring%advance_to(1, d(j))
          f(j) = spring%force(1)

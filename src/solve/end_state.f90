@@ -21,7 +21,7 @@ module rbs_solve_end_state
    public :: end_state, checkpoint_type, static_state, moving_state
 
    !> Changes when what is written here changes.
-   integer, parameter :: format = 2
+   integer, parameter :: format = 3
 
    !> Numbers of the head: format, two of the model, two of the rest, bodies, kinematics, springs.
    integer, parameter :: head = 8
@@ -37,8 +37,8 @@ module rbs_solve_end_state
       !> Displacement of the top [m], lateral force [N], axial load at the top without what follows the
       !> force [N]
       real(wp) :: displacement = 0.0_wp, force = 0.0_wp, axial_load = 0.0_wp
-      !> Axial forces at the springs, compression positive (springs) [N]; velocities of the springs (springs);
-      !> zero after a static path
+      !> Axial forces at the springs, compression positive (springs) [N]; velocities of the position
+      !> (coordinates), zero after a static path
       real(wp), allocatable :: press(:), v(:)
       !> Works of loads and damping, energy at the start, what was missing from the balance [J]
       real(wp) :: input = 0.0_wp, damping = 0.0_wp, at_begin = 0.0_wp, residual = 0.0_wp
@@ -179,7 +179,7 @@ contains
 
       call self%check(structure, error)
       if (allocated(error)) return
-      allocate (checkpoint%press(size(structure%place)), checkpoint%v(size(structure%place)), source=0.0_wp)
+      allocate (checkpoint%press(size(structure%place)), checkpoint%v(structure%coordinates), source=0.0_wp)
       call self%stream%restore()
       call self%stream%item(first)
       call checkpoint%serialize(self%stream)

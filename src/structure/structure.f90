@@ -48,10 +48,15 @@ module rbs_structure_structure
       !> Number of unknowns, and of diagonals of the stiffness beside the main one; number of bodies; those
       !> that are held count too
       integer :: unknowns = 0, half_width = 0, n = 0
+      !> Length of a position: deformations of the springs, and behind them the unknowns where these do not
+      !> follow from the deformations. Both move with the same step
+      integer :: coordinates = 0
       !> `small`, `pdelta` or `finite`; number of storeys whose drifts are known
       integer :: kinematics = small, storeys = 0
       !> Whether collapse is judged by the drifts of the storeys, else by that of the top
       logical :: by_storeys = .false.
+      !> Names of the unknowns of a frame, for its matrices (unknowns)
+      character(len=40), allocatable :: unknown_name(:)
       !> Lengths of the bodies (n) [m]
       real(wp), allocatable :: length(:)
       !> Height that drifts are in proportion to, and that of the top above the ground [m]
@@ -72,7 +77,7 @@ module rbs_structure_structure
       type(spring_place), allocatable :: place(:)
       type(spring_rules) :: rules
       real(wp), allocatable :: initial_stiffness(:), constant_axial(:)
-      !> Displacement of the top per deformation, for small rotations: what static paths control (springs)
+      !> Displacement of the top per coordinate, for small rotations: what static paths control (coordinates)
       real(wp), allocatable :: arm(:)
       !> The same per unknown (unknowns)
       real(wp), allocatable :: control(:)
@@ -161,7 +166,7 @@ module rbs_structure_structure
    !> Accelerations, forces and powers of the equation of motion at one state. `create` allocates it once,
    !> before the first step.
    type :: motion_result
-      !> Accelerations of the springs (springs) [m/s2, rad/s2]
+      !> Accelerations of the coordinates (coordinates) [m/s2, rad/s2]
       real(wp), allocatable :: a(:)
       !> Rates of the `speed` of both signals, mass damping left out; where rotations are small
       real(wp) :: of_speeds(2) = 0.0_wp
@@ -177,12 +182,12 @@ module rbs_structure_structure
       real(wp), allocatable :: axial(:)
       !> Work array of the structure (work_size)
       real(wp), allocatable :: work(:)
-      !> Tangent for the stiffness of the springs (tangent_numbers), and deformations that bring what lies
-      !> between the unknowns to equilibrium (springs, or none)
+      !> Tangent for the stiffness of the springs (tangent_numbers), and changes of the coordinates that bring
+      !> what lies between the unknowns to equilibrium (coordinates, or none)
       real(wp), allocatable :: tangent(:), correction(:)
       !> Resistance of the springs against deformation from `anchor`, as a share of their initial stiffness,
-      !> in the search for the state that an element snaps to; 0 in equilibrium. Springs where it begins
-      !> (springs, or none)
+      !> in the search for the state that an element snaps to; 0 in equilibrium. Position where it begins
+      !> (coordinates, or none)
       real(wp) :: resistance = 0.0_wp
       real(wp), allocatable :: anchor(:)
    contains
@@ -320,13 +325,13 @@ contains
       class(motion_result), intent(out) :: self
       class(structure_type), intent(in) :: structure
       real(wp) :: at_rest(signals)
-      integer :: m
+      integer :: inside
 
-      m = size(structure%place)
-      allocate (self%a(m), self%f(m), self%force(structure%unknowns), self%work(structure%work_size), &
+      inside = merge(structure%coordinates, 0, structure%tangent_numbers > 0)
+      allocate (self%a(structure%coordinates), self%f(size(structure%place)), &
+                self%force(structure%unknowns), self%work(structure%work_size), &
                 self%axial(structure%axial_count), self%tangent(structure%tangent_numbers), &
-                self%correction(merge(m, 0, structure%tangent_numbers > 0)), &
-                self%anchor(merge(m, 0, structure%tangent_numbers > 0)), source=0.0_wp)
+                self%correction(inside), self%anchor(inside), source=0.0_wp)
       at_rest = 0.0_wp
       call structure%axial_forces(at_rest, self%axial)
    end subroutine create
@@ -335,7 +340,7 @@ contains
    subroutine accelerate_unknowns(self, d, v, load, pressing, result)
       class(structure_type), intent(in) :: self
       !> Deformations of the springs and their velocities (springs), signals of the loads
-      real(wp), intent(in) :: d(size(self%place)), v(size(self%place)), load(signals)
+      real(wp), intent(in) :: d(self%coordinates), v(self%coordinates), load(signals)
       !> Number of axial forces that do second-order work: all, or none where none does
       integer, intent(in) :: pressing
       !> With axial forces, and with those of springs and damping, to which `forces` adds
@@ -605,7 +610,7 @@ contains
 
       work_source(1, :) = self%place%work_source
       work_source(2, :) = self%place%last_work_source
-      call springs%create(self%rules, work_source, axial_force)
+      call springs%create(self%rules, work_source, axial_force, self%coordinates)
    end subroutine create_springs
 
    !> Add the inertia of the moving ground.

@@ -56,7 +56,7 @@ contains
       axial_load = specs%axial_load
       allocate (rules)
       call add_rules(rules, specs, size(specs))
-      call springs%create(rules, work_source, axial_load)
+      call springs%create(rules, work_source, axial_load, size(specs))
    end subroutine make_springs
 
    !> The next number between two bounds.

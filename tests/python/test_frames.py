@@ -848,6 +848,21 @@ def test_damping_of_modes_is_that_of_each():
     assert run.summary["relative_energy_residual"] < 1e-9
 
 
+def test_tangent_damping_is_the_initial_one_while_springs_are_elastic():
+    """What members damp as wholes their springs do not damp once more."""
+    t = np.arange(0, 1.005, 0.01)
+    runs = [
+        rbsdem.time_history(
+            three_storeys(damping=rbsdem.Damping(stiffness=2e-3, tangent=tangent)),
+            t, ground_acceleration=0.1 * np.sin(9 * t), method="newmark",
+        )
+        for tangent in (False, True)
+    ]  # fmt: skip
+    assert runs[1].displacement == pytest.approx(runs[0].displacement, rel=1e-9)
+    assert runs[1].summary["damping_energy"] == pytest.approx(runs[0].summary["damping_energy"])
+    assert runs[1].summary["relative_energy_residual"] < 1e-9
+
+
 def test_an_ensemble_takes_frames():
     """Measures are those of one run; a frame stands under its load at the start."""
     frame = three_storeys(damping=rbsdem.Damping(mass=0.1, stiffness=1e-3))

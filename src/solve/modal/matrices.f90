@@ -59,20 +59,14 @@ contains
       subroutine assemble_bands()
          real(wp) :: band(structure%half_width + 1, structure%unknowns), axial(structure%axial_count)
          real(wp) :: at_rest(signals)
-         character(len=2), parameter :: along(3) = ['x_', 't_', 'y_']
          integer :: i, m
 
          m = structure%unknowns
          allocate (matrices%mass(m, m), matrices%stiffness(m, m), matrices%geometric(m, m), &
                    matrices%damping(m, m), source=0.0_wp)
-         allocate (matrices%unknown(m))
+         matrices%unknown = structure%unknown_name
          do i = 1, m
             matrices%mass(i, i) = structure%inertias(i)
-            associate (place => structure%place(size(structure%place) - m + i))
-               matrices%unknown(i) = along(place%kind)//trim(place%owner(6:))
-               ! The beams of a node behind a panel
-               if (place%owner(:5) == 'beam ') matrices%unknown(i) = 'b_'//trim(place%owner(6:))
-            end associate
          end do
          band = 0.0_wp
          call structure%add_stiffness(structure%initial_stiffness, structure%initial_tangent, band)

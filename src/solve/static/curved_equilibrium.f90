@@ -142,7 +142,7 @@ contains
       integer :: i, j, m
 
       m = self%column%unknowns
-      self%f = springs%f0 + springs%k*(point%q - springs%d0)
+      self%f = springs%forces(point%q)
       if (self%varies) then
          point%axial_load = self%load(1) + self%load(2)*point%t + self%ratio*point%force
          self%axial = self%constant + point%axial_load*self%per_load

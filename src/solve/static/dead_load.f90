@@ -130,7 +130,7 @@ contains
       call frame%create_springs(springs, frame%constant_axial)
       call task%after%restore(frame, checkpoint, springs, error)
       if (allocated(error)) return
-      call frame%set_compression(springs%d, springs%f0 + springs%k*(springs%d - springs%d0))
+      call frame%set_compression(springs%d, springs%forces(springs%d))
       ! Work of the dead load is no part of an analysis, whose lateral force begins at zero.
       checkpoint%force = 0.0_wp
       checkpoint%load = 0.0_wp

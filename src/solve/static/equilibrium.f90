@@ -53,7 +53,7 @@ module rbs_solve_static_equilibrium
       !> Rates of force and displacement; work of the load per force and per unit of what is driven, less that
       !> of the displacement
       real(wp) :: force_rate = 0.0_wp, displacement_rate = 0.0_wp, dead_load_work_rate = 0.0_wp
-      !> Change that takes the structure to equilibrium: of the deformations (moving), and of the force [N]
+      !> Change that takes the structure to equilibrium: of the position (coordinates), and of the force [N]
       real(wp), allocatable :: correction(:)
       real(wp) :: force_correction = 0.0_wp
       !> The largest force that was out of equilibrium before the correction, moments over the height [N]
@@ -74,11 +74,11 @@ module rbs_solve_static_equilibrium
       real(wp), allocatable, private :: reach(:)
       !> Load per unit, residual, and an array for the loads that are solved for (unknowns)
       real(wp), allocatable, private :: pattern(:), residual(:), load(:, :)
-      !> Changes of the unknowns and what was added for lost digits (unknowns, 2); changes of the deformations
-      !> with what is driven and by correction (springs, 2)
+      !> Changes of the unknowns and what was added for lost digits (unknowns, 2); changes of the position
+      !> with what is driven and by correction (coordinates, 2)
       real(wp), allocatable, private :: change(:, :), moved(:, :)
-      !> Forces of the springs, flexibilities (springs); deformations that bring the inside of elements to
-      !> equilibrium, and those by the load per unit (springs, or none)
+      !> Forces of the springs, flexibilities (springs); changes of the position that bring the inside of
+      !> elements to equilibrium, and those by the load per unit (coordinates, or none)
       real(wp), allocatable, private :: f(:), flexible(:), inner(:), inner_load(:), more(:)
    contains
       procedure :: create
@@ -120,11 +120,11 @@ contains
       end do
       if (allocated(structure%reach)) self%reach(:) = structure%reach
       self%coupled = structure%axially_loaded .or. structure%has_held .or. .not. self%refines
-      inside = merge(0, springs, self%refines)
+      inside = merge(0, structure%coordinates, self%refines)
       allocate (self%tangent(structure%tangent_numbers), self%pattern(m), self%residual(m), self%load(m, 1), &
-                self%change(m, 2), self%moved(springs, 2), self%f(springs), self%flexible(springs), &
-                self%inner(inside), self%inner_load(inside), self%more(springs), &
-                self%correction(self%moving), source=0.0_wp)
+                self%change(m, 2), self%moved(structure%coordinates, 2), self%f(springs), &
+                self%flexible(springs), self%inner(inside), self%inner_load(inside), &
+                self%more(structure%coordinates), self%correction(structure%coordinates), source=0.0_wp)
       allocate (self%axial(merge(structure%axial_count, 0, structure%axially_loaded)))
       no_load = 0.0_wp
       if (structure%axially_loaded) call structure%axial_forces(no_load, self%axial)
@@ -158,7 +158,7 @@ contains
       logical, intent(in) :: by_force
       !> Of the top [m], and lateral force [N]
       real(wp), intent(in) :: displacement, force
-      !> Rates of the deformations (moving)
+      !> Rates of the position (coordinates)
       real(wp), intent(inout), contiguous :: rate(:)
       logical, intent(out) :: found
       real(wp) :: gap
@@ -180,11 +180,11 @@ contains
          end if
          found = all(k > no_stiffness*initial)
          if (.not. found) return
-         rate = arm/k
-         self%correction(:) = r/k
+         rate(:self%moving) = arm/k
+         self%correction(:self%moving) = r/k
          self%force_rate = 1.0_wp
          self%force_correction = 0.0_wp
-         self%displacement_rate = sum(arm*rate)
+         self%displacement_rate = sum(arm*rate(:self%moving))
       end associate
    end subroutine follow
 
@@ -200,7 +200,7 @@ contains
       real(wp) :: y(2)
       logical :: settled
 
-      associate (structure => self%structure, m => self%moving)
+      associate (structure => self%structure)
          call structure%linearise(springs%k, self%tangent, self%unstable)
          found = self%unstable == 0 .or. self%may_snap_back
          if (.not. found) return
@@ -211,7 +211,7 @@ contains
          call solve(1, 1.0_wp, found)
          if (.not. by_force) found = found .and. maxval(abs(self%change(:, 1))) < without_end
          if (.not. found) return
-         rate = self%moved(:m, 1)
+         rate = self%moved(:, 1)
          if (.not. self%refines) then
             call structure%drop_round_off(self%tangent, self%change(:, 1), rate)
             if (self%of_dead_load) rate = rate + y(1)*self%inner_load
@@ -228,9 +228,9 @@ contains
          end if
          self%force_correction = y(2)
          if (self%refines) then
-            self%correction(:) = self%moved(:m, 2)
+            self%correction(:) = self%moved(:, 2)
          else
-            self%correction(:) = self%moved(:m, 2) + self%inner
+            self%correction(:) = self%moved(:, 2) + self%inner
             if (self%of_dead_load) self%correction(:) = self%correction + y(2)*self%inner_load
          end if
       end associate
@@ -378,13 +378,14 @@ contains
       signal = 0.0_wp
       if (.not. self%of_dead_load) signal(lateral) = force
       associate (structure => self%structure)
-         self%f = springs%f0 + springs%k*(springs%d - springs%d0)
+         self%f = springs%forces(springs%d)
          call structure%forces(springs%d, signal, self%axial, self%tangent, self%f, self%residual, self%inner)
          if (self%of_dead_load) then
             ! Forces are those under all of it: the share that is not there yet is taken off.
-            self%moved = 0.0_wp
-            call structure%forces(self%moved(:, 1), signal, self%axial, self%tangent, self%moved(:, 2), &
-                                  self%pattern, self%inner_load)
+            self%moved(:, 1) = 0.0_wp
+            self%f = 0.0_wp
+            call structure%forces(self%moved(:, 1), signal, self%axial, self%tangent, self%f, self%pattern, &
+                                  self%inner_load)
             self%residual = self%residual - (1.0_wp - force)*self%pattern
             self%inner = self%inner - (1.0_wp - force)*self%inner_load
          end if

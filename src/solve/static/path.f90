@@ -76,7 +76,7 @@ module rbs_solve_static_path
       !> goes on the line found last: +1, -1, 0 for no line
       real(wp) :: displacement = 0.0_wp, force = 0.0_wp, work = 0.0_wp, control = 0.0_wp
       integer :: direction = 0
-      !> Change of the deformations per unit of what is driven, in its direction (springs)
+      !> Change of the position per unit of what is driven, in its direction (coordinates)
       real(wp), allocatable :: rate(:)
       !> The same of the axial load at the top where it varies [N]
       real(wp) :: axial_rate = 0.0_wp
@@ -201,7 +201,7 @@ contains
       self%by_force = by_force
       self%moving = moving
       call self%structure%create_springs(self%springs, self%structure%constant_axial)
-      allocate (self%rate(self%springs%count), source=0.0_wp)
+      allocate (self%rate(self%structure%coordinates), source=0.0_wp)
       allocate (self%changed(self%springs%count), self%arrived(self%springs%count), source=0)
       allocate (self%one_way(self%springs%count), source=.false.)
       allocate (self%k_in(self%springs%count), source=0.0_wp)
@@ -374,9 +374,10 @@ contains
                                   abs(energy%axial))
          if (abs(self%displacement) > check%farthest .or. balance_fault() > 0) then
             check%farthest = max(check%farthest, abs(self%displacement))
-            call measure_springs(springs%count, self%structure%arm, self%structure%initial_stiffness, &
-                                 check%share, springs%d, springs%d0, springs%f0, springs%k, ways, &
-                                 check%largest_force, check%stiff_force, works)
+            call measure_springs(springs%count, self%structure%initial_stiffness, check%share, springs%d, &
+                                 springs%d0, springs%f0, springs%k, check%largest_force, &
+                                 check%stiff_force, works)
+            ways = sum(abs(self%structure%arm*springs%d))
             if (balance_fault() > 0) call see_parts(check, self%structure, springs)
             check%largest_place = max(check%largest_place, ways)
             check%stiff_work = max(check%stiff_work, works)
@@ -416,23 +417,21 @@ contains
 
    end subroutine look
 
-   !> Displacements of the top by the springs, and their works, in size; their largest forces, which grow.
-   pure subroutine measure_springs(n, arm, initial, share, d, d0, f0, k, ways, force, stiff_force, works)
+   !> Works of the springs, in size; their largest forces, which grow.
+   pure subroutine measure_springs(n, initial, share, d, d0, f0, k, force, stiff_force, works)
       integer, intent(in) :: n
-      real(wp), intent(in) :: arm(n), initial(n), share(n), d(n), d0(n), f0(n), k(n)
-      real(wp), intent(out) :: ways, works
+      real(wp), intent(in) :: initial(n), share(n), d(n), d0(n), f0(n), k(n)
+      real(wp), intent(out) :: works
       real(wp), intent(inout) :: force, stiff_force
       real(wp) :: term
       integer :: i
 
-      ways = 0.0_wp
       works = 0.0_wp
-      !$omp simd reduction(+:ways, works) reduction(max:force, stiff_force) private(term)
+      !$omp simd reduction(+:works) reduction(max:force, stiff_force) private(term)
       do i = 1, n
          term = initial(i)*abs(d(i))
          force = max(force, abs(f0(i) + k(i)*(d(i) - d0(i)))*share(i))
          stiff_force = max(stiff_force, term*share(i))
-         ways = ways + merge(abs(arm(i)*d(i)), 0.0_wp, share(i) > 0.0_wp)
          works = works + merge(term*abs(d(i)), 0.0_wp, share(i) > 0.0_wp)
       end do
    end subroutine measure_springs

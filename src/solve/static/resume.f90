@@ -122,7 +122,7 @@ contains
    subroutine settle(path, error)
       class(static_path), intent(inout) :: path
       type(error_type), allocatable, intent(out) :: error
-      real(wp), dimension(path%springs%count) :: q, way, next
+      real(wp), dimension(path%structure%coordinates) :: q, way, next
       real(wp) :: more, next_more, before, change, slope, share, now, largest, line_lengths
       type(false_position) :: line
       integer :: round, trial
@@ -131,9 +131,9 @@ contains
       q = path%springs%d
       ! Where nothing but round-off has been displaced, the lengths of the lines say what is small.
       way = 0.0_wp
-      where (path%springs%first > -unbounded .and. path%springs%last < unbounded)
-         way = path%springs%last - path%springs%first
-      end where
+      associate (lower => path%springs%first, upper => path%springs%last)
+         where (lower > -unbounded .and. upper < unbounded) way(:size(lower)) = upper - lower
+      end associate
       line_lengths = measure_of(way, way)
       there = .false.
       call path%springs%mark()
@@ -196,7 +196,9 @@ contains
       pure real(wp) function measure_of(a, b)
          real(wp), intent(in) :: a(:), b(:)
 
-         measure_of = sum(path%structure%initial_stiffness*a*b)
+         associate (m => path%springs%count)
+            measure_of = sum(path%structure%initial_stiffness*a(:m)*b(:m))
+         end associate
       end function measure_of
 
    end subroutine settle
@@ -222,7 +224,7 @@ contains
             if (path%springs%pressed) checkpoint%press(layered) = path%springs%press_at(layered)
          end associate
       end if
-      allocate (checkpoint%v(path%springs%count), source=0.0_wp)
+      allocate (checkpoint%v(path%structure%coordinates), source=0.0_wp)
       checkpoint%input = path%work
       checkpoint%damping = path%damped_before
       checkpoint%at_begin = path%at_begin

@@ -3,7 +3,6 @@
 !> increments.
 module rbs_solve_static_straight
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
-   use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
@@ -32,7 +31,7 @@ module rbs_solve_static_straight
    !> The state of a path and the line it is on.
    type, extends(static_path) :: straight_path
       type(equilibrium_type), pointer :: equilibrium => null()
-      !> The line: what is driven, deformations (moving), force and displacement where it begins
+      !> The line: what is driven, position (coordinates), force and displacement where it begins
       real(wp) :: start = 0.0_wp
       real(wp), allocatable :: q(:)
       real(wp) :: force_start = 0.0_wp, displacement_start = 0.0_wp
@@ -75,7 +74,7 @@ contains
       path%is_straight = .true.
       path%may_go_back = .not. by_force
       path%of_dead_load = equilibrium%of_dead_load
-      allocate (path%q(equilibrium%moving), source=0.0_wp)
+      allocate (path%q(structure%coordinates), source=0.0_wp)
       call begin_path(path, by_force, equilibrium%moving, .false., task%before, error)
       if (allocated(error)) return
       call path%follow(target, task, error)
@@ -184,8 +183,8 @@ contains
       logical, intent(out) :: found
 
       self%equilibrium%may_snap_back = self%passes
-      call self%equilibrium%follow(self%springs, self%by_force, self%displacement, self%force, &
-                                   self%rate(:self%moving), found)
+      call self%equilibrium%follow(self%springs, self%by_force, self%displacement, self%force, self%rate, &
+                                   found)
       self%lost_digits = self%equilibrium%lost_digits
       if (direction < 0) self%rate = -self%rate
    end subroutine solve_line
@@ -200,30 +199,31 @@ contains
       self%start = self%control
       self%displacement_start = self%displacement
       self%force_start = self%force + self%equilibrium%force_correction
-      call correct_within(self%moving, self%springs%d, self%equilibrium%correction, self%rate, &
-                          self%springs%first, self%springs%last, self%q)
-      missing = self%displacement - inner_product(self%moving, self%structure%arm, self%q)
+      self%q(:) = self%springs%d + self%equilibrium%correction
+      call keep_within(self%moving, self%springs%d, self%equilibrium%correction, self%rate, &
+                       self%springs%first, self%springs%last, self%q)
+      missing = self%displacement - self%structure%top_displacement(self%q)
       if (self%by_force) then
          self%displacement_start = self%displacement - missing
       else if (abs(missing) > 0.0_wp) then
-         self%q(:) = self%q + direction*missing*self%rate(:self%moving)
+         self%q(:) = self%q + direction*missing*self%rate
          self%force_start = self%force_start + self%equilibrium%force_rate*missing
       end if
-      call self%springs%nearest_end(self%q, self%rate, way, self%ends)
+      call self%springs%nearest_end(self%q(:self%moving), self%rate(:self%moving), way, self%ends)
       self%finish = direction*huge(1.0_wp)
       if (self%ends > 0) self%finish = self%start + direction*way
    end subroutine begin_line
 
    !> Round-off of the equilibrium is corrected in full, off the rear end of a line too, or what is left out
    !> would be missing at the next corner. More than round-off moves no spring off its line.
-   pure subroutine correct_within(n, d, correction, rate, first, last, q)
+   pure subroutine keep_within(n, d, correction, rate, first, last, q)
       integer, intent(in) :: n
       real(wp), intent(in) :: d(n), correction(n), rate(n), first(n), last(n)
-      real(wp), intent(out) :: q(n)
+      !> Deformations with their corrections
+      real(wp), intent(inout) :: q(n)
       integer :: i
 
       do i = 1, n
-         q(i) = d(i) + correction(i)
          if (abs(correction(i)) > round_off*abs(d(i))) then
             q(i) = min(max(q(i), first(i)), last(i))
          else
@@ -231,7 +231,7 @@ contains
             if (.not. rate(i) < 0.0_wp) q(i) = min(q(i), last(i))
          end if
       end do
-   end subroutine correct_within
+   end subroutine keep_within
 
    !> Go along the line; each spring moves on its own line.
    subroutine go(self, control)
@@ -241,7 +241,7 @@ contains
       integer :: near(self%moving), count, j
 
       change = control - self%start
-      call self%springs%go_along(self%q, self%rate, abs(change), nearly, near, count)
+      call self%springs%go_along(self%moving, self%q, self%rate, abs(change), nearly, near, count)
       do j = 1, count
          associate (i => near(j))
             d = self%q(i) + self%rate(i)*abs(change)
@@ -317,10 +317,8 @@ contains
       real(wp), intent(out) :: correction(:), force
       logical, intent(out) :: found
 
-      call self%equilibrium%follow(self%springs, .false., self%displacement, self%force, &
-                                   self%rate(:self%moving), found)
-      correction = 0.0_wp
-      correction(:self%moving) = self%equilibrium%correction
+      call self%equilibrium%follow(self%springs, .false., self%displacement, self%force, self%rate, found)
+      correction = self%equilibrium%correction
       force = self%equilibrium%force_correction
    end subroutine find_balance
 

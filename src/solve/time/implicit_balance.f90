@@ -38,7 +38,7 @@ module rbs_solve_time_implicit_balance
       real(wp), allocatable :: r(:), moved(:)
       !> Loads at the end of the step
       real(wp) :: load(signals) = 0.0_wp
-      !> Deformations of the springs and their velocities at the end of the step (springs)
+      !> Position at the end of the step and its velocity (coordinates)
       real(wp), allocatable :: q1(:), w1(:)
       !> Whether forces and tangents are those of the end of the last step
       logical, private :: known = .false.
@@ -104,7 +104,8 @@ contains
          springs = size(structure%place)
          if (.not. allocated(self%v0)) then
             allocate (self%v0(m), self%a0(m), self%g0(m), self%v1(m), self%a1(m), self%g1(m), self%r(m), &
-                      self%moved(m), self%q1(springs), self%w1(springs), source=0.0_wp)
+                      self%moved(m), self%q1(structure%coordinates), &
+                      self%w1(structure%coordinates), source=0.0_wp)
             allocate (self%scale(size(structure%group)), self%largest(size(structure%group)), source=0.0_wp)
             call self%now%create(structure)
             if (structure%tangent_numbers > 0) allocate (self%k(springs))
@@ -226,7 +227,7 @@ contains
                       self%g0, self%g1, self%r)
          call self%measure(structure, self%a1, self%load, relative)
          if (size(self%now%correction) > 0) then
-            relative = max(relative, largest_product(size(self%now%correction), structure%initial_stiffness, &
+            relative = max(relative, largest_product(size(self%spring_unit), structure%initial_stiffness, &
                                                      self%spring_unit, self%now%correction) &
                            /max(maxval(self%scale), maxval(self%largest), tiny(1.0_wp)))
          end if
@@ -388,10 +389,11 @@ contains
                                                       + max(force, terms)/unit))
          ! Springs between the unknowns are in equilibrium too.
          if (size(self%now%correction) > 0) then
-            is_round_off = is_round_off .and. &
-                           all(structure%initial_stiffness*abs(self%now%correction) &
-                               <= round_off*(structure%initial_stiffness*abs(self%q1) &
-                                             + max(force, terms)/self%spring_unit))
+            associate (k => structure%initial_stiffness, m => size(self%spring_unit))
+               is_round_off = is_round_off .and. &
+                              all(k*abs(self%now%correction(:m)) <= round_off*(k*abs(self%q1(:m)) &
+                                                                 + max(force, terms)/self%spring_unit))
+            end associate
          end if
       end associate
    end function is_round_off

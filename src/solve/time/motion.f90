@@ -82,7 +82,7 @@ contains
       class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
       !> Deformations and their velocities (springs); loads at the time
-      real(wp), intent(in) :: q(springs%count), v(springs%count), load(signals)
+      real(wp), intent(in) :: q(self%structure%coordinates), v(self%structure%coordinates), load(signals)
       type(motion_result), intent(inout) :: result
       integer :: m
 
@@ -98,7 +98,7 @@ contains
    subroutine forces_on_bodies(self, springs, q, v, load, result, g)
       class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
-      real(wp), intent(in) :: q(springs%count), v(springs%count)
+      real(wp), intent(in) :: q(self%structure%coordinates), v(self%structure%coordinates)
       !> Loads at the time
       real(wp), intent(in) :: load(signals)
       type(motion_result), intent(inout) :: result
@@ -112,7 +112,10 @@ contains
          call find_others(self, springs, v, load, result, m)
       end if
       if (result%resistance > 0.0_wp) then
-         result%f = result%f + result%resistance*self%structure%initial_stiffness*(q - result%anchor)
+         associate (m => springs%count)
+            result%f = result%f + result%resistance*self%structure%initial_stiffness &
+                       *(q(:m) - result%anchor(:m))
+         end associate
       end if
       call self%structure%forces(q, load, result%axial(:m), result%tangent, result%f, g, result%correction)
    end subroutine forces_on_bodies
@@ -121,7 +124,7 @@ contains
    subroutine find_others(self, springs, v, load, result, m)
       type(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
-      real(wp), intent(in) :: v(springs%count), load(signals)
+      real(wp), intent(in) :: v(self%structure%coordinates), load(signals)
       type(motion_result), intent(inout) :: result
       !> Number of axial forces that do second-order work
       integer, intent(inout) :: m
@@ -150,7 +153,7 @@ contains
    subroutine add_to_springs(self, springs, v, load, f)
       class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
-      real(wp), intent(in) :: v(springs%count), load(signals)
+      real(wp), intent(in) :: v(self%structure%coordinates), load(signals)
       real(wp), intent(inout), contiguous :: f(:)
       integer :: i, j
 
@@ -214,7 +217,9 @@ contains
       watt = 0.0_wp
       if (.not. self%damped) return
       associate (structure => self%structure)
-         if (structure%tangent_damping) then
+         if (structure%tangent_numbers > 0) then
+            watt = 0.0_wp
+         else if (structure%tangent_damping) then
             watt = structure%stiffness_damping*sum(max(springs%k, 0.0_wp)*v**2)
          else
             watt = sum(self%joint_damping*v**2)
@@ -233,7 +238,7 @@ contains
    real(wp) function base_shear(self, springs, q, v) result(force)
       class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(in) :: springs
-      real(wp), intent(in) :: q(springs%count), v(springs%count)
+      real(wp), intent(in) :: q(self%structure%coordinates), v(self%structure%coordinates)
       real(wp) :: c(3)
       integer :: i
 
@@ -245,7 +250,7 @@ contains
       associate (structure => self%structure)
          i = structure%base_spring
          if (i == 0) then
-            force = structure%base_force(q, springs%f0 + springs%k*(q - springs%d0))
+            force = structure%base_force(q, springs%forces(q))
          else
             force = springs%f0(i) + springs%k(i)*(q(i) - springs%d0(i))
             if (self%damped) then

@@ -80,8 +80,7 @@ contains
          call self%iterate(state)
          self%wanted = wanted
          way = 0.0_wp
-         if (self%converged) way = sqrt(sum(state%motion%structure%initial_stiffness &
-                                            *(self%step%q1 - self%step%now%anchor)**2))
+         if (self%converged) way = sqrt(sum(energy_of(state, self%step%q1 - self%step%now%anchor)))
          if (.not. self%converged .or. way > 5.0_wp*max(1.0_wp, at_last/resistance)*way_before) then
             call go_back(self, state)
             self%converged = .false.
@@ -157,8 +156,17 @@ contains
       state%largest_snap = loss
       state%snap_time = state%begin + state%time + self%h
       ! The spring that has gone farthest, by its energy on the first line.
-      state%snap_spring = maxloc(state%motion%structure%initial_stiffness &
-                                 *(self%step%q1 - state%q)**2, dim=1)
+      state%snap_spring = maxloc(energy_of(state, self%step%q1 - state%q), dim=1)
    end subroutine count_snap
+
+   !> Twice the energies of the springs on their first lines (springs) [J].
+   pure function energy_of(state, change) result(energy)
+      type(state_type), intent(in) :: state
+      !> Of the position (coordinates)
+      real(wp), intent(in) :: change(:)
+      real(wp) :: energy(state%springs%count)
+
+      energy = state%motion%structure%initial_stiffness*change(:state%springs%count)**2
+   end function energy_of
 
 end submodule rbs_solve_time_snap

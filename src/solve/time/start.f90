@@ -195,7 +195,7 @@ contains
          call vary_axial_loads(state%springs)
          call state%motion%press(state%springs, state%load)
       end if
-      allocate (state%q(size(structure%place)), state%v(size(structure%place)), source=0.0_wp)
+      allocate (state%q(structure%coordinates), state%v(structure%coordinates), source=0.0_wp)
    end subroutine create_state
 
    !> Loads by the time since the start of the run, and those of the moment.

@@ -17,7 +17,7 @@ module rbs_solve_time_state
       type(equation_of_motion) :: motion
       type(spring_array) :: springs
       type(loads_type) :: loads
-      !> Deformations of the springs and their velocities (springs)
+      !> Position, deformations of the springs first, and its velocity (coordinates)
       real(wp), allocatable :: q(:), v(:)
       !> Time since the start of the run [s], which keeps its digits where the clock is late; the loads then
       real(wp) :: time = 0.0_wp, load(4) = 0.0_wp

@@ -254,7 +254,7 @@ contains
    !> Accelerations of the joints, where the rotations are small.
    subroutine accelerations(self, d, v, load, pressing, result)
       class(column_type), intent(in) :: self
-      real(wp), intent(in) :: d(size(self%place)), v(size(self%place)), load(signals)
+      real(wp), intent(in) :: d(self%coordinates), v(self%coordinates), load(signals)
       integer, intent(in) :: pressing
       !> Its work array: second-order moments on the bodies, which stay zero where there are none, and
       !> accelerations of the bodies, along x and in rotation (n each)
@@ -511,7 +511,7 @@ contains
       n = self%n
       row(1) = self%top_height(d)
       row(2:m + 1) = d
-      row(m + 2:2*m + 1) = springs%f0 + springs%k*(d - springs%d0)
+      row(m + 2:2*m + 1) = springs%forces(d)
       at = 2*m + 1
       if (contents%in_time) then
          if (self%damped) then

@@ -65,7 +65,7 @@ contains
    !> it takes alpha q' from the accelerations.
    subroutine accelerations(self, d, v, load, pressing, result)
       class(finite_chain_type), intent(in) :: self
-      real(wp), intent(in) :: d(size(self%place)), v(size(self%place)), load(signals)
+      real(wp), intent(in) :: d(self%coordinates), v(self%coordinates), load(signals)
       integer, intent(in) :: pressing
       type(motion_result), intent(inout) :: result
 

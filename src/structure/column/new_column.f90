@@ -91,7 +91,8 @@ contains
 
          n = column%n
          allocate (column%joint_height(n + 1))
-         allocate (column%arm(column%unknowns), source=0.0_wp)
+         column%coordinates = column%unknowns
+         allocate (column%arm(column%coordinates), source=0.0_wp)
          column%joint_height(1) = 0.0_wp
          do i = 1, n
             column%joint_height(i + 1) = column%joint_height(i) + column%length(i)

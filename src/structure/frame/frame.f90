@@ -1,8 +1,8 @@
 !> A planar frame: nodes with displacements along x and upward and clockwise rotations, and elements between
 !> them, whose inside is condensed to their ends.
 !>
-!> The springs of the elements come first, then one from the ground to each unknown: soil, a brace, a
-!> bearing, or one of negligible stiffness, whose deformation is the displacement.
+!> The springs of the elements come first, then those from the ground: soil, a brace, a bearing. Behind the
+!> deformations of all springs a position has the unknowns.
 module rbs_structure_frame_frame
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_inner_product, only: inner_product
@@ -62,8 +62,9 @@ module rbs_structure_frame_frame
       integer, allocatable :: beam_rotation(:)
       !> Number of members; elements behind them are panels of nodes
       integer :: members = 0
-      !> Number of springs in elements
-      integer :: member_springs = 0
+      !> Number of springs in elements, and of all; unknown that each spring from the ground deforms by
+      integer :: member_springs = 0, springs = 0
+      integer, allocatable :: ground(:)
       !> Dead loads on the unknowns (unknowns), and on the springs of elements whose ends do not move (inside)
       real(wp), allocatable :: dead(:), dead_force(:)
       !> When members are lost, see `frame_member` (members)
@@ -239,7 +240,7 @@ contains
             call add_band(self%element(i), tangent(at:at + 8), band)
          end associate
       end do
-      band(1, :) = band(1, :) + k(self%member_springs + 1:)
+      band(1, self%ground) = band(1, self%ground) + k(self%member_springs + 1:)
    end subroutine add_stiffness
 
    !> Damping of the modes, and in proportion to the stiffness of the elements, initial or present.
@@ -303,7 +304,8 @@ contains
          call spring_motion(self%element(i), size(dd), self%tangent_numbers, tangent, &
                             end_motion(self%element(i), dx), dd)
       end do
-      dd(self%member_springs + 1:) = dx
+      dd(self%member_springs + 1:self%springs) = dx(self%ground)
+      dd(self%springs + 1:) = dx
    end subroutine spring_rates
 
    !> Take rates that are round-off of larger ones for zero: a spring that stands still on a corner of its
@@ -344,8 +346,8 @@ contains
       force = maxval(abs(self%dead)/self%reach)
       terms = 0.0_wp
       work = 0.0_wp
-      f = springs%f0 + springs%k*(springs%d - springs%d0)
-      associate (x => springs%d(self%member_springs + 1:))
+      f = springs%forces(springs%d)
+      associate (x => springs%d(self%springs + 1:))
          do i = 1, size(self%element)
             associate (e => self%element(i))
                if (i <= self%members) then
@@ -367,7 +369,7 @@ contains
       real(wp), intent(in), contiguous :: dd(:)
       real(wp), intent(out), contiguous :: dx(:)
 
-      dx = dd(self%member_springs + 1:)
+      dx = dd(self%springs + 1:)
    end subroutine unknown_rates
 
    !> Forces on the unknowns under all dead load and the lateral one.
@@ -395,13 +397,14 @@ contains
       real(wp) :: gap(3), s(3)
       integer :: i
 
-      associate (x => d(self%member_springs + 1:))
-         g = dead*self%dead - f(self%member_springs + 1:)
+      associate (x => d(self%springs + 1:))
+         g = dead*self%dead
+         g(self%ground) = g(self%ground) - f(self%member_springs + 1:)
          correction = 0.0_wp
          do i = 1, size(self%element)
             associate (e => self%element(i))
                gap = compatibility_error(e, end_motion(e, x), d, dead)
-               call balance_ends(e, size(d), size(tangent), gap, dead, self%dead_force, d, f, tangent, s, &
+               call balance_ends(e, size(f), size(tangent), gap, dead, self%dead_force, d, f, tangent, s, &
                                  correction)
                call add_end_forces(e, -s, g)
                if (self%axially_loaded .and. .not. e%is_panel) call add_second_order(e, x, g)
@@ -417,11 +420,11 @@ contains
       !> Deformations and forces of all springs (springs)
       real(wp), intent(in), contiguous :: d(:), f(:)
       real(wp), intent(out) :: s(3)
-      real(wp) :: correction(size(d)), gap(3)
+      real(wp) :: correction(size(f)), gap(3)
 
-      associate (e => self%element(member), x => d(self%member_springs + 1:))
+      associate (e => self%element(member), x => d(self%springs + 1:))
          gap = compatibility_error(e, end_motion(e, x), d, 1.0_wp)
-         call balance_ends(e, size(d), self%tangent_numbers, gap, 1.0_wp, self%dead_force, d, f, &
+         call balance_ends(e, size(f), self%tangent_numbers, gap, 1.0_wp, self%dead_force, d, f, &
                            self%initial_tangent, s, correction)
       end associate
    end subroutine member_forces
@@ -454,7 +457,7 @@ contains
 
       do i = 1, self%n
          rotation(i) = 0.0_wp
-         if (self%number(3, i) > 0) rotation(i) = d(self%member_springs + self%number(3, i))
+         if (self%number(3, i) > 0) rotation(i) = d(self%springs + self%number(3, i))
       end do
    end subroutine rotations
 
@@ -468,7 +471,7 @@ contains
       drift = 0.0_wp
       do i = 1, self%n
          if (self%number(1, i) == 0) cycle
-         associate (floor => self%storey(i), x => d(self%member_springs + self%number(1, i)))
+         associate (floor => self%storey(i), x => d(self%springs + self%number(1, i)))
             if (floor > 0) drift(floor) = drift(floor) + self%storey_share(1, i)*x
             if (floor >= 0 .and. floor < self%storeys) then
                drift(floor + 1) = drift(floor + 1) + self%storey_share(2, i)*x
@@ -497,7 +500,7 @@ contains
    !> Accelerations of what has mass; where there is none they follow from the motion, not from forces.
    subroutine accelerations(self, d, v, load, pressing, result)
       class(frame_type), intent(in) :: self
-      real(wp), intent(in) :: d(size(self%place)), v(size(self%place)), load(signals)
+      real(wp), intent(in) :: d(self%coordinates), v(self%coordinates), load(signals)
       integer, intent(in) :: pressing
       type(motion_result), intent(inout) :: result
       real(wp) :: correction(size(d))
@@ -505,11 +508,11 @@ contains
 
       associate (x => result%force)
          call self%forces(d, load, result%axial(:pressing), self%initial_tangent, result%f, x, correction)
-         if (self%damped) call self%damp(v(self%member_springs + 1:), self%initial_tangent, x)
+         if (self%damped) call self%damp(v(self%springs + 1:), self%initial_tangent, x)
          call self%add_ground(load, x)
          do i = 1, self%unknowns
             if (self%inertias(i) > 0.0_wp) then
-               x(i) = x(i)/self%inertias(i) - self%mass_damping*v(self%member_springs + i)
+               x(i) = x(i)/self%inertias(i) - self%mass_damping*v(self%springs + i)
             else
                x(i) = 0.0_wp
             end if

@@ -48,7 +48,7 @@ contains
       real(wp) :: gap(3), turned(2)
       integer :: i
 
-      associate (x => d(self%member_springs + 1:))
+      associate (x => d(self%springs + 1:))
          work = sum(self%dead*x) + sum(self%dead_force*d(:self%member_springs))
          do i = 1, size(self%element)
             associate (e => self%element(i))
@@ -66,7 +66,7 @@ contains
       real(wp) :: g(self%unknowns)
       integer :: i
 
-      associate (x => d(self%member_springs + 1:))
+      associate (x => d(self%springs + 1:))
          g = 0.0_wp
          energy = -sum(self%dead*x) - sum(self%dead_force*d(:self%member_springs))
          do i = 1, self%members

@@ -48,7 +48,7 @@ contains
       real(wp) :: drift, s(3)
       integer :: i
 
-      associate (e => frame%element(member), x => springs%d(frame%member_springs + 1:))
+      associate (e => frame%element(member), x => springs%d(frame%springs + 1:))
          drift = abs(sum(e%chord*x(e%unknown)))
          has_failed = is_given(frame%shear_drift(member)) .and. drift >= abs(frame%shear_drift(member))
          do i = e%before + 1, e%before + e%bending
@@ -57,7 +57,7 @@ contains
                = .true.
          end do
          if (.not. has_failed) return
-         call frame%member_forces(member, springs%d, springs%f0 + springs%k*(springs%d - springs%d0), s)
+         call frame%member_forces(member, springs%d, springs%forces(springs%d), s)
          ! Tension, or no load, does not fall.
          has_failed = s(1) < 0.0_wp .and. &
                       drift*(1.0_wp - s(1)/frame%failure_load(member)) >= frame%failure_drift(member)
@@ -71,7 +71,7 @@ contains
       tangent = 0.0_wp
       correction = 0.0_wp
       associate (e => self%element(member))
-         q = end_motion(e, springs%d(self%member_springs + 1:))
+         q = end_motion(e, springs%d(self%springs + 1:))
          energy = energy_of_rest(e, compatibility_error(e, q, springs%d, 1.0_wp))
          do i = e%before + 1, e%before + e%bending + e%opening
             call springs%release(i, self%dead_force(i))
@@ -79,7 +79,7 @@ contains
          call self%linearise(springs%k, tangent, unstable)
          call balance_ends(e, springs%count, size(tangent), compatibility_error(e, q, springs%d, 1.0_wp), &
                            1.0_wp, self%dead_force, springs%d, &
-                           springs%f0 + springs%k*(springs%d - springs%d0), tangent, s, correction)
+                           springs%forces(springs%d), tangent, s, correction)
          do i = e%before + 1, e%before + e%bending + e%opening
             call springs%advance_on_branch(i, springs%d(i) + correction(i))
          end do
@@ -96,7 +96,7 @@ contains
       do i = 1, self%n
          if (self%number(2, i) == 0) cycle
          has_collapsed = has_collapsed .or. &
-                      d(self%member_springs + self%number(2, i)) < -deepest*self%height/max(self%storeys, 1)
+                      d(self%springs + self%number(2, i)) < -deepest*self%height/max(self%storeys, 1)
       end do
    end procedure has_collapsed
 

@@ -28,15 +28,15 @@ contains
    end procedure channels
 
    module procedure fill_row
-      real(wp) :: f(size(d)), s(3)
+      real(wp) :: f(self%springs), s(3)
       integer :: at, i, j, kind, m
 
-      f = springs%f0 + springs%k*(d - springs%d0)
+      f = springs%forces(d)
       row(1:3*self%n + 1) = 0.0_wp
       do i = 1, self%n
          do j = 1, 3
             associate (at => self%number(j, i))
-               if (at > 0) row(1 + (j - 1)*self%n + i) = d(self%member_springs + at)
+               if (at > 0) row(1 + (j - 1)*self%n + i) = d(self%springs + at)
             end associate
          end do
       end do
@@ -64,7 +64,7 @@ contains
       if (contents%motion) then
          row(at + 1:at + self%n) = 0.0_wp
          do i = 1, self%n
-            if (self%number(1, i) > 0) row(at + i) = response%a(self%member_springs + self%number(1, i))
+            if (self%number(1, i) > 0) row(at + i) = response%a(self%springs + self%number(1, i))
          end do
          at = at + self%n + 1
          row(at) = response%ground
@@ -124,7 +124,7 @@ contains
       integer :: j
 
       force = 0.0_wp
-      associate (e => self%element(member), x => d(self%member_springs + 1:))
+      associate (e => self%element(member), x => d(self%springs + 1:))
          do j = 1, 2
             if (self%number(1, e%node(j)) > 0) cycle
             force = force - sum(s*e%to_basic(:, 3*j - 2))
@@ -135,16 +135,14 @@ contains
       end associate
    end function support_force
 
-   !> Force along x of the springs from the ground [N]. Those of no account carry nothing that counts.
+   !> Force along x of the springs from the ground [N].
    pure real(wp) function ground_force(self, f) result(force)
       type(frame_type), intent(in) :: self
       real(wp), intent(in), contiguous :: f(:)
-      integer :: i
 
-      force = 0.0_wp
-      do i = self%member_springs + 1, size(f)
-         if (self%place(i)%kind == shear) force = force + f(i)
-      end do
+      associate (first => self%member_springs + 1)
+         force = sum(f(first:), mask=self%place(first:)%kind == shear)
+      end associate
    end function ground_force
 
 end submodule rbs_structure_frame_frame_rows

@@ -16,9 +16,6 @@ module rbs_structure_frame_new_frame
 
    public :: frame_node, frame_member, new_frame, is_beam
 
-   !> Stiffness of a spring of no account [N/m, N m].
-   real(wp), parameter :: of_no_account = 1.0e-30_wp
-
    !> A node: place [m], what supports hold (x, y, theta), mass [kg, kg, kg m2], dead load [N, N, N m].
    type :: frame_node
       character(len=name_length) :: name = ''
@@ -75,7 +72,7 @@ contains
       !> Whether that is the one upward, not the one along x
       logical, intent(in), optional :: vertical
       type(spring_record), allocatable :: spring(:)
-      integer :: i, springs, direction
+      integer :: i, direction
 
       frame%kinematics = kinematics
       frame%n = size(node)
@@ -102,21 +99,24 @@ contains
          frame%member_springs = frame%member_springs + size(member(i)%kind)
       end do
       call number_unknowns(frame, node, member)
-      springs = frame%member_springs + frame%unknowns
-      allocate (spring(springs), frame%place(springs), frame%arm(springs), frame%constant_axial(springs), &
-                frame%spring_place(frame%member_springs))
-      allocate (frame%heads(frame%member_springs), source=.false.)
-      frame%arm = 0.0_wp
-      frame%constant_axial = 0.0_wp
-      direction = 1
-      if (present(vertical)) direction = merge(2, 1, vertical)
-      frame%arm(frame%member_springs + frame%number(direction, top)) = 1.0_wp
-      frame%control = frame%arm(frame%member_springs + 1:)
+      frame%springs = frame%member_springs + sum([(count(node(i)%ground%rule /= '' .and. &
+                                                         frame%number(:, i) > 0), i=1, size(node))])
+      frame%coordinates = frame%springs + frame%unknowns
+      associate (springs => frame%springs, inside => frame%member_springs)
+         allocate (spring(springs), frame%place(springs), frame%spring_place(inside), &
+                   frame%ground(springs - inside))
+         allocate (frame%heads(inside), source=.false.)
+         allocate (frame%arm(frame%coordinates), frame%constant_axial(springs), source=0.0_wp)
+         direction = 1
+         if (present(vertical)) direction = merge(2, 1, vertical)
+         frame%arm(springs + frame%number(direction, top)) = 1.0_wp
+         frame%control = frame%arm(springs + 1:)
+      end associate
       call set_ground(frame, node, spring)
       call set_elements(frame, node, member, spring)
       call set_panels(frame, node, spring)
       call list_springs(frame)
-      call add_rules(frame%rules, spring, springs)
+      call add_rules(frame%rules, spring, frame%springs)
       frame%initial_stiffness = frame%rules%initial_stiffness()
       allocate (frame%initial_tangent(frame%tangent_numbers), source=0.0_wp)
       call frame%linearise(frame%initial_stiffness, frame%initial_tangent, i)
@@ -211,8 +211,10 @@ contains
       type(frame_node), intent(in) :: node(:)
       type(spring_record), intent(inout) :: spring(:)
       integer, parameter :: kind_of(3) = [shear, axial, flexure]
-      integer :: i, j
+      character(len=2), parameter :: along(3) = ['x_', 'y_', 't_']
+      integer :: i, j, last
 
+      allocate (frame%unknown_name(frame%unknowns), source=repeat(' ', len(frame%unknown_name)))
       allocate (frame%inertias(frame%unknowns), frame%dead(frame%unknowns), source=0.0_wp)
       allocate (frame%is_held(frame%unknowns), source=.false.)
       allocate (frame%reach(frame%unknowns), source=1.0_wp)
@@ -220,6 +222,7 @@ contains
       do j = 1, signals
          allocate (frame%pattern(j)%force(frame%unknowns), source=0.0_wp)
       end do
+      last = frame%member_springs
       do i = 1, size(node)
          do j = 1, 3
             associate (at => frame%number(j, i))
@@ -228,14 +231,12 @@ contains
                frame%dead(at) = frame%dead(at) + node(i)%load(j)
                frame%part(at) = i
                if (j == 3) frame%reach(at) = frame%total_height
-               if (frame%place(frame%member_springs + at)%kind == 0) then
-                  frame%place(frame%member_springs + at) = spring_place(kind_of(j), 0, 0, index=i, &
-                                                                owner='node '//node(i)%name)
-                  spring(frame%member_springs + at) = node(i)%ground(j)
-               end if
-               if (spring(frame%member_springs + at)%rule == '') then
-                  spring(frame%member_springs + at)%rule = 'elastic'
-                  spring(frame%member_springs + at)%value(1) = of_no_account
+               if (frame%unknown_name(at) == '') frame%unknown_name(at) = along(j)//node(i)%name
+               if (node(i)%ground(j)%rule /= '') then
+                  last = last + 1
+                  frame%ground(last - frame%member_springs) = at
+                  frame%place(last) = spring_place(kind_of(j), 0, 0, index=i, owner='node '//node(i)%name)
+                  spring(last) = node(i)%ground(j)
                end if
                associate (push => [node(i)%push, 0.0_wp])
                   frame%pattern(lateral)%force(at) = frame%pattern(lateral)%force(at) + push(j)
@@ -248,10 +249,7 @@ contains
             if (at == 0) cycle
             frame%part(at) = i
             frame%reach(at) = frame%total_height
-            frame%place(frame%member_springs + at) = spring_place(flexure, 0, 0, index=i, &
-                                                                  owner='beam '//node(i)%name)
-            spring(frame%member_springs + at)%rule = 'elastic'
-            spring(frame%member_springs + at)%value(1) = of_no_account
+            frame%unknown_name(at) = 'b_'//node(i)%name
          end associate
       end do
       frame%pattern%last = frame%unknowns
