@@ -19,7 +19,8 @@ import numpy as np
 from rbsdem.curves.cycles import turning_points
 from rbsdem.curves.metrics import summarise
 from rbsdem.errors import RbsdemError
-from rbsdem.peer import HISTORY_FILES, find_history
+from rbsdem.measured.measured import HISTORY_FILES
+from rbsdem.peer import find_history
 from rbsdem.section.paper import paper_sections
 
 THRESHOLD = 0.02

@@ -19,6 +19,7 @@ import numpy as np
 
 import rbsdem
 from rbsdem import peer
+from rbsdem.measured.measured import HISTORY_FILES
 from rbsdem.section.columns import MODELS
 
 SCORES = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio")
@@ -65,7 +66,7 @@ def the_papers_four(tests: peer.Specimens, found: dict[str, list[peer.Prediction
     """Print the four columns of the paper."""
     print("\n| column of the paper | " + " | ".join(f"nrmse, {name}" for name in found) + " |")
     print("| --- |" + " ---: |" * len(found))
-    files = {name for names in peer.HISTORY_FILES.values() for name in names}
+    files = {name for names in HISTORY_FILES.values() for name in names}
     for test in tests:
         if test.path is not None and test.path.name in files:
             scores = [

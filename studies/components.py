@@ -32,6 +32,7 @@ from matplotlib import pyplot as plt
 
 import rbsdem
 from rbsdem import peer
+from rbsdem.measured.measured import HISTORY_FILES
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 
@@ -60,7 +61,7 @@ def tests(folder: str) -> dict[str, peer.Specimen]:
     table = peer.read_specimens(folder).with_history()
     return {
         key: next(row for row in table if row.path and row.path.name in names)
-        for key, names in peer.HISTORY_FILES.items()
+        for key, names in HISTORY_FILES.items()
     }
 
 

@@ -20,7 +20,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rbsdem.frames import panel_strength
+from rbsdem.section.panel import panel_strength
 
 #: Rows of each programme, in order; class; beams on four sides.
 PROGRAMMES = (

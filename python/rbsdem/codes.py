@@ -8,14 +8,10 @@ from rbsdem.checks.acceptance import Assessment as Assessment
 from rbsdem.checks.acceptance import assess as assess
 from rbsdem.checks.acceptance import beam_rotations as beam_rotations
 from rbsdem.checks.capacity import Capacity as Capacity
-from rbsdem.checks.code_values import CodeComparison as CodeComparison
-from rbsdem.checks.code_values import CodeValue as CodeValue
 from rbsdem.checks.code_values import CodeValues as CodeValues
 from rbsdem.checks.code_values import code_values as code_values
 from rbsdem.checks.code_values import compare as compare
-from rbsdem.checks.formulas import Quantities as Quantities
 from rbsdem.checks.formulas import quantities as quantities
 from rbsdem.many.target import Target as Target
-from rbsdem.many.target import TargetCheck as TargetCheck
 from rbsdem.many.target import target as target
 from rbsdem.motions.design import DesignSpectrum as DesignSpectrum

@@ -12,7 +12,5 @@ from rbsdem.many.ida import IDA as IDA
 from rbsdem.many.ida import CollapseSearch as CollapseSearch
 from rbsdem.many.ida import Stripes as Stripes
 from rbsdem.many.ida import stripes as stripes
-from rbsdem.many.inputs import LIMIT_STATES as LIMIT_STATES
 from rbsdem.many.inputs import MEASURES as MEASURES
-from rbsdem.many.inputs import STATUSES as STATUSES
 from rbsdem.many.inputs import STOREY_MEASURES as STOREY_MEASURES

@@ -5,33 +5,25 @@ The histories belong to the database and are no part of rbsdem; a user gets them
 points come with rbsdem.
 """
 
-from rbsdem.measured.drawing import DrawnSpecimen as DrawnSpecimen
 from rbsdem.measured.drawing import column as column
 from rbsdem.measured.drawing import draw as draw
 from rbsdem.measured.laboratory import read_test as read_test
 from rbsdem.measured.measured import FOLDER_VARIABLE as FOLDER_VARIABLE
-from rbsdem.measured.measured import HISTORY_FILES as HISTORY_FILES
-from rbsdem.measured.measured import PDELTA_CODES as PDELTA_CODES
 from rbsdem.measured.measured import MeasuredTest as MeasuredTest
-from rbsdem.measured.measured import PeerTest as PeerTest
-from rbsdem.measured.measured import Reversals as Reversals
 from rbsdem.measured.measured import find_history as find_history
 from rbsdem.measured.measured import measured_loops as measured_loops
 from rbsdem.measured.measured import net_force as net_force
 from rbsdem.measured.measured import read_peer as read_peer
 from rbsdem.measured.measured import shipped_reversals as shipped_reversals
-from rbsdem.measured.predict import Neighbour as Neighbour
 from rbsdem.measured.predict import Prediction as Prediction
 from rbsdem.measured.predict import nearest as nearest
 from rbsdem.measured.predict import predict as predict
 from rbsdem.measured.predict import score_summary as score_summary
 from rbsdem.measured.predict import scores as scores
-from rbsdem.measured.specimens import Observed as Observed
 from rbsdem.measured.specimens import Specimen as Specimen
 from rbsdem.measured.specimens import Specimens as Specimens
 from rbsdem.measured.specimens import read_specimens as read_specimens
 from rbsdem.run.bands import Band as Band
 from rbsdem.run.bands import band as band
-from rbsdem.run.bands import likeness as likeness
 from rbsdem.section.paper import paper_columns as paper_columns
 from rbsdem.section.paper import paper_sections as paper_sections

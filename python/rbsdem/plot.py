@@ -1,8 +1,8 @@
 """Figures for publication, in mm, kN and s, and tables for the terminal in the same units.
 
 Each record has a function of the name of its kind: `plot.envelope(result.envelope())`. Functions
-take SI and draw millimetres and kilonewtons. Without axes they make a figure in the house style,
-the dictionary `RC`; axes that are given keep the style of the caller.
+take SI and draw millimetres and kilonewtons. Without axes they make a figure in the house style;
+axes that are given keep the style of the caller.
 """
 
 from rbsdem.output.buildings import assessment as assessment
@@ -40,14 +40,9 @@ from rbsdem.output.section import section_springs as section_springs
 from rbsdem.output.section import section_state as section_state
 from rbsdem.output.section import shear_diagram as shear_diagram
 from rbsdem.output.style import MODEL_LINE as MODEL_LINE
-from rbsdem.output.style import RC as RC
 from rbsdem.output.style import TEST_LINE as TEST_LINE
-from rbsdem.output.style import TEST_POINTS as TEST_POINTS
-from rbsdem.output.style import ZERO_LINE as ZERO_LINE
 from rbsdem.output.style import axes_or_new as axes_or_new
-from rbsdem.output.style import line_of as line_of
 from rbsdem.output.style import new_axes as new_axes
 from rbsdem.output.style import save as save
 from rbsdem.output.style import style as style
-from rbsdem.output.style import style_of as style_of
 from rbsdem.output.tables import table as table

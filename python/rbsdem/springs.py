@@ -1,13 +1,11 @@
 """Springs of the joints: one class for each rule."""
 
 from rbsdem.model.column import Parameter as Parameter
-from rbsdem.model.springs import SPRINGS as SPRINGS
 from rbsdem.model.springs import Bilinear as Bilinear
 from rbsdem.model.springs import Compression as Compression
 from rbsdem.model.springs import ConcreteSpring as ConcreteSpring
 from rbsdem.model.springs import Elastic as Elastic
 from rbsdem.model.springs import Gauge as Gauge
-from rbsdem.model.springs import Landmark as Landmark
 from rbsdem.model.springs import Layered as Layered
 from rbsdem.model.springs import PeakOriented as PeakOriented
 from rbsdem.model.springs import Pinching as Pinching

@@ -15,7 +15,8 @@ import numpy as np
 
 import rbsdem
 from rbsdem import _core
-from rbsdem.springs import SPRINGS, Layered, Spring
+from rbsdem.model.springs import SPRINGS
+from rbsdem.springs import Layered, Spring
 
 Rng = np.random.Generator
 

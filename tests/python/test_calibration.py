@@ -12,12 +12,13 @@ import pytest
 
 import rbsdem
 from rbsdem import Column, InputError, SolveError
-from rbsdem.calibration import Parameter, free_names, paths, undetermined
+from rbsdem.calibration import free_names, paths, undetermined
 from rbsdem.calibration.determined import determine
 from rbsdem.calibration.misfit import POINTS, Misfit, Target
 from rbsdem.calibration.search import COARSE, Search
 from rbsdem.curves.cycles import half_cycle_numbers
 from rbsdem.errors import AccuracyWarning
+from rbsdem.model.column import Parameter
 from rbsdem.peer import find_history, read_peer
 from rbsdem.run import result as run_result
 from rbsdem.springs import Bilinear, ConcreteSpring, Elastic, Layered, Pinching, SteelSpring, Takeda

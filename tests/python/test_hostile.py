@@ -23,7 +23,8 @@ import rbsdem
 from rbsdem import _arguments, calibration, curves, fragility, motions, peer
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.many.runs import RunOptions
-from rbsdem.springs import SPRINGS, Bilinear, Elastic, Gauge
+from rbsdem.model.springs import SPRINGS
+from rbsdem.springs import Bilinear, Elastic, Gauge
 
 pytestmark = pytest.mark.filterwarnings("ignore")
 

@@ -31,7 +31,8 @@ from strategies import (
 
 import rbsdem
 from rbsdem import _core
-from rbsdem.springs import SPRINGS, Elastic, Layered, Spring
+from rbsdem.model.springs import SPRINGS
+from rbsdem.springs import Elastic, Layered, Spring
 
 ARRAYS = ("time", "displacement", "force", "slip", "rotation", "opening", "shear", "moment")
 ARRAYS += ("base_shear", "base_moment", "axial_force", "top", "rest")

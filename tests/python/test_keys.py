@@ -21,9 +21,10 @@ from strategies import GOOD
 import rbsdem
 from rbsdem import _core
 from rbsdem.model.damping import Damping
+from rbsdem.model.springs import SPRINGS
 from rbsdem.run.case import Case
 from rbsdem.run.groups import SHAPES
-from rbsdem.springs import SPRINGS, Elastic, Layered
+from rbsdem.springs import Elastic, Layered
 
 KEYS = _core.keys()
 RULES = KEYS["rules"]

@@ -29,7 +29,8 @@ from strategies import GOOD
 import rbsdem
 from rbsdem import _core, motions, peer, springs
 from rbsdem.cli import main
-from rbsdem.springs import SPRINGS, Elastic
+from rbsdem.model.springs import SPRINGS
+from rbsdem.springs import Elastic
 
 FILE = Path(__file__).with_name("messages.txt")
 FATAL = ("Fortran runtime", "Backtrace", "SIG", "At line", "Traceback", "\0")

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from dataclasses import fields, is_dataclass, replace
 from importlib.resources import files
+from pathlib import Path
 
 import pytest
 from conftest import REPOSITORY
@@ -29,6 +30,14 @@ def test_the_surface_is_small_and_in_order():
     assert rbsdem.__all__ == sorted(rbsdem.__all__)
     # 36 for columns, 4 for frames, and `verify`.
     assert len(set(rbsdem.__all__)) == len(rbsdem.__all__) <= 40
+    offered = [
+        name
+        for file in ("__init__.pyi", "[c-s]*.py", "c*/__init__.py", "motions/__init__.py",
+                     "section/__init__.py")
+        for path in Path(rbsdem.__file__).parent.glob(file)
+        for name in re.findall(r"^from rbsdem.*import (\w+) as \1$", path.read_text(), re.MULTILINE)
+    ]  # fmt: skip
+    assert len(offered) + sum(isinstance(one, type) for one in vars(errors).values()) <= 200
     names: dict[str, object] = {}
     exec("from rbsdem import *", names)
     assert set(names) - {"__builtins__"} == set(rbsdem.__all__)

@@ -8,7 +8,8 @@ from dataclasses import replace
 import pytest
 
 import rbsdem
-from rbsdem.frames import JointPanel, panel_strength
+from rbsdem.frames import JointPanel
+from rbsdem.section.panel import panel_strength
 
 STEEL = rbsdem.Steel(450e6)
 HOOPS = rbsdem.Ties(0.010, 0.10, STEEL, legs=3)

@@ -17,6 +17,7 @@ import reference_springs
 from numpy.typing import ArrayLike, NDArray
 
 import rbsdem
+from rbsdem.model.springs import SPRINGS
 from rbsdem.springs import (
     Bilinear,
     Compression,
@@ -317,7 +318,7 @@ CORNERS: dict[str, Any] = {
 }
 
 
-@pytest.mark.parametrize("rule", sorted(rbsdem.springs.SPRINGS.keys() - {""}))
+@pytest.mark.parametrize("rule", sorted(SPRINGS.keys() - {""}))
 def test_a_rule_says_where_it_cracks_yields_and_caps(rule: str) -> None:
     """Each landmark is a corner of the virgin curve; behind a cap, and only there, it falls."""
     spring = CORNERS[rule]

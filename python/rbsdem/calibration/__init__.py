@@ -8,6 +8,3 @@ from rbsdem.calibration.fit import calibrate as calibrate
 from rbsdem.calibration.fit import free_names as free_names
 from rbsdem.calibration.fit import undetermined as undetermined
 from rbsdem.calibration.outcome import Calibration as Calibration
-from rbsdem.calibration.outcome import Fitted as Fitted
-from rbsdem.model.column import Parameter as Parameter
-from rbsdem.model.column import WithParameters as WithParameters

@@ -5,25 +5,17 @@ Most functions take a `rbsdem.RectangularSection` or `rbsdem.CircularSection` fi
 the face that a positive curvature puts in tension.
 """
 
-from rbsdem.section.axial_moment import InteractionDiagram as InteractionDiagram
 from rbsdem.section.axial_moment import interaction as interaction
 from rbsdem.section.beams import flange_width as flange_width
 from rbsdem.section.beams import rigid_ends as rigid_ends
 from rbsdem.section.columns import column as column
 from rbsdem.section.columns import member as member
-from rbsdem.section.curvature import BilinearDiagram as BilinearDiagram
-from rbsdem.section.curvature import Diagram as Diagram
-from rbsdem.section.curvature import DisplacementCapacity as DisplacementCapacity
 from rbsdem.section.curvature import diagram as diagram
 from rbsdem.section.curvature import moment_curvature as moment_curvature
 from rbsdem.section.curvature import strains as strains
 from rbsdem.section.layered import LayeredColumn as LayeredColumn
-from rbsdem.section.paper import paper_columns as paper_columns
-from rbsdem.section.paper import paper_sections as paper_sections
 from rbsdem.section.paper_springs import SectionSprings as SectionSprings
 from rbsdem.section.paper_springs import springs as springs
-from rbsdem.section.parameters import ModelParameters as ModelParameters
 from rbsdem.section.parameters import parameters as parameters
-from rbsdem.section.shear import ShearDiagram as ShearDiagram
 from rbsdem.section.shear import shear_diagram as shear_diagram
 from rbsdem.section.strength import shear_strength as shear_strength
