@@ -13,14 +13,13 @@ module rbs_solve_static_curved
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_hysteresis_interaction_joints, only: moment_on_plane, put_on_plane, list_lines, &
-                                               place_lines
+   use rbs_hysteresis_interaction_joints, only: list_lines, put_on_plane
    use rbs_structure_column_column, only: column_type
    use rbs_solve_static_corner, only: turn_corner
-   use rbs_solve_line_search, only: false_position
-   use rbs_solve_static_curve, only: clean, curve_type, most_turn, same_rate
-   use rbs_solve_static_curved_equilibrium, only: curved_equilibrium, path_point
-   use rbs_solve_static_path, only: static_path, state_of, weakest_spring, is_on_end, on_the_end, &
+   use rbs_solve_static_curve, only: clean, most_turn
+   use rbs_solve_static_curved_search, only: curve_search, find_event, find_point, find_turn, find_works, &
+                                             layer_of, no_progress, place, round_off, work_of_joint
+   use rbs_solve_static_path, only: state_of, weakest_spring, is_on_end, on_the_end, &
                                     serialize_path
    use rbs_solve_static_resume, only: begin_path, end_path
    use rbs_solve_task, only: task_type
@@ -40,34 +39,12 @@ module rbs_solve_static_curved
    !> method, whose points are off by round-off.
    real(wp), parameter :: close_by = 1.0e-9_wp
 
-   !> Round-off of a displacement or force, as a share of the largest.
-   real(wp), parameter :: round_off = 32.0_wp*epsilon(1.0_wp)
-
-   !> Newton's method has converged if a change is below this share of the largest deformation of its kind:
-   !> the next one would be its square. Where round-off ends the progress before, that must be below the
-   !> second share.
-   real(wp), parameter :: arrived = 1.0e-10_wp, no_progress = 1.0e-7_wp
-   integer, parameter :: most_iterations = 15
-
-   !> Largest correction by slopes of the work of a stride under a constant axial load, and the most missing
-   !> from its works under one that varies, with exact rotations and without; as shares of the largest energy
-   !> so far.
-   real(wp), parameter :: most_correction = 1.0e-5_wp, most_missing(2) = [1.0e-12_wp, 1.0e-13_wp]
-
-   type, extends(static_path) :: curved_path
-      type(curved_equilibrium) :: equilibrium
-      !> The present point and the one that is tried, the curve between the first and the farthest tried, and
-      !> the spring or layer that is on the end of its line there; 0 for none
-      type(path_point) :: here, there
-      type(curve_type) :: curve
-      integer :: line = 0
+   type, extends(curve_search) :: curved_path
       !> Axial load at the top at each target (m) where it varies [N], and the number of the target
       real(wp), allocatable :: load(:)
       integer :: row = 0
       !> In units of the parameter: length of the next stride, where the path goes to, largest value so far
       real(wp) :: next_length = huge(1.0_wp), goal = 0.0_wp, extent = 0.0_wp
-      !> Largest work of the lateral force so far, in size [J]
-      real(wp) :: most_work = 0.0_wp
       !> Strides in a row that made no progress
       integer :: stalled_strides = 0
    contains
@@ -189,7 +166,7 @@ contains
       if (.not. allocated(self%here%d)) then
          allocate (self%here%d(size(self%curve%lines%joint)), self%here%v(size(self%curve%lines%joint)))
       end if
-      call place(self%here)
+      call place(self, self%here)
       way = abs(self%goal - self%here%t)
       turn = self%structure%largest_turn(self%here%rate)
       length = min(way, self%next_length)
@@ -222,24 +199,24 @@ contains
 
          turns = .false.
          self%there = self%here
-         call find_event(limit)
+         call find_event(self, limit)
          near = (self%line > 0 .or. .not. abs(self%goal - limit) > 0.0_wp) .and. &
                 abs(self%there%t - self%here%t) <= close_by*self%extent .and. &
                 abs(self%there%t - self%here%t)*self%structure%largest_turn(self%here%rate) <= close_by
          done = near
-         if (.not. near) call find_point(limit, .true., done)
+         if (.not. near) call find_point(self, limit, .true., done)
          if (done) call self%curve%set(self%structure, self%here, self%there)
          if (done .and. .not. near) then
             done = self%curve%is_gentle(self%structure)
             if (done) turns = self%curve%least_rate(self%there) < 0.0_wp
             if (turns) then
-               call find_turn()
+               call find_turn(self, done)
                if (done) call self%curve%set(self%structure, self%here, self%there)
             end if
             if (done) done = .not. self%curve%hides_event()
          end if
          if (.not. done) return
-         call find_works(cuts < most_cuts_for_work .and. .not. near, works)
+         call find_works(self, cuts < most_cuts_for_work .and. .not. near, works, done)
          if (done) call accept(turns, works)
       end subroutine try_stride
 
@@ -314,205 +291,13 @@ contains
             if (.not. springs%pressed) return
             do j = 1, size(springs%layered)
                i = springs%layered(j)
-               work = work_of_joint(i)
+               work = work_of_joint(self, i)
                call put_on_plane(springs, i, there%q(i), there%axial_load + self%equilibrium%above(i), &
-                                 there%rate(i), there%axial_rate, layer_of(i))
+                                 there%rate(i), there%axial_rate, layer_of(self, i))
                springs%work(i) = springs%work(i) + work
             end do
          end associate
       end subroutine put_springs
-
-      !> Go from the point that is tried along its tangent to the first end of a line, if there is one before
-      !> the limit, else to the limit; not back beyond the present point.
-      subroutine find_event(limit, change)
-         real(wp), intent(in) :: limit
-         !> Of the deformations, to be added to
-         real(wp), intent(inout), optional :: change(:)
-         real(wp) :: room, way, finish
-         integer :: i, side
-
-         self%line = 0
-         associate (there => self%there, lines => self%curve%lines)
-            room = self%direction*(limit - there%t)
-            do i = 1, size(there%v)
-               associate (rise => self%direction*there%v(i))
-                  if (.not. abs(rise) > 0.0_wp) cycle
-                  side = merge(1, -1, rise > 0.0_wp)
-                  if (lines%one_way(i) == -side) cycle
-                  way = side*(merge(lines%upper(i), lines%lower(i), side > 0) - there%d(i))
-                  if (way < room*abs(rise)) then
-                     room = way/abs(rise)
-                     self%line = i
-                     finish = merge(lines%upper(i), lines%lower(i), side > 0)
-                  end if
-               end associate
-            end do
-            room = max(room, self%direction*(self%here%t - there%t))
-            if (present(change)) change = change + there%rate*(self%direction*room)
-            call move(self%direction*room)
-            if (self%line == 0) then
-               there%t = limit
-            else if (self%line <= self%springs%count) then
-               there%q(self%line) = finish
-            end if
-         end associate
-      end subroutine find_event
-
-      !> Place springs and layers at a point.
-      subroutine place(point)
-         type(path_point), intent(inout) :: point
-
-         call place_lines(self%springs, self%curve%lines, point%q, &
-                          point%axial_load + self%equilibrium%above, point%rate, point%axial_rate, &
-                          point%d, point%v)
-      end subroutine place
-
-      !> The layer of a joint that is on the end of its line at the point that is tried, 0 for none.
-      pure integer function layer_of(joint)
-         integer, intent(in) :: joint
-
-         layer_of = 0
-         if (self%line == 0) return
-         associate (of => self%curve%lines%joint)
-            if (of(self%line) == joint) layer_of = self%line - findloc(of, joint, dim=1) + 1
-         end associate
-      end function layer_of
-
-      !> Move the point that is tried along its tangent.
-      subroutine move(step)
-         !> Of the parameter
-         real(wp), intent(in) :: step
-
-         associate (there => self%there)
-            there%t = there%t + step
-            there%q = there%q + there%rate*step
-            there%d = there%d + there%v*step
-            there%force = there%force + there%force_rate*step
-            there%displacement = there%displacement + there%displacement_rate*step
-            there%axial_load = there%axial_load + there%axial_rate*step
-         end associate
-      end subroutine move
-
-      !> Newton's method from the point that is tried to the first event before a limit, or to the limit.
-      subroutine find_point(limit, with_events, found)
-         real(wp), intent(in) :: limit
-         logical, intent(in) :: with_events
-         logical, intent(out) :: found
-         real(wp) :: change(size(self%here%q)), share, last_share
-         logical :: regular
-         integer :: i
-
-         found = .false.
-         last_share = huge(1.0_wp)
-         associate (there => self%there, equilibrium => self%equilibrium)
-            do i = 1, most_iterations
-               call equilibrium%solve(self%springs, there, regular)
-               if (.not. regular) return
-               if (equilibrium%varies) there%rate = clean(equilibrium%column, there)
-               change = equilibrium%correction
-               there%q = there%q + change
-               there%force = there%force + equilibrium%force_correction
-               there%axial_load = there%axial_load + equilibrium%ratio*equilibrium%force_correction
-               call place(there)
-               if (with_events) call find_event(limit, change)
-               share = equilibrium%size_of(change, there%q - change)
-               found = share <= arrived .or. (share <= no_progress .and. share > 0.25_wp*last_share)
-               if (found) exit
-               if (i > 3 .and. share > 2.0_wp*last_share) return
-               last_share = share
-            end do
-            if (.not. found) return
-            if (self%equilibrium%by_force) then
-               there%force = equilibrium%driven(1) + equilibrium%driven(2)*there%t
-               there%displacement = self%equilibrium%column%top_displacement(there%q)
-            else
-               there%displacement = equilibrium%driven(1) + equilibrium%driven(2)*there%t
-            end if
-         end associate
-      end subroutine find_point
-
-      !> Find the point where the first motion turns back.
-      subroutine find_turn()
-         type(false_position) :: line
-         real(wp) :: value, reached
-         integer :: i
-
-         self%line = 0
-         line = false_position(self%here%t, self%there%t, self%curve%least_rate(self%here), &
-                               self%curve%least_rate(self%there))
-         done = line%at_low > 0.0_wp .and. line%at_high < 0.0_wp
-         if (.not. done) return
-         do i = 1, 60
-            reached = line%next()
-            if (i > 40) reached = 0.5_wp*(line%low + line%high)
-            call self%curve%guess(reached, self%there)
-            call find_point(reached, .false., done)
-            if (.not. done) return
-            value = self%curve%least_rate(self%there)
-            if (abs(value) < 0.9_wp*same_rate) return
-            call line%narrow(reached, value)
-         end do
-         done = .false.
-      end subroutine find_turn
-
-      !> Works of the lateral force and of the axial load on the way that was tried, and of the layered joints
-      !> whose axial loads vary, all by the cubics of the curve.
-      subroutine find_works(strict, works)
-         !> Whether a stride whose works are not exact enough is refused
-         logical, intent(in) :: strict
-         !> Of force, axial load and layered joints [J]
-         real(wp), intent(out) :: works(3)
-         real(wp) :: work(2), change(size(self%here%q)), f(size(self%here%q)), lift(2), weight(2), missing, &
-              turnover
-         integer :: j
-
-         associate (here => self%here, there => self%there)
-            work = self%curve%work([here%force, there%force], [here%displacement, there%displacement], &
-                                   [here%force_rate, there%force_rate], &
-                                   [here%displacement_rate, there%displacement_rate])
-            works = [sum(work), 0.0_wp, 0.0_wp]
-            change = there%q - here%q
-            f = self%springs%f0 + self%springs%k*(there%q - self%springs%d0)
-            if (.not. self%equilibrium%varies) then
-               turnover = sum(abs(change*f))
-               done = .not. strict .or. abs(work(2)) <= most_correction*max(self%most_work, turnover)
-               return
-            end if
-            associate (unit_top_load => self%equilibrium%unit_top_load, &
-                       without_top_load => self%equilibrium%without_top_load)
-               lift = [unit_top_load%potential_energy(here%q), unit_top_load%potential_energy(there%q)]
-               weight = [without_top_load%potential_energy(here%q), &
-                         without_top_load%potential_energy(there%q)]
-            end associate
-            works(2) = sum(self%curve%work([here%axial_load, there%axial_load], lift, &
-                                           [here%axial_rate, there%axial_rate], &
-                                           [here%lift_rate, there%lift_rate]))
-            f(:) = f - 0.5_wp*self%springs%k*change
-            do j = 1, size(self%springs%layered)
-               if (self%springs%pressed) f(self%springs%layered(j)) = 0.0_wp
-               if (self%springs%pressed) works(3) = works(3) + work_of_joint(self%springs%layered(j))
-            end do
-            turnover = sum(abs(change*f)) + sum(abs(works))
-            missing = works(1) - works(2) - works(3) - sum(change*f) - (weight(2) - weight(1))
-            done = .not. strict .or. abs(missing) <= max(self%most_work, turnover) &
-                   *most_missing(merge(1, 2, self%structure%kinematics == finite)) &
-                   + round_off*(abs(there%axial_load)*maxval(abs(lift)) + maxval(abs(weight)))
-         end associate
-      end subroutine find_works
-
-      !> Work of a layered joint on its plane.
-      pure real(wp) function work_of_joint(i) result(work)
-         integer, intent(in) :: i
-
-         associate (here => self%here, there => self%there)
-            work = sum(self%curve%work( &
-                       moment_on_plane(self%springs, i, [here%q(i), there%q(i)], &
-                                       [here%axial_load, there%axial_load] + self%equilibrium%above(i)), &
-                       [here%q(i), there%q(i)], self%springs%k(i)*[here%rate(i), there%rate(i)] &
-                       - self%springs%centre(i)*[here%axial_rate, there%axial_rate], &
-                       [here%rate(i), there%rate(i)]))
-         end associate
-      end function work_of_joint
 
    end subroutine take_stride
 
