@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from html import unescape
 
 import numpy as np
 import pytest
@@ -273,9 +274,13 @@ def test_the_report_of_an_assessment_is_short(push, tmp_path):
     path = rbsdem.report(checked, tmp_path / "house.html", title="House", target=found)
     text = path.read_text("utf-8")
     headings = re.findall("<h2>([^<]*)</h2>", text)
-    assert headings == ["Inputs", "Target displacement", "Members", "Assumed"]
-    # Ten rows of members and one of a figure each of the target; layers and springs are beside it.
-    assert text.count("<tr>") == 2 + 10 + len(found.to_pandas())
+    assert headings == ["Inputs", "Target displacement", "Storeys", "Members", "Assumed"]
+    # Ten rows of members, one of each storey and figure of the target; layers are beside it.
+    assert text.count("<tr>") == 3 + 10 + 2 + len(found.to_pandas())
+    storeys = (tmp_path / "house_storeys.csv").read_text("utf-8").splitlines()
+    assert float(storeys[1].split(",")[2]) == pytest.approx(found.base_shear, rel=1e-3)
+    for drawing in (COLUMN, BEAM):
+        assert unescape(text).count(str(drawing)) == 1
     rows = (tmp_path / "house_all_members.csv").read_text("utf-8").splitlines()
     assert len(rows) == 1 + len(checked.rows)
     assert (tmp_path / "house_inputs.csv").is_file()

@@ -114,7 +114,7 @@ def demands(result: FrameResult, rows: Array) -> list[_Demand]:
     rows : ndarray of float
         Rows; between two of them with the share of the way.
     """
-    frame, of = result.frame, partial(_between, rows)
+    frame, of = result.frame, partial(between, rows)
     found = []
     for i, (name, one) in enumerate(frame.geometry.items()):
         sections, length = frame.kinds[name].sections, one.clear
@@ -146,8 +146,16 @@ def demands(result: FrameResult, rows: Array) -> list[_Demand]:
     return [*found, *_joints(result, rows)]
 
 
-def _between(rows: Array, values: Array) -> Array:
-    """Return the columns of an array in some rows, between two with the share of the way."""
+def between(rows: Array, values: Array) -> Array:
+    """Return the columns of an array in some rows, between two with the share of the way.
+
+    Parameters
+    ----------
+    rows : ndarray of float
+        The rows.
+    values : ndarray, shape (rows,) or (rows, columns)
+        The array.
+    """
     at = np.arange(len(values))
     return np.column_stack([np.interp(rows, at, one) for one in np.atleast_2d(values.T)])
 
@@ -158,7 +166,7 @@ def _joints(result: FrameResult, rows: Array) -> Iterator[_Demand]:
     The shear is that of the beams' moments at the faces of the column over 0.9 d, less that of the
     column above; the rotation is that of a panel beyond its yield.
     """
-    frame, parts, of = result.frame, result.frame.parts, partial(_between, rows)
+    frame, parts, of = result.frame, result.frame.parts, partial(between, rows)
     panels = [one.member if one.group == "panel" else "" for one in parts.springs_of("flexure")]
     for node, name in enumerate(parts.nodes):
         columns: list[tuple[int, int, MemberGeometry, Section]] = []
@@ -389,6 +397,11 @@ class Assessment(Tabular):
             f"has a lower bound that falls with ductility{annex}, the springs the mean of tests.",
         )
 
+    @property
+    def source(self) -> str:
+        """Name of the code."""
+        return {"asce_41": "ASCE 41-17", "en_1998_3": "EN 1998-3:2005"}[self.code]
+
     def _level(self, level: str | None) -> str:
         name = self.levels[-1] if level is None else level
         return str(_arguments.choice(name, "level", self.levels))
@@ -458,7 +471,7 @@ def assess(
     code = _arguments.choice(code, "assess: code", get_args(AcceptanceCode))
     kappa = _arguments.number(knowledge, "assess: knowledge", above=0.0, most=1.0)
     first = _arguments.boolean(primary, "assess: primary")
-    place, rows = _place(result, at)
+    place, rows = rows_at(result, at)
     found = demands(result, rows)
     if not found:
         raise InputError(
@@ -532,8 +545,16 @@ def _given(
     return own
 
 
-def _place(result: FrameResult, at: Any) -> tuple[float | None, Array]:
-    """Return the displacement that is judged, and its row, or all rows."""
+def rows_at(result: FrameResult, at: Any) -> tuple[float | None, Array]:
+    """Return the displacement that is judged, and its row, or all rows.
+
+    Parameters
+    ----------
+    result : FrameResult
+        The result.
+    at : Target, float or None
+        As for `assess`.
+    """
     every = np.arange(float(result.time.size))
     if at is None:
         return None, every

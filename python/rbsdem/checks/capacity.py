@@ -230,7 +230,7 @@ def asce_41(
     if strength > limit:
         notes.append(
             f"mu_strength = {strength:.3g} is above mu_max = {limit:.3g}: a nonlinear static "
-            "procedure is not allowed (ASCE 41-17, 7.3.2.1); look at records"
+            "procedure is not allowed (ASCE 41-17, 7.3.2.1); look at records."
         )
     factors = {"C_0": first, **found, "mu_max": limit, "alpha_1": lines.post_yield_ratio}
     return Estimate(
@@ -317,7 +317,7 @@ def en_1998(curve: Capacity, spectrum: DesignSpectrum, *, iterate: bool = True) 
     return Estimate(
         "en_1998", "EN 1998-1:2004, annex B", target, lines, found["T*"], spectrum.sa(found["T*"]),
         target / lines.yield_displacement, factors, target <= curve.largest * (1 + 1e-9),
-        ("the lines were drawn up to the target displacement",) if iterate else (),
+        ("The lines are drawn up to the target displacement.",) if iterate else (),
     )  # fmt: skip
 
 
@@ -383,7 +383,7 @@ def capacity_spectrum(curve: Capacity, spectrum: DesignSpectrum) -> Estimate:
     found["T_sec"] = 2.0 * math.pi * math.sqrt(curve.modal_mass / secant)
     notes = []
     if not 0.2 < found["T_0"] < 2.0:
-        notes.append(f"T_0 = {found['T_0']:.3g} s is outside of the fit of FEMA 440, 0.2 to 2 s")
+        notes.append(f"T_0 = {found['T_0']:.3g} s is outside of the fit of FEMA 440, 0.2 to 2 s.")
     return Estimate(
         "capacity_spectrum", "FEMA 440, chapter 6", target, lines, found["T_eff"],
         spectrum.sa(found["T_eff"]), end / lines.yield_displacement,

@@ -34,6 +34,11 @@ _METHODS: dict[str, Callable[..., Estimate]] = {
 _DAMPING = 0.05
 
 
+#: Units of factors.
+_UNITS = {"m*": "kg", "d_et*": "m", "d_t*": "m"}
+_UNITS |= dict.fromkeys(("T*", "T_C", "T_0", "T_eff", "T_sec"), "s")
+
+
 @dataclass(frozen=True, repr=False, eq=False)
 class Target(Estimate):
     """A target displacement with its curve, its spectrum and the state of the frame there.
@@ -107,7 +112,7 @@ class Target(Estimate):
         ]
         if self.push is not None:
             rows.insert(1, ("roof drift", self.drift, "drift"))
-        rows += [(name, value, "") for name, value in self.factors.items()]
+        rows += [(name, value, _UNITS.get(name, "")) for name, value in self.factors.items()]
         return data_frame(rows, ["figure", "value", "unit"])
 
     def __repr__(self) -> str:

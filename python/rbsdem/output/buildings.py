@@ -110,6 +110,7 @@ def assessment(found: Assessment, *, ax: Axes | None = None, **line: Any) -> Axe
     _arguments.instance(found, "plot.assessment", Assessment, "as of rbsdem.codes.assess")
     structure, states = found.result.frame, found.states()
     names = ["within all", *(f"beyond {name}" for name in found.levels)]
+    names[-1] += " or in shear" if found.counts()["shear"] else ""
     with axes_or_new(ax, frames._figure_size(structure)) as drawn:
         frames._draw_supports(drawn, structure, frames._size(structure))
         frames._undeformed(drawn, structure, True)
@@ -136,6 +137,6 @@ def assessment(found: Assessment, *, ax: Axes | None = None, **line: Any) -> Axe
             mark |= {"markeredgecolor": "black", "markeredgewidth": 0.5, "markerfacecolor": face}
             words = f"{name} ({len(points)})"
             drawn.plot(*np.array(points).T, **line_of({**mark, "label": words}, line))
-        drawn.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, handletextpad=0.2)
+        drawn.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, handletextpad=0.2)
         frames._dress(drawn, structure)
     return drawn

@@ -224,11 +224,12 @@ def pushover(result: FrameResult, *, ax: Axes | None = None, **line: Any) -> Axe
             rows = np.searchsorted(result.time, [event.step for event in events])
             first = events[0]
             more = f", then {len(events) - 1} more" if len(events) > 1 else ""
+            end = f"at {float(first.end):.2f}" if first.end[:1].isdigit() else first.end
             drawn.plot(
                 1e3 * result.displacement[rows],
                 1e-3 * result.base_shear[rows],
                 **_HINGE | mark,
-                label=", ".join(filter(None, (first.member, first.end, _VERBS[what]))) + more,
+                label=", ".join(filter(None, (first.member, end, _VERBS[what]))) + more,
             )
         if result.events:
             drawn.legend(loc="best", handletextpad=0.2)

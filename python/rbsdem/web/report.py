@@ -22,7 +22,7 @@ import numpy as np
 from rbsdem import _arguments, _core
 from rbsdem._files import atomic_write, data_frame, figure_bytes, save_frame
 from rbsdem._types import DataFrame
-from rbsdem.checks.acceptance import Assessment
+from rbsdem.checks.acceptance import Assessment, between, rows_at
 from rbsdem.checks.code_values import code_values
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.many.ensemble import Ensemble
@@ -62,6 +62,10 @@ _LEFT_OUT = (
     "but the strut (EN 1998) or limits that were given (ASCE 41). Tested frames were 10 to 20 % "
     "off in their peaks in the median, and a factor of 1.5 in the drift at the peak "
     "(docs/frames.md)."
+)
+_STOREYS = (
+    "Drift, shear, and the part theta = P d/(V h) of it that the dead load P makes (EN 1998-1, "
+    "4.4.2.2)."
 )
 #: Letters of a text that a report takes with it.
 _MOST_TEXT = 400_000
@@ -427,33 +431,49 @@ def _of_assessment(
     result = found.result
     yield _of_structure(result.frame)
     curves: list[Callable[[], Any]] = [partial(frames.pushover, result)]
-    text = str(found)
+    text = repr(found)
     if target is not None:
         curves.append(partial(buildings.target, target))
-        text = f"{target.source}: {target}. {' '.join(target.notes)}"
+        end = () if target.reached else ("The push-over ends before the target.",)
+        text = " ".join((f"{target.source}.", *end, *target.notes))
     table = None if target is None else target.to_pandas()
     yield Sheet("Target displacement", text, tuple(curves), table)
     if check is not None:
-        words = f"{check}. The same frame under records scaled to the spectrum."
+        words = (
+            f"The same frame under {len(check.record)} records scaled to the spectrum, "
+            f"{int(check.collapsed.sum())} of which collapse: their median over the estimate, the "
+            "scatter of the logarithm, and the range."
+        )
         yield Sheet("Error of the target", words, table=check.to_pandas())
     row = -1
     if found.displacement is not None:
         away = np.abs(result.displacement - found.displacement)
         row = int(away.argmin())
+    if result.frame.storeys:
+        yield Sheet("Storeys", _STOREYS, table=_storeys(found))
     drawn: list[Callable[[], Any]] = [partial(frames.frame, result, row=row)]
     if result.frame.storeys and found.displacement is None:
         drawn.append(partial(frames.storey_drift, result))
     drawn.append(partial(buildings.assessment, found))
     counts = ", ".join(f"{name}: {number}" for name, number in found.counts().items())
-    text = f"{found.code}: ends beyond each level: {counts}. "
-    if target is not None and result.frame.storeys:
-        drifts = ", ".join(f"{100 * one:.2f}" for one in target.storey_drift)
-        text += f"Storey drifts at the target, from the ground up: {drifts} %. "
     told = ["What is beyond its strength in shear has the colour of the last level.", *found.notes]
-    text += " ".join((*told, "The ten largest ratios follow."))
+    text = f"{found.source}: ends and joints beyond each level: {counts}."
+    text = " ".join((text, *told, "The ten largest ratios follow."))
     yield Sheet("Members", text, tuple(drawn), found.worst(10))
     yield Sheet("All members", table=found.to_pandas(), beside=True)
     yield Sheet("Assumed", f"{result.scope_note} {_LEFT_OUT}")
+
+
+def _storeys(found: Assessment) -> DataFrame:
+    """Return drifts, shears and P-Delta coefficients of the storeys, largest of the rows judged."""
+    result = found.result
+    _, rows = rows_at(result, found.displacement)
+    drift, shear, theta = (
+        np.abs(between(rows, values)).max(axis=0)
+        for values in (result.storey_drift, result.storey_shear, result.stability_coefficient)
+    )
+    storeys = np.arange(1, drift.size + 1)
+    return data_frame({"storey": storeys, "drift_drift": drift, "shear_N": shear, "theta": theta})
 
 
 @sheets_of.register
@@ -552,29 +572,44 @@ def _of_structure(structure: Structure) -> Sheet:
     if not isinstance(structure, Frame):
         return Sheet("Inputs", table=inputs(structure._groups()))
     given = inputs(structure._statement)
+    drawings = list(_drawings(structure).items())[:_MOST_SECTIONS]
+    drawn = [partial(_titled, *one) for one in drawings]
     # Layers and springs of drawn members fill pages.
     return Sheet(
-        "Inputs", _described(structure), _drawings(structure), given, beside=len(given) > 60
+        "Inputs",
+        _described(structure),
+        (partial(frames.frame, structure), *drawn),
+        given,
+        beside=len(given) > 60,
     )
 
 
-def _drawings(frame: Frame) -> tuple[Callable[[], Any], ...]:
-    """Return figures of a frame and of the different sections of its members."""
-    columns, beams = (
-        [one for kind in dict(cells or {}).values() if kind for one in kind.sections or ()]  # type: ignore[arg-type]
-        for cells in (frame.columns, frame.beams)
-    )
-    # Beams lie with y > 0 above; figures have it below.
-    shown = dict.fromkeys([*columns, *(one.mirrored for one in beams)])
-    drawn = [partial(section.section, one) for one in list(shown)[:_MOST_SECTIONS]]
-    return partial(frames.frame, frame), *drawn
+def _drawings(frame: Frame) -> dict[Section, str]:
+    """Return the different sections of the members of a frame, and the names of these."""
+    found: dict[Section, list[str]] = {}
+    for name, kind in frame.kinds.items():
+        # Beams lie with y > 0 above; figures have it below.
+        upright = frame.geometry[name].upright
+        for one in dict.fromkeys(kind.sections or ()):
+            found.setdefault(one if upright else one.mirrored, []).append(name)
+    more = {one: f" and {len(names) - 1} more" for one, names in found.items() if len(names) > 1}
+    return {one: names[0] + more.get(one, "") for one, names in found.items()}
+
+
+def _titled(drawing: Section, title: str) -> Any:
+    drawn = section.section(drawing)
+    drawn.set_title(title, fontsize=9)
+    return drawn
 
 
 def _described(frame: Frame) -> str:
-    """Return a frame in words: sizes, masses, loads, periods, and what its members are."""
+    """Return a frame in words: sizes, masses, loads, periods, and its sections."""
     parts = frame.parts
     storeys, bays = (tuple(getattr(frame, name) or ()) for name in ("storeys", "bays"))
-    sizes = [", ".join(f"{one:g}" for one in several) for several in (storeys, bays)]
+    sizes = [
+        ", ".join(f"{one:g}" for one in (several[:1] if len(set(several)) == 1 else several))
+        for several in (storeys, bays)
+    ]
     loads = ", ".join(f"{load / 1e3:.4g}" for load in np.atleast_1d(np.asarray(frame.beam_load)))
     words = [
         f"{len(storeys)} storeys of {sizes[0]} m and {len(bays)} bays of {sizes[1]} m"
@@ -582,12 +617,13 @@ def _described(frame: Frame) -> str:
         else f"{len(parts.nodes)} nodes and {len(parts.members)} members",
         f"mass {parts.mass / 1e3:.4g} t",
         f"load of the beams {loads} kN/m",
-        f"second-order effects: {frame.kinematics}",
+        f"{'with' if frame.kinematics == 'pdelta' else 'without'} second-order work of the loads",
     ]
     if parts.mass > 0:
         first = modes(frame, min(3, len(parts.nodes))).period
         words.append(f"elastic periods {', '.join(f'{t:.3g}' for t in first)} s")
-    return "; ".join(words) + "."
+    drawn = [f"\n{names}: {one}." for one, names in _drawings(frame).items()]
+    return "; ".join(words) + "." + "".join(drawn)
 
 
 def _drawn(drawing: Section, values: _core.Statement) -> Sheet:
