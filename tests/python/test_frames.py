@@ -470,9 +470,9 @@ def test_a_column_of_layers_as_a_frame():
     assert first.end == "start"
 
 
-@pytest.mark.parametrize(("height", "most"), [(1.35, 0.005), (4.0, 0.04)])
-def test_second_order_work_between_springs_is_that_of_the_chord(height, most):
-    """A drawn member in double curvature against its column, whose bodies lean by themselves."""
+@pytest.mark.parametrize(("height", "most"), [(1.35, 0.005), (4.0, 0.025)])
+def test_second_order_work_of_a_drawn_member_is_that_of_its_column(height, most):
+    """In double curvature, between joints that crack too, against bodies that lean by themselves."""
     section, axial = drawn(0.4), 1.4e6
     column = rbsdem.section.column(section, height, axial_load=axial).double_curvature()
     kind = rbsdem.section.member(section, 2 * height, axial_load=axial)
@@ -483,7 +483,10 @@ def test_second_order_work_between_springs_is_that_of_the_chord(height, most):
     )  # fmt: skip
     path = 2 * height * np.array([0.002, 0.005, 0.01, 0.02])
     whole = rbsdem.cyclic(column, displacement=path).force
-    assert rbsdem.cyclic(frame, displacement=path).force == pytest.approx(whole, rel=most)
+    force = rbsdem.cyclic(frame, displacement=path).force
+    assert force == pytest.approx(whole, rel=most)
+    # Uncracked the joints between the ends bend as an elastic member; on chords it is 3 % at 8 m.
+    assert force[0] == pytest.approx(whole[0], rel=0.003)
     without = rbsdem.cyclic(replace(frame, kinematics="small"), displacement=path).force
     assert (without / whole - 1 > 3 * most).all()
 
@@ -808,6 +811,28 @@ def test_steps_in_time_converge_and_balance(method):
     )
     once = rbsdem.time_history(frame, t, ground_acceleration=ground, method=method)
     assert rest.displacement == pytest.approx(once.displacement[later], rel=1e-9, abs=1e-12)
+
+
+def test_damping_of_the_present_stiffness():
+    """That of an elastic frame is constant; layers that crack and yield cut no step, and balance."""
+    t = np.arange(0, 3, 0.01)
+    ground = {"ground_acceleration": 5 * np.sin(12 * t), "method": "newmark", "dt": 0.005}
+    constant, present = (rbsdem.Damping(stiffness=2e-3, tangent=own) for own in (False, True))
+    whole = three_storeys(columns=ELASTIC, beams=ELASTIC, damping=constant)
+    one = rbsdem.time_history(whole, t, **ground)
+    other = rbsdem.time_history(replace(whole, damping=present), t, **ground)
+    assert other.displacement == pytest.approx(one.displacement, abs=1e-12)
+    lost = one.summary["damping_energy"]
+    assert other.summary["damping_energy"] == pytest.approx(lost, rel=1e-9)
+    kind = rbsdem.section.member(drawn(0.4), 3.0, axial_load=4e5)
+    beam = rbsdem.section.member(drawn(0.4), 5.0)
+    frame = Frame.grid([3.0, 3.0], [5.0], columns=kind, beams=beam, floor_mass=4e4, damping=present)
+    run = rbsdem.time_history(frame, t, **ground)
+    assert run.summary["cut_steps"] == 0
+    assert run.summary["relative_energy_residual"] < 1e-3
+    assert any(event.what == "yield" for event in run.events)
+    fine = rbsdem.time_history(frame, t, **ground | {"dt": 0.00125})
+    assert run.displacement == pytest.approx(fine.displacement, abs=0.02 * np.ptp(fine.displacement))
 
 
 def test_damping_of_modes_is_that_of_each():

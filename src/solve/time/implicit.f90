@@ -271,7 +271,7 @@ contains
          call swap(state%v, self%step%w1)
          state%time = state%time + self%h
          state%load = self%load
-         call self%step%go_on()
+         call self%step%go_on(state)
       end subroutine commit
 
    end subroutine take_step
@@ -326,7 +326,7 @@ contains
                ! Elements damp as wholes; the residual is not needed any more.
                call motion%structure%unknown_rates(self%mean, self%dx)
                self%step%r = 0.0_wp
-               call motion%structure%damp(self%dx, self%step%now%tangent, self%step%r)
+               call motion%structure%damp(self%dx, self%step%damping_tangent, self%step%r)
                self%of_damping = self%of_damping - h*inner_product(size(self%dx), self%dx, self%step%r)
             end if
          end if

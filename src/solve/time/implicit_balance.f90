@@ -48,6 +48,11 @@ module rbs_solve_time_implicit_balance
       !> resistance in it as a share of the initial stiffness; none where there are no such tangents
       real(wp), allocatable, private :: k(:)
       integer, private :: version = -1
+      !> Tangents at the start of a step, and their version, for damping in proportion to the present
+      !> stiffness: a force that falls with the stiffness within the step may leave no equilibrium. Empty
+      !> where elements have no such damping
+      real(wp), allocatable :: damping_tangent(:)
+      integer, private :: damping_version = -1
       real(wp), private :: resistance_in = 0.0_wp
       !> Resistance that belongs into the tangents
       real(wp) :: resistance = 0.0_wp
@@ -67,6 +72,7 @@ module rbs_solve_time_implicit_balance
       procedure, private :: measure
       procedure :: is_round_off
       procedure :: go_on
+      procedure, private :: set_damping
       procedure :: serialize
    end type step_balance
 
@@ -83,7 +89,7 @@ module rbs_solve_time_implicit_balance
       real(wp), allocatable, private :: k(:)
       !> Step and lines that the factor belongs to
       real(wp), private :: factor_step = -1.0_wp, factor_resistance = 0.0_wp
-      integer, private :: factor_version = -1
+      integer, private :: factor_version = -1, factor_damping = -1
    contains
       procedure :: create
       procedure :: find_correction
@@ -109,6 +115,8 @@ contains
             allocate (self%scale(size(structure%group)), self%largest(size(structure%group)), source=0.0_wp)
             call self%now%create(structure)
             if (structure%tangent_numbers > 0) allocate (self%k(springs))
+            allocate (self%damping_tangent(merge(structure%tangent_numbers, 0, structure%tangent_damping)), &
+                      source=0.0_wp)
             if (allocated(structure%reach)) then
                self%unit = 1.0_wp/structure%reach
                self%spring_unit = merge(1.0_wp/structure%total_height, 1.0_wp, &
@@ -119,7 +127,9 @@ contains
          call structure%unknown_rates(state%v, self%v0)
          self%version = -1
          call self%fit_elements(state)
-         call find_forces(state, state%q, state%v, self%v0, state%load, self%now, self%g0)
+         call self%set_damping(state)
+         call find_forces(state, state%q, state%v, self%v0, state%load, self%damping_tangent, self%now, &
+                          self%g0)
          self%a0 = 0.0_wp
          where (structure%inertias > 0.0_wp) self%a0 = self%g0/structure%inertias
          self%largest = 0.0_wp
@@ -131,15 +141,36 @@ contains
    end subroutine start
 
    !> The end of the step that was found is the start of the next one.
-   subroutine go_on(self)
+   subroutine go_on(self, state)
       class(step_balance), intent(inout) :: self
+      type(state_type), intent(in) :: state
 
       self%largest(:) = max(self%largest, self%scale)
       call swap(self%v0, self%v1)
       call swap(self%a0, self%a1)
       call swap(self%g0, self%g1)
       self%known = .true.
+      if (size(self%damping_tangent) == 0 .or. state%springs%version == self%damping_version) return
+      associate (structure => state%motion%structure, force => self%g1)
+         force = 0.0_wp
+         call structure%damp(-self%v0, self%damping_tangent, force)
+         call self%set_damping(state)
+         call structure%damp(self%v0, self%damping_tangent, force)
+         self%g0 = self%g0 + force
+         where (structure%inertias > 0.0_wp) self%a0 = self%a0 + force/structure%inertias
+      end associate
    end subroutine go_on
+
+   !> Tangents of the present lines for the damping of the next step; springs that soften damp nothing.
+   subroutine set_damping(self, state)
+      class(step_balance), intent(inout) :: self
+      type(state_type), intent(in) :: state
+      integer :: unstable
+
+      if (size(self%damping_tangent) == 0) return
+      call state%motion%structure%linearise(max(state%springs%k, 0.0_wp), self%damping_tangent, unstable)
+      self%damping_version = state%springs%version
+   end subroutine set_damping
 
    !> Save or restore what the bodies do at the start of a step.
    subroutine serialize(self, stream)
@@ -185,7 +216,7 @@ contains
          if (state%motion%damped .and. structure%tangent_numbers == 0) then
             call structure%spring_rates(self%now%tangent, self%v1, self%w1)
          end if
-         call find_forces(state, self%q1, self%w1, self%v1, load, self%now, self%g1)
+         call find_forces(state, self%q1, self%w1, self%v1, load, self%damping_tangent, self%now, self%g1)
       end associate
       self%known = .false.
       call compare(self, state, relative)
@@ -208,7 +239,7 @@ contains
          call end_of_step(self, h)
          self%g1 = self%g0 + change(lateral)*structure%pattern(lateral)%force
          call structure%add_ground(change, self%g1)
-         if (structure%damped) call structure%damp(self%v1 - self%v0, self%now%tangent, self%g1)
+         if (structure%damped) call structure%damp(self%v1 - self%v0, self%damping_tangent, self%g1)
          if (structure%mass_damping > 0.0_wp) then
             self%g1 = self%g1 - structure%mass_damping*structure%inertias*(self%v1 - self%v0)
          end if
@@ -235,18 +266,18 @@ contains
    end subroutine compare
 
    !> Forces on the unknowns, inertia of the ground and damping included.
-   subroutine find_forces(state, q, w, v, load, now, g)
+   subroutine find_forces(state, q, w, v, load, damping_tangent, now, g)
       type(state_type), intent(in) :: state
       !> Deformations of the springs and their velocities (springs), velocities of the unknowns
       real(wp), intent(in), contiguous :: q(:), w(:), v(:)
-      real(wp), intent(in) :: load(signals)
+      real(wp), intent(in) :: load(signals), damping_tangent(:)
       type(motion_result), intent(inout) :: now
       real(wp), intent(out), contiguous :: g(:)
 
       associate (motion => state%motion, structure => state%motion%structure)
          call motion%forces_on_bodies(state%springs, q, w, load, now, g)
          call structure%add_ground(load, g)
-         if (structure%damped .and. structure%tangent_numbers > 0) call structure%damp(v, now%tangent, g)
+         if (structure%damped .and. structure%tangent_numbers > 0) call structure%damp(v, damping_tangent, g)
          if (structure%mass_damping > 0.0_wp) g = g - structure%mass_damping*structure%inertias*v
          ! Supports take what acts on them.
          if (structure%has_held) where (structure%is_held) g = 0.0_wp
@@ -434,6 +465,7 @@ contains
 
       if (state%springs%version == self%factor_version .and. abs(h - self%factor_step) <= 1.0e-14_wp*h .and. &
           .not. abs(step%resistance - self%factor_resistance) > 0.0_wp .and. &
+          (size(step%damping_tangent) == 0 .or. step%damping_version == self%factor_damping) .and. &
           .not. (state%motion%second_order .and. state%motion%varies)) return
       call step%fit_elements(state)
       call set_tangent()
@@ -460,7 +492,7 @@ contains
             self%matrix%band = 0.0_wp
             call structure%add_stiffness(self%k, step%now%tangent, self%matrix%band)
             if (structure%stiffness_damping > 0.0_wp) then
-               call structure%add_damping(of_damping, step%now%tangent, self%matrix%band)
+               call structure%add_damping(of_damping, step%damping_tangent, self%matrix%band)
             end if
             if (motion%second_order) call structure%add_geometric(step%now%axial, self%matrix%band)
             self%matrix%band = (1.0_wp - step%alpha_f)*self%matrix%band
@@ -475,6 +507,7 @@ contains
             if (allocated(self%initial)) call hold_free()
          end associate
          self%factor_step = h
+         self%factor_damping = step%damping_version
          self%factor_resistance = step%resistance
          self%factor_version = state%springs%version
       end subroutine set_tangent

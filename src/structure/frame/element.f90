@@ -103,6 +103,7 @@ module rbs_structure_frame_element
    contains
       procedure :: leave_out_supports
       procedure :: lay_out
+      procedure :: bend_as_springs
       procedure :: set_rest
       procedure :: buckles
    end type frame_element
@@ -126,6 +127,28 @@ contains
          end if
       end do
    end subroutine leave_out_supports
+
+   !> E I of a member whose springs hold all of its flexibility: under a moment that is constant it leaves its
+   !> chord by the same mean. Springs at its ends alone leave the chord straight.
+   pure subroutine bend_as_springs(self, k)
+      class(frame_element), intent(inout) :: self
+      !> Initial stiffness of all springs
+      real(wp), intent(in) :: k(:)
+      real(wp) :: off_chord
+      integer :: i, j
+
+      if (self%is_panel .or. self%flexural_rigidity > 0.0_wp) return
+      off_chord = 0.0_wp
+      do j = 1, self%bending
+         associate (p => self%share(:, j))
+            ! A slip leaves the ends as they are.
+            off_chord = off_chord - p(1)*p(2)*(p(2) - p(1))/k(self%before + j)
+         end associate
+      end do
+      if (.not. off_chord > 0.0_wp) return
+      self%flexural_rigidity = self%length/(6.0_wp*off_chord)
+      self%lumped = .true.
+   end subroutine bend_as_springs
 
    !> The elastic rest under compression: it bends as a beam on two supports, with end moments alike or
    !> against each other.

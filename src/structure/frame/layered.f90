@@ -34,7 +34,8 @@ contains
          flexible(3, 2) = flexible(2, 3)
       end if
       softening = 0
-      if (allocated(e%rest)) softening = count(e%rest < 0.0_wp)
+      ! Beyond Euler's load; under tension a rest that takes off flexibility of springs is none of its own.
+      if (allocated(e%rest) .and. e%compression > 0.0_wp) softening = count(e%rest < 0.0_wp)
       do j = 1, size(e%first) - 1
          i = e%first(j)
          associate (last => e%first(j + 1) - 1)

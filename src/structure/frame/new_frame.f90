@@ -120,6 +120,9 @@ contains
       frame%initial_stiffness = frame%rules%initial_stiffness()
       allocate (frame%initial_tangent(frame%tangent_numbers), source=0.0_wp)
       call frame%linearise(frame%initial_stiffness, frame%initial_tangent, i)
+      do i = 1, frame%members
+         call frame%element(i)%bend_as_springs(frame%initial_stiffness)
+      end do
       frame%axially_loaded = kinematics == pdelta
       frame%axial_count = merge(size(member), 0, frame%axially_loaded)
       frame%group = [unknown_group(1, frame%unknowns, 1, 1, frame%member_springs, 1.0_wp)]
