@@ -13,6 +13,7 @@ module rbs_output_notes
    use rbs_hysteresis_springs, only: follow_path
    use rbs_output_summary, only: summary_type
    use rbs_structure_column_column_record, only: column_record
+   use rbs_structure_frame_frame_checks, only: is_rigid
    use rbs_structure_frame_frame_record, only: frame_record
    use rbs_structure_structure, only: structure_type, small, finite
    implicit none
@@ -143,33 +144,31 @@ contains
       real(wp) :: stress
       integer :: i
       logical :: heavy, loaded
+      logical, allocatable :: rigid(:)
 
       if (allocated(frame%storeys)) call check_lengths('storeys', frame%storeys)
       if (allocated(frame%bays)) call check_lengths('bays', frame%bays)
+      allocate (rigid(size(frame%kind)))
       do i = 1, size(frame%kind)
-         associate (modulus => frame%kind(i)%modulus)
-            if (modulus >= least_modulus .and. modulus <= largest_modulus) cycle
-            call notes%add("member_kind '"//trim(frame%kind(i)%name)//"': modulus = "//to_text(modulus)// &
-                           ' Pa is that of no building material; 30 GPa is 30e9')
-         end associate
-      end do
-      do i = 1, size(frame%kind)
-         associate (radius => sqrt(frame%kind(i)%inertia/frame%kind(i)%area))
-            if (radius <= largest_radius) cycle
-            call notes%add("member_kind '"//trim(frame%kind(i)%name)//"': inertia and area make a radius "// &
-                           'of gyration of '//to_text(radius)//' m; they are in m4 and m2, and '// &
-                           '1e12 mm4 are 1, 1e6 mm2 are 1')
-         end associate
-      end do
-      do i = 1, size(frame%kind)
-         associate (kind => frame%kind(i))
+         associate (kind => frame%kind(i), owner => "member_kind '"//trim(frame%kind(i)%name)//"': ")
+            rigid(i) = is_rigid(kind, frame%spring)
+            if (rigid(i)) cycle
+            if (kind%modulus < least_modulus .or. kind%modulus > largest_modulus) then
+               call notes%add(owner//'modulus = '//to_text(kind%modulus)// &
+                              ' Pa is that of no building material; 30 GPa is 30e9')
+            end if
+            if (kind%inertia > largest_radius**2*kind%area) then
+               call notes%add(owner//'inertia and area make a radius of gyration of '// &
+                              to_text(sqrt(kind%inertia/kind%area))//' m; they are in m4 and m2, and '// &
+                              '1e12 mm4 are 1, 1e6 mm2 are 1')
+            end if
             if (.not. is_given(kind%yield_moment)) cycle
             ! At the edge of a rectangle with this area and this inertia.
             stress = kind%yield_moment*sqrt(3.0_wp/(kind%inertia*kind%area))
             if (stress >= least_stress .and. stress <= largest_stress) cycle
-            call notes%add("member_kind '"//trim(kind%name)//"': yield_moment = "// &
-                           to_text(kind%yield_moment)//' N m is a stress of '//to_text(stress)// &
-                           ' Pa at its edge, that of no member; moments are in N m, and 170 kN m is 170e3')
+            call notes%add(owner//'yield_moment = '//to_text(kind%yield_moment)//' N m is a stress of '// &
+                           to_text(stress)//' Pa at its edge, that of no member; moments are in N m, and '// &
+                           '170 kN m is 170e3')
          end associate
       end do
       call check_alike()
@@ -197,15 +196,15 @@ contains
          real(wp), allocatable :: bending(:)
          integer :: soft, stiff
 
-         bending = pack(frame%kind%modulus*frame%kind%inertia, .true.)
-         if (size(bending) < 2) return
-         soft = minloc(bending, dim=1)
-         stiff = maxloc(bending, dim=1)
+         if (all(rigid)) return
+         bending = frame%kind%modulus*frame%kind%inertia
+         soft = minloc(bending, dim=1, mask=.not. rigid)
+         stiff = maxloc(bending, dim=1, mask=.not. rigid)
          if (.not. bending(stiff) > far_stiffer*bending(soft)) return
          call notes%add("member_kind '"//trim(frame%kind(stiff)%name)//"': it is "// &
                         to_text(bending(stiff)/bending(soft))//" times as stiff in bending as '"// &
-                        trim(frame%kind(soft)%name)//"', which costs as many digits of the results; 1e5 "// &
-                        'times as stiff it is rigid')
+                        trim(frame%kind(soft)%name)//"', which costs as many digits of the results; a "// &
+                        "rigid member has interior = 'rigid' and no springs")
       end subroutine check_alike
 
       subroutine check_lengths(name, length)

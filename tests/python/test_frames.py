@@ -339,6 +339,26 @@ def test_a_frame_of_rigid_beams_is_the_shear_building():
     assert exact[0] ** 2 <= quotient * (1 + 1e-6)
 
 
+def test_a_rigid_member_is_a_word(tmp_path):
+    """A rigid beam on two columns sways and turns: two unknowns by hand."""
+    h, b, sway = 3.0, 5.0, 0.01
+    column, beam = FrameMember(E, A, INERTIA), FrameMember.rigid()
+    portal = Frame.grid([h], [b], columns=column, beams=beam)
+    turns = 8 * E * INERTIA / h + E * A / h * b**2 / 2
+    exact = 24 * E * INERTIA / h**3 - (12 * E * INERTIA / h**2) ** 2 / turns
+    push = rbsdem.cyclic(portal, displacement=[sway])
+    assert push.force[0] == pytest.approx(exact * sway, rel=1e-6)
+    # The case file has neither modulus nor area nor inertia of it.
+    (tmp_path / "rigid.nml").write_text(
+        portal.to_namelist() + "&loading drive = 'displacement', amplitudes = 0.01 /\n"
+    )
+    read = rbsdem.read_case(tmp_path / "rigid.nml")
+    assert "interior = 'rigid' /" in portal.to_namelist()
+    assert read.column == portal
+    with pytest.raises(rbsdem.InputError, match="all of its members are rigid; give one of them"):
+        replace(portal, columns=beam)
+
+
 def test_unknowns_of_matrices_have_names_of_their_own():
     """Beams behind a panel turn by themselves; long names and spaces count."""
     panel = Elastic(k=1e8)
@@ -472,7 +492,7 @@ def test_a_column_of_layers_as_a_frame():
 
 @pytest.mark.parametrize(("height", "most"), [(1.35, 0.005), (4.0, 0.025)])
 def test_second_order_work_of_a_drawn_member_is_that_of_its_column(height, most):
-    """In double curvature, between joints that crack too, against bodies that lean by themselves."""
+    """In double curvature against bodies that lean by themselves, between joints that crack too."""
     section, axial = drawn(0.4), 1.4e6
     column = rbsdem.section.column(section, height, axial_load=axial).double_curvature()
     kind = rbsdem.section.member(section, 2 * height, axial_load=axial)
@@ -814,7 +834,7 @@ def test_steps_in_time_converge_and_balance(method):
 
 
 def test_damping_of_the_present_stiffness():
-    """That of an elastic frame is constant; layers that crack and yield cut no step, and balance."""
+    """That of an elastic frame is constant; layers that crack and yield cut no step."""
     t = np.arange(0, 3, 0.01)
     ground = {"ground_acceleration": 5 * np.sin(12 * t), "method": "newmark", "dt": 0.005}
     constant, present = (rbsdem.Damping(stiffness=2e-3, tangent=own) for own in (False, True))
@@ -832,7 +852,9 @@ def test_damping_of_the_present_stiffness():
     assert run.summary["relative_energy_residual"] < 1e-3
     assert any(event.what == "yield" for event in run.events)
     fine = rbsdem.time_history(frame, t, **ground | {"dt": 0.00125})
-    assert run.displacement == pytest.approx(fine.displacement, abs=0.02 * np.ptp(fine.displacement))
+    assert run.displacement == pytest.approx(
+        fine.displacement, abs=0.02 * np.ptp(fine.displacement)
+    )
 
 
 def test_damping_of_modes_is_that_of_each():

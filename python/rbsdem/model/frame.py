@@ -58,7 +58,7 @@ class FrameMember:
         A spring that opens.
     interior : {"elastic", "rigid"}, optional
         What is between the springs: the elastic beam, or nothing that bends, where the springs
-        hold all of the flexibility.
+        hold all of the flexibility. Without springs a "rigid" member does not deform (`rigid`).
     rigid_end : float or pair of float, optional
         Rigid length in each node of a grid that the member ends in, half the depth of the other
         member [m]; not at the base. Two of them are those at its start and at its end.
@@ -109,6 +109,22 @@ class FrameMember:
         for name, usual in (("flexure", (0.0, 1.0)), ("shear", (0.5,))):
             object.__setattr__(self, name, _placed(getattr(self, name), name, usual))
 
+    @classmethod
+    def rigid(cls, **more: Any) -> FrameMember:
+        """Return a kind that does not deform, with `rigid_end` and `name` as for any.
+
+        It is 1e5 times as stiff along it and 1e7 times in bending as the stiffest member of the
+        frame, which changes forces and periods by less than 1e-6 of them.
+        """
+        return cls(1.0, 1.0, 1.0, interior="rigid", **more)
+
+    def _elastic(self) -> dict[str, float]:
+        """Return modulus, area and inertia, which a rigid kind has none of."""
+        springs = self.flexure, self.shear, self.axial_spring, self.yield_moment
+        if self.interior == "rigid" and not any(springs):
+            return {}
+        return {"modulus": self.modulus, "area": self.area, "inertia": self.inertia}
+
     def at(self, group: str, place: float) -> Spring | None:
         """Return the spring of a group that was given at a place, None without one."""
         own = (
@@ -125,9 +141,7 @@ class FrameMember:
             "member_kind",
             {
                 "name": _core.Text(name),
-                "modulus": self.modulus,
-                "area": self.area,
-                "inertia": self.inertia,
+                **self._elastic(),
                 "shear_rigidity": self.shear_rigidity or None,
                 "yield_moment": self.yield_moment,
                 "hardening": self.hardening or None,

@@ -252,8 +252,9 @@ def _kind(given: dict[str, Any], groups: Groups) -> FrameMember:
     for spring in groups.get("axial_spring", []):
         if spring.get("kind") == given["name"]:
             found["axial_spring"] = _spring(spring)
-    own: dict[str, Any] = _core.typed("member_kind", given)
-    return FrameMember(**own, **found)
+    # A rigid kind has none of them.
+    own: dict[str, Any] = dict.fromkeys(("modulus", "area", "inertia"), 1.0)
+    return FrameMember(**own | _core.typed("member_kind", given) | found)
 
 
 def _layered(given: dict[str, Any], groups: Groups) -> Layered:

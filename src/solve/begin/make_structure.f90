@@ -140,7 +140,7 @@ contains
          i = maxloc(stiffness, dim=1)
          call fatal_error(error, bad_input, 'member '//trim(frame%member_name(i))//': it is so much '// &
                           'stiffer than what holds it that the frame loses 10 of its 16 digits or more; '// &
-                          'take it less stiff: 1e5 times as stiff as the other members it is rigid')
+                          "a rigid member has interior = 'rigid' and no springs")
          return
       end if
       associate (free => maxloc(abs(matrix%triangle(1, :)), dim=1))

@@ -10,7 +10,7 @@ module rbs_structure_frame_frame_checks
    implicit none
    private
 
-   public :: check_values, check_reference, group_of
+   public :: check_values, check_reference, is_rigid, group_of
 
    !> A mechanism of sections that harden less is known to fewer digits than its energies are checked to.
    real(wp), parameter :: least_hardening = 1.0e-7_wp
@@ -36,6 +36,12 @@ contains
       do i = 1, size(record%kind)
          associate (k => record%kind(i))
             known = messages%count
+            if (is_rigid(k, record%spring)) then
+               ! They do nothing, and need not be given.
+               k%modulus = 1.0_wp
+               k%area = 1.0_wp
+               k%inertia = 1.0_wp
+            end if
             call k%check("member_kind '"//trim(k%name)//"'", messages)
             if (messages%count == known) call check_kind(record, k, messages)
             do j = 1, i - 1
@@ -162,12 +168,21 @@ contains
                   any(softens(record%spring, kind%name))) then
             call messages%add(name//': failure_drift is that after a failure in shear; give shear_drift, '// &
                               "or a shear spring of the rule 'peak_oriented' or 'pinching'")
-         else if (kind%interior == 'rigid' .and. .not. most > least) then
+         else if (kind%interior == 'rigid' .and. .not. (most > least .or. is_rigid(kind, record%spring))) then
             call messages%add(name//": with interior = 'rigid' all bending is in springs; give it two "// &
-                              'flexural springs or more, at different places')
+                              'flexural springs or more, at different places, or none if it is rigid')
          end if
       end associate
    end subroutine check_kind
+
+   !> Whether members of a kind do not deform at all.
+   pure logical function is_rigid(kind, spring)
+      type(kind_record), intent(in) :: kind
+      type(frame_spring), intent(in) :: spring(:)
+
+      is_rigid = kind%interior == 'rigid' .and. .not. (is_given(kind%yield_moment) .or. &
+                                                       any(spring%kind == kind%name))
+   end function is_rigid
 
    !> Springs of a kind that may fail in shear.
    elemental logical function softens(spring, kind)

@@ -3,41 +3,59 @@ module rbs_structure_frame_frame_kinds
    use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
    use rbs_hysteresis_spring_record, only: spring_record
-   use rbs_structure_frame_frame_checks, only: group_of
+   use rbs_structure_frame_frame_checks, only: group_of, is_rigid
    use rbs_structure_frame_frame_record, only: kind_record, frame_spring
    use rbs_structure_frame_new_frame, only: frame_member
    use rbs_structure_spring_place, only: shear, flexure, axial, layer
    implicit none
    private
 
-   public :: put_kind, can_be_lost
+   public :: put_kind, can_be_lost, stiffness_of
 
    !> Shares of the length in the rule of Gauss and Lobatto with three points.
    real(wp), parameter :: share(3) = [1.0_wp/6.0_wp, 2.0_wp/3.0_wp, 1.0_wp/6.0_wp]
    real(wp), parameter :: point(3) = [0.0_wp, 0.5_wp, 1.0_wp]
 
+   !> Stiffness of a rigid member along it and in bending over the largest of the others: what it still gives
+   !> way and the digits that it costs are both some 1e-7 of the results.
+   real(wp), parameter :: rigid(2) = [1.0e5_wp, 1.0e7_wp]
+
 contains
 
+   !> E A/l and E I/l of a member of a kind with a clear length.
+   pure function stiffness_of(kind, clear) result(stiffness)
+      type(kind_record), intent(in) :: kind
+      real(wp), intent(in) :: clear
+      real(wp) :: stiffness(2)
+
+      stiffness = kind%modulus*[kind%area, kind%inertia]/clear
+   end function stiffness_of
+
    !> Springs of a member of a kind whose clear length is known [m].
-   subroutine put_kind(m, kind, spring, clear)
+   subroutine put_kind(m, kind, spring, clear, stiffest)
       type(frame_member), intent(inout) :: m
       type(kind_record), intent(in) :: kind
       type(frame_spring), intent(in) :: spring(:)
       real(wp), intent(in) :: clear
+      !> Largest `stiffness_of` members of the frame that are not rigid
+      real(wp), intent(in) :: stiffest(2)
       type(spring_record) :: one
+      real(wp) :: rigidity(2)
       integer :: i, j, k, group
 
       allocate (m%kind(0), m%joint(0), m%place(0), m%y(0), m%spring(0))
-      m%axial = kind%modulus*kind%area
+      rigidity = clear*stiffness_of(kind, clear)
+      if (is_rigid(kind, spring)) rigidity = clear*rigid*stiffest
+      m%axial = rigidity(1)
       m%failure_drift = kind%failure_drift
       m%failure_load = kind%failure_load
       m%shear_drift = kind%shear_drift
       if (is_given(kind%yield_moment) .or. &
           (is_given(m%lost_at) .and. all(spring%kind /= kind%name))) then
-         m%bending = kind%modulus*kind%inertia
+         m%bending = rigidity(2)
          m%lumped = .true.
          do i = 1, 3
-            one = elastic(kind%modulus*kind%inertia/(share(i)*clear))
+            one = elastic(rigidity(2)/(share(i)*clear))
             if (is_given(kind%yield_moment)) then
                one%rule = 'bilinear'
                one%value(2:3) = [kind%yield_moment/one%value(1), kind%hardening*one%value(1)]
@@ -50,8 +68,8 @@ contains
          call add_opening(m, clear)
          return
       end if
-      if (kind%interior == 'elastic') then
-         m%bending = kind%modulus*kind%inertia
+      if (kind%interior == 'elastic' .or. is_rigid(kind, spring)) then
+         m%bending = rigidity(2)
          m%sliding = kind%shear_rigidity
       end if
       ! Those that open come last.

@@ -5,8 +5,8 @@ module rbs_structure_frame_frame_parts
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_structure_frame_frame_checks, only: check_values, check_reference, group_of
-   use rbs_structure_frame_frame_kinds, only: put_kind, can_be_lost
+   use rbs_structure_frame_frame_checks, only: check_values, check_reference, is_rigid, group_of
+   use rbs_structure_frame_frame_kinds, only: put_kind, can_be_lost, stiffness_of
    use rbs_structure_frame_frame_record, only: frame_record, frame_spring, cell_record, kind_record
    use rbs_structure_frame_new_frame, only: frame_node, frame_member, is_beam
    implicit none
@@ -504,11 +504,26 @@ contains
       type(frame_parts), intent(inout) :: self
       type(frame_record), intent(in) :: record
       type(message_list), intent(inout) :: messages
-      real(wp) :: clear, whole
+      real(wp) :: clear, whole, stiffest(2)
       logical :: told(size(record%kind))
       integer :: i
 
       told = .false.
+      stiffest = 0.0_wp
+      do i = 1, size(self%member)
+         associate (m => self%member(i), kind => record%kind(self%member(i)%kind_of))
+            associate (a => self%node(m%node(1)), b => self%node(m%node(2)))
+               clear = hypot(b%x - a%x, b%y - a%y) - sum(m%rigid)
+            end associate
+            if (clear > 0.0_wp .and. .not. is_rigid(kind, record%spring)) then
+               stiffest = max(stiffest, stiffness_of(kind, clear))
+            end if
+         end associate
+      end do
+      if (.not. stiffest(2) > 0.0_wp) then
+         call messages%add('frame: all of its members are rigid; give one of them stiffness, or springs')
+         return
+      end if
       do i = 1, size(self%member)
          associate (m => self%member(i))
             associate (a => self%node(m%node(1)), b => self%node(m%node(2)))
@@ -531,7 +546,7 @@ contains
             end associate
             if (.not. told(m%kind_of)) call check_length(m, record%kind(m%kind_of), clear, messages, &
                                                          told(m%kind_of))
-            call put_kind(m, record%kind(m%kind_of), record%spring, clear)
+            call put_kind(m, record%kind(m%kind_of), record%spring, clear, stiffest)
             if (.not. (is_given(m%failure_drift) .or. is_given(m%lost_at))) cycle
             if (.not. can_be_lost(m)) then
                call messages%add('member '//trim(m%name)//' cannot be lost, as its springs do not take '// &

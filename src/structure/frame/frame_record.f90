@@ -266,8 +266,9 @@ contains
                  'is half of it', optional=.true.)
       call v%key('shear_drift', self%shear_drift, '', above_zero, 'drift at which it counts as failed in '// &
                  'shear, if no shear spring of it has yielded', optional=.true.)
-      call v%word('interior', self%interior, 'what is between springs that are given one by one', &
-                  'elastic rigid')
+      call v%word('interior', self%interior, 'what is between springs that are given one by one; a '// &
+                  '''rigid'' member without springs does not deform, and modulus, area '// &
+                  'and inertia do nothing', 'elastic rigid')
    end subroutine visit_kind
 
    subroutine visit_cell(self, v)
