@@ -25,7 +25,7 @@ module rbs_app_commands
    use rbs_solve_static_run_static, only: run_static
    use rbs_solve_task, only: task_type
    use rbs_structure_frame_frame, only: frame_type
-   use rbs_structure_structure, only: structure_type
+   use rbs_structure_structure, only: structure_type, finite
    use rbs_solve_time_effort, only: long_run_note
    use rbs_solve_time_march, only: initial_state
    use rbs_solve_time_plan, only: time_plan
@@ -85,7 +85,7 @@ contains
       ! Among rows on standard output a summary would be in the way.
       if (.not. (quiet .or. is_standard_output(file))) then
          call print_summary()
-         call structure_notes(run%case, notes)
+         call structure_notes(run%case, run%structure, notes)
          call run_notes(run%structure, run%task%summary, notes)
          call print_notes(notes, error)
       end if
@@ -275,7 +275,7 @@ contains
                               error)
          end if
       end if
-      if (.not. allocated(error)) call structure_notes(run%case, notes)
+      if (.not. allocated(error)) call structure_notes(run%case, run%structure, notes)
       if (allocated(error)) then
          if (as_json) call print_json()
          return
@@ -283,8 +283,8 @@ contains
          call long_run_note(run%structure, plan, text)
          if (text /= '') call notes%add(text)
       else if (all(run%case%loading(:run%case%loadings)%drive /= 'force') .and. &
-               run%case%column%kinematics /= 'finite') then
-         call drift_note(maxval(abs(run%history%target)), run%case%height(), notes)
+               run%structure%kinematics /= finite) then
+         call drift_note(run%structure, maxval(abs(run%history%target)), notes)
       end if
       if (as_json) then
          call print_json()

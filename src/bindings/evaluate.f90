@@ -154,7 +154,7 @@ contains
          class is (frame_type)
             call list_parts(structure, answer)
          end select
-         call structure_notes(case, notes)
+         call structure_notes(case, structure, notes)
          if (notes%count > 0) answer%text = answer%text//notes%text
       case ('modes')
          call tell_modes()

@@ -1,21 +1,19 @@
-!> Notes on a run: what is allowed but perhaps not intended.
-!>
-!> Notes on the structure of a case: what is allowed but perhaps not intended.
-!>
-!> Notes on a column: what is allowed but perhaps not intended.
+!> Notes on a structure and on a run: what is allowed but perhaps not intended.
 module rbs_output_notes
+   use rbs_base_band_matrix, only: band_matrix
    use rbs_base_check, only: is_given
-   use rbs_base_constants, only: standard_gravity
+   use rbs_base_constants, only: pi, standard_gravity
    use rbs_base_error, only: message_list
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_case_case_record, only: case_record
+   use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: follow_path
    use rbs_output_summary, only: summary_type
    use rbs_structure_column_column_record, only: column_record
    use rbs_structure_frame_frame_checks, only: is_rigid
    use rbs_structure_frame_frame_record, only: frame_record
-   use rbs_structure_structure, only: structure_type, small, finite
+   use rbs_structure_structure, only: structure_type, horizontal, small, finite
    implicit none
    private
 
@@ -26,6 +24,8 @@ module rbs_output_notes
 
    !> No hinge of concrete or steel yields later [rad].
    real(wp), parameter :: late_yield = 0.2_wp
+   character(len=*), parameter :: late = ' does not yield before a rotation of 0.2 rad; deformations are '// &
+                                         'in rad, and 2.7 mrad is 0.0027'
 
    !> Axial loads below this share of the lateral strength are hardly meant.
    real(wp), parameter :: hardly_any = 0.005_wp
@@ -51,6 +51,9 @@ module rbs_output_notes
 
    !> Masses [kg] and loads [N/m] below are those of no floor of storeys as high as that [m].
    real(wp), parameter :: least_mass = 200.0_wp, least_load = 100.0_wp, low_storey = 2.0_wp
+
+   !> Period of buildings of height h, 0.075 h^(3/4) (EN 1998-1, 4.3.3.2.2), and how often it may go into one.
+   real(wp), parameter :: usual_period = 0.075_wp, most_periods = 25.0_wp
 
    !> Rotations larger than this are not small [rad].
    real(wp), parameter :: largest_small = 0.1_wp
@@ -91,13 +94,14 @@ contains
 
       ! A run to its collapse was asked for, and its rotations are known to be large.
       if (summary%collapsed) return
-      if (structure%kinematics == finite .or. structure%tangent_numbers > 0) return
+      if (structure%kinematics == finite) return
       ! A path is given; a response in time goes where it goes.
       if (.not. summary%time_step > 0.0_wp) then
          before = notes%count
-         call drift_note(summary%peak_displacement, structure%total_height, notes)
+         call drift_note(structure, summary%peak_displacement, notes)
          if (notes%count > before) return
       end if
+      if (structure%tangent_numbers > 0) return
       if (.not. summary%peak_rotation > largest_small) return
       kinematics = 'pdelta'
       if (structure%kinematics == small) kinematics = 'small'
@@ -114,24 +118,31 @@ contains
    end subroutine rotation_note
 
    !> A displacement beyond half of the height, which a number in another unit is.
-   subroutine drift_note(displacement, height, notes)
-      !> Largest of the top, and height [m]
-      real(wp), intent(in) :: displacement, height
+   subroutine drift_note(structure, displacement, notes)
+      class(structure_type), intent(in) :: structure
+      !> Largest of the top [m]
+      real(wp), intent(in) :: displacement
       type(message_list), intent(inout) :: notes
+      character(len=:), allocatable :: remedy
 
-      if (.not. abs(displacement) > far*height) return
+      if (.not. abs(displacement) > far*structure%total_height) return
+      remedy = "; if it is meant, use kinematics = 'finite'"
+      ! Rotations of frames are small.
+      if (structure%tangent_numbers > 0) remedy = ''
       call notes%add('the top goes beyond half of the height; displacements are in m (16 mm is 0.016), '// &
-                     'drifts are parts of the height (2 per cent is 0.02), forces are in N; if it is '// &
-                     "meant, use kinematics = 'finite'")
+                     'drifts are parts of the height (2 per cent is 0.02), forces are in N'//remedy)
    end subroutine drift_note
 
-   subroutine structure_notes(case, notes)
+   subroutine structure_notes(case, structure, notes)
       !> Validated
       type(case_record), intent(in) :: case
+      !> Made of it
+      class(structure_type), intent(in) :: structure
       type(message_list), intent(inout) :: notes
 
       if (allocated(case%frame)) then
          call frame_notes(case%frame, notes)
+         call period_note(structure, notes)
       else
          call column_notes(case%column, notes)
       end if
@@ -172,6 +183,13 @@ contains
          end associate
       end do
       call check_alike()
+      do i = 1, size(frame%spring)
+         associate (own => frame%spring(i))
+            if (own%group /= 'flexure') cycle
+            if (yields_late(own%spring)) call notes%add("flexure of '"//trim(own%kind)//trim(own%node)// &
+                                                        trim(own%panel)//"'"//late)
+         end associate
+      end do
       if (allocated(frame%storeys)) then
          do i = 1, size(frame%floor)
             call check_floor('mass', frame%floor(i)%mass, least_mass, 'kg', '40 t is 40e3')
@@ -227,6 +245,33 @@ contains
       end subroutine check_floor
    end subroutine frame_notes
 
+   !> A period that is none of a building, as of stiffness or masses in another unit: that of the sway under
+   !> the masses as loads (Rayleigh).
+   subroutine period_note(structure, notes)
+      class(structure_type), intent(in) :: structure
+      type(message_list), intent(inout) :: notes
+      type(band_matrix) :: matrix
+      real(wp) :: sway(structure%unknowns), period, usual
+      logical :: regular
+
+      sway = -structure%pattern(horizontal)%force
+      if (.not. any(sway > 0.0_wp)) return
+      call matrix%create(structure%unknowns, structure%half_width)
+      matrix%band = 0.0_wp
+      call structure%add_stiffness(structure%initial_stiffness, structure%initial_tangent, matrix%band)
+      call matrix%factor()
+      call matrix%solve(sway, regular)
+      if (.not. (matrix%positive .and. regular)) return
+      associate (force => -structure%pattern(horizontal)%force)
+         period = 2.0_wp*pi*sqrt(sum(force*sway**2)/sum(force*sway))
+      end associate
+      usual = usual_period*structure%total_height**0.75_wp
+      if (max(period/usual, usual/period) < most_periods) return
+      call notes%add('frame: a period of some '//to_text(period)//' s is that of no building '// &
+                     to_text(structure%total_height)//' m high; lengths are in m, masses in kg, '// &
+                     'moduli in Pa, stiffness of springs is in N m/rad and N/m')
+   end subroutine period_note
+
    !> Sizes in a wrong unit, springs that seem exchanged, loads of a column that do nothing, masses without
    !> weight: each with what to do.
    subroutine column_notes(spec, notes)
@@ -271,20 +316,16 @@ contains
       !> Validated
       type(column_record), intent(in) :: spec
       type(message_list), intent(inout) :: notes
-      real(wp) :: moment(2), stiffness, least
+      real(wp) :: moment(1), least
 
       ! What was drawn is judged where it is drawn; what never yields has no strength.
       if (spec%flexure(1)%rule == 'layered' .or. spec%flexure(1)%rule == 'elastic') return
-      call follow_path(spec%flexure(1), [0.05_wp, late_yield], moment)
-      stiffness = spec%flexure(1)%initial_stiffness()
+      call follow_path(spec%flexure(1), [0.05_wp], moment)
       if (spec%kinematics /= 'small' .and. spec%axial_load < 0.0_wp) then
          call notes%add('column: axial_load = '//to_text(spec%axial_load)//' N is tension; compression '// &
                         'is positive')
       end if
-      if (moment(2) >= (1.0_wp - 1.0e-9_wp)*stiffness*late_yield) then
-         call notes%add('column: flexure does not yield before a rotation of '//to_text(late_yield)// &
-                        ' rad; deformations are in rad, and 2.7 mrad is 0.0027')
-      end if
+      if (yields_late(spec%flexure(1))) call notes%add('column: flexure'//late)
       least = moment(1)/spec%height
       if (spec%kinematics /= 'small' .and. least > 0.0_wp .and. least < too_weak*spec%axial_load) then
          call notes%add('column: the lateral strength of flexure, '//to_text(least)//' N, is hardly any '// &
@@ -296,5 +337,16 @@ contains
                         'lateral strength of '//to_text(least)//' N; loads are in N, and 744 kN is 744e3')
       end if
    end subroutine balance_notes
+
+   !> Whether a flexural spring yields later than any hinge.
+   logical function yields_late(spring)
+      type(spring_record), intent(in) :: spring
+      real(wp) :: moment(1)
+
+      yields_late = .false.
+      if (any(spring%rule == [character(len=8) :: 'layered', 'elastic'])) return
+      call follow_path(spring, [late_yield], moment)
+      yields_late = moment(1) >= (1.0_wp - 1.0e-9_wp)*spring%initial_stiffness()*late_yield
+   end function yields_late
 
 end module rbs_output_notes

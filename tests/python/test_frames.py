@@ -1557,6 +1557,14 @@ def test_a_frame_has_the_loops_of_a_column():
     [
         ({"yield_moment": 170.0}, r"yield_moment = 170 N m is a stress of 17000 Pa at its edge"),
         ({"modulus": 30e3}, r"modulus = 30000 Pa is that of no building material"),
+        (
+            {"flexure": Bilinear(k=3e8, d_y=0.3, k_post=1.0)},
+            r"'kind-1' does not yield before a rotation of 0.2",
+        ),
+        (
+            {"flexure": Bilinear(k=3e3, d_y=0.02, k_post=1.0)},
+            r"a period of some [\d.]+ s is that of no building 3 m",
+        ),
         ({"inertia": 2e5, "area": 1e3}, r"1e\+08 times as stiff in bending as 'kind-2'"),
     ],
 )
@@ -1564,7 +1572,8 @@ def test_numbers_in_another_unit_and_members_too_unlike_are_told(kind, text):
     given = {"modulus": 30e9, "area": 0.15, "inertia": 2e-3}
     other = FrameMember(**given)
     with pytest.warns(rbsdem.errors.AccuracyWarning) as told:
-        Frame.grid([3.0], [5.0], columns=FrameMember(**given | kind), beams=other)
+        Frame.grid([3.0], [5.0], columns=FrameMember(**given | kind), beams=other, floor_mass=2e4)
     assert any(re.search(text, str(one.message)) for one in told)
     # Sound numbers are told nothing.
-    Frame.grid([3.0], [5.0], columns=FrameMember(**given, yield_moment=170e3), beams=other)
+    strong = FrameMember(**given, yield_moment=170e3)
+    Frame.grid([3.0], [5.0], columns=strong, beams=other, floor_mass=2e4, beam_load=1e4)
