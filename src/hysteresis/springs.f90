@@ -21,9 +21,6 @@ module rbs_hysteresis_springs
    !> of the rule. The longest correct move closes all open inner loops that a rule remembers.
    integer, parameter :: most_lines = 10000
 
-   !> Ways beyond this, in units of the rates, have no end.
-   real(wp), parameter :: farthest = 1.0e100_wp
-
    !> `count` springs in their present state. Assignment copies everything.
    type :: spring_array
       !> Number of springs
@@ -88,9 +85,6 @@ module rbs_hysteresis_springs
       procedure :: move_all
       procedure :: carry_to
       procedure :: stay_on_lines
-      procedure :: find_blocked
-      procedure :: nearest_end
-      procedure :: go_along
       procedure :: lost_joint
       procedure :: fit_planes
    end type spring_array
@@ -614,145 +608,6 @@ contains
          if (unload_on_reversal(i) < 0) last(i) = to(i)
       end do
    end subroutine advance_each
-
-   !> Springs that cannot go the way they should on their lines.
-   pure subroutine find_blocked(self, rate, blocked, count)
-      class(spring_array), intent(in) :: self
-      !> Rates of the first springs
-      real(wp), intent(in), contiguous :: rate(:)
-      !> The springs, and how many they are
-      integer, intent(out) :: blocked(size(rate)), count
-
-      call find_without_room(size(rate), rate, self%d, self%first, self%last, self%includes_lower_end, &
-                             self%includes_upper_end, self%unload_on_reversal, blocked, count)
-   end subroutine find_blocked
-
-   pure subroutine find_without_room(n, rate, d, first, last, includes_lower_end, includes_upper_end, &
-                                     unload_on_reversal, blocked, count)
-      integer, intent(in) :: n, unload_on_reversal(n)
-      real(wp), intent(in) :: rate(n), d(n), first(n), last(n)
-      logical, intent(in) :: includes_lower_end(n), includes_upper_end(n)
-      integer, intent(out) :: blocked(n), count
-      integer :: i
-
-      count = 0
-      do i = 1, n
-         ! A spring is beyond the last deformation of its line where the end itself does not belong to it.
-         if (rate(i) > 0.0_wp) then
-            if (d(i) < last(i) .and. unload_on_reversal(i) >= 0) cycle
-            if (.not. (d(i) > last(i) .or. unload_on_reversal(i) < 0 .or. includes_upper_end(i))) cycle
-         else if (rate(i) < 0.0_wp) then
-            if (d(i) > first(i) .and. unload_on_reversal(i) <= 0) cycle
-            if (.not. (d(i) < first(i) .or. unload_on_reversal(i) > 0 .or. includes_lower_end(i))) cycle
-         else
-            cycle
-         end if
-         count = count + 1
-         blocked(count) = i
-      end do
-   end subroutine find_without_room
-
-   !> The first end of a line that springs reach from given deformations at constant rates.
-   pure subroutine nearest_end(self, q, rate, way, ends)
-      class(spring_array), intent(in) :: self
-      !> Deformations and rates of the first springs
-      real(wp), intent(in), contiguous :: q(:), rate(:)
-      !> In units of the rates; `huge` if there is none
-      real(wp), intent(out) :: way
-      !> The spring, 0 for none
-      integer, intent(out) :: ends
-
-      call find_first_end(self, size(q), q, rate, self%first, self%last, way, ends)
-   end subroutine nearest_end
-
-   pure subroutine find_first_end(springs, n, q, rate, first, last, way, ends)
-      type(spring_array), intent(in) :: springs
-      integer, intent(in) :: n
-      real(wp), intent(in) :: q(n), rate(n), first(n), last(n)
-      real(wp), intent(out) :: way
-      integer, intent(out) :: ends
-      real(wp) :: room, most
-      integer :: i
-
-      way = huge(1.0_wp)
-      most = farthest
-      ends = 0
-      do i = 1, n
-         ! The end itself may lie beyond the last deformation of the line: far beyond, as ways go, where the
-         ! rate is next to nothing.
-         if (rate(i) > 0.0_wp) then
-            if (last(i) - q(i) > most*rate(i)) cycle
-            room = distance(springs%end_toward(i, 1) - q(i), rate(i))
-         else if (rate(i) < 0.0_wp) then
-            if (q(i) - first(i) > -most*rate(i)) cycle
-            room = distance(q(i) - springs%end_toward(i, -1), -rate(i))
-         else
-            cycle
-         end if
-         if (.not. room < way) cycle
-         way = room
-         most = min(way, farthest)
-         ends = i
-      end do
-   end subroutine find_first_end
-
-   !> How long a spring needs for a distance; `huge` on a line without end.
-   elemental real(wp) function distance(way, rate)
-      real(wp), intent(in) :: way, rate
-
-      distance = huge(1.0_wp)
-      if (way < 0.5_wp*huge(1.0_wp)*min(rate, 1.0_wp)) distance = max(way, 0.0_wp)/rate
-   end function distance
-
-   !> Springs go at constant rates from given deformations, each on its own line and not beyond its end, and
-   !> what is behind them goes too.
-   pure subroutine go_along(self, moving, q, rate, way, slack, near, count)
-      class(spring_array), intent(inout) :: self
-      !> Number of springs that go, the first ones
-      integer, intent(in) :: moving
-      !> From where (size of `d`), and the rates; in units of the rates
-      real(wp), intent(in), contiguous :: q(:), rate(:)
-      real(wp), intent(in) :: way
-      !> Springs that come closer than this to the end of their line, in shares of the end, are near it
-      real(wp), intent(in) :: slack
-      !> The springs near the ends that they go to, and how many they are
-      integer, intent(out) :: near(moving), count
-
-      associate (behind => self%count + 1)
-         self%d(behind:) = q(behind:) + rate(behind:)*way
-      end associate
-      call advance_along(moving, q, rate, way, slack, self%d0, self%f0, self%k, self%unload_on_reversal, &
-                         self%d, self%work, self%first, self%last, near, count)
-   end subroutine go_along
-
-   pure subroutine advance_along(n, q, rate, way, slack, d0, f0, k, unload_on_reversal, d, work, first, &
-                                 last, near, count)
-      integer, intent(in) :: n, unload_on_reversal(n)
-      real(wp), intent(in) :: q(n), rate(n), way, slack, d0(n), f0(n), k(n)
-      real(wp), intent(inout) :: d(n), work(n), first(n), last(n)
-      integer, intent(out) :: near(n), count
-      real(wp) :: to
-      integer :: i
-
-      !$omp simd
-      do i = 1, n
-         to = min(max(q(i) + rate(i)*way, first(i)), last(i))
-         work(i) = work(i) + (f0(i) + k(i)*(0.5_wp*(to + d(i)) - d0(i)))*(to - d(i))
-         d(i) = to
-      end do
-      count = 0
-      do i = 1, n
-         if (unload_on_reversal(i) > 0) first(i) = d(i)
-         if (unload_on_reversal(i) < 0) last(i) = d(i)
-         if (rate(i) > 0.0_wp) then
-            if (last(i) - d(i) > slack*abs(last(i))) cycle
-         else
-            if (d(i) - first(i) > slack*abs(first(i))) cycle
-         end if
-         count = count + 1
-         near(count) = i
-      end do
-   end subroutine advance_along
 
    !> The plane that a layered joint is on.
    subroutine read_plane(self, i)

@@ -8,6 +8,7 @@ module rbs_solve_static_corner
    use rbs_base_text, only: to_text
    use rbs_hysteresis_interaction_joints, only: choose_lines
    use rbs_hysteresis_springs, only: spring_array
+   use rbs_hysteresis_straight_motion, only: find_blocked
    use rbs_solve_static_path, only: static_path, state_of, weakest_spring
    implicit none
    private
@@ -160,7 +161,7 @@ contains
 
       !> Springs without room on their lines for the present rates, and joints without room on their planes.
       subroutine find_stopped()
-         call path%springs%find_blocked(path%rate(:path%moving), blocked, springs_blocked)
+         call find_blocked(path%springs, path%rate(:path%moving), blocked, springs_blocked)
          stopped = springs_blocked
          if (path%springs%pressed) call choose_planes(stopped)
       end subroutine find_stopped
@@ -295,7 +296,7 @@ contains
          next_way = 0
          next_at = 0.0_wp
          least = huge(1.0_wp)
-         call path%springs%find_blocked(path%rate(:m), blocked, count)
+         call find_blocked(path%springs, path%rate(:m), blocked, count)
          is_blocked = .false.
          is_blocked(blocked(:count)) = .true.
          do i = 1, m

@@ -6,6 +6,7 @@ module rbs_solve_static_straight
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
+   use rbs_hysteresis_straight_motion, only: go_along, nearest_end
    use rbs_solve_static_corner, only: turn_corner
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_path, only: static_path, state_of, target_of, weakest_spring, is_on_end, &
@@ -209,7 +210,7 @@ contains
          self%q(:) = self%q + direction*missing*self%rate
          self%force_start = self%force_start + self%equilibrium%force_rate*missing
       end if
-      call self%springs%nearest_end(self%q(:self%moving), self%rate(:self%moving), way, self%ends)
+      call nearest_end(self%springs, self%q(:self%moving), self%rate(:self%moving), way, self%ends)
       self%finish = direction*huge(1.0_wp)
       if (self%ends > 0) self%finish = self%start + direction*way
    end subroutine begin_line
@@ -241,7 +242,7 @@ contains
       integer :: near(self%moving), count, j
 
       change = control - self%start
-      call self%springs%go_along(self%moving, self%q, self%rate, abs(change), nearly, near, count)
+      call go_along(self%springs, self%moving, self%q, self%rate, abs(change), nearly, near, count)
       do j = 1, count
          associate (i => near(j))
             d = self%q(i) + self%rate(i)*abs(change)

@@ -1,0 +1,139 @@
+!> Springs that move at constant rates, each on its own line: those that cannot, the first end of a line that
+!> they reach, and the motion itself. The springs that move are the first ones.
+module rbs_hysteresis_straight_motion
+   use rbs_base_kinds, only: wp
+   use rbs_hysteresis_springs, only: spring_array
+   implicit none
+   private
+
+   public :: find_blocked, nearest_end, go_along
+
+   !> Ways beyond this, in units of the rates, have no end.
+   real(wp), parameter :: farthest = 1.0e100_wp
+
+contains
+
+   !> Springs that cannot go the way they should on their lines.
+   pure subroutine find_blocked(springs, rate, blocked, count)
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(in), contiguous :: rate(:)
+      !> The springs, and how many they are
+      integer, intent(out) :: blocked(size(rate)), count
+      integer :: i
+
+      count = 0
+      associate (d => springs%d, first => springs%first, last => springs%last, &
+                 one_way => springs%unload_on_reversal)
+         do i = 1, size(rate)
+            ! A spring is beyond the last deformation of its line where the end itself does not belong to it.
+            if (rate(i) > 0.0_wp) then
+               if (d(i) < last(i) .and. one_way(i) >= 0) cycle
+               if (.not. (d(i) > last(i) .or. one_way(i) < 0 .or. springs%includes_upper_end(i))) cycle
+            else if (rate(i) < 0.0_wp) then
+               if (d(i) > first(i) .and. one_way(i) <= 0) cycle
+               if (.not. (d(i) < first(i) .or. one_way(i) > 0 .or. springs%includes_lower_end(i))) cycle
+            else
+               cycle
+            end if
+            count = count + 1
+            blocked(count) = i
+         end do
+      end associate
+   end subroutine find_blocked
+
+   !> The first end of a line that springs reach from given deformations.
+   pure subroutine nearest_end(springs, q, rate, way, ends)
+      type(spring_array), intent(in) :: springs
+      !> Deformations and rates
+      real(wp), intent(in), contiguous :: q(:), rate(:)
+      !> In units of the rates; `huge` if there is none
+      real(wp), intent(out) :: way
+      !> The spring, 0 for none
+      integer, intent(out) :: ends
+      real(wp) :: room, most
+      integer :: i
+
+      way = huge(1.0_wp)
+      most = farthest
+      ends = 0
+      associate (first => springs%first, last => springs%last)
+         do i = 1, size(q)
+            ! The end itself may lie beyond the last deformation of the line: far beyond, as ways go, where
+            ! the rate is next to nothing.
+            if (rate(i) > 0.0_wp) then
+               if (last(i) - q(i) > most*rate(i)) cycle
+               room = distance(springs%end_toward(i, 1) - q(i), rate(i))
+            else if (rate(i) < 0.0_wp) then
+               if (q(i) - first(i) > -most*rate(i)) cycle
+               room = distance(q(i) - springs%end_toward(i, -1), -rate(i))
+            else
+               cycle
+            end if
+            if (.not. room < way) cycle
+            way = room
+            most = min(way, farthest)
+            ends = i
+         end do
+      end associate
+   end subroutine nearest_end
+
+   !> How long a spring needs for a distance; `huge` on a line without end.
+   elemental real(wp) function distance(way, rate)
+      real(wp), intent(in) :: way, rate
+
+      distance = huge(1.0_wp)
+      if (way < 0.5_wp*huge(1.0_wp)*min(rate, 1.0_wp)) distance = max(way, 0.0_wp)/rate
+   end function distance
+
+   !> Springs go at constant rates from given deformations, each on its own line and not beyond its end, and
+   !> what is behind them goes too.
+   pure subroutine go_along(springs, moving, q, rate, way, slack, near, count)
+      type(spring_array), intent(inout) :: springs
+      !> Number of springs that go, the first ones
+      integer, intent(in) :: moving
+      !> From where (size of `d`), and the rates; in units of the rates
+      real(wp), intent(in), contiguous :: q(:), rate(:)
+      real(wp), intent(in) :: way
+      !> Springs that come closer than this to the end of their line, in shares of the end, are near it
+      real(wp), intent(in) :: slack
+      !> The springs near the ends that they go to, and how many they are
+      integer, intent(out) :: near(moving), count
+
+      associate (behind => springs%count + 1)
+         springs%d(behind:) = q(behind:) + rate(behind:)*way
+      end associate
+      call advance_along(moving, q, rate, way, slack, springs%d0, springs%f0, springs%k, &
+                         springs%unload_on_reversal, springs%d, springs%work, springs%first, springs%last, &
+                         near, count)
+   end subroutine go_along
+
+   pure subroutine advance_along(n, q, rate, way, slack, d0, f0, k, unload_on_reversal, d, work, first, &
+                                 last, near, count)
+      integer, intent(in) :: n, unload_on_reversal(n)
+      real(wp), intent(in) :: q(n), rate(n), way, slack, d0(n), f0(n), k(n)
+      real(wp), intent(inout) :: d(n), work(n), first(n), last(n)
+      integer, intent(out) :: near(n), count
+      real(wp) :: to
+      integer :: i
+
+      !$omp simd
+      do i = 1, n
+         to = min(max(q(i) + rate(i)*way, first(i)), last(i))
+         work(i) = work(i) + (f0(i) + k(i)*(0.5_wp*(to + d(i)) - d0(i)))*(to - d(i))
+         d(i) = to
+      end do
+      count = 0
+      do i = 1, n
+         if (unload_on_reversal(i) > 0) first(i) = d(i)
+         if (unload_on_reversal(i) < 0) last(i) = d(i)
+         if (rate(i) > 0.0_wp) then
+            if (last(i) - d(i) > slack*abs(last(i))) cycle
+         else
+            if (d(i) - first(i) > slack*abs(first(i))) cycle
+         end if
+         count = count + 1
+         near(count) = i
+      end do
+   end subroutine advance_along
+
+end module rbs_hysteresis_straight_motion
