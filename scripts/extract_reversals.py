@@ -16,8 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rbsdem.curves.cycles import turning_points
-from rbsdem.curves.metrics import summarise
+from rbsdem.curves.metrics import summarise, turning_points
 from rbsdem.errors import RbsdemError
 from rbsdem.measured.measured import HISTORY_FILES
 from rbsdem.peer import find_history

@@ -19,8 +19,8 @@ from rbsdem.measured.laboratory import read_test as read_test
 from rbsdem.methods.study import compare_methods as compare_methods
 from rbsdem.methods.verification import verify as verify
 from rbsdem.model.column import Column as Column
+from rbsdem.model.column import Damping as Damping
 from rbsdem.model.column import Footing as Footing
-from rbsdem.model.damping import Damping as Damping
 from rbsdem.model.frame import FrameMember as FrameMember
 from rbsdem.model.materials import Concrete as Concrete
 from rbsdem.model.materials import Layout as Layout

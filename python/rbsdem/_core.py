@@ -297,9 +297,19 @@ def keys() -> dict[str, Any]:
 
 
 @cache
+def _quantities() -> Answer:
+    """Return the names of what comes back, a line for each kind of it, and the limits of notes."""
+    return evaluate("quantities")
+
+
 def _names() -> list[str]:
-    """Return the names of what comes back, a text for each kind of it."""
-    return evaluate("quantities").text.splitlines()
+    return _quantities().text.splitlines()
+
+
+def note_limits() -> tuple[float, float]:
+    """Return rotation [rad] and missed share of the energy beyond which runs are noted."""
+    rotation, energy = _quantities().values.tolist()
+    return rotation, energy
 
 
 @cache

@@ -16,11 +16,14 @@ from rbsdem.output.loops import Subplot as Subplot
 from rbsdem.output.loops import calibration as calibration
 from rbsdem.output.loops import code_comparison as code_comparison
 from rbsdem.output.loops import comparison as comparison
+from rbsdem.output.loops import energy as energy
 from rbsdem.output.loops import envelope as envelope
 from rbsdem.output.loops import four_panels as four_panels
+from rbsdem.output.loops import history as history
 from rbsdem.output.loops import limit_states as limit_states
 from rbsdem.output.loops import loop as loop
 from rbsdem.output.loops import loops_over_test as loops_over_test
+from rbsdem.output.loops import profile as profile
 from rbsdem.output.many import fragilities as fragilities
 from rbsdem.output.many import fragility as fragility
 from rbsdem.output.many import ida as ida
@@ -30,9 +33,6 @@ from rbsdem.output.many import stripes as stripes
 from rbsdem.output.measured import band as band
 from rbsdem.output.measured import prediction as prediction
 from rbsdem.output.methods import methods as methods
-from rbsdem.output.response import energy as energy
-from rbsdem.output.response import history as history
-from rbsdem.output.response import profile as profile
 from rbsdem.output.section import interaction as interaction
 from rbsdem.output.section import moment_curvature as moment_curvature
 from rbsdem.output.section import section as section

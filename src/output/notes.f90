@@ -17,7 +17,7 @@ module rbs_output_notes
    implicit none
    private
 
-   public :: drift_note, run_notes, structure_notes
+   public :: drift_note, run_notes, structure_notes, largest_small, much
 
    !> Least and largest height of a column [m]: one in millimetres is outside.
    real(wp), parameter :: shortest = 0.05_wp, longest = 100.0_wp

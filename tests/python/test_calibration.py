@@ -16,7 +16,7 @@ from rbsdem.calibration import free_names, paths, undetermined
 from rbsdem.calibration.determined import determine
 from rbsdem.calibration.misfit import POINTS, Misfit, Target
 from rbsdem.calibration.search import COARSE, Search
-from rbsdem.curves.cycles import half_cycle_numbers
+from rbsdem.curves.metrics import half_cycle_numbers
 from rbsdem.errors import AccuracyWarning
 from rbsdem.model.column import Parameter
 from rbsdem.peer import find_history, read_peer

@@ -13,7 +13,7 @@ from conftest import REPOSITORY
 
 import rbsdem
 from rbsdem import curves as comparison
-from rbsdem.curves import Envelope, cycles, strength_loss
+from rbsdem.curves import Envelope, metrics, strength_loss
 from rbsdem.curves.scores import SCORES
 from rbsdem.errors import InputError
 from rbsdem.springs import Bilinear, Takeda
@@ -104,7 +104,7 @@ def test_summary_of_a_cycle():
 def test_secant_stiffness(d, f, level, slope):
     found = comparison.secant_stiffness(d, f, level=level)
     assert found == pytest.approx(slope, rel=1e-15, nan_ok=True)
-    if level == comparison.STIFFNESS_LEVEL == 0.7:
+    if level == metrics.STIFFNESS_LEVEL == 0.7:
         assert comparison.secant_stiffness(d, f) == pytest.approx(slope, nan_ok=True)
 
 
@@ -120,11 +120,11 @@ def test_resampling_is_even_along_the_path():
 
 def test_turning_points_of_a_zigzag():
     d = [0.0, 1.0, -1.0, -1.0, 2.0, 1.99, 2.01, -2.0, 0.0]
-    assert cycles.turning_points(d).tolist() == [1, 2, 6, 7]
+    assert metrics.turning_points(d).tolist() == [1, 2, 6, 7]
     # Without a threshold every corner counts.
-    assert cycles.turning_points(d, share=0.0).tolist() == [1, 2, 4, 5, 6, 7]
+    assert metrics.turning_points(d, share=0.0).tolist() == [1, 2, 4, 5, 6, 7]
     for rows in ([], [1.0], [0.0, 1.0], [1.0, 1.0, 1.0], [0.0, 1.0, 2.0]):
-        assert cycles.turning_points(rows).size == 0
+        assert metrics.turning_points(rows).size == 0
 
 
 def test_half_cycles_of_an_elastoplastic_spring():
@@ -132,7 +132,7 @@ def test_half_cycles_of_an_elastoplastic_spring():
     k, d_y, a = 10.0, 1.0, 4.0
     corners = np.array([0.0, a, -a, a, -a, 0.0])
     d = np.interp(np.linspace(0, 5, 5001), np.arange(6), corners)
-    h = cycles.half_cycles(d, elastoplastic(d, k, k * d_y))
+    h = metrics.half_cycles(d, elastoplastic(d, k, k * d_y))
     assert h.displacement.tolist() == pytest.approx([a, -a, a, -a])
     assert h.peak_force.tolist() == pytest.approx([10.0, -10.0, 10.0, -10.0])
     assert h.stiffness.tolist() == pytest.approx(4 * [k * d_y / a])
@@ -142,14 +142,14 @@ def test_half_cycles_of_an_elastoplastic_spring():
     assert h.damping[1:].tolist() == pytest.approx(3 * [damping], rel=1e-3)
     # An elastic spring dissipates nothing.
     d = wave(4.0, 0.01, 4001)
-    h = cycles.half_cycles(d, 5e6 * d)
+    h = metrics.half_cycles(d, 5e6 * d)
     assert h.energy == pytest.approx(np.zeros(8), abs=1e-9)
     assert h.stiffness == pytest.approx(np.full(8, 5e6))
 
 
 def test_the_zero_of_the_force_lies_between_two_rows():
     """Work 1.5 to the tip; the force falls from 1 to -1 on the next unit, and gives 0.25 back."""
-    h = cycles.half_cycles([0.0, 1.0, 2.0, 1.0, 0.0], [0.0, 1.0, 1.0, -1.0, -1.0])
+    h = metrics.half_cycles([0.0, 1.0, 2.0, 1.0, 0.0], [0.0, 1.0, 1.0, -1.0, -1.0])
     assert h.row.tolist() == [2]
     assert h.energy.tolist() == [1.25]
 
@@ -158,7 +158,7 @@ def test_energy_of_the_half_cycles_is_that_of_the_path():
     d = wave(5.25, 0.02, 3001)
     f = elastoplastic(d, 3e7, 2e5)
     # It ends at a tip, and what is stored there is in the last one.
-    h = cycles.half_cycles(d, f)
+    h = metrics.half_cycles(d, f)
     assert h.row[-1] == d.size - 1
     assert h.energy.sum() == pytest.approx(comparison.energy(d, f), rel=1e-12)
 
@@ -204,7 +204,7 @@ def test_strength_loss(d, f, lost):
     d, f = (np.array(values, dtype=float) for values in (d, f))
     assert strength_loss(d, f) == pytest.approx(lost, nan_ok=True)
     if d.size < 3:
-        assert len(cycles.half_cycles(d, f)) == (d.size == 2)
+        assert len(metrics.half_cycles(d, f)) == (d.size == 2)
 
 
 def test_drift_at_loss_of_test_and_model():

@@ -20,7 +20,7 @@ from strategies import GOOD
 
 import rbsdem
 from rbsdem import _core
-from rbsdem.model.damping import Damping
+from rbsdem.model.column import Damping
 from rbsdem.model.springs import SPRINGS
 from rbsdem.run.case import Case
 from rbsdem.run.groups import SHAPES

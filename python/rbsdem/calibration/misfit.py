@@ -11,8 +11,7 @@ import numpy as np
 
 from rbsdem import _arguments
 from rbsdem._types import Array
-from rbsdem.curves.cycles import half_cycle_numbers
-from rbsdem.curves.metrics import N_POINTS, PathPoints, work
+from rbsdem.curves.metrics import N_POINTS, PathPoints, half_cycle_numbers, work
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column, Parameter
 from rbsdem.run.result import reached_force

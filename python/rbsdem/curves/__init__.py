@@ -45,16 +45,16 @@ Driven by displacement, a model misses the force: `compare`. Driven by force, it
 force and misses the displacement: `displacement_metrics`.
 """
 
-from rbsdem.curves.cycles import half_cycles as half_cycles
-from rbsdem.curves.cycles import turning_points as turning_points
 from rbsdem.curves.envelope import Envelope as Envelope
 from rbsdem.curves.envelope import envelope as envelope
 from rbsdem.curves.envelope import strength_loss as strength_loss
 from rbsdem.curves.metrics import Loop as Loop
 from rbsdem.curves.metrics import energy as energy
+from rbsdem.curves.metrics import half_cycles as half_cycles
 from rbsdem.curves.metrics import resample as resample
 from rbsdem.curves.metrics import secant_stiffness as secant_stiffness
 from rbsdem.curves.metrics import summarise as summarise
+from rbsdem.curves.metrics import turning_points as turning_points
 from rbsdem.curves.scores import SCORES as SCORES
 from rbsdem.curves.scores import Comparison as Comparison
 from rbsdem.curves.scores import compare as compare

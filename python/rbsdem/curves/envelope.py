@@ -12,8 +12,7 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._files import Tabular
 from rbsdem._types import Array, ArrayLike
-from rbsdem.curves.cycles import turning_points
-from rbsdem.curves.metrics import Curve, columns, loop_pair
+from rbsdem.curves.metrics import Curve, columns, loop_pair, turning_points
 from rbsdem.errors import InputError
 
 _NEARLY = 0.95

@@ -12,9 +12,20 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, ArrayLike, DataFrame
-from rbsdem.curves.cycles import HalfCycles, half_cycles, tip_rows
 from rbsdem.curves.envelope import strength_loss
-from rbsdem.curves.metrics import Curve, Loop, PathPoints, columns, loop_of, pair, ratio, rms
+from rbsdem.curves.metrics import (
+    Curve,
+    HalfCycles,
+    Loop,
+    PathPoints,
+    columns,
+    half_cycles,
+    loop_of,
+    pair,
+    ratio,
+    rms,
+    tip_rows,
+)
 from rbsdem.errors import InputError, warn
 
 _RATIOS = ("peak_ratio", "energy_ratio", "stiffness_ratio", "end_ratio")

@@ -3,21 +3,30 @@
 from __future__ import annotations
 
 import os
+import signal
+import threading
 import time
-from collections.abc import Mapping, Sequence
-from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
-from contextlib import ExitStack
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    CancelledError,
+    Executor,
+    Future,
+    ThreadPoolExecutor,
+    wait,
+)
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
-from rbsdem import _arguments
+from rbsdem import _arguments, _core
 from rbsdem._files import Tabular, data_frame
 from rbsdem._progress import Bar, progress_bar
 from rbsdem._types import Array, ArrayLike, DataFrame, NDArray, Unpack
 from rbsdem.errors import InputError, Interrupted, SolveError
-from rbsdem.many import inputs, work
+from rbsdem.many import inputs
 from rbsdem.many.plan import (
     Outcome,
     Piece,
@@ -34,11 +43,134 @@ from rbsdem.model.frame import Frame, Structure
 from rbsdem.run.result import Result
 from rbsdem.run.solver import COLLAPSE_DRIFT, Solver, checked_solver
 
+#: How often the display is renewed, and a signal seen [s].
+BEAT = 0.2
+
+Task = TypeVar("Task")
+
+
+class EndRequest:
+    """Whether the work is to end before it is done, by Ctrl-C or SIGTERM.
+
+    The signals are noted and looked at between two tasks: an exception from anywhere would lose a
+    task on its way. A second Ctrl-C is an exception at once.
+    """
+
+    def __init__(self) -> None:
+        self.signal: int | None = None
+
+    def __bool__(self) -> bool:
+        """Return whether a signal has come."""
+        return self.signal is not None
+
+    @contextmanager
+    def listening(self, also_terminated: bool) -> Iterator[None]:
+        """Note signals while the block lasts; pass SIGTERM on to its own handler after it."""
+        if threading.current_thread() is not threading.main_thread():
+            yield
+            return
+        before = {}
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            before[signal.SIGINT] = signal.signal(signal.SIGINT, self._note)
+        if also_terminated and signal.getsignal(signal.SIGTERM) not in (signal.SIG_IGN, None):
+            before[signal.SIGTERM] = signal.signal(signal.SIGTERM, self._note)
+        try:
+            yield
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+            if self.signal == signal.SIGTERM:
+                os.kill(os.getpid(), signal.SIGTERM)
+
+    def _note(self, number: int, frame: object) -> None:
+        del frame
+        if self.signal is not None and number == signal.SIGINT:
+            raise KeyboardInterrupt
+        self.signal = number
+
+
+def work_through(
+    submit: Callable[[Task], Future[Any]],
+    tasks: Iterable[Task],
+    take: Callable[[Task, Future[Any]], None],
+    *,
+    ahead: int,
+    end: EndRequest,
+    beat: Callable[[], None],
+    stop: Callable[[], None],
+) -> None:
+    """Do all tasks.
+
+    Where the end is requested, or `take` raises an error, the tasks under way are finished and the
+    others are not started; after the request `take` gets what was finished.
+
+    Parameters
+    ----------
+    submit : callable
+        Gives a task to an executor.
+    tasks : iterable
+        The next one is asked for when it is submitted.
+    take : callable
+        Gets each task with its future, which is done, as they come.
+    ahead : int
+        Tasks that are submitted and not done, at the most.
+    end : EndRequest
+        Whether the work is to end.
+    beat : callable
+        Called several times a second.
+    stop : callable
+        Called where the work ends before it is done: it lets tasks under way end soon.
+    """
+    waiting: dict[Future[Any], Task] = {}
+
+    def take_ended() -> None:
+        for future in wait(waiting, BEAT, FIRST_COMPLETED).done:
+            take(waiting.pop(future), future)
+        beat()
+
+    try:
+        for task in tasks:
+            waiting[submit(task)] = task
+            while len(waiting) >= ahead and not end:
+                take_ended()
+            if end:
+                break
+        while waiting and not end:
+            take_ended()
+        if end:
+            _cancel(waiting, stop)
+        while waiting:
+            take_ended()
+    except BaseException:
+        _cancel(waiting, stop)
+        raise
+
+
+def _cancel(waiting: dict[Future[Any], Task], stop: Callable[[], None]) -> None:
+    stop()
+    for future in [future for future in waiting if future.cancel()]:
+        del waiting[future]
+
+
+def available_processors() -> int:
+    """Return the number of processors that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def check_client(client: Any) -> None:
+    """Raise `InputError` for what is not a client of a cluster with workers."""
+    if not callable(getattr(client, "submit", None)) or not hasattr(client, "ncores"):
+        raise InputError(
+            f"client = {client!r:.60} must be a dask.distributed.Client (pip install distributed)"
+        )
+    if not client.ncores():
+        raise InputError("client: its cluster has no workers; start some first")
+
+
 #: Seconds of a task at the most, as far as that is known: what a kill may cost.
 _LONGEST = 2.0
-
-#: What single runs warn of: rotations that are not small [rad], and energy that is missed.
-_LARGE_ROTATION, _MISSED_ENERGY = 0.1, 0.05
 
 #: Runs that advance side by side.
 _LANES = 32
@@ -135,13 +267,16 @@ class Ensemble(Tabular):
         frames = np.array([isinstance(one, Frame) for one in each])[self.column]
         small = np.array([one.kinematics != "finite" for one in each])[self.column]
         unknown = np.full(len(self), np.nan)
-        turned = self.measures.get("peak_rotation", unknown) > _LARGE_ROTATION
-        missed = self.measures.get("relative_energy_residual", unknown) > _MISSED_ENERGY
+        rotation, energy = _core.note_limits()
+        turned = self.measures.get("peak_rotation", unknown) > rotation
+        missed = self.measures.get("relative_energy_residual", unknown) > energy
         found = np.full(len(self), "", dtype="<U80")
         found[turned & small & ~frames & (self.status != "collapsed")] = (
-            "rotations go beyond 0.1 rad; use kinematics = 'finite'"
+            f"rotations go beyond {rotation:g} rad; use kinematics = 'finite'"
         )
-        found[missed & frames] = "the balance of energy misses more than 5 %; take a shorter dt"
+        found[missed & frames] = (
+            f"the balance of energy misses more than {energy:.0%}; take a shorter dt"
+        )
         return found
 
     def to_pandas(self) -> DataFrame:
@@ -293,7 +428,7 @@ def ensemble(
             _arguments.integer(jobs, "jobs", least=1)
     with _arguments.collected(faults):
         if client is not None:
-            work.check_client(client)
+            check_client(client)
     switches = {
         "progress": isinstance(progress, Bar) or progress,
         "allow_partial": allow_partial,
@@ -345,13 +480,13 @@ def _carried_out(
     client: Any,
     jobs: int | None,
     progress: bool,
-) -> tuple[Outcome, int, work.EndRequest]:
+) -> tuple[Outcome, int, EndRequest]:
     """Do the runs of this process that no store has.
 
     Return the outcome, how many runs a store had, and whether the work was asked to end.
     """
-    outcome, resumed, end = Outcome.none(plan), 0, work.EndRequest()
-    threads = jobs or work.available_processors()
+    outcome, resumed, end = Outcome.none(plan), 0, EndRequest()
+    threads = jobs or available_processors()
     with ExitStack() as stack:
         stack.enter_context(end.listening(also_terminated=kept is not None))
         if kept is not None:
@@ -378,7 +513,7 @@ def _carried_out(
                 kept.write_if_due()
 
         pieces, how = cut(each, pace.longest), {"beat": beat, "stop": workers.stop}
-        work.work_through(workers.submit, pieces, take, ahead=workers.ahead, end=end, **how)
+        work_through(workers.submit, pieces, take, ahead=workers.ahead, end=end, **how)
     return outcome, resumed, end
 
 

@@ -7,7 +7,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -557,28 +557,50 @@ def _undetermined(bounds: Bounds) -> str:
     )
 
 
-Curve = TypeVar("Curve", bound=Fragility)
-
-
-class WithFragility(Tabular, ABC, Generic[Curve]):
+class WithFragility(Tabular, ABC):
     """Runs that fragility curves can be fitted to, each in its own way."""
 
     runs: Runs
 
     @abstractmethod
-    def _fit(self, name: str, measure: str, limit: float, beta: float | None) -> Curve:
-        """Return the fragility curve of a limit state under a name."""
+    def _data(self, measure: str, limit: float) -> Counts | Capacities:
+        """Return what the curve of a limit state is fitted to."""
 
-    def _one(self, edp: str, threshold: float | None, beta: float | None = None) -> Curve:
-        ((name, (measure, limit)),) = limit_states(edp, threshold).items()
-        return self._fit(name, measure, limit, beta)
+    def fragility(
+        self, edp: str = "collapse", threshold: float | None = None, *, beta: float | None = None
+    ) -> Fragility:
+        """Return the fragility curve of a limit state, of largest likelihood (Baker 2015, eq 11).
+
+        Parameters
+        ----------
+        edp : str, optional
+            Measure of the response, as "peak_drift"; "collapse" and limit states, as "first_yield",
+            have no threshold.
+        threshold : float, optional
+            Value of the measure at the limit state.
+        beta : float, optional
+            Standard deviation of the logarithm of the capacity, stated where the runs do not
+            determine it; the median alone is then fitted.
+
+        Raises
+        ------
+        InputError
+            If no record reached it, or in stripes all did, or the runs do not determine beta: one
+            value lies within the bounds of all capacities, or they touch; at most one level of
+            stripes has both outcomes. The message gives between what the median lies.
+        """
+        ((name, state),) = limit_states(edp, threshold).items()
+        return self._fit(name, state, beta)
+
+    def _fit(self, name: str, state: tuple[str, float], beta: float | None) -> Fragility:
+        return fit_fragility(name, self._data(*state), self.runs.measure.label, beta)
 
     def fragilities(
         self,
         limits: Mapping[str, Any],
         edp: str | None = None,
         beta: Mapping[str, float] | None = None,
-    ) -> dict[str, Curve]:
+    ) -> dict[str, Fragility]:
         """Return the fragility curves of several limit states.
 
         Parameters
@@ -602,7 +624,7 @@ class WithFragility(Tabular, ABC, Generic[Curve]):
                 f"beta of {', '.join(sorted(unknown))}: no such limit state; there are "
                 f"{', '.join(states)}"
             )
-        return {name: self._fit(name, *state, stated.get(name)) for name, state in states.items()}
+        return {name: self._fit(name, state, stated.get(name)) for name, state in states.items()}
 
     def to_pandas(self) -> DataFrame:
         """Return a DataFrame, a row for each run."""

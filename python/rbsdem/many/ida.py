@@ -21,7 +21,7 @@ from rbsdem._progress import progress_bar
 from rbsdem._types import Array, ArrayLike, NDArray, Unpack
 from rbsdem.checks.criteria import WATCHED
 from rbsdem.errors import InputError
-from rbsdem.many.fragility import Capacities, Counts, Fragility, WithFragility, fit_fragility
+from rbsdem.many.fragility import Capacities, Counts, WithFragility
 from rbsdem.many.inputs import Measure, is_switch, limit_states, measures_in_a_list
 from rbsdem.many.runs import (
     LOST,
@@ -220,7 +220,7 @@ FRACTILES = (16.0, 50.0, 84.0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class IDA(WithFragility[Fragility]):
+class IDA(WithFragility):
     """Curves of response over intensity, one for each column and motion.
 
     Attributes
@@ -298,9 +298,9 @@ class IDA(WithFragility[Fragility]):
             Value of the measure at the limit state.
         """
         ((measure, limit),) = limit_states(edp, threshold).values()
-        return self._capacities(measure, limit)
+        return self._data(measure, limit)
 
-    def _capacities(self, measure: str, limit: float) -> Capacities:
+    def _data(self, measure: str, limit: float) -> Capacities:
         if measure == "collapse":
             return Capacities(self.lower.ravel(), self.upper.ravel())
         response = self.runs.response(measure)
@@ -314,34 +314,6 @@ class IDA(WithFragility[Fragility]):
                 f"({at:.3g}); give a limit beyond it"
             )
         return Capacities(lower, upper)
-
-    def fragility(
-        self, edp: str = "collapse", threshold: float | None = None, *, beta: float | None = None
-    ) -> Fragility:
-        """Return the fragility curve of a limit state.
-
-        Parameters
-        ----------
-        edp : str, optional
-            Measure of the response, as "peak_drift"; "collapse" and limit states, as "first_yield",
-            have no threshold.
-        threshold : float, optional
-            Value of the measure at the limit state.
-        beta : float, optional
-            Standard deviation of the logarithm of the capacity, stated where the runs do not
-            determine it; the median alone is then fitted.
-
-        Raises
-        ------
-        InputError
-            If no record reached it, or the runs do not determine beta: one value lies within the
-            bounds of all capacities, or they touch. The message gives between what the median lies.
-        """
-        return self._one(edp, threshold, beta)
-
-    def _fit(self, name: str, measure: str, limit: float, beta: float | None) -> Fragility:
-        data = self._capacities(measure, limit)
-        return fit_fragility(name, data, self.runs.measure.label, beta)
 
     def _pairs(self) -> list[tuple[int, int]]:
         return list(np.ndindex(self.lower.shape))
@@ -499,7 +471,7 @@ def _place(key: str | int, names: list[Any], what: str) -> int:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Stripes(WithFragility[Fragility]):
+class Stripes(WithFragility):
     """Runs at levels of intensity.
 
     Attributes
@@ -522,9 +494,9 @@ class Stripes(WithFragility[Fragility]):
     def counts(self, edp: str = "collapse", threshold: float | None = None) -> Counts:
         """Return which runs reached a limit state, by level and record."""
         ((measure, limit),) = limit_states(edp, threshold).values()
-        return self._counts(measure, limit)
+        return self._data(measure, limit)
 
-    def _counts(self, measure: str, limit: float) -> Counts:
+    def _data(self, measure: str, limit: float) -> Counts:
         response = self.runs.response(measure)
         level = np.abs(np.subtract.outer(self.levels, self.runs.intensity)).argmin(axis=0)
         records = self.runs.column * len(self.runs.motions) + self.runs.motion
@@ -532,24 +504,6 @@ class Stripes(WithFragility[Fragility]):
         failed = np.full((self.levels.size, names.size), np.nan)
         failed[level, record] = response >= limit
         return Counts(self.levels, failed, self.paired)
-
-    def fragility(
-        self, edp: str = "collapse", threshold: float | None = None, *, beta: float | None = None
-    ) -> Fragility:
-        """Return the fragility curve of a limit state, of largest likelihood (Baker 2015, eq 11).
-
-        The parameters are those of `IDA.fragility`.
-
-        Raises
-        ------
-        InputError
-            If no run reached it, or all did, or the runs do not determine beta: at most one level
-            has both outcomes. The message gives between what the median lies.
-        """
-        return self._one(edp, threshold, beta)
-
-    def _fit(self, name: str, measure: str, limit: float, beta: float | None) -> Fragility:
-        return fit_fragility(name, self._counts(measure, limit), self.runs.measure.label, beta)
 
     def __repr__(self) -> str:
         return (

@@ -16,8 +16,7 @@ from rbsdem.errors import InputError
 from rbsdem.methods.ladder import LEVELS, MethodRuns, too_expensive
 from rbsdem.methods.reference import Reference
 from rbsdem.methods.study_case import VERTICAL, Setting, SolvedRun, StudyCase
-from rbsdem.model.column import PLACES, Column, bodies, notes_off
-from rbsdem.model.damping import Damping
+from rbsdem.model.column import PLACES, Column, Damping, bodies, notes_off
 from rbsdem.model.springs import Spring
 from rbsdem.run.accuracy import errors_of
 from rbsdem.run.solver import IMPLICIT

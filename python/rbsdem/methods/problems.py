@@ -20,8 +20,7 @@ from rbsdem._types import Array, ArrayLike
 from rbsdem.errors import InputError
 from rbsdem.methods import problems_of_frames as frames
 from rbsdem.methods.problems_of_frames import FOOT, INCH, KIP, KSI, MASS
-from rbsdem.model.column import Column
-from rbsdem.model.damping import Damping
+from rbsdem.model.column import Column, Damping
 from rbsdem.model.materials import Concrete, Steel, Ties
 from rbsdem.model.shape import RectangularSection
 from rbsdem.model.springs import Bilinear, Elastic, Spring

@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from rbsdem import _arguments, _core
 from rbsdem._types import Array
 from rbsdem.errors import InputError, warn
-from rbsdem.model.column import NOTES_ON, Column, checked_column
-from rbsdem.model.damping import Damping
+from rbsdem.model.column import NOTES_ON, Column, Damping, checked_column
 from rbsdem.model.shape import Section
 from rbsdem.model.springs import Landmark, Layered, Spring, layer_springs
 

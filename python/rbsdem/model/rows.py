@@ -16,10 +16,9 @@ import numpy as np
 from rbsdem import _arguments, _core
 from rbsdem._files import atomic_write, data_frame
 from rbsdem._types import Array, DataFrame, Self
-from rbsdem.curves.cycles import HalfCycles, half_cycles
 from rbsdem.curves.envelope import Envelope, Idealisation, Method, strength_loss
 from rbsdem.curves.envelope import envelope as curve_envelope
-from rbsdem.curves.metrics import loop_pair
+from rbsdem.curves.metrics import HalfCycles, half_cycles, loop_pair
 from rbsdem.errors import InputError
 from rbsdem.model.citation import bibtex, parts_of
 from rbsdem.model.column import Column

@@ -17,8 +17,7 @@ import numpy as np
 from rbsdem import _core
 from rbsdem._types import Array
 from rbsdem.errors import InputError, SolveError
-from rbsdem.model.column import Column, Footing, notes_off
-from rbsdem.model.damping import Damping
+from rbsdem.model.column import Column, Damping, Footing, notes_off
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.rows import FORMAT, FORMAT_VERSION, SAVED, check_ending

@@ -8,8 +8,7 @@ from typing import Any
 
 from rbsdem import _core
 from rbsdem.errors import InputError, warn
-from rbsdem.model.column import Column
-from rbsdem.model.damping import Damping
+from rbsdem.model.column import Column, Damping
 from rbsdem.model.frame import FrameMember, FrameNode, Member, with_rigid_end
 from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection

@@ -33,7 +33,7 @@ from rbsdem.model.frame import Frame, Structure
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.shape import Section
 from rbsdem.output import buildings, frames, many, section
-from rbsdem.output.response import history
+from rbsdem.output.loops import history
 from rbsdem.output.style import style
 from rbsdem.output.tables import PAPER, cells
 from rbsdem.run.analysis import modes
