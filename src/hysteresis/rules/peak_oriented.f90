@@ -9,7 +9,8 @@ module rbs_hysteresis_rules_peak_oriented
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
    use rbs_hysteresis_rules_backbone, only: backbone_parameters
-   use rbs_hysteresis_rules_capped, only: capped_part, capped_memory
+   use rbs_hysteresis_rules_capped, only: start_part, next_branch
+   use rbs_hysteresis_rules_capped_lines, only: capped_part, capped_memory
    use rbs_hysteresis_rules_deterioration, only: deterioration_type
    use rbs_hysteresis_rule, only: rule_type, rule_memory
    use rbs_hysteresis_segment, only: segment
@@ -165,7 +166,7 @@ contains
       type is (peak_oriented_memory)
          memory%parts = self%parts
          do i = 1, self%parts
-            call self%part(i)%start(memory%part(i), memory%branch(i))
+            call start_part(self%part(i), memory%part(i), memory%branch(i))
          end do
          branch = memory%branch(1)
          if (self%parts == 2) branch = sum_of(memory%branch(1), memory%branch(2), self%share, 0.0_wp)
@@ -184,7 +185,7 @@ contains
       type is (peak_oriented_memory)
          if (self%parts == 1) then
             memory%part(1)%now%flexural_work = memory%flexural_work
-            call self%part(1)%next(memory%part(1), branch, direction)
+            call next_branch(self%part(1), memory%part(1), branch, direction)
          else
             here = branch%end_toward(direction)
             do i = 1, 2
@@ -213,7 +214,7 @@ contains
       else if (direction*(branch%end_toward(direction) - here) > 0.0_wp) then
          return
       end if
-      call part%next(memory, branch, direction)
+      call next_branch(part, memory, branch, direction)
    end subroutine follow
 
    !> The branch of two parts together from a deformation on.
