@@ -216,7 +216,7 @@ module rbs_structure_structure
       end subroutine spread_out
 
       !> Forces of springs, of loads but the inertia of the moving ground, and of axial forces.
-      subroutine collect(self, d, load, axial, tangent, f, g, correction)
+      subroutine collect(self, d, load, axial, tangent, f, g, correction, dead)
          import :: structure_type, wp
          implicit none
          class(structure_type), intent(in) :: self
@@ -228,6 +228,8 @@ module rbs_structure_structure
          real(wp), intent(out), contiguous :: g(:)
          !> Of the deformations, to bring what lies between the unknowns to equilibrium (springs, or none)
          real(wp), intent(inout), contiguous :: correction(:)
+         !> Share of the dead load of a frame that acts; without it, all
+         real(wp), intent(in), optional :: dead
       end subroutine collect
 
       subroutine press(self, load, axial)
@@ -524,7 +526,7 @@ contains
    end function unbounded_spring
 
    !> Tangent on the present stiffness of the springs; none where deformations follow from the unknowns.
-   subroutine linearise(self, k, tangent, unstable)
+   subroutine linearise(self, k, tangent, unstable, shares)
       class(structure_type), intent(in) :: self
       !> Stiffness of the springs (springs)
       real(wp), intent(in), contiguous :: k(:)
@@ -532,8 +534,11 @@ contains
       real(wp), intent(inout), contiguous :: tangent(:)
       !> A part whose springs determine its motion no more; 0: none
       integer, intent(out) :: unstable
+      !> Whether springs without stiffness share motions as if they had some, which refinement takes away
+      logical, intent(out), optional :: shares
 
       unstable = 0
+      if (present(shares)) shares = .false.
    end subroutine linearise
 
    !> Add forces of the damping of modes or stiffness, where it is no damping of the springs one by one.

@@ -198,10 +198,10 @@ contains
       real(wp), intent(inout), contiguous :: rate(:)
       logical, intent(out) :: found
       real(wp) :: y(2)
-      logical :: settled
+      logical :: settled, shares
 
       associate (structure => self%structure)
-         call structure%linearise(springs%k, self%tangent, self%unstable)
+         call structure%linearise(springs%k, self%tangent, self%unstable, shares)
          found = self%unstable == 0 .or. self%may_snap_back
          if (.not. found) return
          call find_residual(self, springs, force)
@@ -214,7 +214,6 @@ contains
          rate = self%moved(:, 1)
          if (.not. self%refines) then
             call structure%drop_round_off(self%tangent, self%change(:, 1), rate)
-            if (self%of_dead_load) rate = rate + y(1)*self%inner_load
          end if
          self%force_rate = y(1)
          self%displacement_rate = 1.0_wp
@@ -227,12 +226,8 @@ contains
             y(2) = 0.0_wp
          end if
          self%force_correction = y(2)
-         if (self%refines) then
-            self%correction(:) = self%moved(:, 2)
-         else
-            self%correction(:) = self%moved(:, 2) + self%inner
-            if (self%of_dead_load) self%correction(:) = self%correction + y(2)*self%inner_load
-         end if
+         self%correction(:) = self%moved(:, 2)
+         if (.not. self%refines) self%correction(:) = self%correction + self%inner
       end associate
 
    contains
@@ -243,7 +238,7 @@ contains
          !> Where it is driven [m]
          real(wp), intent(in) :: displacement
          logical, intent(out) :: regular
-         real(wp) :: signal(signals), more
+         real(wp) :: signal(signals), more, inner(size(self%inner))
          integer :: again
 
          y(j) = merge(1.0_wp, 0.0_wp, by_force .and. j == 1)
@@ -253,22 +248,29 @@ contains
          if (.not. regular) return
          y(j) = y(j) + more
          call self%structure%spring_rates(self%tangent, self%change(:, 1), self%moved(:, j))
-         if (.not. self%refines) return
+         if (self%of_dead_load) self%moved(:, j) = self%moved(:, j) + y(j)*self%inner_load
+         if (.not. self%refines .and. (j == 2 .or. .not. shares)) return
          ! A correction that is round-off itself needs no digits of its own.
          if (j == 2 .and. maxval(abs(self%change(:, 1))) <= of_round_off*self%structure%total_height) return
          signal = 0.0_wp
          do again = 1, refinements
-            signal(lateral) = y(j)
-            self%f = springs%k*self%moved(:, j)
+            if (.not. self%of_dead_load) signal(lateral) = y(j)
+            self%f = springs%k*self%moved(:springs%count, j)
             call self%structure%forces(self%moved(:, j), signal, self%axial, self%tangent, self%f, &
-                                       self%load(:, 1), self%inner)
+                                       self%load(:, 1), inner, merge(y(j), 0.0_wp, self%of_dead_load))
             if (j == 2) self%load(:, 1) = self%load(:, 1) + self%residual
             if (self%has_still) where (self%still) self%load(:, 1) = 0.0_wp
             call solve_once(2, displacement - self%structure%top_displacement(self%moved(:, j)), more, &
                             regular)
-            if (.not. regular) return
+            if (.not. regular) then
+               ! Of a frame nothing but round-off is left to correct.
+               regular = .not. self%refines
+               return
+            end if
             y(j) = y(j) + more
             call self%structure%spring_rates(self%tangent, self%change(:, 2), self%more)
+            if (.not. self%refines) self%more = self%more + inner
+            if (self%of_dead_load) self%more = self%more + more*self%inner_load
             self%moved(:, j) = self%moved(:, j) + self%more
             self%change(:, 1) = self%change(:, 1) + self%change(:, 2)
             ! One more would add about the square of this share.
@@ -379,15 +381,13 @@ contains
       if (.not. self%of_dead_load) signal(lateral) = force
       associate (structure => self%structure)
          self%f = springs%forces(springs%d)
-         call structure%forces(springs%d, signal, self%axial, self%tangent, self%f, self%residual, self%inner)
+         call structure%forces(springs%d, signal, self%axial, self%tangent, self%f, self%residual, &
+                               self%inner, merge(force, 1.0_wp, self%of_dead_load))
          if (self%of_dead_load) then
-            ! Forces are those under all of it: the share that is not there yet is taken off.
             self%moved(:, 1) = 0.0_wp
             self%f = 0.0_wp
             call structure%forces(self%moved(:, 1), signal, self%axial, self%tangent, self%f, self%pattern, &
                                   self%inner_load)
-            self%residual = self%residual - (1.0_wp - force)*self%pattern
-            self%inner = self%inner - (1.0_wp - force)*self%inner_load
          end if
          if (self%has_still) where (self%still) self%residual = 0.0_wp
          self%unbalance = 0.0_wp

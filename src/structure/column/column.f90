@@ -157,12 +157,13 @@ contains
    end subroutine unknown_rates
 
    !> Forces on the bodies, without the inertia of the moving ground.
-   subroutine forces(self, d, load, axial, tangent, f, g, correction)
+   subroutine forces(self, d, load, axial, tangent, f, g, correction, dead)
       class(column_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:), load(:), axial(:), tangent(:)
       real(wp), intent(inout), contiguous :: f(:)
       real(wp), intent(out), contiguous :: g(:)
       real(wp), intent(inout), contiguous :: correction(:)
+      real(wp), intent(in), optional :: dead
 
       if (size(axial) > 0) call second_order_forces(self%n, axial, d, f, 2, g)
       call body_forces(self%n, self%kinds, self%lower, self%upper, f, load(lateral), &

@@ -50,9 +50,10 @@ module rbs_structure_frame_element
 
    !> Where the numbers of an element begin in the work array of all tangents of a frame.
    type :: tangent_layout
-      !> K (3, 3)
+      !> K (3, 3), and behind it 1 if springs without stiffness share a motion, else 0
       integer :: stiffness = 1
-      !> Deformations per motion of the ends, dd/dq (3, springs); of layers compliances (3, joints)
+      !> Deformations per motion of the ends, dd/dq (3, springs); of joints of layers see `layered_tangent`
+      !> (of_joint, joints)
       integer :: rate = 1
       !> H of springs that bend, and of those that open
       integer :: bent = 1, opened = 1
@@ -108,8 +109,8 @@ module rbs_structure_frame_element
       procedure :: buckles
    end type frame_element
 
-   !> Numbers of a joint in a tangent: w and theta of a joint per axial force and moment.
-   integer, parameter :: of_joint = 3
+   !> Numbers of a joint of layers in a tangent.
+   integer, parameter :: of_joint = 6
 
 contains
 
@@ -216,7 +217,7 @@ contains
 
       associate (layout => self%layout, m => self%bending, n => self%opening)
          layout%stiffness = numbers + 1
-         layout%rate = layout%stiffness + 9
+         layout%rate = layout%stiffness + 10
          if (self%layered) then
             layout%branch = layout%rate + of_joint*(size(self%first) - 1)
          else
@@ -229,7 +230,7 @@ contains
    end subroutine lay_out
 
    !> Stiffness and rates on lines of the springs.
-   pure subroutine find_tangent(element, m, n, k, k0, stiffness, rate, bent, opened, stable)
+   pure subroutine find_tangent(element, m, n, k, k0, stiffness, rate, bent, opened, stable, shares)
       type(frame_element), intent(in) :: element
       !> Numbers of springs that bend, and that open
       integer, intent(in) :: m, n
@@ -237,13 +238,14 @@ contains
       real(wp), intent(in) :: k(m + n), k0(m + n)
       !> K, dd/dq, and H of both
       real(wp), intent(out) :: stiffness(3, 3), rate(3, m + n), bent(m, m), opened(n, n)
-      !> Whether the motion of the ends determines that inside: the element does not snap back
-      logical, intent(out) :: stable
+      !> Whether the motion of the ends determines that inside: the element does not snap back; whether
+      !> springs without stiffness share a motion
+      logical, intent(out) :: stable, shares
       real(wp) :: of_ends(2, 2), turn(2, m), open_up(n)
       logical :: stable_along
 
       call bend(size(element%share, 2), m, element%share, [k0(:m), rest_of(element)], &
-                [k(:m), rest_of(element)], of_ends, turn, bent, stable)
+                [k(:m), rest_of(element)], of_ends, turn, bent, stable, shares)
       call elongate(n, element%rest_along, k0(m + 1:), k(m + 1:), stiffness(1, 1), open_up, opened, &
                    stable_along)
       stiffness(2:, 1) = 0.0_wp
@@ -338,12 +340,12 @@ contains
       if (size(rest) > 0) rest = element%rest
    end function rest_of
 
-   pure subroutine bend(all, m, p, k0, k, stiffness, rate, bent, stable)
+   pure subroutine bend(all, m, p, k0, k, stiffness, rate, bent, stable, shares)
       !> Springs with the elastic rest, springs
       integer, intent(in) :: all, m
       real(wp), intent(in) :: p(2, all), k0(all), k(all)
       real(wp), intent(out) :: stiffness(2, 2), rate(2, m), bent(m, m)
-      logical, intent(out) :: stable
+      logical, intent(out) :: stable, shares
       !> Moments over roots of the initial stiffness, and stiffness over the initial one
       real(wp) :: share(2, all), soft(all), across(2, all), determinant, initial, root(all)
       integer :: i, j, l
@@ -363,7 +365,8 @@ contains
             stiffness(:, j) = stiffness(:, j) + others([i])*across(:, i)*across(j, i)
          end do
       end do
-      if (abs(determinant) <= no_stiffness*initial) then
+      shares = abs(determinant) <= no_stiffness*initial
+      if (shares) then
          ! More springs than the ends determine have no stiffness.
          soft = merge(shared, soft, abs(soft) < shared)
          determinant = determinant_of(soft)

@@ -99,8 +99,10 @@ contains
       logical, intent(out) :: stable
       real(wp) :: change
       integer :: j
+      logical :: shares
 
       stable = .true.
+      shares = .false.
       associate (layout => e%layout, m => e%bending, n => e%opening)
          associate (known => tangent(layout%branch:layout%branch + springs - 1))
             ! With the initial stiffness an array of zeros belongs to no branch.
@@ -116,11 +118,12 @@ contains
                tangent(layout%rate) = 1.0_wp
             else if (e%layered) then
                call layered_tangent(e, springs, k, k0, tangent(layout%stiffness:), tangent(layout%rate:), &
-                                    stable)
+                                    stable, shares)
             else
                call find_tangent(e, m, n, k, k0, tangent(layout%stiffness:), tangent(layout%rate:), &
-                                 tangent(layout%bent:), tangent(layout%opened:), stable)
+                                 tangent(layout%bent:), tangent(layout%opened:), stable, shares)
             end if
+            tangent(layout%rate - 1) = merge(1.0_wp, 0.0_wp, shares)
             known = k + k0
             ! That it snaps back is to be found again.
             if (.not. stable .and. springs > 0) known(1) = huge(1.0_wp)

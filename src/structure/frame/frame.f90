@@ -74,7 +74,6 @@ module rbs_structure_frame_frame
       procedure :: linearise
       procedure :: damp
       procedure :: add_damping
-      procedure :: unknown_forces
       procedure :: work_of_dead_load
       procedure :: is_loaded
       procedure :: take_load_off
@@ -206,7 +205,7 @@ module rbs_structure_frame_frame
 contains
 
    !> Tangents of the elements on lines of the springs.
-   subroutine linearise(self, k, tangent, unstable)
+   subroutine linearise(self, k, tangent, unstable, shares)
       class(frame_type), intent(in) :: self
       !> Stiffness of the springs (springs)
       real(wp), intent(in), contiguous :: k(:)
@@ -214,16 +213,20 @@ contains
       real(wp), intent(inout), contiguous :: tangent(:)
       !> An element that snaps back; 0: none
       integer, intent(out) :: unstable
+      logical, intent(out), optional :: shares
       integer :: i
       logical :: stable
 
       unstable = 0
+      if (present(shares)) shares = .false.
       do i = 1, size(self%element)
          associate (e => self%element(i), first => self%element(i)%before + 1)
             call set_tangent(e, e%bending + e%opening, size(tangent), k(first:), &
                              self%initial_stiffness(first:), tangent, stable)
          end associate
          if (.not. stable) unstable = i
+         if (.not. present(shares)) cycle
+         if (tangent(self%element(i)%layout%rate - 1) > 0.0_wp) shares = .true.
       end do
    end subroutine linearise
 
@@ -372,46 +375,36 @@ contains
       dx = dd(self%springs + 1:)
    end subroutine unknown_rates
 
-   !> Forces on the unknowns under all dead load and the lateral one.
-   subroutine forces(self, d, load, axial, tangent, f, g, correction)
+   !> Forces on the unknowns: the lateral load and the dead one, less what springs and elastic rest carry,
+   !> and second-order forces, of the axial forces under the dead load; corrections of the deformations that
+   !> bring the inside of the elements to equilibrium.
+   subroutine forces(self, d, load, axial, tangent, f, g, correction, dead)
       class(frame_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:), load(:), axial(:), tangent(:)
       real(wp), intent(inout), contiguous :: f(:)
       real(wp), intent(out), contiguous :: g(:)
       real(wp), intent(inout), contiguous :: correction(:)
-
-      call self%unknown_forces(d, f, 1.0_wp, tangent, g, correction)
-      ! The axial forces are those of the dead load.
-      g = g + load(lateral)*self%pattern(lateral)%force
-   end subroutine forces
-
-   !> Forces on the unknowns: dead load less what springs and elastic rest carry, and second-order forces;
-   !> corrections of the deformations that bring the inside of the elements to equilibrium.
-   subroutine unknown_forces(self, d, f, dead, tangent, g, correction)
-      class(frame_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:), f(:)
-      !> Share of the dead load that acts
-      real(wp), intent(in) :: dead
-      real(wp), intent(in), contiguous :: tangent(:)
-      real(wp), intent(out), contiguous :: g(:), correction(:)
-      real(wp) :: gap(3), s(3)
+      real(wp), intent(in), optional :: dead
+      real(wp) :: gap(3), s(3), part
       integer :: i
 
+      part = 1.0_wp
+      if (present(dead)) part = dead
       associate (x => d(self%springs + 1:))
-         g = dead*self%dead
+         g = part*self%dead + load(lateral)*self%pattern(lateral)%force
          g(self%ground) = g(self%ground) - f(self%member_springs + 1:)
          correction = 0.0_wp
          do i = 1, size(self%element)
             associate (e => self%element(i))
-               gap = compatibility_error(e, end_motion(e, x), d, dead)
-               call balance_ends(e, size(f), size(tangent), gap, dead, self%dead_force, d, f, tangent, s, &
+               gap = compatibility_error(e, end_motion(e, x), d, part)
+               call balance_ends(e, size(f), size(tangent), gap, part, self%dead_force, d, f, tangent, s, &
                                  correction)
                call add_end_forces(e, -s, g)
                if (self%axially_loaded .and. .not. e%is_panel) call add_second_order(e, x, g)
             end associate
          end do
       end associate
-   end subroutine unknown_forces
+   end subroutine forces
 
    !> Axial force, tension positive, and moments of the ends of a member under all of its dead load.
    pure subroutine member_forces(self, member, d, f, s)

@@ -2,75 +2,111 @@
 !> as a whole, by its opening and its rotation. Sums over its layers are all that its element needs; see
 !> `rbs_structure_frame_element` for the formulas.
 module rbs_structure_frame_layered
+   use rbs_base_constants, only: no_stiffness
    use rbs_base_kinds, only: wp
-   use rbs_structure_frame_element, only: frame_element, motion_of_rest, of_joint, shared, unbalance
+   use rbs_structure_frame_element, only: frame_element, motion_of_rest, of_joint, unbalance
    implicit none
    private
 
    public :: layered_tangent, layered_forces, layered_rates, drop_small_rates, joint_motion, &
              take_joints_off
 
+   !> Joints without stiffness share a motion as if each had this part of its initial one. It costs as many
+   !> digits, and what it adds is taken away by refinement.
+   real(wp), parameter :: shared = 1.0e-6_wp
+
+   !> Flexibility of springs in a row, its adjugate and determinant, and how many of them soften.
+   type :: flexibility
+      real(wp) :: whole(3, 3) = 0.0_wp, adjugate(3, 3) = 0.0_wp, determinant = 0.0_wp
+      integer :: softening = 0
+   end type flexibility
+
 contains
 
-   !> Stiffness of an element with joints of layers, and the compliances of its joints.
-   pure subroutine layered_tangent(e, m, k, k0, stiffness, soft, stable)
+   !> Stiffness of an element with joints of layers, and its joints: compliance of the opening at the centre
+   !> of stiffness, the place of this, compliance of the rotation, and what axial force and end moments do
+   !> about the centre.
+   !>
+   !> The flexibility F is a sum of p p'/k, to which any joint may add much more than the others. With
+   !> adj(F + p p'/k) = adj F + P F P'/k and det(F + p p'/k) = det F + p' adj(F) p/k, P x = p x x, both are
+   !> sums of terms of one sign while nothing softens, and K = adj F/det F keeps its digits.
+   pure subroutine layered_tangent(e, m, k, k0, stiffness, soft, stable, shares)
       type(frame_element), intent(in) :: e
       integer, intent(in) :: m
       !> Present and initial stiffness of its springs
       real(wp), intent(in) :: k(m), k0(m)
       real(wp), intent(out) :: stiffness(3, 3), soft(of_joint, size(e%first) - 1)
-      !> Whether it does not snap back: each joint that softens is held by the rest of the element
-      logical, intent(out) :: stable
-      real(wp) :: flexible(3, 3), now(3), whole(3), determinant, minor(3)
-      integer :: i, j, softening
+      !> Whether it does not snap back: each joint that softens is held by the rest of the element; whether
+      !> joints without stiffness share a motion
+      logical, intent(out) :: stable, shares
+      type(flexibility) :: sum_of
+      real(wp) :: now(3), whole(3)
+      integer :: i, j
 
-      flexible = 0.0_wp
-      if (e%rest_along > 0.0_wp) flexible(1, 1) = 1.0_wp/e%rest_along
+      shares = .false.
+      if (e%rest_along > 0.0_wp) call add_spring(sum_of, [1.0_wp, 0.0_wp, 0.0_wp], 1.0_wp/e%rest_along)
       if (allocated(e%rest)) then
-         flexible(2:, 2:) = 1.0_wp/e%rest(1)
-         flexible(2, 2) = flexible(2, 2) + 1.0_wp/e%rest(2)
-         flexible(3, 3) = flexible(3, 3) + 1.0_wp/e%rest(2)
-         flexible(2, 3) = flexible(2, 3) - 1.0_wp/e%rest(2)
-         flexible(3, 2) = flexible(2, 3)
+         call add_spring(sum_of, [0.0_wp, 1.0_wp, 1.0_wp], 1.0_wp/e%rest(1))
+         call add_spring(sum_of, [0.0_wp, 1.0_wp, -1.0_wp], 1.0_wp/e%rest(2))
       end if
-      softening = 0
       ! Beyond Euler's load; under tension a rest that takes off flexibility of springs is none of its own.
-      if (allocated(e%rest) .and. e%compression > 0.0_wp) softening = count(e%rest < 0.0_wp)
+      if (.not. e%compression > 0.0_wp) sum_of%softening = 0
       do j = 1, size(e%first) - 1
          i = e%first(j)
-         associate (last => e%first(j + 1) - 1)
+         associate (last => e%first(j + 1) - 1, a => e%arm(:, :, j))
             if (last == i) then
-               soft(:, j) = [1.0_wp/merge(k(i), shared*k0(i), abs(k(i)) > shared*k0(i)), 0.0_wp, 0.0_wp]
-               if (soft(1, j) < 0.0_wp) softening = softening + 1
-            else
-               now = sums(last - i + 1, e%y(i:last), k(i:last))
-               whole = sums(last - i + 1, e%y(i:last), k0(i:last))
-               determinant = now(1)*now(3) - now(2)**2
-               ! Layers without stiffness share a motion as if each had a little of its initial one.
-               if (abs(determinant) <= shared*(whole(1)*whole(3) - whole(2)**2)) then
-                  now = now + shared*whole
-                  determinant = now(1)*now(3) - now(2)**2
-               end if
-               soft(:, j) = [now(3), -now(2), now(1)]/determinant
-               if (determinant < 0.0_wp) then
-                  softening = softening + 1
-               else if (now(1) < 0.0_wp) then
-                  softening = softening + 2
-               end if
+               now(1) = k(i)
+               call share_motion(k0(i), now(1), shares)
+               soft(:, j) = [1.0_wp/now(1), (0.0_wp, i=2, of_joint)]
+               call add_spring(sum_of, a(:, 1), soft(1, j))
+               cycle
             end if
+            now = sums(last - i + 1, e%y(i:last), k(i:last))
+            whole = sums(last - i + 1, e%y(i:last), k0(i:last))
+            call share_motion(whole(1), now(1), shares)
+            now(3) = now(3) - now(2)**2/now(1)
+            call share_motion(whole(3) - whole(2)**2/whole(1), now(3), shares)
+            soft(:, j) = [1.0_wp/now(1), now(2)/now(1), 1.0_wp/now(3), a(:, 2) - now(2)/now(1)*a(:, 1)]
+            call add_spring(sum_of, a(:, 1), soft(1, j))
+            call add_spring(sum_of, soft(4:, j), soft(3, j))
          end associate
-         call add_joint(e%arm(:, :, j), soft(:, j), flexible)
       end do
-      minor(1) = flexible(1, 1)
-      minor(2) = flexible(1, 1)*flexible(2, 2) - flexible(1, 2)**2
-      stiffness(:, 1) = cross_product(flexible(:, 2), flexible(:, 3))
-      stiffness(:, 2) = cross_product(flexible(:, 3), flexible(:, 1))
-      stiffness(:, 3) = cross_product(flexible(:, 1), flexible(:, 2))
-      minor(3) = sum(flexible(:, 1)*stiffness(:, 1))
-      stiffness = stiffness/minor(3)
       ! As many negative directions in all as in the joints alone, by the signs of the leading minors.
-      stable = softening == count([minor(1) < 0.0_wp, minor(2)*minor(1) < 0.0_wp, minor(3)*minor(2) < 0.0_wp])
+      associate (minor => [sum_of%whole(1, 1), sum_of%adjugate(3, 3), sum_of%determinant])
+         stable = sum_of%softening == count(minor*[1.0_wp, minor(:2)] < 0.0_wp)
+         stiffness = sum_of%adjugate/minor(3)
+      end associate
+
    end subroutine layered_tangent
+
+   !> Stiffness of a spring; one without any shares motions as if it had a little of the initial one.
+   pure subroutine share_motion(initial, k, shares)
+      real(wp), intent(in) :: initial
+      real(wp), intent(inout) :: k
+      logical, intent(inout) :: shares
+
+      if (abs(k) > no_stiffness*initial) return
+      k = shared*initial
+      shares = .true.
+   end subroutine share_motion
+
+   !> Add a spring to a flexibility.
+   pure subroutine add_spring(self, p, compliance)
+      type(flexibility), intent(inout) :: self
+      real(wp), intent(in) :: p(3), compliance
+      real(wp) :: crossed(3, 3)
+      integer :: i
+
+      if (compliance < 0.0_wp) self%softening = self%softening + 1
+      do i = 1, 3
+         self%determinant = self%determinant + compliance*p(i)*work_on(self%adjugate(:, i), p)
+         crossed(:, i) = cross_product(p, self%whole(:, i))
+      end do
+      do i = 1, 3
+         self%adjugate(:, i) = self%adjugate(:, i) + compliance*cross_product(p, crossed(i, :))
+         self%whole(:, i) = self%whole(:, i) + compliance*p(i)*p
+      end do
+   end subroutine add_spring
 
    !> Sums of k, k y and k y**2.
    pure function sums(n, y, k)
@@ -90,18 +126,6 @@ contains
       end do
       sums = [of_k, of_ky, of_kyy]
    end function sums
-
-   !> Add the flexibility of a joint.
-   pure subroutine add_joint(arm, soft, flexible)
-      real(wp), intent(in) :: arm(3, 2), soft(of_joint)
-      real(wp), intent(inout) :: flexible(3, 3)
-      integer :: i
-
-      do i = 1, 3
-         flexible(:, i) = flexible(:, i) + arm(:, 1)*(soft(1)*arm(i, 1) + soft(2)*arm(i, 2)) &
-                          + arm(:, 2)*(soft(2)*arm(i, 1) + soft(3)*arm(i, 2))
-      end do
-   end subroutine add_joint
 
    pure function cross_product(a, b) result(c)
       real(wp), intent(in) :: a(3), b(3)
@@ -126,55 +150,49 @@ contains
       all = 0.0_wp
       do j = 1, size(e%first) - 1
          associate (of => e%first(j), last => e%first(j + 1) - 1)
-            if (of == last) then
-               force = f(of) - dead*dead_force(of)
-               correction(of) = force
-               all = all + e%arm(:, 1, j)*(soft(1, j)*force)
-               cycle
-            end if
-            call add_up(last - of + 1, e%y(of:last), f(of:last), dead, dead_force(of:last), force, moment)
+            call add_up(last - of + 1, e%y(of:last), soft(2, j), f(of:last), dead, dead_force(of:last), &
+                        force, moment)
             correction(of) = force
+            all = all + e%arm(:, 1, j)*(soft(1, j)*force)
+            if (of == last) cycle
             correction(of + 1) = moment
+            all = all + soft(4:, j)*(soft(3, j)*moment)
          end associate
-         all = all + (e%arm(:, 1, j)*(soft(1, j)*force + soft(2, j)*moment) &
-                      + e%arm(:, 2, j)*(soft(2, j)*force + soft(3, j)*moment))
       end do
       s = stiffness(:, 1)*all(1) + stiffness(:, 2)*all(2) + stiffness(:, 3)*all(3)
       ! In joints all but without stiffness these forces make motions beside which the gap is round-off.
       all = gap - motion_of_rest(e, s)
       do j = 1, size(e%first) - 1
-         associate (a => e%arm(:, :, j), of => e%first(j), last => e%first(j + 1) - 1)
-            force = unbalance(correction(of), a(1, 1)*s(1), a(2, 1)*s(2), a(3, 1)*s(3))
-            correction(of) = force
-            all = all + a(:, 1)*(soft(1, j)*force)
-            if (of == last) cycle
-            moment = unbalance(correction(of + 1), a(1, 2)*s(1), a(2, 2)*s(2), a(3, 2)*s(3))
-            correction(of + 1) = moment
-            all = all + (a(:, 1)*(soft(2, j)*moment) + a(:, 2)*(soft(2, j)*force + soft(3, j)*moment))
+         associate (a => e%arm(:, 1, j), b => soft(4:, j), of => e%first(j))
+            correction(of) = unbalance(correction(of), a(1)*s(1), a(2)*s(2), a(3)*s(3))
+            all = all + a*(soft(1, j)*correction(of))
+            if (of == e%first(j + 1) - 1) cycle
+            correction(of + 1) = unbalance(correction(of + 1), b(1)*s(1), b(2)*s(2), b(3)*s(3))
+            all = all + b*(soft(3, j)*correction(of + 1))
          end associate
       end do
       more = stiffness(:, 1)*all(1) + stiffness(:, 2)*all(2) + stiffness(:, 3)*all(3)
       s = s + more
       do j = 1, size(e%first) - 1
          associate (of => e%first(j), last => e%first(j + 1) - 1)
-            force = work_on(e%arm(:, 1, j), more) - correction(of)
+            force = soft(1, j)*(work_on(e%arm(:, 1, j), more) - correction(of))
             if (of == last) then
-               correction(of) = soft(1, j)*force
+               correction(of) = force
                cycle
             end if
-            moment = work_on(e%arm(:, 2, j), more) - correction(of + 1)
+            moment = soft(3, j)*(work_on(soft(4:, j), more) - correction(of + 1))
             ! Layers stay in line.
-            moved = joint_motion(e, j, m, d) + [soft(1, j)*force + soft(2, j)*moment, &
-                                                soft(2, j)*force + soft(3, j)*moment]
+            moved = joint_motion(e, j, m, d) + [force - soft(2, j)*moment, moment]
             call align(last - of + 1, e%y(of:last), moved, d(of:last), correction(of:last))
          end associate
       end do
    end subroutine layered_forces
 
-   !> Force and moment of the springs of a joint, less what dead load does in them.
-   pure subroutine add_up(n, y, f, dead, dead_force, force, moment)
+   !> Force of the springs of a joint and moment about its centre of stiffness, less what dead load does in
+   !> them.
+   pure subroutine add_up(n, y, centre, f, dead, dead_force, force, moment)
       integer, intent(in) :: n
-      real(wp), intent(in) :: y(n), f(n), dead, dead_force(n)
+      real(wp), intent(in) :: y(n), centre, f(n), dead, dead_force(n)
       real(wp), intent(out) :: force, moment
       integer :: i
 
@@ -183,7 +201,7 @@ contains
       !$omp simd reduction(+:force, moment)
       do i = 1, n
          force = force + (f(i) - dead*dead_force(i))
-         moment = moment + y(i)*(f(i) - dead*dead_force(i))
+         moment = moment + (y(i) - centre)*(f(i) - dead*dead_force(i))
       end do
    end subroutine add_up
 
@@ -244,19 +262,15 @@ contains
       integer, intent(in) :: m
       real(wp), intent(in) :: stiffness(3, 3), soft(of_joint, size(e%first) - 1), q(3)
       real(wp), intent(out) :: dd(m)
-      real(wp) :: s(3), force, moment, z(2)
+      real(wp) :: s(3), z(2)
       integer :: j
 
       s = stiffness(:, 1)*q(1) + stiffness(:, 2)*q(2) + stiffness(:, 3)*q(3)
       do j = 1, size(e%first) - 1
-         force = work_on(e%arm(:, 1, j), s)
          associate (of => e%first(j), last => e%first(j + 1) - 1)
-            if (of == last) then
-               dd(of) = soft(1, j)*force
-               cycle
-            end if
-            moment = work_on(e%arm(:, 2, j), s)
-            z = [soft(1, j)*force + soft(2, j)*moment, soft(2, j)*force + soft(3, j)*moment]
+            z(1) = soft(1, j)*work_on(e%arm(:, 1, j), s)
+            z(2) = soft(3, j)*work_on(soft(4:, j), s)
+            z(1) = z(1) - soft(2, j)*z(2)
             call open_up(last - of + 1, e%y(of:last), z, dd(of:last))
          end associate
       end do
@@ -282,31 +296,34 @@ contains
       real(wp), intent(in) :: stiffness(3, 3), soft(of_joint, size(e%first) - 1), terms(3)
       real(wp), intent(in) :: share
       real(wp), intent(inout) :: dd(m)
-      real(wp) :: s(3), force, moment, z(2)
+      real(wp) :: s(3), opening, turn
       integer :: j
 
       s = abs(stiffness(:, 1))*terms(1) + abs(stiffness(:, 2))*terms(2) + abs(stiffness(:, 3))*terms(3)
       do j = 1, size(e%first) - 1
-         associate (a => e%arm(:, :, j))
-            force = share*(abs(a(1, 1))*s(1) + abs(a(2, 1))*s(2) + abs(a(3, 1))*s(3))
-            moment = share*(abs(a(1, 2))*s(1) + abs(a(2, 2))*s(2) + abs(a(3, 2))*s(3))
-         end associate
-         z = [abs(soft(1, j))*force + abs(soft(2, j))*moment, abs(soft(2, j))*force + abs(soft(3, j))*moment]
-         associate (of => e%first(j), last => e%first(j + 1) - 1)
-            call drop_below(last - of + 1, e%y(of:last), z, dd(of:last))
+         associate (a => e%arm(:, 1, j), b => e%arm(:, 2, j), of => e%first(j), last => e%first(j + 1) - 1)
+            opening = abs(soft(1, j))*sum(abs(a)*s)
+            turn = abs(soft(3, j))*sum(abs(soft(4:, j))*s)
+            ! However soft a joint is, it moves no more than the ends.
+            if (of < last) then
+               opening = min(opening, sum(abs(a)*terms))
+               turn = min(turn, sum(abs(b)*terms))
+            end if
+            call drop_below(last - of + 1, e%y(of:last), share*(opening + abs(soft(2, j))*turn), share*turn, &
+                            dd(of:last))
          end associate
       end do
    end subroutine drop_small_rates
 
-   pure subroutine drop_below(n, y, z, dd)
+   pure subroutine drop_below(n, y, opening, turn, dd)
       integer, intent(in) :: n
-      real(wp), intent(in) :: y(n), z(2)
+      real(wp), intent(in) :: y(n), opening, turn
       real(wp), intent(inout) :: dd(n)
       integer :: i
 
       !$omp simd
       do i = 1, n
-         dd(i) = merge(0.0_wp, dd(i), abs(dd(i)) < z(1) + abs(y(i))*z(2))
+         dd(i) = merge(0.0_wp, dd(i), abs(dd(i)) < opening + abs(y(i))*turn)
       end do
    end subroutine drop_below
 
