@@ -62,7 +62,7 @@ contains
       type(random_type) :: random
       type(frame_element) :: element
       real(wp) :: k0(3), k(3), a(5, 10), stiffness(3, 3), rate(3, 3), bent(3, 3), opened(0, 0)
-      logical :: stable
+      logical :: stable, shares
       integer :: trial, i
 
       element%bending = 3
@@ -72,7 +72,7 @@ contains
          k = [(k0(i)*random%uniform(0.0_wp, 1.0_wp), i=1, 3)]
          if (mod(trial, 2) == 0) k(1 + mod(trial, 3)) = 0.0_wp
          if (mod(trial, 7) == 0) k(1) = -0.02_wp*k0(1)
-         call find_tangent(element, 3, 0, k, k0, stiffness, rate, bent, opened, stable)
+         call find_tangent(element, 3, 0, k, k0, stiffness, rate, bent, opened, stable, shares)
          a = 0.0_wp
          do i = 1, 3
             a(i, i) = k(i)/k0(1)

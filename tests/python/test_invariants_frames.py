@@ -10,6 +10,7 @@ from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
+import pytest
 from relations import Discard, Rng, ended, relation
 from strategies import between, scaled_spring, spring, waves
 from strategies_frames import FAMILIES, MODULUS, drifts, frame
@@ -259,6 +260,18 @@ def test_members_fit_between_their_nodes(rng: Rng) -> float:
     """Springs and elastic parts of a member are what its nodes leave: over the displacement."""
     made = frame(rng, any_family(rng), kinematics="small")
     return gaps(follow(made, drifts(rng, made)))
+
+
+@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
+@pytest.mark.parametrize("case", [194, 211, 282, 350])
+def test_joints_with_one_layer_left_keep_the_path(case: int) -> None:
+    """All layers of a joint but one yield or are open: it turns freely about that one."""
+    rng = np.random.default_rng(case)
+    made = frame(rng, "layered")
+    run = rbsdem.cyclic(made, displacement=drifts(rng, made))
+    assert run.time.size == 6
+    assert sections_off(run) < 1e-9
+    assert gaps(run) < 1e-9
 
 
 def sides(given: Any) -> Any:
