@@ -143,19 +143,22 @@ contains
       type(request_type), intent(in) :: request
       type(answer_type), intent(inout) :: answer
       type(case_record) :: case
-      class(structure_type), allocatable :: structure
+      class(structure_type), allocatable, target :: structure
+      type(frame_type), pointer :: frame
       type(end_state) :: before
       type(message_list) :: notes
 
       call structure_from_statements(request%statement, request%number, structure, before, case, answer%error)
       if (allocated(answer%error)) return
+      frame => null()
+      select type (structure)
+      type is (frame_type)
+         frame => structure
+      end select
       select case (request%what)
       case ('check_structure')
          answer%text = ''
-         select type (structure)
-         class is (frame_type)
-            call list_parts(structure, answer)
-         end select
+         if (associated(frame)) call list_parts(frame, answer)
          call structure_notes(case, structure, notes)
          if (notes%count > 0) answer%text = answer%text//notes%text
       case ('modes')
@@ -178,22 +181,20 @@ contains
          if (allocated(answer%error)) return
          answer%text = trim(modes%warning)
          answer%value = [modes%stable_step, modes%omega]
-         select type (structure)
-         class is (frame_type)
-            ! Displacements of the nodes, held ones too: along x, upward, rotations; then the mass of each
-            ! mode.
-            allocate (answer%rows(3*structure%n + 1, size(modes%omega)), source=0.0_c_double)
-            do i = 1, structure%n
-               do j = 1, 3
-                  if (structure%number(j, i) == 0) cycle
-                  answer%rows((j - 1)*structure%n + i, :) = modes%shapes(structure%number(j, i), :)
-               end do
-            end do
-            answer%rows(3*structure%n + 1, :) = [(structure%work_of(horizontal, modes%shapes(:, i))**2, &
-                                                  i=1, size(modes%omega))]
-         class default
+         if (.not. associated(frame)) then
             answer%rows = modes%shapes
-         end select
+            return
+         end if
+         ! Displacements of the nodes, held ones too: along x, upward, rotations; then the mass of each mode.
+         allocate (answer%rows(3*frame%n + 1, size(modes%omega)), source=0.0_c_double)
+         do i = 1, frame%n
+            do j = 1, 3
+               if (frame%number(j, i) == 0) cycle
+               answer%rows((j - 1)*frame%n + i, :) = modes%shapes(frame%number(j, i), :)
+            end do
+         end do
+         answer%rows(3*frame%n + 1, :) = [(frame%work_of(horizontal, modes%shapes(:, i))**2, &
+                                           i=1, size(modes%omega))]
       end subroutine tell_modes
 
       subroutine tell_matrices(paper)

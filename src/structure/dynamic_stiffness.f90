@@ -8,11 +8,10 @@
 module rbs_structure_dynamic_stiffness
    use rbs_base_band_matrix, only: band_matrix
    use rbs_base_kinds, only: wp
-   use rbs_structure_structure, only: structure_type, signals
    implicit none
    private
 
-   public :: dynamic_stiffness, new_band_stiffness
+   public :: dynamic_stiffness
 
    type :: dynamic_stiffness
       !> Number of modes
@@ -26,6 +25,7 @@ module rbs_structure_dynamic_stiffness
       !> K and K_G (half-width + 1, unknowns); the latter only where axial forces count
       real(wp), allocatable, private :: stiffness(:, :), geometric(:, :)
    contains
+      procedure :: create
       procedure :: factor
       procedure :: solve
       procedure :: motion
@@ -92,28 +92,23 @@ contains
 
    end function critical_multiple
 
-   !> A structure before any spring yields, under its constant axial forces.
-   subroutine new_band_stiffness(self, structure, axial)
-      type(dynamic_stiffness), intent(out) :: self
-      class(structure_type), intent(in) :: structure
-      !> Whether the axial forces count
-      logical, intent(in) :: axial
-      real(wp) :: force(structure%axial_count), at_rest(signals)
+   !> The dynamic stiffness of bands, from which held unknowns are taken out.
+   subroutine create(self, inertias, is_held, stiffness, geometric)
+      class(dynamic_stiffness), intent(out) :: self
+      !> Masses, and what supports hold (unknowns)
+      real(wp), intent(in) :: inertias(:)
+      logical, intent(in) :: is_held(:)
+      !> K and K_G (half-width + 1, unknowns); the latter only where axial forces count
+      real(wp), allocatable, intent(inout) :: stiffness(:, :), geometric(:, :)
 
-      self%inertia = merge(0.0_wp, structure%inertias, structure%is_held)
+      self%inertia = merge(0.0_wp, inertias, is_held)
       self%modes = count(self%inertia > 0.0_wp)
-      allocate (self%reach(structure%unknowns), source=1.0_wp)
-      call self%matrix%create(structure%unknowns, structure%half_width)
-      allocate (self%stiffness(structure%half_width + 1, structure%unknowns), source=0.0_wp)
-      call structure%add_stiffness(structure%initial_stiffness, structure%initial_tangent, self%stiffness)
-      call take_out_held(1.0_wp, self%stiffness)
-      if (.not. axial) return
-      allocate (self%geometric, mold=self%stiffness)
-      self%geometric = 0.0_wp
-      at_rest = 0.0_wp
-      call structure%axial_forces(at_rest, force)
-      call structure%add_geometric(force, self%geometric)
-      call take_out_held(0.0_wp, self%geometric)
+      allocate (self%reach(size(inertias)), source=1.0_wp)
+      call self%matrix%create(size(inertias), size(stiffness, 1) - 1)
+      call take_out_held(1.0_wp, stiffness)
+      if (allocated(geometric)) call take_out_held(0.0_wp, geometric)
+      call move_alloc(stiffness, self%stiffness)
+      call move_alloc(geometric, self%geometric)
 
    contains
 
@@ -122,16 +117,14 @@ contains
          real(wp), intent(inout) :: band(:, :)
          integer :: i, j
 
-         do j = 1, structure%unknowns
-            do i = 0, min(structure%half_width, structure%unknowns - j)
-               if (structure%is_held(j) .or. structure%is_held(i + j)) then
-                  band(1 + i, j) = merge(diagonal, 0.0_wp, i == 0)
-               end if
+         do j = 1, size(band, 2)
+            do i = 0, min(size(band, 1) - 1, size(band, 2) - j)
+               if (is_held(j) .or. is_held(i + j)) band(1 + i, j) = merge(diagonal, 0.0_wp, i == 0)
             end do
          end do
       end subroutine take_out_held
 
-   end subroutine new_band_stiffness
+   end subroutine create
 
    !> Factor K - s M under a multiple of the axial forces; the number of squared frequencies below s.
    integer function factor(self, s, multiple) result(below)

@@ -12,11 +12,13 @@ module rbs_structure_structure
    use rbs_hysteresis_rule, only: spring_rules
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_channel, only: channel_type, response_type, row_contents
+   use rbs_structure_dynamic_stiffness, only: dynamic_stiffness
    use rbs_structure_spring_place, only: spring_place
    implicit none
    private
 
-   public :: structure_type, motion_result, load_pattern, unknown_group, accelerate_unknowns
+   public :: structure_type, motion_result, load_pattern, unknown_group, accelerate_unknowns, &
+             power_of_patterns
    public :: small, pdelta, finite
    public :: lateral, horizontal, vertical, top_axial, signals, signal_names
 
@@ -32,6 +34,9 @@ module rbs_structure_structure
    !> Forces on the unknowns per unit of a signal.
    type :: load_pattern
       real(wp), allocatable :: force(:)
+      !> What they do on the deformations of the springs, where these are the coordinates of a position; else
+      !> not allocated (coordinates)
+      real(wp), allocatable :: arm(:)
       !> First and last unknown that has any; none if the last is less than the first
       integer :: first = 1, last = 0
    end type load_pattern
@@ -124,17 +129,15 @@ module rbs_structure_structure
       procedure(turn), deferred :: rotations
       !> Potential of constant loads, zero where no spring is deformed [J]
       procedure(of_position), deferred :: potential_energy
-      !> Rate of the axial force at a spring under the slopes of the loads, compression positive [N/s]
-      procedure(press_spring), deferred :: axial_rate
-      !> Bound of the acceleration of a spring under the present loads and forces
-      procedure(scale_acceleration), deferred :: acceleration_scale
+      !> Refuse loads that do nothing
+      procedure(refuse_loads), deferred :: check_loads
       !> Channels of a row besides those of all structures, and the values of a row
       procedure(list_channels), deferred :: channels
       procedure(fill_values), deferred :: fill_row
       ! Defaults for small rotations
       procedure :: accelerations => accelerate_unknowns
       procedure :: speed
-      procedure :: power_of_loads
+      procedure :: power_of_loads => power_of_patterns
       procedure :: kinetic_energy
       procedure :: largest_turn
       procedure :: storey_drifts
@@ -142,8 +145,15 @@ module rbs_structure_structure
       procedure :: top_displacement
       procedure :: top_acceleration
       procedure :: axial_force
-      procedure :: check_loads
+      procedure :: acceleration_scale
       procedure :: check_initial
+      procedure :: check_inertia
+      ! Small motions on the initial stiffness
+      procedure :: dynamic_parts
+      procedure :: critical_factor
+      procedure :: momenta
+      !> Put the structure under a constant axial load at its top
+      procedure :: put_under
       ! Members that fail during a run
       procedure :: next_failed_member
       procedure :: remove_member
@@ -280,24 +290,14 @@ module rbs_structure_structure
          real(wp), intent(out), contiguous :: rotation(:)
       end subroutine turn
 
-      pure real(wp) function press_spring(self, spring, load)
-         import :: structure_type, wp
+      subroutine refuse_loads(self, acts, error)
+         import :: structure_type, error_type, signals
          implicit none
          class(structure_type), intent(in) :: self
-         integer, intent(in) :: spring
-         !> Slopes of the loads, or loads besides the constant ones
-         real(wp), intent(in) :: load(:)
-      end function press_spring
-
-      pure real(wp) function scale_acceleration(self, spring, springs, load)
-         import :: structure_type, spring_array, wp
-         implicit none
-         class(structure_type), intent(in) :: self
-         !> Which spring, and all of them
-         integer, intent(in) :: spring
-         type(spring_array), intent(in) :: springs
-         real(wp), intent(in) :: load(:)
-      end function scale_acceleration
+         !> Which loads act (signals)
+         logical, intent(in) :: acts(signals)
+         type(error_type), allocatable, intent(inout) :: error
+      end subroutine refuse_loads
 
       pure subroutine list_channels(self, contents, channel)
          import :: structure_type, row_contents, channel_type
@@ -332,8 +332,9 @@ contains
       inside = merge(structure%coordinates, 0, structure%tangent_numbers > 0)
       allocate (self%a(structure%coordinates), self%f(size(structure%place)), &
                 self%force(structure%unknowns), self%work(structure%work_size), &
-                self%axial(structure%axial_count), self%tangent(structure%tangent_numbers), &
+                self%axial(structure%axial_count), &
                 self%correction(inside), self%anchor(inside), source=0.0_wp)
+      self%tangent = structure%initial_tangent
       at_rest = 0.0_wp
       call structure%axial_forces(at_rest, self%axial)
    end subroutine create
@@ -347,47 +348,52 @@ contains
       integer, intent(in) :: pressing
       !> With axial forces, and with those of springs and damping, to which `forces` adds
       type(motion_result), intent(inout) :: result
-      integer :: i
+      real(wp) :: speed(self%unknowns)
 
+      call self%unknown_rates(v, speed)
       associate (x => result%force)
          call self%forces(d, load, result%axial(:pressing), result%tangent, result%f, x, result%correction)
+         if (self%damped) call self%damp(speed, result%tangent, x)
          call self%add_ground(load, x)
-         do i = 1, self%unknowns
-            x(i) = merge(0.0_wp, x(i)/self%inertias(i), self%is_held(i))
-         end do
+         where (self%inertias > 0.0_wp .and. .not. self%is_held)
+            x = x/self%inertias - self%mass_damping*speed
+         else where
+            ! Without mass it follows from the motion, not from forces.
+            x = 0.0_wp
+         end where
          call self%spring_rates(result%tangent, x, result%a)
          result%of_speeds = [self%work_of(lateral, x), self%work_of(horizontal, x)]
       end associate
-      if (self%mass_damping > 0.0_wp) result%a = result%a - self%mass_damping*v
    end subroutine accelerate_unknowns
 
-   !> Velocity that is conjugate to the lateral force or to the acceleration of the ground: velocity of the
-   !> top along x [m/s], momentum along x relative to the ground with its sign turned [kg m/s].
+   !> Velocity that is conjugate to a load, as to lateral force and acceleration of the ground: velocity of
+   !> the top along x [m/s], momentum along x relative to the ground with its sign turned [kg m/s].
    pure real(wp) function speed(self, signal, d, v)
       class(structure_type), intent(in) :: self
-      !> `lateral` or `horizontal`
       integer, intent(in) :: signal
       !> Deformations of the springs and their velocities (springs)
       real(wp), intent(in), contiguous :: d(:), v(:)
       real(wp) :: x(self%unknowns)
 
-      call self%unknown_rates(v(:size(d)), x)
-      speed = self%work_of(signal, x)
+      if (allocated(self%pattern(signal)%arm)) then
+         speed = inner_product(size(d), self%pattern(signal)%arm, v)
+      else
+         call self%unknown_rates(v(:size(d)), x)
+         speed = self%work_of(signal, x)
+      end if
    end function speed
 
    !> Power of the loads, constant ones left out [W].
-   pure real(wp) function power_of_loads(self, d, v, load) result(watt)
+   pure real(wp) function power_of_patterns(self, d, v, load) result(watt)
       class(structure_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:), v(:), load(:)
-      real(wp) :: x(self%unknowns)
       integer :: j
 
-      call self%unknown_rates(v(:size(d)), x)
       watt = 0.0_wp
       do j = 1, signals
-         watt = watt + load(j)*self%work_of(j, x)
+         if (abs(load(j)) > 0.0_wp) watt = watt + load(j)*self%speed(j, d, v)
       end do
-   end function power_of_loads
+   end function power_of_patterns
 
    !> Energy of a motion relative to the ground [J].
    pure real(wp) function kinetic_energy(self, d, v) result(energy)
@@ -456,25 +462,19 @@ contains
       integer, intent(in) :: spring
       real(wp), intent(in) :: load(:)
 
-      axial_force = self%constant_axial(spring) + self%axial_rate(spring, load)
+      axial_force = self%constant_axial(spring)
    end function axial_force
 
-   !> Refuse loads in time that do nothing.
-   subroutine check_loads(self, acts, error)
+   !> Bound of the acceleration of a spring under the present loads and forces.
+   pure real(wp) function acceleration_scale(self, spring, springs, load) result(scale)
       class(structure_type), intent(in) :: self
-      !> Which loads act (signals)
-      logical, intent(in) :: acts(signals)
-      type(error_type), allocatable, intent(inout) :: error
-      integer :: j
+      !> Which spring, and all of them
+      integer, intent(in) :: spring
+      type(spring_array), intent(in) :: springs
+      real(wp), intent(in) :: load(:)
 
-      do j = 1, signals
-         if (.not. acts(j) .or. self%pattern(j)%last >= self%pattern(j)%first) cycle
-         if (self%kinematics /= small .and. (j == vertical .or. j == top_axial)) cycle
-         call fatal_error(error, bad_input, trim(signal_names(j))// &
-                          ': it does nothing on this structure; remove it')
-         return
-      end do
-   end subroutine check_loads
+      scale = abs(springs%force(spring))/maxval(self%inertias) + abs(load(horizontal))
+   end function acceleration_scale
 
    !> Refuse deformations at the start, or velocities, that the structure cannot have.
    subroutine check_initial(self, name, value, error)
@@ -489,6 +489,66 @@ contains
       call fatal_error(error, bad_input, name//': '//to_text(size(value))//' values for '// &
                        to_text(size(self%place))//' springs; give one for each')
    end subroutine check_initial
+
+   !> Refuse a structure without inertia.
+   subroutine check_inertia(self, error)
+      class(structure_type), intent(in) :: self
+      type(error_type), allocatable, intent(inout) :: error
+
+      if (any(self%inertias > 0.0_wp .and. .not. self%is_held)) return
+      call fatal_error(error, bad_input, 'frame: nothing has mass; give &floor mass, or mass to nodes')
+   end subroutine check_inertia
+
+   !> Dynamic stiffness before any spring yields, in parts that nothing couples.
+   subroutine dynamic_parts(self, axial, part)
+      class(structure_type), intent(in) :: self
+      !> Whether the constant axial forces count
+      logical, intent(in) :: axial
+      class(dynamic_stiffness), allocatable, intent(out) :: part(:)
+      real(wp), allocatable :: stiffness(:, :), geometric(:, :)
+      real(wp) :: at_rest(signals), force(self%axial_count)
+
+      allocate (stiffness(self%half_width + 1, self%unknowns), source=0.0_wp)
+      call self%add_stiffness(self%initial_stiffness, self%initial_tangent, stiffness)
+      if (axial) then
+         allocate (geometric(self%half_width + 1, self%unknowns), source=0.0_wp)
+         at_rest = 0.0_wp
+         call self%axial_forces(at_rest, force)
+         call self%add_geometric(force, geometric)
+      end if
+      allocate (dynamic_stiffness :: part(1))
+      call part(1)%create(self%inertias, self%is_held, stiffness, geometric)
+   end subroutine dynamic_parts
+
+   !> The number by which the constant axial forces must be multiplied to buckle the structure before any
+   !> spring yields, see `critical_multiple`.
+   real(wp) function critical_factor(self) result(factor)
+      class(structure_type), intent(in) :: self
+      class(dynamic_stiffness), allocatable :: part(:)
+
+      factor = huge(1.0_wp)
+      if (.not. self%axially_loaded) return
+      call self%dynamic_parts(.true., part)
+      factor = part(1)%critical_multiple()
+   end function critical_factor
+
+   !> Momenta of a shape of vibration, conjugate to its coordinates.
+   pure subroutine momenta(self, shape, momentum)
+      class(structure_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: shape(:)
+      real(wp), intent(out), contiguous :: momentum(:)
+
+      momentum = self%inertias*shape
+   end subroutine momenta
+
+   !> Loads at the top of a frame are dead loads of its nodes.
+   subroutine put_under(self, load)
+      class(structure_type), intent(inout) :: self
+      !> Compression positive [N]
+      real(wp), intent(in) :: load
+
+      self%axial_load = load
+   end subroutine put_under
 
    !> A member that fails in the present state of the springs, 0: none.
    integer function next_failed_member(self, springs, time) result(member)

@@ -132,7 +132,8 @@ contains
          do i = 1, m
             right(i) = -springs%force(i)
          end do
-         right(:2*n) = right(:2*n) + load(lateral)*column%arm(:2*n) - load(horizontal)*column%ground_arm(:2*n)
+         right(:2*n) = right(:2*n) + load(lateral)*column%arm(:2*n) &
+                        + load(horizontal)*column%pattern(horizontal)%arm(:2*n)
          do k = 1, n
             own = spec%masses(k)*(load(vertical) + merge(spec%gravity, 0.0_wp, spec%self_weight))
             call add_dead_load(column, own, k, 0.5_wp*spec%lengths(k), state%q, spec%kinematics == 'pdelta', &

@@ -211,7 +211,6 @@ contains
       real(wp), allocatable, intent(out) :: momenta(:, :)
       type(error_type), allocatable, intent(out) :: error
       type(modes_type) :: modes
-      real(wp), allocatable :: mass(:, :)
       integer :: given, j
 
       given = size(structure%modal_damping)
@@ -227,15 +226,9 @@ contains
                           'first modes')
          return
       end if
-      select type (structure)
-      class is (column_type)
-         allocate (mass(structure%unknowns, structure%unknowns))
-         call symmetric_mass(structure, mass)
-         momenta = matmul(mass, modes%shapes)
-      class default
-         momenta = spread(structure%inertias, 2, size(modes%omega))*modes%shapes
-      end select
+      allocate (momenta, mold=modes%shapes)
       do j = 1, size(modes%omega)
+         call structure%momenta(modes%shapes(:, j), momenta(:, j))
          momenta(:, j) = sqrt(2.0_wp*structure%modal_damping(min(j, given))*modes%omega(j))*momenta(:, j)
       end do
    end subroutine find_modal_momenta

@@ -11,10 +11,8 @@ module rbs_solve_modal_modes
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_structure_column_column, only: column_type
    use rbs_structure_column_column_record, only: most_modes
-   use rbs_structure_column_sturm, only: lateral_chain, opening_chain, check_inertia_of_ends
-   use rbs_structure_dynamic_stiffness, only: dynamic_stiffness, new_band_stiffness
+   use rbs_structure_dynamic_stiffness, only: dynamic_stiffness
    use rbs_structure_spring_place, only: shear, flexure, axial
    use rbs_structure_structure, only: structure_type, horizontal
    implicit none
@@ -201,17 +199,14 @@ contains
       !> Whether the axial forces count
       logical, intent(in) :: axial
       type(mode_search), allocatable, intent(out) :: search(:)
+      class(dynamic_stiffness), allocatable :: part(:)
+      integer :: b
 
-      select type (structure)
-      class is (column_type)
-         allocate (search(merge(2, 1, structure%opens)))
-         allocate (search(1)%dynamic, source=lateral_chain(structure, axial))
-         if (structure%opens) allocate (search(2)%dynamic, source=opening_chain(structure))
-      class default
-         allocate (search(1))
-         allocate (search(1)%dynamic)
-         call new_band_stiffness(search(1)%dynamic, structure, axial)
-      end select
+      call structure%dynamic_parts(axial, part)
+      allocate (search(size(part)))
+      do b = 1, size(part)
+         allocate (search(b)%dynamic, source=part(b))
+      end do
       call search%start()
    end subroutine new_searches
 
@@ -222,17 +217,9 @@ contains
       type(mode_search), allocatable :: search(:)
       real(wp) :: factor, force
 
-      select type (structure)
-      class is (column_type)
-         call check_inertia_of_ends(structure, error)
-         if (allocated(error)) return
-      end select
-      call new_searches(structure, structure%axially_loaded, search)
-      if (search(1)%dynamic%modes == 0) then
-         call fatal_error(error, bad_input, 'modes: nothing has mass; give &floor mass, or mass to nodes')
-         return
-      end if
-      if (.not. structure%axially_loaded) return
+      call structure%check_inertia(error)
+      if (allocated(error) .or. .not. structure%axially_loaded) return
+      call new_searches(structure, .true., search)
       if (search(1)%dynamic%factor(0.0_wp) == 0) return
       factor = search(1)%dynamic%critical_multiple()
       force = structure%constant_axial(maxloc(abs(structure%constant_axial), dim=1))

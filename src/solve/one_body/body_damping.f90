@@ -3,10 +3,11 @@
 module rbs_solve_one_body_body_damping
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column, only: column_type
+   use rbs_structure_structure, only: structure_type
    implicit none
    private
 
-   public :: body_damping, damping_of_body, decay_of
+   public :: body_damping, column_of_one_body, damping_of_body, decay_of
 
    type :: body_damping
       !> Whether there is any
@@ -18,6 +19,19 @@ module rbs_solve_one_body_body_damping
    end type body_damping
 
 contains
+
+   !> The structure, if it is a column of one body with small rotations, whose joint does not open; else none.
+   function column_of_one_body(structure) result(column)
+      class(structure_type), intent(in), target :: structure
+      type(column_type), pointer :: column
+
+      column => null()
+      if (structure%unknowns /= 2) return
+      select type (structure)
+      type is (column_type)
+         column => structure
+      end select
+   end function column_of_one_body
 
    pure type(body_damping) function damping_of_body(column, joint_damping, modal) result(damping)
       type(column_type), intent(in) :: column

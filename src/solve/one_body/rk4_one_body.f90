@@ -35,7 +35,7 @@ contains
 
       self%lower = column%lower(1)
       self%height = column%arm(2)
-      self%mass = column%ground_arm(1)
+      self%mass = column%mass(1)
       self%turning = 1.0_wp/column%inertia(1)
       if (column%held) self%turning = 0.0_wp
       self%flexible = 1.0_wp/column%mass(1) + self%lower**2*self%turning

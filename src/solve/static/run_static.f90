@@ -3,15 +3,13 @@ module rbs_solve_static_run_static
    use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_structure_column_sturm, only: critical_factor
-   use rbs_structure_column_column, only: column_type, small, finite
+   use rbs_structure_column_column, only: column_type
    use rbs_base_check, only: check_values
    use rbs_solve_static_curved, only: trace_curved
    use rbs_solve_static_equilibrium, only: equilibrium_type
    use rbs_solve_static_straight, only: trace_straight
    use rbs_solve_task, only: task_type
-   use rbs_structure_frame_frame, only: frame_type
-   use rbs_structure_structure, only: structure_type
+   use rbs_structure_structure, only: structure_type, finite, signals, top_axial
    implicit none
    private
 
@@ -34,96 +32,76 @@ contains
       !> Axial load at the top of a column at each target (m), not the constant one; empty: constant [N]
       real(wp), intent(in), optional :: axial_load(:)
 
+      class(structure_type), allocatable, target :: other
+      class(structure_type), pointer :: loaded
+      type(equilibrium_type) :: equilibrium
+      real(wp) :: load(size(target)), factor
+      logical :: varies
+
       call check_values(target, trim(merge('force       ', 'displacement', by_force)), error)
       if (allocated(error)) return
-      select type (structure)
-      class is (column_type)
-         call trace_column(structure)
-      class is (frame_type)
-         call trace_frame(structure)
-      end select
+      loaded => structure
+      load = structure%axial_load
+      varies = abs(structure%axial_force_ratio) > 0.0_wp
+      if (present(axial_load)) then
+         if (size(axial_load) > 0) then
+            call check_axial_load()
+            if (allocated(error)) return
+            load = axial_load
+            ! From the state of another analysis the load goes to its first value.
+            varies = varies .or. task%resumes() .or. any(abs(load - load(1)) > same_load*maxval(abs(load)))
+            allocate (other, source=structure)
+            call other%put_under(load(1))
+            loaded => other
+         end if
+      end if
+      if (varies .or. structure%kinematics == finite) then
+         select type (column => loaded)
+         class is (column_type)
+            call trace_curved(column, by_force, target, pack(load, varies), task, error)
+         end select
+      else
+         call equilibrium%create(loaded, .false.)
+         call trace_straight(loaded, equilibrium, by_force, target, task, error)
+         if (allocated(error) .and. equilibrium%unstable > 0) then
+            associate (place => structure%place)
+               error%message = error%message//'. Member '// &
+                               trim(place(findloc(place%member, equilibrium%unstable, dim=1))%owner)// &
+                               ' snaps back: its springs soften faster than the rest of it gives back; '// &
+                               'give it a softer rest, or springs that soften less'
+            end associate
+         end if
+      end if
+      if (allocated(error) .and. by_force .and. .not. abs(task%summary%peak_displacement) > 0.0_wp) then
+         ! A column that could not be moved by a force may have buckled before.
+         factor = loaded%critical_factor()
+         if (factor <= 1.0_wp .and. task%summary%steps > 0) then
+            error%message = 'row '//to_text(task%summary%steps)//': the axial load is '// &
+                            to_text(1.0_wp/factor)//' times the critical load of the uncracked '// &
+                            'column, which buckles by itself; reduce axial_load, stiffen the springs, '// &
+                            'or drive it by displacement'
+         end if
+      end if
       ! Without inertia the ground holds what drives the structure.
       task%summary%peak_base_shear = task%summary%peak_force
       task%summary%method = 'static'
 
    contains
 
-      subroutine trace_frame(frame)
-         class(frame_type), intent(in), target :: frame
-         type(equilibrium_type) :: equilibrium
+      !> One axial load for each target, which does something.
+      subroutine check_axial_load()
+         logical :: acts(signals)
 
-         if (present(axial_load)) then
-            if (size(axial_load) > 0) then
-               call fatal_error(error, bad_input, 'axial_load: a frame has none that varies; its columns '// &
-                                'carry the dead load of floors, beams and nodes')
-               return
-            end if
-         end if
-         call equilibrium%create(frame, .false.)
-         call trace_straight(frame, equilibrium, by_force, target, task, error)
-         if (.not. allocated(error) .or. equilibrium%unstable == 0) return
-         error%message = error%message//'. Member '//trim(frame%member_name(equilibrium%unstable))// &
-                         ' snaps back: its springs soften faster than the rest of it gives back; give it '// &
-                         'a softer rest, or springs that soften less'
-      end subroutine trace_frame
-
-      subroutine trace_column(column)
-         class(column_type), intent(in), target :: column
-         class(column_type), allocatable, target :: other
-         class(column_type), pointer :: loaded
-         type(equilibrium_type) :: equilibrium
-         real(wp) :: load(size(target)), factor
-         logical :: varies, curved
-
-         loaded => column
-         load = column%axial_load
-         varies = abs(column%axial_force_ratio) > 0.0_wp
-         if (present(axial_load)) then
-            if (size(axial_load) > 0) then
-               call check_axial_load(column, size(target))
-               if (allocated(error)) return
-               load = axial_load
-               ! From the state of another analysis the load goes to its first value.
-               varies = varies .or. task%resumes() .or. any(abs(load - load(1)) > same_load*maxval(abs(load)))
-               allocate (other, source=column)
-               call other%put_under(load(1))
-               loaded => other
-            end if
-         end if
-         curved = varies .or. column%kinematics == finite
-         if (curved) then
-            call trace_curved(loaded, by_force, target, pack(load, varies), task, error)
-         else
-            call equilibrium%create(loaded, .false.)
-            call trace_straight(loaded, equilibrium, by_force, target, task, error)
-         end if
-         if (allocated(error) .and. by_force .and. .not. abs(task%summary%peak_displacement) > 0.0_wp) then
-            ! A column that could not be moved by a force may have buckled before.
-            call critical_factor(loaded, factor)
-            if (factor <= 1.0_wp .and. task%summary%steps > 0) then
-               error%message = 'row '//to_text(task%summary%steps)//': the axial load is '// &
-                               to_text(1.0_wp/factor)//' times the critical load of the uncracked '// &
-                               'column, which buckles by itself; reduce axial_load, stiffen the springs, '// &
-                               'or drive it by displacement'
-            end if
-         end if
-      end subroutine trace_column
-
-      !> One axial load for each target.
-      subroutine check_axial_load(column, targets)
-         class(column_type), intent(in) :: column
-         integer, intent(in) :: targets
-
-         if (size(axial_load) /= targets) then
+         acts = .false.
+         acts(top_axial) = .true.
+         call structure%check_loads(acts, error)
+         if (allocated(error)) return
+         if (size(axial_load) /= size(target)) then
             call fatal_error(error, bad_input, 'axial_load: '//to_text(size(axial_load))//' values for '// &
-                             to_text(targets)//' points of the path; give one for each')
+                             to_text(size(target))//' points of the path; give one for each')
             return
          end if
          call check_values(axial_load, 'axial_load', error)
-         if (allocated(error) .or. column%kinematics /= small .or. column%opens .or. &
-             any(column%rules%name == 'layered')) return
-         call fatal_error(error, bad_input, "axial_load: with kinematics = 'small', no layered joint and "// &
-                          "no axial spring a history of it does nothing; use 'pdelta', or give such springs")
       end subroutine check_axial_load
 
    end subroutine run_static

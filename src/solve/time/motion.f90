@@ -11,7 +11,7 @@ module rbs_solve_time_motion
    use rbs_structure_column_column, only: column_type
    use rbs_hysteresis_springs, only: spring_array
    use rbs_solve_modal_matrices, only: modal_damping
-   use rbs_solve_one_body_body_damping, only: body_damping, damping_of_body
+   use rbs_solve_one_body_body_damping, only: body_damping, column_of_one_body, damping_of_body
    use rbs_loading_loads, only: lateral, horizontal, vertical, top_axial
    use rbs_structure_structure, only: structure_type, motion_result, signals, pdelta, finite
    implicit none
@@ -69,12 +69,10 @@ contains
       end if
       self%second_order = structure%kinematics == pdelta .and. (structure%axially_loaded .or. self%varies)
       self%plain = structure%kinematics /= finite .and. .not. (self%damped .or. self%varies)
-      if (structure%kinematics == finite .or. self%varies .or. structure%unknowns /= 2) return
-      select type (structure)
-      type is (column_type)
-         self%one_body => structure
-         self%damping = damping_of_body(structure, self%joint_damping, self%modal)
-      end select
+      if (structure%kinematics == finite .or. self%varies) return
+      self%one_body => column_of_one_body(structure)
+      if (.not. associated(self%one_body)) return
+      self%damping = damping_of_body(self%one_body, self%joint_damping, self%modal)
    end subroutine create
 
    !> Accelerations of the springs at a state, and what they follow from.

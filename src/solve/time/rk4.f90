@@ -3,6 +3,7 @@ module rbs_solve_time_rk4
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
    use rbs_loading_loads, only: lateral, horizontal
+   use rbs_solve_one_body_body_damping, only: column_of_one_body
    use rbs_solve_one_body_rk4_one_body, only: rk4_body
    use rbs_structure_column_column, only: column_type
    use rbs_solve_time_scheme, only: scheme_type
@@ -40,17 +41,15 @@ contains
    subroutine create(self, structure)
       class(rk4_scheme), intent(out) :: self
       class(structure_type), intent(in) :: structure
+      type(column_type), pointer :: column
       integer :: m
 
       self%order = 4
       m = size(structure%place)
       allocate (self%q(m), self%v(m), self%stage_q(m), self%stage_v(m))
       call self%now%create(structure)
-      if (structure%unknowns /= 2) return
-      select type (structure)
-      type is (column_type)
-         call self%body%create(structure)
-      end select
+      column => column_of_one_body(structure)
+      if (associated(column)) call self%body%create(column)
    end subroutine create
 
    !> A step of h from the state, which stays as it is. Works of loads and damping are integrated with the

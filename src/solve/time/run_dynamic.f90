@@ -75,10 +75,8 @@ contains
       subroutine choose_implicit()
          type(method_type) :: method
 
-         if (.not. any(structure%inertias > 0.0_wp)) then
-            call fatal_error(error, bad_input, 'frame: nothing has mass; give &floor mass, or mass to nodes')
-            return
-         end if
+         call structure%check_inertia(error)
+         if (allocated(error)) return
          if (plan%method == 'auto') then
             plan%method = 'generalised_alpha'
             plan%reason = 'nodes of a frame without mass of their own need an implicit method'
@@ -116,6 +114,13 @@ contains
          end if
          call new_plan(plan, time, analysis%dt, longest, bound, error)
          if (allocated(error)) return
+         if (abs(structure%axial_force_ratio) > 0.0_wp) then
+            call fatal_error(error, bad_input, 'column: axial_force_ratio = '// &
+                             to_text(structure%axial_force_ratio)//' belongs to a static path, which has '// &
+                             'one lateral force; in a dynamic analysis give the axial load as a history, '// &
+                             'axial_load')
+            return
+         end if
          call structure%check_loads(loads%signal%acts(), error)
       end subroutine plan_steps
 

@@ -13,11 +13,13 @@
 !> top: B' f. It is M^-1 r of eqs 1-3 without M. Stiffness is a band of half-width 3, band(1 + i - j, j) =
 !> a(i, j) for j <= i <= j + 3; the y are a chain of their own behind the rest.
 module rbs_structure_column_chain
+   use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
    implicit none
    private
 
-   public :: deformations, displacements, second_order_forces, geometric_forces, second_order_energy
+   public :: deformations, displacements, joint_forces
+   public :: second_order_forces, geometric_forces, second_order_energy
    public :: add_joint_stiffness, add_axial_stiffness
 
 contains
@@ -71,6 +73,30 @@ contains
       end do
    end subroutine displacements
 
+   !> What forces on the bodies do on the deformations of the joints, B'^-1 g, from the top down.
+   pure subroutine joint_forces(n, kinds, lower, upper, g, f)
+      integer, intent(in) :: n, kinds
+      real(wp), intent(in) :: lower(n), upper(n), g(kinds*n)
+      real(wp), intent(out) :: f(kinds*n)
+      real(wp) :: force, moment
+      integer :: i
+
+      force = 0.0_wp
+      moment = 0.0_wp
+      do i = n, 1, -1
+         moment = moment + upper(i)*force
+         force = force + g(2*i - 1)
+         moment = moment + g(2*i) + lower(i)*force
+         f(i) = force
+         f(n + i) = moment
+      end do
+      force = 0.0_wp
+      do i = kinds*n, 2*n + 1, -1
+         force = force + g(i)
+         f(i) = force
+      end do
+   end subroutine joint_forces
+
    !> Second-order forces of axial forces, those of the potential -sum a_k th_k^2/2 - sum b_k u_k th_{k-1}: on
    !> the joints their part in u, on the bodies that in th. Power and stiffness follow from them.
    pure subroutine second_order_forces(n, axial, d, shear, step, moment)
@@ -117,16 +143,10 @@ contains
    pure real(wp) function second_order_energy(n, axial, d) result(energy)
       integer, intent(in) :: n
       real(wp), intent(in) :: axial(2*n), d(2*n)
-      real(wp) :: rotation
-      integer :: i
+      real(wp) :: g(2*n)
 
-      energy = 0.0_wp
-      rotation = 0.0_wp
-      do i = 1, n
-         energy = energy - axial(n + i)*d(i)*rotation
-         rotation = rotation + d(n + i)
-         energy = energy - 0.5_wp*axial(i)*rotation**2
-      end do
+      call geometric_forces(n, axial, d, g)
+      energy = 0.5_wp*inner_product(2*n, d, g)
    end function second_order_energy
 
    !> Add B' diag(k) B of the springs.

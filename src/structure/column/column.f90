@@ -16,12 +16,16 @@ module rbs_structure_column_column
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
    use rbs_structure_channel, only: channel_type, response_type, row_contents
-   use rbs_structure_column_chain, only: deformations, displacements, second_order_forces, geometric_forces, &
-                                         second_order_energy, add_joint_stiffness, add_axial_stiffness
+   use rbs_structure_column_chain, only: deformations, displacements, joint_forces, second_order_forces, &
+                                         geometric_forces, second_order_energy, add_joint_stiffness, &
+                                         add_axial_stiffness
+   use rbs_structure_column_sturm, only: sturm_chain, sturm_chain_of
+   use rbs_structure_dynamic_stiffness, only: dynamic_stiffness
    use rbs_hysteresis_interaction_joints, only: opening_of, rest_of
    use rbs_hysteresis_springs, only: spring_array
    use rbs_structure_spring_place, only: flexure
-   use rbs_structure_structure, only: structure_type, motion_result, accelerate_unknowns, small, pdelta, &
+   use rbs_structure_structure, only: structure_type, motion_result, accelerate_unknowns, &
+                                      power_of_patterns, small, pdelta, &
                                       finite, lateral, horizontal, vertical, top_axial, signals
    implicit none
    private
@@ -59,8 +63,6 @@ module rbs_structure_column_column
       real(wp), allocatable :: mass(:), inertia(:), lower(:), upper(:)
       !> Height of the joints above the ground (n + 1) [m]; the last is the top
       real(wp), allocatable :: joint_height(:)
-      !> Inertia load per acceleration of the ground, for small rotations (unknowns) [kg, kg m, 0]
-      real(wp), allocatable :: ground_arm(:)
       !> Sums over the bodies from i up (n + 1): mass, first and second moment of mass about joint i,
       !> rotary inertia included [kg, kg m, kg m2]
       real(wp), allocatable :: mass_above(:), moment_above(:), inertia_above(:)
@@ -90,11 +92,10 @@ module rbs_structure_column_column
       procedure :: unknown_rates
       procedure :: forces
       procedure :: axial_forces
-      procedure :: axial_rate
+      procedure :: axial_force
       procedure :: add_stiffness
       procedure :: add_geometric
       procedure :: accelerations
-      procedure :: speed
       procedure :: power_of_loads
       procedure :: potential_energy
       procedure :: top_height
@@ -103,16 +104,19 @@ module rbs_structure_column_column
       procedure :: acceleration_scale
       procedure :: check_loads
       procedure :: check_initial
+      procedure :: check_inertia
+      procedure :: dynamic_parts
+      procedure :: momenta
       procedure :: channels
       procedure :: fill_row
-      procedure, non_overridable :: put_under
+      procedure :: put_under
       procedure :: largest_turn
    end type column_type
 
 contains
 
    !> Put the column under a constant axial load at its top and the weight of its bodies.
-   pure subroutine put_under(self, load)
+   subroutine put_under(self, load)
       class(column_type), intent(inout) :: self
       real(wp), intent(in) :: load
       real(wp) :: above(self%n + 1), dead
@@ -225,14 +229,15 @@ contains
       if (self%held) axial(2*self%n) = 0.0_wp
    end function added_axial
 
-   !> Rate of the axial force at a spring under the slopes of the loads [N/s].
-   pure real(wp) function axial_rate(self, spring, load)
+   !> Axial force at a spring under loads [N].
+   pure real(wp) function axial_force(self, spring, load)
       class(column_type), intent(in) :: self
       integer, intent(in) :: spring
       real(wp), intent(in) :: load(:)
 
-      axial_rate = load(top_axial) + load(vertical)*self%lifted_joint(self%place(spring)%index)
-   end function axial_rate
+      axial_force = self%constant_axial(spring) + load(top_axial) &
+                    + load(vertical)*self%lifted_joint(self%place(spring)%index)
+   end function axial_force
 
    !> Add B' diag(k) B.
    subroutine add_stiffness(self, k, tangent, band)
@@ -305,53 +310,17 @@ contains
       end do
    end subroutine chain_accelerations
 
-   pure real(wp) function speed(self, signal, d, v)
-      class(column_type), intent(in) :: self
-      integer, intent(in) :: signal
-      real(wp), intent(in), contiguous :: d(:), v(:)
-
-      if (signal == lateral) then
-         speed = inner_product(size(d), self%arm, v)
-      else
-         speed = -inner_product(size(d), self%ground_arm, v)
-      end if
-   end function speed
-
-   !> Power of lateral force and moving ground, and of what is added to the axial load [W].
+   !> Power of the loads, and of what they add to the axial forces that do second-order work [W].
    pure real(wp) function power_of_loads(self, d, v, load) result(watt)
       class(column_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:), v(:), load(:)
-      integer :: i
+      real(wp) :: g(2*self%n)
 
-      watt = 0.0_wp
-      do i = lateral, horizontal
-         if (abs(load(i)) > 0.0_wp) watt = watt + self%speed(i, d, v)*load(i)
-      end do
-      if (abs(load(vertical)) > 0.0_wp .or. abs(load(top_axial)) > 0.0_wp) then
-         watt = watt + power_of_axial(self, d, v, load)
-      end if
+      watt = power_of_patterns(self, d, v, load)
+      if (self%kinematics == small .or. .not. any(abs(load(vertical:)) > 0.0_wp)) return
+      call geometric_forces(self%n, added_axial(self, load), d, g)
+      watt = watt - inner_product(2*self%n, v, g)
    end function power_of_loads
-
-   pure real(wp) function power_of_axial(self, d, v, load) result(watt)
-      class(column_type), intent(in) :: self
-      real(wp), intent(in), contiguous :: d(:), v(:), load(:)
-      real(wp) :: rising, g(2*self%n)
-      integer :: i, n
-
-      n = self%n
-      watt = 0.0_wp
-      if (self%kinematics /= small) then
-         call geometric_forces(n, added_axial(self, load), d, g)
-         watt = -inner_product(2*n, v, g)
-      end if
-      if (.not. self%opens) return
-      rising = 0.0_wp
-      do i = 1, n
-         rising = rising + v(2*n + i)
-         watt = watt - self%mass(i)*load(vertical)*rising
-      end do
-      watt = watt - load(top_axial)*rising
-   end function power_of_axial
 
    !> Potential of the constant axial load and the weight, on rotations and openings.
    pure real(wp) function potential_energy(self, d) result(energy)
@@ -441,18 +410,12 @@ contains
       scale = merge(about, along, self%place(spring)%kind == flexure)
    end function acceleration_scale
 
-   !> Refuse axial loads and vertical motions that do nothing, and what only a static path has.
+   !> Refuse axial loads and vertical motions that do nothing.
    subroutine check_loads(self, acts, error)
       class(column_type), intent(in) :: self
       logical, intent(in) :: acts(signals)
       type(error_type), allocatable, intent(inout) :: error
 
-      if (abs(self%axial_force_ratio) > 0.0_wp) then
-         call fatal_error(error, bad_input, 'column: axial_force_ratio = '// &
-                          to_text(self%axial_force_ratio)//' belongs to a static path, which has one '// &
-                          'lateral force; in a dynamic analysis give the axial load as a history, axial_load')
-         return
-      end if
       if (self%kinematics /= small .or. self%opens .or. any(self%rules%name == 'layered')) return
       if (acts(vertical)) then
          call fatal_error(error, bad_input, "vertical_acceleration: with kinematics = 'small' and joints "// &
@@ -481,6 +444,52 @@ contains
       call fatal_error(error, bad_input, name//": with top = 'fixed' the relative rotations must add up "// &
                        'to zero, not to '//to_text(total)//'; change that of the last joint')
    end subroutine check_initial
+
+   !> Refuse ends without inertia: no equation of motion would hold them.
+   subroutine check_inertia(self, error)
+      class(column_type), intent(in) :: self
+      type(error_type), allocatable, intent(inout) :: error
+
+      if (self%footing .and. .not. (self%mass(1) > 0.0_wp .and. self%inertia(1) > 0.0_wp)) then
+         call fatal_error(error, bad_input, 'column: footing_mass = '//to_text(self%mass(1))// &
+                          ' kg and footing_inertia = '//to_text(self%inertia(1))// &
+                          ' kg m2 must be above zero in a dynamic analysis; give those of the footing '// &
+                          '(only a static path takes a footing without inertia)')
+      else if (self%held .and. .not. self%mass(self%n) > 0.0_wp) then
+         call fatal_error(error, bad_input, "column: with top = 'fixed' a dynamic analysis needs "// &
+                          'top_mass, the mass that moves with the top without turning; give one above zero')
+      end if
+   end subroutine check_inertia
+
+   !> Slips and rotations, and openings, which nothing couples to them.
+   subroutine dynamic_parts(self, axial, part)
+      class(column_type), intent(in) :: self
+      logical, intent(in) :: axial
+      class(dynamic_stiffness), allocatable, intent(out) :: part(:)
+      type(sturm_chain), allocatable :: chain(:)
+      real(wp) :: none(2*self%n)
+
+      none = 0.0_wp
+      allocate (chain(merge(2, 1, self%opens)))
+      associate (n => self%n, k => self%initial_stiffness)
+         chain(1) = sturm_chain_of(k(:n), k(n + 1:2*n), self%mass, self%inertia, self%lower, self%upper, &
+                                   merge(self%second_order, none, axial), self%held)
+         if (self%opens) chain(2) = sturm_chain_of(k(2*n + 1:), none(:n) + 1.0_wp, self%mass, none(:n), &
+                                                   none(:n), none(:n), none, .false.)
+      end associate
+      call move_alloc(chain, part)
+   end subroutine dynamic_parts
+
+   !> Momenta of a motion of the joints, conjugate to it.
+   pure subroutine momenta(self, shape, momentum)
+      class(column_type), intent(in) :: self
+      real(wp), intent(in), contiguous :: shape(:)
+      real(wp), intent(out), contiguous :: momentum(:)
+      real(wp) :: x(self%unknowns)
+
+      call self%unknown_rates(shape, x)
+      call joint_forces(self%n, self%kinds, self%lower, self%upper, self%inertias*x, momentum)
+   end subroutine momenta
 
    pure subroutine channels(self, contents, channel)
       class(column_type), intent(in) :: self

@@ -2,6 +2,7 @@
 module rbs_structure_column_new_column
    use rbs_base_check, only: is_given
    use rbs_base_kinds, only: wp
+   use rbs_structure_column_chain, only: joint_forces
    use rbs_structure_column_column, only: column_type, small, pdelta, finite
    use rbs_structure_column_column_record, only: column_record
    use rbs_structure_column_finite, only: finite_chain_type
@@ -151,9 +152,6 @@ contains
                                          + m*s**2 + column%inertia(i)
             end associate
          end do
-         allocate (column%ground_arm(column%unknowns), source=0.0_wp)
-         column%ground_arm(:n) = column%mass_above(:n)
-         column%ground_arm(n + 1:2*n) = column%moment_above(:n)
       end subroutine set_mass_sums
 
       !> Axial forces per vertical acceleration of the ground.
@@ -237,6 +235,8 @@ contains
       end if
       do i = 1, size(column%pattern)
          associate (pattern => column%pattern(i))
+            allocate (pattern%arm(m))
+            call joint_forces(n, column%kinds, column%lower, column%upper, pattern%force, pattern%arm)
             pattern%first = findloc(abs(pattern%force) > 0.0_wp, .true., dim=1)
             pattern%last = findloc(abs(pattern%force) > 0.0_wp, .true., dim=1, back=.true.)
             if (pattern%first == 0) pattern%first = 1

@@ -13,15 +13,12 @@
 !>
 !> Openings, which nothing couples to slips and rotations, are a chain of their own that does not rotate.
 module rbs_structure_column_sturm
-   use rbs_base_error, only: error_type, fatal_error, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: to_text
-   use rbs_structure_column_column, only: column_type
    use rbs_structure_dynamic_stiffness, only: dynamic_stiffness
    implicit none
    private
 
-   public :: sturm_chain, lateral_chain, opening_chain, critical_factor, check_inertia_of_ends
+   public :: sturm_chain, sturm_chain_of
 
    type, extends(dynamic_stiffness) :: sturm_chain
       private
@@ -46,45 +43,31 @@ module rbs_structure_column_sturm
 
 contains
 
-   !> Slips and rotations on the initial stiffness.
-   type(sturm_chain) function lateral_chain(column, axial) result(self)
-      type(column_type), intent(in) :: column
-      !> Whether the axial forces count
-      logical, intent(in) :: axial
+   !> A chain from its joints and bodies.
+   pure type(sturm_chain) function sturm_chain_of(along, about, mass, inertia, lower, upper, axial, held) &
+      result(self)
+      !> Stiffness of the joints against translation and rotation, masses and rotary inertias of the bodies,
+      !> distances of their centroids from bottom and top (n)
+      real(wp), intent(in) :: along(:), about(:), mass(:), inertia(:), lower(:), upper(:)
+      !> Axial forces times lengths of the bodies, then axial forces across the slips (2 n)
+      real(wp), intent(in) :: axial(:)
+      logical, intent(in) :: held
       integer :: n
 
-      n = column%n
+      n = size(mass)
       self%n = n
-      self%held = column%held
-      self%modes = merge(2*n - 1, 2*n, column%held)
-      allocate (self%k(2, n), self%joint(7, n))
-      self%k(1, :) = column%initial_stiffness(:n)
-      self%k(2, :) = column%initial_stiffness(n + 1:2*n)
-      allocate (self%inertia(2*n), self%reach(2*n), source=1.0_wp)
-      self%inertia(::2) = column%mass
-      self%inertia(2::2) = column%inertia
-      self%reach(::2) = sum(column%length)
-      self%lower = column%lower
-      self%upper = column%upper
-      self%turning = merge(column%second_order(:n), 0.0_wp, axial)
-      self%sliding = merge(column%second_order(n + 1:), 0.0_wp, axial)
-   end function lateral_chain
-
-   !> Openings on the initial stiffness.
-   type(sturm_chain) function opening_chain(column) result(self)
-      type(column_type), intent(in) :: column
-      integer :: n
-
-      n = column%n
-      self%n = n
-      self%modes = n
-      allocate (self%k(2, n), self%joint(7, n), source=1.0_wp)
-      allocate (self%lower(n), self%upper(n), self%turning(n), self%sliding(n), source=0.0_wp)
-      self%k(1, :) = column%initial_stiffness(2*n + 1:)
-      allocate (self%inertia(2*n), source=0.0_wp)
-      self%inertia(::2) = column%mass
-      allocate (self%reach(2*n), source=1.0_wp)
-   end function opening_chain
+      self%held = held
+      self%k = transpose(reshape([along, about], [n, 2]))
+      self%inertia = reshape(transpose(reshape([mass, inertia], [n, 2])), [2*n])
+      self%modes = count(self%inertia > 0.0_wp) - merge(1, 0, held)
+      allocate (self%joint(7, n), self%reach(2*n), source=1.0_wp)
+      self%reach(::2) = sum(lower + upper)
+      if (.not. any(inertia > 0.0_wp)) self%reach = 1.0_wp
+      self%lower = lower
+      self%upper = upper
+      self%turning = axial(:n)
+      self%sliding = axial(n + 1:)
+   end function sturm_chain_of
 
    !> Number of squared frequencies below s, under a multiple of the axial forces.
    integer function factor(self, s, multiple) result(below)
@@ -250,36 +233,5 @@ contains
          total = total + turned/self%inertia(2*i)
       end do
    end function sum_of_squares
-
-   !> See `critical_multiple`.
-   subroutine critical_factor(column, factor)
-      type(column_type), intent(in) :: column
-      real(wp), intent(out) :: factor
-      type(sturm_chain) :: chain
-
-      factor = huge(1.0_wp)
-      if (.not. column%axially_loaded) return
-      chain = lateral_chain(column, .true.)
-      factor = chain%critical_multiple()
-   end subroutine critical_factor
-
-   !> Refuse ends without inertia: no equation of motion would hold them.
-   subroutine check_inertia_of_ends(column, error)
-      type(column_type), intent(in) :: column
-      type(error_type), allocatable, intent(out) :: error
-
-      if (column%footing) then
-         if (.not. (column%mass(1) > 0.0_wp .and. column%inertia(1) > 0.0_wp)) then
-            call fatal_error(error, bad_input, 'column: footing_mass = '//to_text(column%mass(1))// &
-                             ' kg and footing_inertia = '//to_text(column%inertia(1))// &
-                             ' kg m2 must be above zero in a dynamic analysis; give those of the footing '// &
-                             '(only a static path takes a footing without inertia)')
-            return
-         end if
-      end if
-      if (.not. column%held .or. column%mass(column%n) > 0.0_wp) return
-      call fatal_error(error, bad_input, "column: with top = 'fixed' a dynamic analysis needs top_mass, "// &
-                       'the mass that moves with the top without turning; give one above zero')
-   end subroutine check_inertia_of_ends
 
 end module rbs_structure_column_sturm

@@ -15,7 +15,7 @@ module rbs_structure_frame_frame
                                                   add_second_order, add_band, add_geometric_band, &
                                                   spring_motion, clear_round_off
    use rbs_structure_frame_frame_record, only: name_length
-   use rbs_structure_structure, only: structure_type, motion_result, lateral, horizontal, signals, top_axial
+   use rbs_structure_structure, only: structure_type, lateral, signals, top_axial
    implicit none
    private
 
@@ -91,12 +91,9 @@ module rbs_structure_frame_frame
       procedure :: rotations
       procedure :: storey_drifts
       procedure :: potential_energy
-      procedure :: axial_rate
-      procedure :: acceleration_scale
       procedure :: channels
       procedure :: fill_row
       procedure :: base_force
-      procedure :: accelerations
       procedure :: check_loads
       procedure :: is_removed
       procedure :: next_failed_member
@@ -473,56 +470,15 @@ contains
       end do
    end subroutine storey_drifts
 
-   pure real(wp) function axial_rate(self, spring, load)
-      class(frame_type), intent(in) :: self
-      integer, intent(in) :: spring
-      real(wp), intent(in) :: load(:)
-
-      axial_rate = 0.0_wp
-   end function axial_rate
-
-   pure real(wp) function acceleration_scale(self, spring, springs, load) result(scale)
-      class(frame_type), intent(in) :: self
-      integer, intent(in) :: spring
-      type(spring_array), intent(in) :: springs
-      real(wp), intent(in) :: load(:)
-
-      scale = abs(springs%force(spring))/maxval(self%inertias) + abs(load(horizontal))
-   end function acceleration_scale
-
-   !> Accelerations of what has mass; where there is none they follow from the motion, not from forces.
-   subroutine accelerations(self, d, v, load, pressing, result)
-      class(frame_type), intent(in) :: self
-      real(wp), intent(in) :: d(self%coordinates), v(self%coordinates), load(signals)
-      integer, intent(in) :: pressing
-      type(motion_result), intent(inout) :: result
-      real(wp) :: correction(size(d))
-      integer :: i
-
-      associate (x => result%force)
-         call self%forces(d, load, result%axial(:pressing), self%initial_tangent, result%f, x, correction)
-         if (self%damped) call self%damp(v(self%springs + 1:), self%initial_tangent, x)
-         call self%add_ground(load, x)
-         do i = 1, self%unknowns
-            if (self%inertias(i) > 0.0_wp) then
-               x(i) = x(i)/self%inertias(i) - self%mass_damping*v(self%springs + i)
-            else
-               x(i) = 0.0_wp
-            end if
-         end do
-         call self%spring_rates(self%initial_tangent, x, result%a)
-      end associate
-   end subroutine accelerations
-
-   !> Refuse an axial load with time: what columns carry follows from the dead load.
+   !> Refuse an axial load: what columns carry follows from the dead load.
    subroutine check_loads(self, acts, error)
       class(frame_type), intent(in) :: self
       logical, intent(in) :: acts(signals)
       type(error_type), allocatable, intent(inout) :: error
 
       if (acts(top_axial)) then
-         call fatal_error(error, bad_input, 'axial_load: a frame has none that varies in time; its '// &
-                          'columns carry the dead load of floors, beams and nodes')
+         call fatal_error(error, bad_input, 'axial_load: a frame has none that varies; its columns '// &
+                          'carry the dead load of floors, beams and nodes')
       else if (acts(lateral) .and. .not. any(abs(self%pattern(lateral)%force) > 0.0_wp)) then
          call fatal_error(error, bad_input, 'force: the pattern of the lateral load has no share of any '// &
                           'node; choose pattern')
