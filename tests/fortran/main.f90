@@ -9,7 +9,6 @@ program unit_tests
    use test_frame, only: collect_frame
    use test_implicit, only: collect_implicit
    use test_implicit_finite, only: collect_implicit_finite
-   use test_interaction, only: collect_interaction
    use test_layered, only: collect_layered
    use test_linalg, only: collect_linalg
    use test_modal, only: collect_modal
@@ -44,7 +43,7 @@ program unit_tests
       procedure(collect_interface), pointer, nopass :: collect => null()
    end type suite_type
 
-   type(suite_type) :: suites(26)
+   type(suite_type) :: suites(25)
    character(len=80) :: wanted, pattern
    integer :: i, run, failed, found
 
@@ -56,7 +55,6 @@ program unit_tests
              suite_type('concrete', collect_concrete), &
              suite_type('steel', collect_steel), &
              suite_type('layered', collect_layered), suite_type('rules', collect_rules), &
-             suite_type('interaction', collect_interaction), &
              suite_type('springs', collect_springs), &
              suite_type('chain', collect_chain), &
              suite_type('finite', collect_finite), suite_type('frame', collect_frame), &

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem.springs import Bilinear, Elastic, Layered
+from rbsdem.springs import Bilinear, Compression, Elastic, Layered, Spring
 
 DRIVEN = (0.012, -0.012, 0.03, -0.03, 0.045, 0.0)
 
@@ -94,6 +94,77 @@ def test_two_bodies_whose_axial_load_follows_the_force(
     # With P-Delta the force is a curve, and the works of each stride may miss 1e-13 of the energy.
     share = 1e-12 if kinematics == "pdelta" else 1e-13
     assert result.summary["energy_residual"] < share * result.summary["input_energy"]
+
+
+UNSYMMETRIC = [
+    (-0.15, Bilinear(8e8, 1.5e-3, 1.6e7)),
+    (-0.06, Bilinear(5e8, 1e-3, 5e6)),
+    (0.03, Bilinear(5e8, 1e-3, 5e6)),
+    (0.15, Bilinear(6e8, 2e-3, 1.2e7)),
+]
+#: Shear spring that hardly slips beside the joint.
+STIFF = 1e16
+
+
+def through(
+    layers: list[tuple[float, Spring]], rotation: np.ndarray, load: np.ndarray
+) -> rbsdem.Result:
+    """Return the path of a joint straight from point to point, but for the slip."""
+    column = rbsdem.Column(1.0, 1.0, Elastic(STIFF), Layered(layers))
+    return rbsdem.cyclic(column, displacement=rotation, axial_load=load, openings=True)
+
+
+@pytest.mark.parametrize(
+    ("layers", "rest", "points"),
+    [
+        (
+            [(y, Compression(100.0)) for y in (-3, -1, 1, 3)],
+            0.0,
+            [
+                (0, 8, -1 / 50, 0),
+                (0.01, 8, -1 / 60, 16),
+                (0.02, 4, 1 / 50, 12),
+                (0.02, 12, -1 / 50, 28),
+                (-0.01, 7, -1 / 75, -15),
+                (0, 0.5, -1 / 800, 0),
+            ],
+        ),
+        (
+            UNSYMMETRIC,
+            -2.279202279e-4,
+            [
+                (0.006, 4e5, -5.4166666667e-05, 2.0493750000e05),
+                (0.012, 9e5, -4.0731489741e-04, 3.3636768599e05),
+                (-0.004, 1.2e6, -8.3231489741e-04, -1.8450731401e05),
+                (-0.015, 3e5, -7.1933130972e-04, -3.8428613266e05),
+                (-0.015, 1e6, -1.2063224154e-03, -3.1394608088e05),
+                (0.02, -2e5, 4.7088016094e-04, 3.9822044665e05),
+                (0.0, 5e5, -1.9578650573e-04, -2.4677955335e05),
+            ],
+        ),
+    ],
+)
+def test_points_of_a_joint(
+    layers: list[tuple[float, Spring]], rest: float, points: list[tuple[float, ...]]
+) -> None:
+    """Four contacts by hand; unsymmetric layers, whose rotations count from those without load."""
+    rotation, load, opening, moment = np.array(points).T
+    run = through(layers, rotation - rest + moment / STIFF, load)
+    np.testing.assert_allclose(run.opening[:, 0], opening, rtol=1e-9)
+    np.testing.assert_allclose(run.moment[:, 0], moment, rtol=1e-9, atol=1e-9 * moment.max())
+
+
+def test_a_second_pass_of_a_closed_path_gives_no_energy() -> None:
+    """Work of the moment and of the axial load on the opening, along random loops."""
+    rng = np.random.default_rng(7)
+    for _ in range(20):
+        loop = np.column_stack([rng.uniform(-1e-2, 1e-2, 4), rng.uniform(-3e5, 1e6, 4)])
+        corners = np.vstack([loop, loop, loop[:1]])
+        share = np.linspace(0, 8, 401)
+        rotation, load = (np.interp(share, range(9), values) for values in corners.T)
+        run = through(UNSYMMETRIC, rotation, load)
+        lifted = 0.5 * (load[1:] + load[:-1]) * np.diff(run.opening[:, 0])
+        assert run.energy["input"][-1] - run.energy["input"][200] - lifted[200:].sum() > -1.0
 
 
 def test_the_work_on_the_openings_under_the_first_load() -> None:
