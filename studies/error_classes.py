@@ -24,8 +24,8 @@ from pathlib import Path
 import numpy as np
 
 import rbsdem
-from rbsdem.methods.study_case import Setting as Way
-from rbsdem.methods.study_case import study_case
+from rbsdem.methods.ladder import Setting as Way
+from rbsdem.methods.ladder import study_case
 from rbsdem.run.accuracy import Answer, answer_of, errors_of
 from rbsdem.springs import Elastic, PeakOriented, Pinching
 

@@ -20,8 +20,8 @@ import numpy as np
 
 import rbsdem
 from rbsdem import plot
+from rbsdem.methods.ladder import MethodRun
 from rbsdem.methods.study import MethodStudy, compare_methods, seconds_text
-from rbsdem.methods.study_case import MethodRun
 from rbsdem.peer import shipped_reversals
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -87,11 +87,11 @@ def within(
         return value
     ends = {"above": above, "from": least, "below": below, "at most": most}
     said = [f"{word} {bound:.15g}" for word, bound in ends.items() if bound is not None]
-    text = " and ".join(said)
+    text = " and ".join(said) or "a finite number"
     if least is not None:
         text = f"{least:.15g} or more" if len(said) == 1 else text.replace(" and ", " to ", 1)
         text = text.replace(" to at most ", " to ")
-    text += "" if abs(value) < np.inf else " and finite"
+    text += " and finite" if said and not abs(value) < np.inf else ""
     raise InputError(f"{name} = {value:.6g}{unit and ' '}{unit} must be {text}{why}")
 
 

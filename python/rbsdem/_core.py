@@ -11,7 +11,7 @@ import json
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cache
 from itertools import islice
@@ -75,13 +75,20 @@ class Statement(NamedTuple):
         return Statement(f"{self.text}\n{other.text}", self.numbers + other.numbers)
 
 
+def joined(parts: Iterable[Statement]) -> Statement:
+    """Return the groups of all parts."""
+    filled = [part for part in parts if part.text]
+    numbers = [number for part in filled for number in part.numbers]
+    return Statement("\n".join([part.text for part in filled]), numbers)
+
+
 def group(name: str, values: Mapping[str, Any]) -> Statement:
     """Return the statement of one group: names and values; None and empty lists are left out."""
     words, numbers = [name], list[float]()
     for key, value in values.items():
-        if type(value) is float:
+        if type(value) is float or (type(value) is int and abs(value) < _EXACT):
             words.append(key)
-            numbers.append(value)
+            numbers.append(float(value))
         elif value is None:
             continue
         elif isinstance(value, str):

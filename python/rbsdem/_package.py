@@ -68,7 +68,7 @@ COMMANDS = dict.fromkeys(
 ) | {
     "peer": "rbsdem.cli.measured",
     "predict": "rbsdem.cli.measured",
-    "verify": "rbsdem.cli.verification",
+    "verify": "rbsdem.cli.measured",
     "completion": "rbsdem.cli",
 }
 

@@ -46,11 +46,6 @@ class InputError(RbsdemError, ValueError):
         """The value that is wrong, the first if there are several."""
         return self.faults[0][0] if self.faults else ""
 
-    def __reduce__(self) -> tuple[type[InputError], tuple[str, str]]:
-        """Keep `field` when the error is sent to another process (pickle)."""
-        fields = {field for field, _ in self.faults}
-        return type(self), (str(self), fields.pop() if len(fields) == 1 else "")
-
 
 def _field(line: str) -> str:
     match = _FIELD.match(line)
@@ -77,10 +72,6 @@ class SolveError(RbsdemError, RuntimeError):
         super().__init__(message)
         self.result = result
 
-    def __reduce__(self) -> tuple[type[SolveError], tuple[str, Any]]:
-        """Keep `result` when the error is sent to another process (pickle)."""
-        return type(self), (str(self), self.result)
-
 
 class Interrupted(KeyboardInterrupt):
     """Ctrl-C ended an analysis of many runs before all of them were done.
@@ -103,10 +94,6 @@ class Interrupted(KeyboardInterrupt):
     def __init__(self, message: str = "", ensemble: Any = None) -> None:
         super().__init__(message)
         self.ensemble = ensemble
-
-    def __reduce__(self) -> tuple[type[Interrupted], tuple[str, Any]]:
-        """Keep `ensemble` when the exception is sent to another process (pickle)."""
-        return type(self), (str(self), self.ensemble)
 
 
 class LongRunWarning(UserWarning):

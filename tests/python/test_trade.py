@@ -20,9 +20,9 @@ from reference_chain import Linear, chain
 import rbsdem
 from rbsdem import compare_methods
 from rbsdem.methods import study_case as cases
+from rbsdem.methods.ladder import study_case
 from rbsdem.methods.physics import split_bodies
 from rbsdem.methods.study import MethodStudy
-from rbsdem.methods.study_case import study_case
 from rbsdem.output.methods import report
 from rbsdem.run.accuracy import Answer, at_times, common_interval, errors_of
 from rbsdem.springs import Bilinear, Compression, Elastic

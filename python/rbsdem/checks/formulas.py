@@ -14,8 +14,13 @@ from dataclasses import dataclass
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Bar
 from rbsdem.model.shape import Section, checked_section
-from rbsdem.section.curvature import hardening_share, hinge_length, strain_penetration
-from rbsdem.section.ranges import carried_load, column_length
+from rbsdem.section.curvature import (
+    carried_load,
+    column_length,
+    hardening_share,
+    hinge_length,
+    strain_penetration,
+)
 
 # ---- The quantities of a drawing that formulas of codes use, in the units they are written in ----
 

@@ -33,9 +33,8 @@ from rbsdem.methods.ladder import OF_SETTING
 from rbsdem.methods.physics import Physics
 from rbsdem.methods.study import compare_methods
 from rbsdem.model.frame import Frame
-from rbsdem.motions.motion import GroundMotion
+from rbsdem.motions.motion import GroundMotion, synthetic
 from rbsdem.motions.read import read_motion, read_motions
-from rbsdem.motions.shaping import synthetic
 from rbsdem.output import many as ensemble_figures
 from rbsdem.output import methods as methods_output
 from rbsdem.output import tables

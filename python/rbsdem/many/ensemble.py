@@ -38,8 +38,8 @@ from rbsdem.many.plan import (
     expected,
     one_run,
 )
-from rbsdem.model.citation import bibtex, parts_of
 from rbsdem.model.frame import Frame, Structure
+from rbsdem.model.rows import bibtex, parts_of
 from rbsdem.run.result import Result
 from rbsdem.run.solver import COLLAPSE_DRIFT, Solver, checked_solver
 

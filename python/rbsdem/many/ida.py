@@ -74,21 +74,15 @@ class CollapseSearch:
     highest: float = 200.0
 
     def __post_init__(self) -> None:
-        faults = []
-        bounds = {
-            "first": (0.0, 1e3),
-            "growth": (1.0, 10.0),
-            "resolution": (1e-6, 1.0),
-            "highest": (0.0, 1e6),
-        }
-        for name, (least, most) in bounds.items():
-            value = _arguments.number(getattr(self, name), f"search: {name}")
-            object.__setattr__(self, name, value)
-            if not least < value <= most:
-                allowed = f"above {least:g}, at most {most:g}"
-                faults.append(f"search: {name} = {value:g} must be {allowed}")
-        if _arguments.integer(self.points, "search: points") < 1 or self.points > 1000:
-            faults.append(f"search: points = {self.points} must be from 1 to 1000")
+        faults: list[str] = []
+        bounds = {"first": (0.0, 1e3), "growth": (1.0, 10.0), "resolution": (1e-6, 1.0)}
+        for name, (above, most) in (bounds | {"highest": (0.0, 1e6)}).items():
+            with _arguments.collected(faults):
+                given = getattr(self, name)
+                value = _arguments.number(given, f"search: {name}", above=above, most=most)
+                object.__setattr__(self, name, value)
+        with _arguments.collected(faults):
+            _arguments.integer(self.points, "search: points", least=1, most=1000)
         if not faults and self.first > self.highest:
             faults.append(f"search: first = {self.first:g} is above highest = {self.highest:g}")
         _arguments.raise_faults(faults)

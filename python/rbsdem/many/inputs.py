@@ -111,9 +111,7 @@ def _motion(name: str | int, item: Any) -> Motion:
         )
     acceleration = _arguments.finite_vector(given, "acceleration")
     if isinstance(given_time, (int, float)):
-        step = _arguments.number(given_time, "step")
-        if not step > 0:
-            raise InputError(f"step = {step} s must be above zero")
+        step = _arguments.number(given_time, "step", above=0, unit="s")
         given_time = step * np.arange(acceleration.size)
     time = _arguments.finite_vector(given_time, "time")
     if time.size != acceleration.size:
@@ -354,7 +352,4 @@ def _one(edp: str, threshold: Any) -> tuple[str, float]:
         return edp, _SWITCHES[edp]
     if threshold is None:
         raise InputError(f"threshold is missing; give the value of {edp} that is the limit state")
-    value = _arguments.number(threshold, f"threshold of {edp}")
-    if not value > 0:
-        raise InputError(f"threshold of {edp} = {value:g} must be above 0")
-    return edp, value
+    return edp, _arguments.number(threshold, f"threshold of {edp}", above=0)

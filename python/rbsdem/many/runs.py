@@ -419,7 +419,13 @@ def make_collector(
     measure = make_intensity(intensity, next(iter(named.values())), period, damping)
     settings = {"method": "auto"} | checked_solver(solver, who)
     settings |= {
-        "collapse_drift": checked_drift(collapse_drift),
+        "collapse_drift": _arguments.number(
+            collapse_drift,
+            "collapse_drift",
+            above=0,
+            below=1,
+            why="; it is a displacement over the height",
+        ),
         "initial": initial,
         "jobs": jobs,
         "progress": progress,
@@ -463,14 +469,3 @@ def columns_by_name(columns: Any) -> dict[str | int, Structure]:
     names, items = inputs.named_columns(columns, faults)
     _arguments.raise_faults(faults)
     return dict(zip(names, items, strict=True))
-
-
-def checked_drift(collapse_drift: float) -> float:
-    """Return the drift that counts as a collapse."""
-    drift = _arguments.number(collapse_drift, "collapse_drift")
-    if not 0 < drift < 1:
-        raise InputError(
-            f"collapse_drift = {drift:g} must be above 0 and below 1; it is a displacement over "
-            "the height"
-        )
-    return drift

@@ -11,10 +11,19 @@ from rbsdem._files import Tabular, data_frame
 from rbsdem._progress import progress_bar
 from rbsdem._types import ArrayLike, DataFrame
 from rbsdem.errors import InputError, SolveError
-from rbsdem.methods.ladder import Budget, MethodRuns, checked_methods, ladders, own_setting, probe
-from rbsdem.methods.physics import Physics, find_physics
-from rbsdem.methods.reference import Reference, find_reference
-from rbsdem.methods.study_case import MethodRun, SolvedRun, StudyCase, study_case
+from rbsdem.methods.ladder import (
+    Budget,
+    MethodRun,
+    MethodRuns,
+    SolvedRun,
+    StudyCase,
+    checked_methods,
+    ladders,
+    own_setting,
+    probe,
+    study_case,
+)
+from rbsdem.methods.physics import Physics, Reference, find_physics, find_reference
 from rbsdem.model.column import Column
 from rbsdem.model.springs import Spring
 from rbsdem.motions.motion import GroundMotion, acting

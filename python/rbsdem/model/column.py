@@ -139,8 +139,7 @@ class Parameter:
         about = f"parameter{f' {self.what}' if self.what else ''}"
         _arguments.convert(self, about)
         for name in ("value", "low", "high"):
-            if not math.isfinite(getattr(self, name)):
-                raise InputError(f"{about}: {name} = {getattr(self, name)} must be a finite number")
+            _arguments.within(getattr(self, name), f"{about}: {name}")
         if not self.low < self.high:
             raise InputError(
                 f"{about}: bounds {self.low:g} and {self.high:g} must be a lower and a higher one"
@@ -570,10 +569,7 @@ class Column:
         for name in ("shear", "flexure", "axial_spring"):
             beneath = None if self.footing is None else getattr(self.footing, name)
             parts += _springs_statement(getattr(self, name), beneath, name, ids)
-        if ids:
-            parts.append(layer_springs(ids))
-        numbers = [number for part in parts for number in part.numbers]
-        return _core.Statement("\n".join(part.text for part in parts), numbers)
+        return _core.joined([*parts, layer_springs(ids)])
 
 
 #: What of a column is no spring, and no record of its own.

@@ -784,8 +784,7 @@ class Frame:
             parts.append(self.panel.statement("flexure", panel=_core.Text("all")))
         if isinstance(self.damping, Damping):
             parts.append(self.damping.statement())
-        numbers = [number for part in parts for number in part.numbers]
-        return _core.Statement("\n".join(part.text for part in parts if part.text), numbers)
+        return _core.joined(parts)
 
     def _floors(self) -> Iterator[_core.Statement]:
         masses, loads = self.floor_mass, self.beam_load

@@ -53,7 +53,7 @@ class Concrete:
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "concrete")
-        self.stress(0.0)
+        _core.evaluate("concrete_response", self._law("ts"), strain=0.0)
 
     def statement(self) -> _core.Statement:
         """Return the keys of the concrete with their values."""
@@ -80,9 +80,11 @@ class Concrete:
             If a strain is not a finite number.
         """
         strains = _arguments.finite_vector(strain, "strain", shape="any")
-        law = self.statement() + _core.group("diagram", {"tension": tension})
-        stress = _core.evaluate("concrete_response", law, strain=strains).values
+        stress = _core.evaluate("concrete_response", self._law(tension), strain=strains).values
         return stress.reshape(strains.shape)[()]
+
+    def _law(self, tension: str) -> _core.Statement:
+        return self.statement() + _core.group("diagram", {"tension": tension})
 
 
 @dataclass(frozen=True)
@@ -120,7 +122,7 @@ class Steel:
         _arguments.convert(self, "steel")
         if given(self.fu) is None:
             object.__setattr__(self, "fu", Derived(1.5 * self.fy))
-        self.stress(0.0)
+        _core.evaluate("steel_response", self.statement(), strain=0.0)
 
     def statement(self, number: int | None = None) -> _core.Statement:
         """Return the keys of the steel with their values; `number` is what bars refer to."""

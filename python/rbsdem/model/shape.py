@@ -255,19 +255,16 @@ class Section(_Fields, ABC):
         steels += [steel for _, _, steel in bars]
         steels += [] if self.ties is None else [self.ties.steel]
         numbers = {steel: i for i, steel in enumerate(dict.fromkeys(steels), 1)}
-        statement = _core.group("section", {"shape": self.shape, **sizes})
-        statement += self.concrete.statement()
-        for steel, number in numbers.items():
-            statement += steel.statement(number)
+        parts = [_core.group("section", {"shape": self.shape, **sizes}), self.concrete.statement()]
+        parts += [steel.statement(number) for steel, number in numbers.items()]
         if bars:
             y, area, each = zip(*bars, strict=True)
             rows = {"y": y, "area": area, "steel": [numbers[steel] for steel in each]}
-            statement += _core.group("bars", rows)
-        for name, layout in layouts.items():
-            statement += layout.statement(name, numbers)
+            parts.append(_core.group("bars", rows))
+        parts += [layout.statement(name, numbers) for name, layout in layouts.items()]
         if self.ties is not None:
-            statement += self.ties.statement(numbers[self.ties.steel])
-        return statement
+            parts.append(self.ties.statement(numbers[self.ties.steel]))
+        return _core.joined(parts)
 
     @property
     def hollow(self) -> bool:

@@ -6,8 +6,6 @@ below are those of a shear spring.
 
 from __future__ import annotations
 
-import csv
-import io
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields, replace
@@ -17,7 +15,7 @@ from typing import Any, ClassVar, Literal, NamedTuple, TypeVar, get_args
 import numpy as np
 
 from rbsdem import _arguments, _core
-from rbsdem._files import atomic_write
+from rbsdem._files import atomic_write, data_frame
 from rbsdem._types import Array, ArrayLike, Self
 from rbsdem.errors import InputError
 
@@ -725,10 +723,7 @@ def _response(spring: _core.Statement, path: Array, axial_load: float) -> Array:
 
 def layer_springs(ids: dict[Spring, int]) -> _core.Statement:
     """Return the springs of layers as groups of a case, each once, with their ids."""
-    parts = [spring.statement("layer_spring", id=number) for spring, number in ids.items()]
-    return _core.Statement(
-        "\n".join(part.text for part in parts), [x for part in parts for x in part.numbers]
-    )
+    return _core.joined([spring.statement("layer_spring", id=i) for spring, i in ids.items()])
 
 
 #: What a layer stands for: a bar, concrete inside the ties, concrete outside.
@@ -852,12 +847,8 @@ class Strains:
                 f"{number}_{part}_{y:g}": self.value[:, number - 1]
                 for number, (part, y) in enumerate(zip(self.part, self.position, strict=True), 1)
             }
-        text = io.StringIO(newline="")
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(found)
-        writer.writerows(zip(*(column.tolist() for column in found.values()), strict=True))
         with atomic_write(path) as file:
-            file.write(text.getvalue().encode())
+            data_frame(found).to_csv(file, index=False, lineterminator="\n")
 
     def __repr__(self) -> str:
         return (

@@ -16,7 +16,7 @@ from rbsdem.output.style import Line, axes_or_new, line_of, style
 from rbsdem.output.tables import console, plain, table
 
 if TYPE_CHECKING:
-    from rbsdem.methods.study_case import MethodRun
+    from rbsdem.methods.ladder import MethodRun
 
 #: Marker, filling and gray of each method; located events are filled.
 MARKS: dict[tuple[str, str | None], Line] = {

@@ -20,7 +20,7 @@ from rbsdem.errors import InputError, SolveError
 from rbsdem.model.column import Column, Damping, Footing, notes_off
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.model.frame_result import FrameResult
-from rbsdem.model.rows import FORMAT, FORMAT_VERSION, SAVED, check_ending
+from rbsdem.model.rows import FORMAT, FORMAT_VERSION, SAVED, check_ending, same
 from rbsdem.run.groups import (
     SPRING_GROUPS,
     frame_of,
@@ -152,20 +152,14 @@ class Case:
             settings["initial"] = _core.Text(os.fspath(settings["initial"]))
         parts.append(_core.group("analysis", {"method": self.method} | settings))
         parts.append(_core.group("output", output))
-        numbers = [float(number) for part in parts for number in part.numbers]
-        statement = _core.Statement("\n".join(part.text for part in parts), numbers)
-        return _core.evaluate("to_namelist", statement).text
+        return _core.evaluate("to_namelist", _core.joined(parts)).text
 
     def __eq__(self, other: object) -> bool:
         """Return whether another case has the same column, histories and settings, bit for bit."""
         if not isinstance(other, Case):
             return NotImplemented
-        return all(
-            np.array_equal(one, two) if isinstance(one, np.ndarray) else bool(one == two)
-            for one, two in (
-                (getattr(self, field.name), getattr(other, field.name)) for field in fields(self)
-            )
-        )
+        names = [field.name for field in fields(self)]
+        return all(same(getattr(self, name), getattr(other, name)) for name in names)
 
     __hash__ = None  # type: ignore[assignment]
 

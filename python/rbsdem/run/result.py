@@ -530,14 +530,12 @@ def pushover(
         if not isinstance(structure, Frame):
             raise InputError("pushover: pattern is for frames; a column is pushed at its top")
         structure = replace(structure, pattern=pattern)  # type: ignore[arg-type]
-    far = _arguments.number(given[said[0]], f"pushover: {said[0]}")
-    if not math.isfinite(far) or far == 0:
-        raise InputError(f"pushover: {said[0]} = {far:g} must be a finite number that is not 0")
+    far = _arguments.number(given[said[0]], f"pushover: {said[0]}", unit="")
+    if far == 0:
+        raise InputError(f"pushover: {said[0]} = 0 must be a finite number that is not 0")
     if said[0] == "drift":
         far *= structure.height
-    points = _arguments.integer(points, "pushover: points")
-    if points < 1:
-        raise InputError(f"pushover: points = {points} must be 1 or more")
+    points = _arguments.integer(points, "pushover: points", least=1)
     name = "force" if said[0] == "force" else "displacement"
     way: dict[str, Any] = {name: far * np.arange(1, points + 1) / points}
     try:

@@ -6,14 +6,14 @@ the face that a positive curvature puts in tension.
 """
 
 from rbsdem.section.axial_moment import interaction as interaction
-from rbsdem.section.beams import flange_width as flange_width
-from rbsdem.section.beams import rigid_ends as rigid_ends
 from rbsdem.section.columns import column as column
 from rbsdem.section.columns import member as member
 from rbsdem.section.curvature import diagram as diagram
 from rbsdem.section.curvature import moment_curvature as moment_curvature
 from rbsdem.section.curvature import strains as strains
 from rbsdem.section.layered import LayeredColumn as LayeredColumn
+from rbsdem.section.panel import flange_width as flange_width
+from rbsdem.section.panel import rigid_ends as rigid_ends
 from rbsdem.section.paper_springs import SectionSprings as SectionSprings
 from rbsdem.section.paper_springs import springs as springs
 from rbsdem.section.parameters import parameters as parameters

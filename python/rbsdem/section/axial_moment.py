@@ -25,8 +25,7 @@ from rbsdem.errors import InputError
 from rbsdem.model.materials import Spiral, Steel
 from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Layered, SteelSpring
-from rbsdem.section.curvature import largest_moment
-from rbsdem.section.ranges import is_confined
+from rbsdem.section.curvature import is_confined, largest_moment
 
 Code = Literal["aci318", "ec2"]
 

@@ -18,9 +18,8 @@ from rbsdem.model import frame as model
 from rbsdem.model.frame import FrameMember, FrameNode
 from rbsdem.model.materials import Ties
 from rbsdem.model.shape import RectangularSection, Section
-from rbsdem.section.beams import rigid_ends
 from rbsdem.section.columns import member
-from rbsdem.section.panel import JointPanel, PanelClass
+from rbsdem.section.panel import JointPanel, PanelClass, rigid_ends
 from rbsdem.section.parameters import VERSION
 
 Halves = tuple[Section, Section]

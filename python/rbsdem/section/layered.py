@@ -27,9 +27,9 @@ from rbsdem.model.springs import (
     unchecked,
 )
 from rbsdem.section.axial_moment import InteractionDiagram, joint_interaction
+from rbsdem.section.curvature import axial_load_note, outside
 from rbsdem.section.hinge import HingeJoint, hinge_joint
 from rbsdem.section.parameters import FACTORS, ModelParameters, table
-from rbsdem.section.ranges import axial_load_note, outside
 from rbsdem.section.shear import shear_spring
 
 #: Strain at which all concrete is crushed.

@@ -10,8 +10,7 @@ from rbsdem import _arguments, _core
 from rbsdem.errors import InputError, warn
 from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Bilinear, Takeda, for_whole_column
-from rbsdem.section.curvature import Events, make_point
-from rbsdem.section.ranges import axial_load_note, column_length, is_confined
+from rbsdem.section.curvature import Events, axial_load_note, column_length, is_confined, make_point
 from rbsdem.section.shear import ShearSpring, closed_form_shear, fit_shear_spring
 
 YIELD_RULES = ("A", "B", "first")

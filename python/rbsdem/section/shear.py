@@ -29,10 +29,9 @@ from rbsdem.errors import InputError
 from rbsdem.model.materials import Tension
 from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Bilinear, Pinching, unchecked
-from rbsdem.section.curvature import checked_furthest
+from rbsdem.section.curvature import checked_furthest, checked_load, column_length, is_confined
 from rbsdem.section.hinge import HingeJoint
 from rbsdem.section.parameters import ModelParameters
-from rbsdem.section.ranges import checked_load, column_length, is_confined
 from rbsdem.section.strength import (
     arch_factor,
     axial_failure_drift,

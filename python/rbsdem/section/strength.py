@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from rbsdem.errors import InputError
 from rbsdem.model.shape import Section
-from rbsdem.section.ranges import carried_load, checked_load, column_length
+from rbsdem.section.curvature import carried_load, checked_load, column_length
 
 _MPA = 1.0e6
 # Share of the least ties from which on the crack spacing goes over to that of tied sections.

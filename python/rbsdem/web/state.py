@@ -25,13 +25,12 @@ from rbsdem.model.column import Column, Footing
 from rbsdem.model.materials import Concrete, Layout, Spiral, Steel, Ties
 from rbsdem.model.shape import CircularSection, RectangularSection, Section, TeeSection
 from rbsdem.model.springs import Elastic
-from rbsdem.motions.motion import GroundMotion
-from rbsdem.motions.shaping import synthetic
+from rbsdem.motions.motion import GroundMotion, synthetic
 from rbsdem.run.case import Case
 from rbsdem.run.protocol import protocol
 from rbsdem.run.solver import COLLAPSE_DRIFT
 from rbsdem.section import columns
-from rbsdem.section.ranges import column_length
+from rbsdem.section.curvature import column_length
 
 #: The column that the page begins with: test No 1 of Soesianawati and others (1986).
 DEFAULT: dict[str, Any] = {
@@ -345,9 +344,7 @@ def _beam_of(given: Mapping[str, Any], faults: Faults) -> Section | None:
     for side, name in ((-1.0, "top"), (1.0, "bottom")):
         with faults.of(name, "number"):
             row = group(given, name)
-            number = _arguments.integer(row["number"], "number")
-            if not 1 <= number <= _MOST_BARS:
-                raise InputError(f"number = {number} must be from 1 to {_MOST_BARS}")
+            number = _arguments.integer(row["number"], "number", least=1, most=_MOST_BARS)
             size = _arguments.number(row["diameter"], "diameter", above=0.0, unit="m")
             rows.append((side, number, size, math.pi * size**2 / 4.0))
     if len(faults.listed) > before:
@@ -403,18 +400,12 @@ def _drift(given: Mapping[str, Any], name: str) -> float | None:
     """Return a drift of a protocol of the literature, of a size to look at."""
     if given.get(name) is None:
         return None
-    drift = _arguments.number(given[name], name)
-    if not 1e-4 <= drift <= 1.0:
-        raise InputError(f"{name} = {drift:g} must be a drift from 0.0001 to 1")
-    return drift
+    return _arguments.number(given[name], name, least=1e-4, most=1.0, why=", a drift")
 
 
 def _factor(given: Mapping[str, Any]) -> float:
     """Return the factor of a motion."""
-    number = _arguments.number(given.get("scale", 1.0), "scale")
-    if not (np.isfinite(number) and 0 < number <= 1e3):
-        raise InputError(f"scale = {number:g} must be above 0 and at most 1000")
-    return number
+    return _arguments.number(given.get("scale", 1.0), "scale", above=0, most=1e3)
 
 
 def group(given: Mapping[str, Any], name: str) -> dict[str, Any]:
