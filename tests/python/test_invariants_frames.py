@@ -18,7 +18,7 @@ from strategies_frames import FAMILIES, MODULUS, drifts, frame
 import rbsdem
 from rbsdem.frames import Frame, FrameMember, FrameNode, Member
 from rbsdem.model.frame_result import FrameResult
-from rbsdem.springs import Elastic
+from rbsdem.springs import Bilinear, Elastic
 
 
 def any_family(rng: Rng) -> str:
@@ -170,6 +170,71 @@ def test_nodes_are_in_equilibrium(rng: Rng) -> float:
     run = follow(made, drifts(rng, made))
     missing = np.abs(off_balance(run))[:, free(made)].max()
     return float(missing / moment_size(run))
+
+
+@relation(60, judged=0.8, bar=1e-9)
+def test_energies_balance(rng: Rng) -> float:
+    """Work of the loads, energies of springs and of second-order work, along all corners."""
+    made = frame(rng, any_family(rng))
+    run = ended(lambda: rbsdem.cyclic(made, displacement=drifts(rng, made), corners=True))
+    return float(run.summary["relative_energy_residual"])
+
+
+@relation(40, judged=0.7, bar=1e-9)
+def test_each_spring_follows_its_rule(rng: Rng) -> float:
+    """The forces of springs at corners of a path are those of the springs by themselves.
+
+    Without dead load, on whose way corners are not kept.
+    """
+    made = frame(rng, str(rng.choice(["hardening", "capped", "mixed"])), beam_load=0.0)
+    run = ended(lambda: rbsdem.cyclic(made, displacement=drifts(rng, made), corners=True))
+    worst = 0.0
+    for i, own in enumerate(made.parts.springs_of("flexure")):
+        kind = made.kinds.get(own.member)
+        if kind is None:
+            alone = made.panel
+        elif kind.yield_moment is None:
+            alone = kind.at("flexure", own.place)
+        else:
+            d_y = kind.yield_moment / own.stiffness
+            alone = Bilinear(own.stiffness, d_y, kind.hardening * own.stiffness)
+        turned, moment = (run.springs[name][:, i] for name in ("rotation", "moment"))
+        worst = max(worst, float(np.abs(alone.response(turned) - moment).max()))
+    return worst / moment_size(run)
+
+
+@relation(40, judged=0.7, bar=1e-5)
+def test_rigid_ends_are_rigid_members(rng: Rng) -> float:
+    """Beams with rigid ends, whose load is stated on all of their length, in three pieces each."""
+    made = pushed_at_nodes(rng, frame(rng, "hardening", panels=False, kinematics="small"))
+    made = replace(made, beams=remade(made.beams[0, 0], rigid_end=0.25))
+    nodes, members = [], []
+    for name, own in made.geometry.items():
+        if not name.startswith("B"):
+            continue
+        level, left = made.parts.y[own.start], made.parts.x[own.start]
+        places = left + np.cumsum([own.rigid[0], own.clear])
+        inner = [
+            FrameNode(f"{name} {side}", x, level) for side, x in zip("ab", places, strict=True)
+        ]
+        ends = [
+            made.parts.nodes[own.start],
+            *(one.name for one in inner),
+            made.parts.nodes[own.end],
+        ]
+        kinds = FrameMember.rigid(), remade(made.beams[0, 0], rigid_end=0.0), FrameMember.rigid()
+        nodes += inner
+        members += [
+            Member(f"{name} {i}", ends[i], ends[i + 1], kind, load=own.load)
+            for i, kind in enumerate(kinds)
+        ]
+    other = replace(
+        made, beams={(0, 0): None}, members=members, nodes=[*made.nodes, *nodes], beam_load=0.0
+    )
+    path = drifts(rng, made)
+    one, pieces = follow(made, path), follow(other, path)
+    rows = min(one.time.size, pieces.time.size)
+    return float(np.abs(one.force[:rows] - pieces.force[:rows]).max() / np.abs(one.force).max())
 
 
 @relation(60, judged=0.8, bar=1e-8)
