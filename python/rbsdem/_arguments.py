@@ -1,4 +1,4 @@
-"""What a caller may give: one function for each kind of argument.
+"""Checks of arguments: one function for each kind.
 
 Each returns the value in its own type, or raises `InputError` with the name, the value and what it
 must be.
@@ -29,7 +29,7 @@ BEYOND_MEANING = 1e50
 
 #: Letters of a value in a message.
 _MOST = 60
-#: What `float` takes, but is no number.
+#: Types that `float` takes, but are no numbers.
 _NO_NUMBERS = (bool, np.bool_, str, bytes, bytearray, np.datetime64, np.timedelta64)
 
 

@@ -118,7 +118,7 @@ def _number_or_switch(value: Any, name: str) -> float:
 
 
 class Answer(NamedTuple):
-    """What Fortran answers: text, values and rows, each of which may be empty, and how it went."""
+    """An answer of Fortran: text, values and rows, each of which may be empty, and a status."""
 
     text: str
     values: Array

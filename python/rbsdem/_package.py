@@ -1,4 +1,4 @@
-"""What is installed: files of the package, its code, its commands, packages of the extras."""
+"""The installation: files of the package, its code, its commands, packages of the extras."""
 
 from __future__ import annotations
 

@@ -234,7 +234,7 @@ def read_table(
     source : path, str or (str, list of str)
         A file, a text, or what `read_lines` returned.
     separator, decimal : str, optional
-        What stands between two values: ",", ";", a tab or a blank; and before decimals: "." or ",".
+        Separator of two values: ",", ";", a tab or a blank; and before decimals: "." or ",".
     header : int, optional
         Lines above the first row.
     least : int, optional

@@ -58,7 +58,7 @@ class SolveError(RbsdemError, RuntimeError):
     Parameters
     ----------
     message : str
-        What stopped the analysis and where.
+        Cause and place of the stop.
     result : rbsdem.Result, optional
         The path up to that point.
 
@@ -81,7 +81,7 @@ class Interrupted(KeyboardInterrupt):
     Parameters
     ----------
     message : str
-        What was done, and how to go on.
+        Number of runs that were done, and how to go on.
     ensemble : rbsdem.fragility.Ensemble, optional
         The runs that were done.
 
@@ -118,7 +118,7 @@ def warn(text: str, kind: type[Warning] = AccuracyWarning) -> None:
     Parameters
     ----------
     text : str
-        What may mislead, and what to do.
+        The danger, and the remedy.
     kind : type, optional
         Class of the warning.
     """

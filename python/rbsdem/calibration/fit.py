@@ -115,8 +115,8 @@ def calibrate(
         Bounds in place of the default ones, which are a factor of 5 up and down for a spring, as
         far as its rule allows, and 20 % for lengths and loads.
     loss : {"nrmse", "balanced"}, optional
-        What is minimised: the error of the force, alone or together with the errors of peak force
-        and energy.
+        The error that is minimised: that of the force, alone or together with the errors of peak
+        force and energy.
     seed : int, optional
         Seed of the random points.
     progress : bool, optional

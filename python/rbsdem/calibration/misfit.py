@@ -22,7 +22,7 @@ POINTS = N_POINTS
 #: Error of a refused column as a share of the measured peak: larger than that of any analysis.
 REFUSED = 10.0
 
-#: What may be minimised.
+#: Errors that may be minimised.
 LOSSES = ("nrmse", "balanced")
 
 #: In "balanced", an error of 1 in the ratio of peaks, or of energies, counts as this nrmse.

@@ -1,4 +1,4 @@
-"""What a column is watched for: limit states as linear criteria on the joints' deformations.
+"""Limit states that a run is watched for, as linear criteria on the joints' deformations.
 
 A strain of a layered hinge is linear in the rotation and the opening of its joint, and a spring
 leaves its line at a deformation. So one list serves the rows of a result and the runs of an

@@ -42,7 +42,7 @@ class LimitState:
     force : float
         Of the loop there [N], see `Result.loop_force`.
     threshold : float
-        What is reached: a strain, a rotation [rad], a slip [m] or a share.
+        The value that is reached: a strain, a rotation [rad], a slip [m] or a share.
     source : str
         Where the threshold comes from.
     """
@@ -209,7 +209,7 @@ def _state(result: Response, name: str, place: float, threshold: float, source: 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Hinge:
-    """What a joint turns, and how much of it is plastic.
+    """Rotation of a joint, and its plastic part.
 
     The plastic rotation is what lies beyond yield, as design rules limit it (ASCE 41-17, figure
     10-1; EN 1998-3, A.3.2.2): zero up to the yield rotation of that side.

@@ -364,7 +364,7 @@ def ida(
     Exit codes: 0 success, 1 the analysis failed, 2 the input is wrong, 130 interrupted (finished
     runs are kept).
     """
-    # What is missing or wrong is reported before the work.
+    # Missing and wrong arguments are reported before the work.
     if parquet:
         extra("pyarrow.parquet")
         if out is None:
@@ -419,7 +419,7 @@ def _ida_settings(
     case: Case, method: str | None, dt: float | None, collapse_drift: float | None
 ) -> dict[str, Any]:
     """Return method, step and collapse drift of the command line, else of the case."""
-    # What belongs to the method of the case has no meaning for another one.
+    # Settings of the method of the case have no meaning for another one.
     settings: dict[str, Any] = {"method": method} if method else dict(case.solver)
     if dt is not None:
         settings["dt"] = dt

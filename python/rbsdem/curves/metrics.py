@@ -143,11 +143,11 @@ class PathPoints:
     Parameters
     ----------
     driver : array_like, shape (rows,)
-        What drives the model: the displacement, or the force.
+        The driver of the model: the displacement, or the force.
     n : int, default 2000
         How many points.
     name : str
-        What messages call the driver.
+        Name of the driver in messages.
 
     Attributes
     ----------
@@ -290,13 +290,13 @@ def resample(
     Parameters
     ----------
     driver : array_like, shape (rows,)
-        What drives the model; its path is the sum of its absolute steps.
+        The driver of the model; its path is the sum of its absolute steps.
     *curves : array_like, shape (rows,)
-        What to interpolate. Of rows without a step of the driver only the first counts.
+        Values to interpolate. Of rows without a step of the driver only the first counts.
     n : int, default 2000
         How many points.
     name : str
-        What messages call the driver.
+        Name of the driver in messages.
 
     Returns
     -------

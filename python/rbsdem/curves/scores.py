@@ -32,7 +32,7 @@ _RATIOS = ("peak_ratio", "energy_ratio", "stiffness_ratio", "end_ratio")
 SCORES = ("nrmse", *_RATIOS, "rms_best", "path_fraction", "nrmse_reached")
 """Names of the scores, in the order of tables."""
 
-#: What a half-cycle has in the table of a comparison, with the unit in the name.
+#: Columns of half-cycles in the table of a comparison, with the unit in the name.
 _CYCLE_COLUMNS = {"peak_force": "_N", "energy": "_J", "stiffness": "_N/m", "damping": ""}
 
 # The displacement of a row is that of the test; with exact rotations it is solved for.
@@ -116,8 +116,8 @@ class Comparison(_Ratios, Tabular):
         Root mean square force in the last quarter of the path, model over test. Above 1 the model
         misses degradation. NaN unless the whole path was reached.
     rms_best : float
-        What `nrmse_reached` would be if the force of the model were multiplied by the factor that
-        makes it least: the error of shape, without that of strength.
+        The `nrmse_reached` that would result if the force of the model were multiplied by the
+        factor that makes it least: the error of shape, without that of strength.
     """
 
     name: str
@@ -178,7 +178,7 @@ class Comparison(_Ratios, Tabular):
     def to_pandas(self) -> DataFrame:
         """Return a DataFrame with a row for each half-cycle, test and model side by side.
 
-        What the model did not reach is NaN.
+        Rows that the model did not reach are NaN.
         """
         test, model = self.test_cycles, self.model_cycles
         columns: dict[str, Any] = {

@@ -359,7 +359,7 @@ def ensemble(
         Factors of the accelerations: shape (k,) for all, (motions, k) or (columns, motions, k).
         NaN stands for no run.
     measures : sequence of str and callable, optional
-        What is kept of each run: names of `rbsdem.many.inputs.MEASURES` and, of frames,
+        Measures that are kept of each run: names of `rbsdem.many.inputs.MEASURES` and, of frames,
         `STOREY_MEASURES` (by default all), those of a single storey ("peak_storey_drift_2"), limit
         states (`LIMIT_STATES`: the time at which each is first reached, NaN if it is not), and
         functions of a `Result` that return a number. A function makes the run's history once more,
@@ -384,7 +384,8 @@ def ensemble(
         are expected to take as long. Runs of the other parts are in the result if the store has
         them.
     seeds : optional
-        What the inputs were drawn from, for the manifest of the store: anything that JSON takes.
+        Seeds that the inputs were drawn with, for the manifest of the store: anything that JSON
+        takes.
     client : dask.distributed.Client, optional
         A cluster that does the work in place of threads.
     progress : bool, optional

@@ -221,7 +221,7 @@ _MOST_SAMPLES = 100_000
 
 @dataclass(frozen=True, eq=False)
 class Counts:
-    """What a fragility was fitted to: runs at levels of intensity.
+    """Data of a fragility: runs at levels of intensity.
 
     Attributes
     ----------
@@ -275,7 +275,7 @@ class Counts:
 
 @dataclass(frozen=True, eq=False)
 class Capacities:
-    """What a fragility was fitted to: the intensity at which each record reaches the limit state.
+    """Data of a fragility: the intensity at which each record reaches the limit state.
 
     Attributes
     ----------
@@ -350,7 +350,7 @@ class Fragility:
     covariance : ndarray, shape (2, 2)
         Of the estimates of theta and beta, from the curvature of the likelihood.
     data : Counts or Capacities
-        What it was fitted to.
+        Its data.
     intensity_name : str
         Name of the intensity, for figures.
     stated : bool

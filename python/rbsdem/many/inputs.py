@@ -205,7 +205,7 @@ Measure: TypeAlias = Callable[[Result], float]
 #: started because the ensemble was broken off.
 STATUSES: tuple[str, ...] = ("", "completed", "collapsed", "axial_failure", "failed")
 
-#: What each measure is; "drift" is a displacement of the top over the height.
+#: The measures; "drift" is a displacement of the top over the height.
 MEASURES = {
     "peak_drift": "largest drift in size",
     "residual_drift": "drift at the end of the record, in size",

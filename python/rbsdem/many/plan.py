@@ -266,7 +266,7 @@ class RunStore(Store):
     part : tuple of two int
         Which part of how many this process does.
     seeds : mapping
-        What the inputs were drawn from, for the manifest.
+        Seeds that the inputs were drawn with, for the manifest.
 
     Raises
     ------

@@ -116,7 +116,7 @@ _LEAST_UNIT = 1e-20
 
 
 class RunOptions(Solver, total=False):
-    """What `ida` and `stripes` take as keywords, with the settings of `rbsdem.Solver`.
+    """Keywords of `ida` and `stripes`, with the settings of `rbsdem.Solver`.
 
     A run that fails is tried again with "rk45"; one that fails twice counts as a collapse, with a
     warning.
@@ -134,8 +134,8 @@ class RunOptions(Solver, total=False):
         Drift that counts as a collapse, of a storey of a frame (`Frame.collapse`), or displacement
         of the top over the height; the default is 0.1.
     measures : sequence
-        What is kept of each run, as for `rbsdem.ensemble`; the default is `MEASURES`, and those of
-        the storeys of frames.
+        Measures that are kept of each run, as for `rbsdem.ensemble`; the default is `MEASURES`, and
+        those of the storeys of frames.
     initial : Result, path, or sequence or mapping of them
         The state that all runs of a column begin in, as for `rbsdem.ensemble`: what an aftershock
         finds.

@@ -33,7 +33,7 @@ _MANIFEST = "manifest.json"
 _LOCK = "manifest.lock"
 _SHARDS = "*.parquet"
 _PART = "part-{}-of-{}.lock"
-#: What a store without its manifest may hold.
+#: Names that a store without its manifest may hold.
 _OWN = re.compile(r"shards|manifest\.lock|part-\d+-of-\d+\.lock")
 #: How often what was computed is written [s].
 _BEAT = 3.0
@@ -164,7 +164,7 @@ class Store:
                     if parts != self._part[1]:
                         with ExitStack() as moment:
                             self._lock((place, parts), moment)
-                # What an earlier process of this part has begun and not finished.
+                # Files that an earlier process of this part has begun and not finished.
                 for path in self._shards.glob(f"{self._prefix}*.partial"):
                     with suppress(OSError):
                         path.unlink()

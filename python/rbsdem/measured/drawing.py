@@ -59,7 +59,7 @@ class DrawnSpecimen:
     round_core : bool
         Whether a rectangular section has a spiral.
     assumed : tuple of str
-        What the table did not report.
+        Properties that the table did not report, and the values assumed.
     """
 
     section: Section

@@ -24,7 +24,7 @@ _QUANTITIES = ("displacement", "force")
 #: No names of what is looked for: the force is that along the displacement.
 _NOT = {"displacement": ("time",), "force": ("time", "axial", "normal")}
 
-# What the largest values of a test of a column may be, and where the doubt begins.
+# Plausible sizes of the largest values of a test of a column.
 _PLAUSIBLE = {"displacement": (5e-4, 1.5, "m"), "force": (500.0, 5e7, "N")}
 _LENGTHS, _SMALLEST_LOAD = (0.1, 30.0), 3000.0
 _LARGEST_DRIFT, _SMALLEST_DRIFT = 0.4, 5e-4
@@ -71,8 +71,8 @@ def read_test(
     displacement, force : path, optional
         Two files in place of one, each with one value a line or all values in a line.
     structure : {"column", "frame"}, optional
-        What was tested. The force of a frame is the sum of its actuators; it has no `pdelta_code`,
-        and `length` is the height at which the displacement was measured.
+        The structure that was tested. The force of a frame is the sum of its actuators; it has no
+        `pdelta_code`, and `length` is the height at which the displacement was measured.
     columns : pair or mapping, optional
         Columns of displacement and force, by name or by number from 1: ``("LVDT 3", 5)`` or
         ``{"displacement": "LVDT 3", "force": 5}``. By default they are found by their names, or are
@@ -83,7 +83,7 @@ def read_test(
         default those that the file gives in the names (``d_mm``, ``Force [kN]``)
         or below them.
     pdelta_code : {1, 2, 3, 4}
-        What the force column is; every test of a column needs it, since P-Delta is in some
+        Meaning of the force column; every test of a column needs it, since P-Delta is in some
         forces and not in others:
 
         1. the base moment over the length ("effective force", P-Delta is part of it);
@@ -101,7 +101,7 @@ def read_test(
     top_length, bottom_length : float, optional
         From the column's ends to the hinges of the axial ram [m]; code 4 needs the first.
     separator, decimal : str, optional
-        What stands between two values: ",", ";", a tab or a blank; and before decimals: "." or ",".
+        Separator of two values: ",", ";", a tab or a blank; and before decimals: "." or ",".
     header : int, optional
         Lines above the first row of numbers.
     zero : bool, optional

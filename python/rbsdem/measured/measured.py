@@ -27,7 +27,7 @@ PDELTA_CODES = {
     3: "the actuator's force, of which the leaning axial ram takes a part",
     4: "the actuator's force, to which the leaning axial ram adds a part",
 }
-"""What the force column of a test means, by the P-Delta code of the database (manual, 3.3)."""
+"""Meaning of the force column of a test, by the P-Delta code of the database (manual, 3.3)."""
 
 
 @dataclass(frozen=True, repr=False, slots=True, eq=False)

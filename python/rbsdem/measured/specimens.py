@@ -74,7 +74,7 @@ _text = partial(_from, kind=str)
 
 @dataclass(frozen=True, slots=True)
 class Observed:
-    """What was measured, as far as the table reports it; no prediction may use it.
+    """Measured values, as far as the table reports them; no prediction may use them.
 
     Attributes
     ----------
@@ -118,7 +118,8 @@ class Observed:
 class Specimen:
     """A tested column: its properties before the test, and where its history is.
 
-    What was not reported is None. Steel, bars and lengths follow the notation of the database.
+    Values that were not reported are None. Steel, bars and lengths follow the notation of the
+    database.
 
     Attributes
     ----------
@@ -186,7 +187,7 @@ class Specimen:
     duplicate_of : int or None
         Number of the test whose history is repeated here, which is an error of the database.
     observed : Observed
-        What was measured.
+        Measured values.
     """
 
     name: str = _text("name", needed=True)

@@ -70,7 +70,7 @@ class Setting:
 
     @property
     def family(self) -> tuple[str, str | None, Kinematics, float | None, bool]:
-        """What settings have in common that differ only in step, tolerance or parts."""
+        """Key of the settings that differ only in step, tolerance or parts."""
         return self.method, self.events, self.kinematics, self.rho_infinity, self.own
 
     @property
@@ -187,7 +187,7 @@ class StudyCase:
 
     @property
     def response_name(self) -> str:
-        """What the response is: "displacement", or "force" where the displacement is driven."""
+        """Quantity of the response: "displacement", or "force" where the displacement is driven."""
         return "force" if "displacement" in self.loads else "displacement"
 
     def solve(self, setting: Setting, column: Column | None = None) -> Answer:
@@ -255,7 +255,7 @@ class StudyCase:
         Parameters
         ----------
         setting : Setting
-            What to try.
+            The setting.
         repeats : int
             Number of runs; more where they are very short.
         column : Column, optional
@@ -594,7 +594,7 @@ class MethodRuns:
     told : callable
         Told in words what is being done.
     runs : list of MethodRun
-        What was tried, families together, coarse settings first.
+        The settings that were tried, families together, coarse settings first.
     """
 
     case: StudyCase

@@ -250,7 +250,7 @@ class Footing:
 #: Levels of kinematics.
 Kinematics = Literal["small", "pdelta", "finite"]
 
-#: What the top of a column can do.
+#: Supports of the top of a column.
 Top = Literal["free", "fixed"]
 
 #: Whether notes on new columns and on runs are told. A context variable: threads make them too.
@@ -572,7 +572,7 @@ class Column:
         return _core.joined([*parts, layer_springs(ids)])
 
 
-#: What of a column is no spring, and no record of its own.
+#: Fields of a column that are neither springs nor records.
 _OWN = tuple(
     field.name for field in fields(Column) if field.name not in (*PLACES, "damping", "footing")
 )
@@ -677,9 +677,9 @@ def checked_column(column: object, who: str = "") -> Column:
     Parameters
     ----------
     column : object
-        What was given as a column.
+        The argument.
     who : str, optional
-        What the message starts with.
+        Beginning of the message.
     """
     remedy = ""
     if isinstance(column, Section):

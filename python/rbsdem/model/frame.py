@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _PLACES = ("shear", "flexure", "axial_spring")
 _SUPPORTS = ("free", "roller", "pinned", "fixed")
 
-#: What a frame is honest about, printed with its results.
+#: Scope of the results of a frame, printed with them.
 SCOPE_NOTE = (
     "The frame is computed from the properties of its members. Predicted columns carry the error "
     "that tests gave; beams, nodes and slabs are computed, and no frame was fitted."
@@ -56,7 +56,7 @@ class FrameMember:
     axial_spring : Spring, optional
         A spring that opens.
     interior : {"elastic", "rigid"}, optional
-        What is between the springs: the elastic beam, or nothing that bends, where the springs
+        Part between the springs: the elastic beam, or nothing that bends, where the springs
         hold all of the flexibility. Without springs a "rigid" member does not deform (`rigid`).
     rigid_end : float or pair of float, optional
         Rigid length in each node of a grid that the member ends in, half the depth of the other
@@ -72,7 +72,7 @@ class FrameMember:
     name : str, optional
         Name in case files; made up if it is not given.
     sections : pair of Section, optional
-        What its two halves were drawn from, y > 0 on the left of the way from start to end.
+        Sections of its two halves, y > 0 on the left of the way from start to end.
     """
 
     modulus: float
@@ -201,7 +201,7 @@ class FrameNode:
     x, y : float, optional
         Place [m]; not for a node of the grid.
     support : {"free", "roller", "pinned", "fixed"}, optional
-        What holds it: a roller along y alone, a pin along x and y.
+        Its support: a roller along y alone, a pin along x and y.
     mass, inertia : float, optional
         Mass [kg] and rotary inertia [kg m2].
     load_x, load_y, load_moment : float, optional
@@ -508,7 +508,7 @@ class Frame:
     if TYPE_CHECKING:
         #: Its keys, as the groups of a case file.
         _statement: ClassVar[_core.Statement]
-        #: What Fortran says of it: its parts, and notes.
+        #: The answer of Fortran: its parts, and notes.
         _answer: ClassVar[_core.Answer]
 
     #: Joints of a frame do not open by themselves.
@@ -825,7 +825,7 @@ def _cells(given: Any, name: str) -> dict[tuple[int, int], FrameMember | None] |
     return found
 
 
-#: What analyses take.
+#: Structures that analyses take.
 Structure = Column | Frame
 
 

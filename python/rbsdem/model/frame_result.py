@@ -1,4 +1,4 @@
-"""What an analysis of a frame returns."""
+"""The response of a frame."""
 
 from __future__ import annotations
 
@@ -159,7 +159,7 @@ class FrameResult(Rows):
     force : ndarray, shape (rows,)
         Factor of the lateral load [N]: its sum, unless ``pattern="nodes"``.
     base_shear : ndarray, shape (rows,)
-        What supports and springs from the ground hold the frame with along x [N]; in time with
+        Force of supports and springs of the ground along x [N]; in time with
         damping by mass.
     energy : dict of ndarray
         Energies [J] as those of `Result`; "axial" is the potential of dead load, of second-order
@@ -521,7 +521,7 @@ class FrameResult(Rows):
         forces = self.base_shear if self.dynamic else self.force
         found = []
         for spring, whole, _ in self._springs():
-            # What moves on in a member that is lost reaches nothing.
+            # A lost member moves on without reaching anything.
             values = whole[: self._lost_at().get(spring.member)]
             points = [
                 (point, self._reached(point, values)) for point in self.frame.landmarks[spring]

@@ -1,4 +1,4 @@
-"""What an analysis returns."""
+"""The response of a column."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Response(Rows):
     shear, moment : ndarray, shape (steps, joints)
         Forces [N] and moments [N m] of their springs.
     base_shear, base_moment : ndarray, shape (steps,)
-        What holds the column at the ground: horizontal force [N], and moment about the lowest joint
+        Reaction of the ground: horizontal force [N], and moment about the lowest joint
         [N m]. Those of the springs of that joint and, in time, of the damping, which may also act
         between the bodies and the ground (``docs/theory.md``). In a static analysis the shear is
         `force`.
@@ -45,23 +45,23 @@ class Response(Rows):
         (stored and dissipated), "damping", "axial" (potential of axial load and weight), and
         "residual", which is input + energy at the start minus the other energies.
     summary : dict
-        What was done: "analysis" ("static" or "dynamic"), "driven" (static), "kinematics", the
-        "method" that was used and, if the program chose it, the "reason"; "status": "completed",
-        "collapsed" (`collapse_drift` was reached), "stopped" (`max_seconds` were over),
-        "ended" (a push-over that goes no farther, and why as "reason") or "failed" (the result of a
-        `SolveError`).
-        Values: steps, rows, events (how often a spring left its line), time_step and stable_step
-        [s], peak_displacement [m], peak_force [N] and displacement_at_peak_force [m] (static, where
-        the force has the sign of the displacement; in time of a lateral force, if there is one),
-        peak_base_shear [N], peak_rotation (largest absolute rotation of a body [rad]), energies at
-        the end [J], energy_residual [J] and relative_energy_residual (the largest), cut_steps
-        (steps cut at an event, for accuracy, or because they did not converge); where members of a
-        frame jumped to another equilibrium, snaps (in how many steps), snap_energy (lost in them
-        [J]), snap_member and snap_time [s] (number of the one that lost most, and when); where a
-        member carries its load no more, fallen_member; where a static path snaps back, snap_backs
-        and released_energy (by a test that holds the top [J]). Whatever rows are
-        kept, they are those of all points or steps, the residual that of all points or times of the
-        loading; "rk45" and located events resolve peaks within a step.
+        Figures of the analysis: "analysis" ("static" or "dynamic"), "driven" (static),
+        "kinematics", the "method" that was used and, if the program chose it, the "reason";
+        "status": "completed", "collapsed" (`collapse_drift` was reached), "stopped" (`max_seconds`
+        were over), "ended" (a push-over that goes no farther, and why as "reason") or "failed" (the
+        result of a `SolveError`). Values: steps, rows, events (how often a spring left its line),
+        time_step and stable_step [s], peak_displacement [m], peak_force [N] and
+        displacement_at_peak_force [m] (static, where the force has the sign of the displacement; in
+        time of a lateral force, if there is one), peak_base_shear [N], peak_rotation (largest
+        absolute rotation of a body [rad]), energies at the end [J], energy_residual [J] and
+        relative_energy_residual (the largest), cut_steps (steps cut at an event, for accuracy, or
+        because they did not converge); where members of a frame jumped to another equilibrium,
+        snaps (in how many steps), snap_energy (lost in them [J]), snap_member and snap_time [s]
+        (number of the one that lost most, and when); where a member carries its load no more,
+        fallen_member; where a static path snaps back, snap_backs and released_energy (by a test
+        that holds the top [J]). Whatever rows are kept, they are those of all points or steps, the
+        residual that of all points or times of the loading; "rk45" and located events resolve peaks
+        within a step.
     opening : ndarray, shape (steps, n)
         Opening of the joints at the middle of the section [m]: of axial springs, and, if the
         analysis was called with ``openings=True``, of layered joints. Zero for other joints.
@@ -206,7 +206,7 @@ class Response(Rows):
     def acceleration(self) -> Array:
         """Acceleration of the top relative to the ground [m/s2], shape (steps,).
 
-        What the equation of motion gives for the state of each row.
+        It follows from the equation of motion in the state of each row.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""What results have in common: loops, tables, states, and one file that describes itself."""
+"""Common parts of all results: loops, tables, states, and one file that describes itself."""
 
 from __future__ import annotations
 
@@ -83,13 +83,13 @@ STATE_HEAD = "# rbsdem state"
 
 FORMAT = "rbsdem result"
 FORMAT_VERSION = 2
-#: What a file holds as it is.
+#: Fields that a file holds as they are.
 SAVED = ("channels", "summary", "call", "state", "reached")
 
 
 @runtime_checkable
 class HasEndState(Protocol):
-    """What an analysis can begin from: the result of another one."""
+    """A result in whose end another analysis can begin."""
 
     @property
     def state(self) -> Array | None:
@@ -97,7 +97,7 @@ class HasEndState(Protocol):
 
     @property
     def summary(self) -> dict[str, Any]:
-        """What was done."""
+        """Figures of the analysis."""
 
 
 class _Channels:
@@ -141,8 +141,8 @@ class Rows(_Channels):
     Attributes
     ----------
     channels : dict of ndarray
-        What was kept, by name, as the columns of the executable's csv: one number a row, or one for
-        each joint, node, member or spring.
+        Quantities that were kept, by name, as the columns of the executable's csv: one number a
+        row, or one for each joint, node, member or spring.
     summary, call, state, case
         As those of `rbsdem.Result`.
     structure : Column or Frame
@@ -156,7 +156,7 @@ class Rows(_Channels):
     state: Array | None = None
     reached: Array | None = None
     case: Any = None
-    #: What a state has besides the channels.
+    #: Values of a state besides the channels.
     _derived: ClassVar[tuple[str, ...]] = ("energy",)
 
     @property
@@ -166,7 +166,7 @@ class Rows(_Channels):
 
     @property
     def base_shear(self) -> Array:
-        """What the ground holds the structure with along x [N]."""
+        """Horizontal force of the ground on the structure [N]."""
         return self.channels["base_shear"] if "base_shear" in self.channels else self.shear[:, 0]
 
     @property

@@ -64,7 +64,7 @@ class _LayoutBars(tuple[Bar, ...]):
 
 
 class _Fields:
-    """What every shape has as a field or property of its own."""
+    """Fields and properties that every shape has."""
 
     if TYPE_CHECKING:
         _statement: ClassVar[_core.Statement]
@@ -90,7 +90,7 @@ class _Fields:
 
 @dataclass(frozen=True)
 class Section(_Fields, ABC):
-    """What a section of any shape is made of.
+    """A section of any shape: concrete, bars, cover, transverse bars.
 
     A new shape is a class with the abstract methods below, beside its type in `src/section`.
     """

@@ -155,7 +155,7 @@ class Spring:
             if value is not None:
                 changes[plain] = value
         if changes["d_u_neg"] is None and "d_u" in changes:
-            # What is not given would be that of the positive side, which has an end now.
+            # A value that is not given would be that of the positive side, which has an end now.
             changes["d_u_neg"] = _NEVER
         return replace(self, **changes)
 
@@ -726,14 +726,14 @@ def layer_springs(ids: dict[Spring, int]) -> _core.Statement:
     return _core.joined([spring.statement("layer_spring", id=i) for spring, i in ids.items()])
 
 
-#: What a layer stands for: a bar, concrete inside the ties, concrete outside.
+#: Parts that a layer stands for: a bar, concrete inside the ties, concrete outside.
 Part = Literal["bar", "core", "cover"]
 _PARTS = get_args(Part)
 
 
 @dataclass(frozen=True)
 class Gauge:
-    """What the layers of a joint stand for, in the order of `Layered.layers`.
+    """Parts that the layers of a joint stand for, in the order of `Layered.layers`.
 
     Attributes
     ----------

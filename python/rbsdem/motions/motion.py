@@ -107,7 +107,7 @@ class GroundMotion:
     name : str, optional
         Name in tables and figures; `read_motion` takes that of the file.
     description : str, optional
-        What the file says of event, station and component.
+        Event, station and component, as the file names them.
 
     Raises
     ------

@@ -68,7 +68,7 @@ def agreed_unit(found: str, given: str | None, who: str) -> str:
     given : str or None
         The unit that the user gives.
     who : str
-        What a message starts with.
+        Beginning of a message.
 
     Raises
     ------

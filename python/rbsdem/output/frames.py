@@ -163,7 +163,7 @@ def mode(found: FrameModes, number: int = 1, *, ax: Axes | None = None) -> Axes:
     Parameters
     ----------
     found : FrameModes
-        What `rbsdem.modes` returned for a frame.
+        The modes, as `rbsdem.modes` returns them for a frame.
     number : int, optional
         Which mode, from 1, the one with the longest period.
     ax : matplotlib Axes, optional
@@ -203,7 +203,7 @@ def pushover(result: FrameResult, *, ax: Axes | None = None, **line: Any) -> Axe
     Parameters
     ----------
     result : FrameResult
-        What `rbsdem.pushover` returns; other results are drawn as loops.
+        The push-over, as `rbsdem.pushover` returns it; other results are drawn as loops.
     ax : matplotlib Axes, optional
         Where to draw; a new figure without it.
     **line

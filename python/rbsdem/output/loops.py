@@ -276,7 +276,7 @@ def limit_states(states: LimitStates, *, ax: Axes | None = None) -> Axes:
     Parameters
     ----------
     states : LimitStates
-        What `Result.limit_states` returns.
+        The limit states, as `Result.limit_states` returns them.
     ax : matplotlib Axes, optional
         Where to draw; a new figure without it.
 
@@ -302,7 +302,7 @@ def comparison(comparison: Comparison, *, ax: Axes | None = None, **line: Any) -
     Parameters
     ----------
     comparison : Comparison
-        What `rbsdem.compare` returns.
+        The comparison, as `rbsdem.compare` returns it.
     ax : matplotlib Axes, optional
         Where to draw; a new figure without it.
     **line
@@ -331,7 +331,7 @@ def calibration(
     Parameters
     ----------
     fit : Calibration
-        What `rbsdem.calibrate` returns.
+        The calibration, as `rbsdem.calibrate` returns it.
     axes : sequence of 2 matplotlib Axes, optional
         Where to draw; a new figure without it.
     **line
@@ -361,7 +361,7 @@ def code_comparison(found: CodeComparison, *, ax: Axes | None = None) -> Axes:
     Parameters
     ----------
     found : CodeComparison
-        What `rbsdem.codes.compare` returns.
+        The comparison, as `rbsdem.codes.compare` returns it.
     ax : matplotlib Axes, optional
         Where to draw; a new figure without it.
 
@@ -449,7 +449,7 @@ def _dress(ax: Axes, height: float | None) -> None:
 
 Over = Literal["displacement", "drift", "force", "base_shear", "base_moment"]
 
-#: What is drawn over time: factor to its unit on paper, and its label.
+#: Quantities that are drawn over time: factor to the unit on paper, and label.
 _OVER: dict[str, tuple[float, str]] = {
     "displacement": (1e3, "Top displacement (mm)"),
     "drift": (1e2, "Drift ratio (%)"),
@@ -487,7 +487,7 @@ def history(
     result : Result
         The response.
     over : {"displacement", "drift", "force", "base_shear", "base_moment"}, optional
-        What is drawn: in mm, %, kN and kN m.
+        The quantity, in mm, %, kN and kN m.
     ax : matplotlib Axes, optional
         Where to draw; a new figure without it.
     **line
@@ -613,7 +613,7 @@ def _lengths(result: Response) -> Array:
     column = result.column
     lengths, *_ = bodies(column)
     beneath = () if column.footing is None else (column.footing.height,)
-    # What holds a fixed top has no length.
+    # The support of a fixed top has no length.
     above = (0.0,) if column.top == "fixed" else ()
     return np.array([*beneath, *lengths, *above], dtype=np.float64)
 

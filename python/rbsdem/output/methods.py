@@ -49,7 +49,7 @@ def methods(study: MethodStudy, *, ax: Axes | None = None, **line: Any) -> Axes:
     Parameters
     ----------
     study : MethodStudy
-        What `rbsdem.compare_methods` returns.
+        The study, as `rbsdem.compare_methods` returns it.
     ax : matplotlib Axes, optional
         Where to draw; a new figure without it.
     **line

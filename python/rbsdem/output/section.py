@@ -41,7 +41,7 @@ EVENT_MARKS: dict[str, Line] = {
 }
 """Markers of the events."""
 
-#: What all of them have.
+#: Common look of the markers.
 _MARK: Line = {"ls": "none", "color": "black", "ms": 4.5, "mew": 0.8, "zorder": 5}
 
 _OUTLINE: Line = {"facecolor": "0.93", "edgecolor": "black", "linewidth": 0.8}
@@ -82,7 +82,7 @@ def moment_curvature(
     Parameters
     ----------
     diagram : Diagram
-        What `rbsdem.section.diagram` returns.
+        The diagram, as `rbsdem.section.diagram` returns it.
     idealise : {"caltrans", "priestley"}, optional
         Draw the two lines of `Diagram.idealise`, too.
     ax : matplotlib Axes, optional
@@ -132,7 +132,7 @@ def section_springs(springs: SectionSprings) -> Axes | AxesArray:
     Parameters
     ----------
     springs : SectionSprings
-        What `rbsdem.section.springs` returns.
+        The springs, as `rbsdem.section.springs` returns them.
 
     Returns
     -------
@@ -229,7 +229,7 @@ def shear_diagram(
     Parameters
     ----------
     diagram : ShearDiagram
-        What `rbsdem.section.shear_diagram` returns.
+        The diagram, as `rbsdem.section.shear_diagram` returns it.
     spring : ShearSpring, optional
         Draw the lines of this spring as well.
     ax : matplotlib Axes, optional
@@ -280,7 +280,7 @@ def interaction(
     Parameters
     ----------
     diagram : InteractionDiagram
-        What `rbsdem.section.interaction` returns.
+        The diagram, as `rbsdem.section.interaction` returns it.
     demand : array_like, shape (p, 2), optional
         Axial loads [N] and moments [N m] to mark.
     design : bool, optional

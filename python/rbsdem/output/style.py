@@ -20,7 +20,7 @@ from rbsdem._files import write_figure
 from rbsdem._types import Axes, NDArray
 from rbsdem.errors import InputError
 
-#: What functions with several axes return: an array of them, as ``pyplot.subplots`` does.
+#: Return type of functions with several axes: an array of them, as ``pyplot.subplots`` does.
 AxesArray = NDArray[np.object_]
 Line = dict[str, Any]
 
@@ -142,7 +142,7 @@ def save(figure: Any, path: str | os.PathLike[str], *, pdf: bool = False) -> lis
     Parameters
     ----------
     figure : matplotlib Figure or Axes, or array of Axes
-        What to write.
+        The figure.
     path : path
         File to write; the ending .png is added if it is missing, and the folder is created.
     pdf : bool, default False

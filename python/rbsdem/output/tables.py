@@ -60,7 +60,7 @@ def table(
     Parameters
     ----------
     record : a record with ``to_pandas``, or DataFrame
-        What to print. An index that has a name becomes the first column.
+        The table. An index that has a name becomes the first column.
     styles : sequence of str or None, optional
         Style of each row, as `rich` names them.
     caption : str, optional

@@ -31,7 +31,7 @@ from rbsdem.run.groups import (
 from rbsdem.run.result import Result, cyclic, time_history
 from rbsdem.run.solver import Solver
 
-#: What an analysis was given that no case file has.
+#: Arguments of analyses that no case file has.
 _NO_SETTINGS = ("initial", "corners", "progress")
 _DRIVES = ("displacement", "force", "ground_acceleration", "vertical_acceleration", "axial_load")
 
@@ -262,11 +262,11 @@ def case_of(result: Result | FrameResult) -> Case:
     return Case("", result.column, method, time, **loads, settings=given)
 
 
-# What makes a column's text a whole case.
+# A loading that completes the text of a column to a case.
 _LOADING = "&loading drive = 'force', values = 0, 0 /\n"
 
 
-#: What readers of damaged archives raise.
+#: Errors that readers of damaged archives raise.
 _DAMAGED = (
     OSError, ValueError, KeyError, TypeError, EOFError, NotImplementedError, zipfile.BadZipFile,
     zlib.error,

@@ -1,4 +1,4 @@
-"""What the groups of a case file make: a section and its model, springs of a column, a frame."""
+"""Objects made of the groups of a case file: sections, models, springs of a column, frames."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ SHAPES: dict[str, type[Section]] = {
 SPRING_GROUPS = ("shear", "flexure", "axial_spring")
 #: Keys of the place of a spring.
 _NO_KEYS = ("rule", "joint", "kind", "node", "panel", "place", "id")
-#: What groups with steels stand for.
+#: Classes of the groups that refer to steels.
 _PARTS: dict[str, type] = {"layout": Layout, "inner_layout": Layout, "ties": Ties, "spiral": Spiral}
 
 

@@ -47,7 +47,7 @@ _SHORT = 50_000
 
 @dataclass(frozen=True)
 class ErrorEstimate:
-    """What is known of the error of one result.
+    """Known errors of one result.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class ErrorEstimate:
     own_setting : bool
         Whether the result has this step or tolerance; else a setting of the user.
     energy : float
-        What is missing in the energy balance of this result, over its largest energy. It is no
+        Error of the energy balance of this result, over its largest energy. It is no
         measure of the response, which may err by much more.
     """
 
@@ -94,7 +94,7 @@ class ErrorEstimate:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Result(Response):
-    """What `cyclic` and `time_history` return: a response with what it reaches and means."""
+    """The result of `cyclic` and `time_history`: a response with its limit states and its error."""
 
     def limit_states(self) -> LimitStates:
         """Return the limit states that the response reaches, with row, drift and source.
@@ -134,7 +134,7 @@ class Result(Response):
 
     @property
     def error_estimate(self) -> ErrorEstimate:
-        """What is known of the error: measured where that takes about 0.1 s, else by its method."""
+        """Estimate of the error: measured where that takes about 0.1 s, else by its method."""
         about = self.summary
         method = METHODS[about["method"]]
         short = self.dynamic and about["steps"] * self.column.n <= _SHORT
@@ -513,7 +513,7 @@ def pushover(
     points : int, optional
         Rows at equal steps; there is one at each event in addition.
     initial : FrameResult, Result or path, optional
-        What the path begins in.
+        The state that the path begins in.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What follows from the drawing of a section: diagrams, strengths, springs, its column.
+"""Results that follow from the drawing of a section: diagrams, strengths, springs, its column.
 
 Most functions take a `rbsdem.RectangularSection` or `rbsdem.CircularSection` first, or a
 `rbsdem.frames.TeeSection`. Strains and axial loads are positive in compression, y is positive to

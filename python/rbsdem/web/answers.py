@@ -1,4 +1,4 @@
-"""What the page shows of a state: loops with limit states, diagrams, code values, bands, tests.
+"""Answers to the page about a state: loops with limit states, diagrams, code values, bands, tests.
 
 Answers are what JSON holds, in SI, with six digits. The functions are those that everybody calls;
 columns and results that were just made are kept, as several answers stand on them.
@@ -80,7 +80,7 @@ class Answered:
     faults : list
         Messages with their fields.
     notes : list of str
-        What the program remarks.
+        Notes of the program.
     stopped : str
         Why the analysis ended early.
     seconds : float
@@ -379,7 +379,7 @@ class Answers:
         return {"id": key, "name": shown, "pga": motion.pga, "length": motion.length}
 
 
-#: What can be asked, by the last part of the path.
+#: Questions, by the last part of the path.
 ONCE = ("export", "open", "record", "report")
 LANES = ("loops", "checks", "sections", "own", "bands", "scales", "nearest", *ONCE)
 

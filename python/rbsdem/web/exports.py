@@ -81,7 +81,7 @@ def opened(text: object) -> dict[str, Any]:
     """Return the state of the text of a case file, from its drawing or as the case that it is."""
     try:
         with unwarned(Warning):
-            # What there is to say of it stands beside its loop.
+            # Notes on it stand beside its loop.
             case = own_case(text)
     except InputError as error:
         return {"faults": [{"field": "case", "text": str(error)}]}

@@ -46,7 +46,7 @@ def one_file(
     title : str
         Title of the document.
     data : mapping or None
-        What the page would have got from the server.
+        Answers of the server that the page needs.
     modules : sequence of str, optional
         `REPORT`, or none for a page of sheets.
     sheets : tuple of str, optional

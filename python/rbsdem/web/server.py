@@ -256,7 +256,7 @@ class _Handler(BaseHTTPRequestHandler):
         return asked
 
     def _refuse(self, status: int, text: str) -> None:
-        # What is left of the request is not read.
+        # The rest of the request is not read.
         self.close_connection = True
         with suppress(ConnectionError, TimeoutError):
             self._send(status, json.dumps({"error": text}).encode(), "application/json")

@@ -1,4 +1,4 @@
-"""What the page sends, as sections, columns and loadings; what is wrong goes beside its field.
+"""The state of the page as sections, columns and loadings; what is wrong goes beside its field.
 
 A state is what JSON holds: dicts, lists, numbers in SI. Nothing is checked here that the program
 checks itself: the fields of its `InputError` become the fields of the form.
