@@ -10,7 +10,7 @@ from rbsdem.errors import InputError, warn
 from rbsdem.model.column import MOST_BODIES, Column, Footing, Top, bodies
 from rbsdem.model.frame import FrameMember
 from rbsdem.model.shape import Section, checked_section
-from rbsdem.model.springs import Elastic, Spring
+from rbsdem.model.springs import Elastic, Spring, Takeda, unchecked
 from rbsdem.section.axial_moment import nominal_moment
 from rbsdem.section.curvature import axial_load_note, column_length
 from rbsdem.section.layered import LayeredColumn, LayeredModel, body_lengths, lumping
@@ -252,7 +252,8 @@ def member(
         wear with their range of strain, as those of columns do.
     under_load : bool, optional
         Whether a load acts in its span, as on a beam under a floor: a joint of layers, without
-        slip of bars, then stands in the middle too, and the span cracks and yields there.
+        slip of bars, then stands in the middle too, where the span yields, and all of the member is
+        cracked from the first, as its ends are.
     rigid_end, name
         As for `FrameMember`.
 
@@ -284,6 +285,12 @@ def member(
     )
     joints = {0.0: hinge, 1.0: last}
     if under_load:
+        # Between two cracked joints the rest is cracked too. It turns by its mean moment under the
+        # load, so that nothing is made up for lumping.
+        above, below = (
+            unchecked(Elastic, k=one.k_y / lumping(2)) if isinstance(one, Takeda) else one
+            for one in (above, below)
+        )
         dry = _known(model_parameters).with_values(slip_length=0.0)
         # Bars that are more over one support end before the middle.
         least = min(halves, key=lambda one: one.steel_area)

@@ -18,7 +18,7 @@ from rbsdem.model.shape import Section
 from rbsdem.model.springs import ConcreteSpring, Gauge, Layered, Part, SteelSpring, unchecked
 from rbsdem.section.parameters import ModelParameters
 
-_STRIPS = 14
+_STRIPS = 10
 # The hinge is lumped at the foot, where it turns the whole length, not that above its middle: the
 # column above makes up for it.
 _STIFFEST = 2.0
