@@ -142,8 +142,8 @@ class LumpedHinge(Tabular):
         """Return the moments of a material along a path of rotation [N m].
 
         "Hysteretic" is that of OpenSees, step by step; "IMKPeakOriented" the `PeakOriented`
-        spring with the same backbone and Lambda, whose rule differs in the details of deterioration
-        (`studies/export_opensees.py` has both beside OpenSees).
+        spring with the same backbone and Lambda, whose rule differs in the details of
+        deterioration.
 
         Parameters
         ----------

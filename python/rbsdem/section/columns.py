@@ -40,7 +40,7 @@ CONCRETE_DENSITY = 2400.0
 
 
 def model_name(model: str, model_parameters: ModelParameters | None = None) -> str:
-    """Return the name of a model with the version of its parameters, as "layered 2026.6".
+    """Return the name of a model with the version of its parameters, as "layered 2026.7".
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ def column(
     ... )
     >>> column = rbsdem.section.column(section, 1.6, axial_load=744e3)
     >>> column.n, column.version
-    (2, '2026.6')
+    (2, '2026.7')
     """
     checked_section(section)
     model = _arguments.choice(model, "model", MODELS)

@@ -286,7 +286,7 @@ class LayeredColumn(Column):
 
     @property
     def version(self) -> str:
-        """Version of the parameters, as "2026.6", or "2026.6 changed"."""
+        """Version of the parameters, as "2026.7", or "2026.7 changed"."""
         return self._drawing.parameters.label
 
     @property
