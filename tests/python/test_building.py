@@ -242,7 +242,7 @@ def test_a_drawn_case_is_the_same_by_python_and_the_executable(drawn, tmp_path, 
     wrong = tmp_path / "wrong.nml"
     for old, new, text in (
         ("kind = 'section-1'", "kind = 'section-9'", "section-9"),
-        ("version = '2026.6'", "version = '2020.1'", "'2020.1' is not known"),
+        ("version = '2026.7'", "version = '2020.1'", "'2020.1' is not known"),
     ):
         wrong.write_text(path.read_text().replace(old, new, 1))
         found = command("check", wrong)
