@@ -57,12 +57,6 @@ class Strips:
     core, cover : tuple of Strip
         Concrete within the centre lines of the transverse bars, and around them; bars are not
         deducted.
-    area : float
-        Of the whole section [m2].
-    inertia : float
-        Second moment of the whole section about its centroid [m4].
-    shear_area : float
-        [m2].
     confining_stress : float
         Effective, along and across the loading alike, as the transverse bars yield [Pa].
     tie_ratio : float
@@ -71,9 +65,6 @@ class Strips:
 
     core: tuple[Strip, ...]
     cover: tuple[Strip, ...]
-    area: float
-    inertia: float
-    shear_area: float
     confining_stress: float
     tie_ratio: float
 
@@ -128,9 +119,6 @@ def cut(
     return Strips(
         core=tuple(Strip(y, part) for y, part in strips[:, :2].tolist() if part > least),
         cover=tuple(Strip(y, part) for y, part in strips[:, 2:].tolist() if part > least),
-        area=section.gross_area,
-        inertia=section.inertia,
-        shear_area=section.shear_area,
         confining_stress=confinement[0],
         tie_ratio=confinement[1],
     )
@@ -282,7 +270,7 @@ def hinge_joint(
     of_core = core * sum(strip.area for strip in strips.core)
     of_cover = strength * sum(strip.area for strip in strips.cover)
     _check(axial_load, bars, bars + of_core + of_cover)
-    ratio = axial_load / (cylinder * strips.area)
+    ratio = axial_load / (cylinder * section.gross_area)
 
     def by_axial(value: float, exponent: float) -> float:
         return value * math.exp(exponent * (ratio - 0.2))
@@ -321,8 +309,7 @@ def hinge_joint(
     for strip in strips.cover:
         layers.append((strip.y, concrete(round(strip.area, 12), strength, peak, softening)))
     slip = given.slip_length * bond
-    stress = min(axial_load / strips.area / 40e6, 1.5)
-    by_stress = math.exp(given.r0_stress * (stress - 0.15))
+    high = min(axial_load / section.gross_area / 40e6, 1.5)
     buckles = given.buckling > 0 and given.fatigue > 0
     bows = _buckling_strain(strips.tie_ratio * tie_yield, ratio) * (steel_length + slip)
 
@@ -335,7 +322,7 @@ def hinge_joint(
             k=stiffness,
             f_y=fy * area,
             k_post=stiffness * max(_LEAST_HARDENING, given.hardening * (fu - fy) / 0.08 / steel.es),
-            r0=given.r0 * by_stress,
+            r0=given.r0 * math.exp(given.r0_stress * (high - 0.15)),
             **{name: getattr(given, name) for name in ("cr1", "cr2", "isotropic_hardening")},
             endurance=max(1 / given.fatigue, _LEAST_ENDURANCE) if given.fatigue > 0 else 0.0,
             d_buckle=bows if buckles else None,
@@ -347,16 +334,19 @@ def hinge_joint(
     of_bars = sum(steel.es * (area * (y - centre) ** 2) for y, area, steel in section.bars)
     moment = _yield_moment(section, axial_load, ratio, yield_stress)
     lengths = {"core": concrete_length, "cover": concrete_length, "bar": steel_length + slip}
-    parts = _parts(strips, len(section.bars))
+    numbers: dict[Part, int] = {
+        "core": len(strips.core), "cover": len(strips.cover), "bar": len(section.bars)
+    }  # fmt: skip
+    parts = [part for part, number in numbers.items() for _ in range(number)]
     stiffness = min(_STIFFEST, by_axial(given.stiffness, given.stiffness_axial))
     return HingeJoint(
         unchecked(Layered, layers=tuple(layers)),
         concrete_length,
-        stiffness * (modulus * strips.inertia + of_bars),
-        given.shear_stiffness * modulus / 2.4 * strips.shear_area,
+        stiffness * (modulus * section.inertia + of_bars),
+        given.shear_stiffness * modulus / 2.4 * section.shear_area,
         moment,
         moment * _yield_curvature(section, yield_stress) * (steel_length + slip),
-        Gauge(parts, tuple(lengths[part] for part in parts)),
+        Gauge(tuple(parts), tuple(lengths[part] for part in parts)),
         {
             "hinge_length": (0.0, (longest - given.hinge_depth * depth) / one_length),
             "hinge_depth": (-math.inf, (longest - given.hinge_length * one_length) / depth),
@@ -377,12 +367,6 @@ def _buckling_strain(confinement: float, ratio: float) -> float:
     Goodnight, Kowalsky and Nau (2013); `confinement` is rho_s f_yh [Pa], `ratio` that of the load.
     """
     return max(0.01, 0.03 + 700 * confinement / _ES - 0.1 * ratio)
-
-
-def _parts(strips: Strips, bars: int) -> tuple[Part, ...]:
-    """Return what the layers stand for, in their order."""
-    numbers: dict[Part, int] = {"core": len(strips.core), "cover": len(strips.cover), "bar": bars}
-    return tuple(part for part, number in numbers.items() for _ in range(number))
 
 
 def _yield_moment(section: Section, axial_load: float, ratio: float, stress: float) -> float:

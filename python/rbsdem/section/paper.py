@@ -104,11 +104,6 @@ class PaperSection:
         return self.axial_load / (self.gross_area * self.concrete_strength)
 
     @property
-    def longitudinal_ratio(self) -> float:
-        """Area of all longitudinal bars over the gross area."""
-        return self.longitudinal_number * self.longitudinal_area / self.gross_area
-
-    @property
     def section(self) -> RectangularSection:
         """The section with its bars along the ties, as many on every face."""
         steel = Steel(self.longitudinal_yield_stress, self.longitudinal_ultimate_stress)

@@ -13,9 +13,6 @@ from rbsdem.model.springs import Bilinear, Takeda, for_whole_column
 from rbsdem.section.curvature import Events, axial_load_note, column_length, is_confined, make_point
 from rbsdem.section.shear import ShearSpring, closed_form_shear, fit_shear_spring
 
-YIELD_RULES = ("A", "B", "first")
-"""How the yield rotation is read from the diagrams."""
-
 SHEAR = ("mcft", "closed", "none")
 """Sources of the shear spring."""
 
