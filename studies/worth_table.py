@@ -151,13 +151,13 @@ def by_class(found: dict[str, list[peer.Prediction]]) -> None:
     for name, rows in found.items():
         cells = []
         for kind in CLASSES:
-            own = [row.nrmse for row in rows if row.specimen.kind == kind]
+            own = [row.score("nrmse") for row in rows if row.specimen.kind == kind]
             cells.append(f"{np.median(own):.3f}" if own else "-")
         series: dict[str, list[float]] = {}
         for row in rows:
-            series.setdefault(row.specimen.series, []).append(row.nrmse)
+            series.setdefault(row.specimen.series, []).append(row.score("nrmse"))
         mean = np.mean([np.mean(own) for own in series.values()])
-        median = np.median([row.nrmse for row in rows])
+        median = np.median([row.score("nrmse") for row in rows])
         print(f"| {name}, {len(rows)} tests | {' | '.join(cells)} | {median:.3f}, {mean:.3f} |")
 
 
