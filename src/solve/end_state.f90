@@ -6,14 +6,16 @@
 module rbs_solve_end_state
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_fortran_env, only: int64
-   use rbs_base_error, only: error_type, fatal_error, bad_input
+   use rbs_base_error, only: error_type, fatal_error, analysis_failed, bad_input
    use rbs_base_key_visitor, only: key_visitor
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
+   use rbs_hysteresis_interaction_joints, only: go_under
    use rbs_hysteresis_layered_layered_joint, only: layered_rule
    use rbs_hysteresis_rule, only: rule_type
    use rbs_hysteresis_springs, only: spring_array
+   use rbs_structure_spring_place, only: spring_name
    use rbs_structure_structure, only: structure_type
    implicit none
    private
@@ -54,6 +56,7 @@ module rbs_solve_end_state
       real(wp) :: setting = 0.0_wp
    contains
       procedure :: serialize => serialize_checkpoint
+      procedure :: put_under
    end type checkpoint_type
 
    type :: end_state
@@ -278,5 +281,24 @@ contains
       parts(1) = real(ibits(hash, 0, 32), wp)
       parts(2) = real(ibits(hash, 32, 32), wp)
    end subroutine split
+
+   !> Put the springs that were restored under the axial forces with which the next analysis begins.
+   subroutine put_under(self, structure, axial_force, springs, error)
+      class(checkpoint_type), intent(in) :: self
+      class(structure_type), intent(in) :: structure
+      !> Compression positive (springs) [N]
+      real(wp), intent(in) :: axial_force(:)
+      type(spring_array), intent(inout) :: springs
+      type(error_type), allocatable, intent(inout) :: error
+      integer :: lost
+
+      call go_under(springs, axial_force, self%pressed)
+      lost = springs%lost_joint()
+      if (lost == 0) return
+      call fatal_error(error, analysis_failed, 'initial: the layers of '// &
+                       trim(spring_name(structure%place(lost)))//' cannot carry the axial load of '// &
+                       to_text(axial_force(lost))//' N in the state that the first analysis ended in; '// &
+                       'give a smaller axial_load')
+   end subroutine put_under
 
 end module rbs_solve_end_state

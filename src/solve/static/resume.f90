@@ -4,12 +4,11 @@ module rbs_solve_static_resume
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_hysteresis_interaction_joints, only: go_under, vary_axial_loads
+   use rbs_hysteresis_interaction_joints, only: vary_axial_loads
    use rbs_solve_end_state, only: end_state, checkpoint_type, static_state
    use rbs_solve_line_search, only: false_position
    use rbs_solve_static_path, only: static_path
    use rbs_structure_channel, only: energy_type
-   use rbs_structure_spring_place, only: spring_name
    implicit none
    private
 
@@ -55,7 +54,6 @@ contains
       subroutine begin_from()
          type(checkpoint_type) :: checkpoint
          real(wp) :: press(size(path%structure%place)), missing
-         integer :: lost
          type(energy_type) :: energy
          logical :: goes_on
 
@@ -65,15 +63,8 @@ contains
          press = path%structure%constant_axial
          if (varies) press = checkpoint%press
          goes_on = checkpoint%kind == static_state .and. all(abs(press - checkpoint%press) <= 0.0_wp)
-         call go_under(path%springs, press, checkpoint%pressed)
-         lost = path%springs%lost_joint()
-         if (lost > 0) then
-            call fatal_error(error, analysis_failed, 'initial: the layers of '// &
-                             trim(spring_name(path%structure%place(lost)))// &
-                             ' cannot carry the axial load of '//to_text(press(lost))// &
-                             ' N in the state that the first analysis ended in; give a smaller axial_load')
-            return
-         end if
+         call checkpoint%put_under(path%structure, press, path%springs, error)
+         if (allocated(error)) return
          path%load_now = merge(checkpoint%axial_load, path%structure%axial_load, varies)
          path%work = checkpoint%input
          path%damped_before = checkpoint%damping

@@ -4,7 +4,7 @@ module rbs_solve_time_start
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_hysteresis_interaction_joints, only: go_under, vary_axial_loads
+   use rbs_hysteresis_interaction_joints, only: vary_axial_loads
    use rbs_solve_end_state, only: end_state, checkpoint_type, moving_state
    use rbs_loading_loads, only: loads_type, lateral, vertical, top_axial
    use rbs_solve_time_plan, only: time_plan, same_step
@@ -37,7 +37,7 @@ contains
       type(checkpoint_type), intent(out) :: checkpoint
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: press(size(structure%place)), missing, largest(4)
-      integer :: i, lost
+      integer :: i
 
       call create_state(state, structure, loads, plan%begin, error)
       if (allocated(error)) return
@@ -57,15 +57,8 @@ contains
       largest = same_step*max(largest, abs(checkpoint%load))
       if (all(abs(state%load - checkpoint%load) <= largest)) state%load = checkpoint%load
       press = [(structure%axial_force(i, state%load), i=1, size(press))]
-      call go_under(state%springs, press, checkpoint%pressed)
-      lost = state%springs%lost_joint()
-      if (lost > 0) then
-         call fatal_error(error, analysis_failed, 'initial: the layers of '// &
-                          trim(spring_name(structure%place(lost)))//' cannot carry the axial load of '// &
-                          to_text(structure%axial_force(lost, state%load))//' N in the state that the '// &
-                          'first analysis ended in; give a smaller axial_load')
-         return
-      end if
+      call checkpoint%put_under(structure, press, state%springs, error)
+      if (allocated(error)) return
       state%q = state%springs%d
       state%v = checkpoint%v
       state%of_loads = checkpoint%input
