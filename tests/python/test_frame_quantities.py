@@ -5,7 +5,7 @@ import pytest
 
 import rbsdem
 from rbsdem import frames
-from rbsdem.springs import Bilinear
+from rbsdem.springs import Bilinear, Elastic, PeakOriented
 
 STIFF = frames.FrameMember(30e9, 4.0, 4.0)
 
@@ -174,3 +174,35 @@ def test_events_members_and_modes_are_printed_as_tables():
     y, cover = max(hinge.layers, key=lambda one: abs(one[0]) if hasattr(one[1], "d_peak") else 0.0)
     closed = push.springs["opening"][row, 0] - abs(y) * abs(push.springs["rotation"][row, 0])
     assert closed <= -(cover.d_peak + cover.f_peak / cover.k_soft) * (1 - 1e-9)
+
+
+@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
+def test_limit_states_and_error_are_those_of_a_column():
+    # One rigid body on a spring is a column of one body and a frame of one member.
+    spring = PeakOriented(
+        d_y=0.004, f_y=200e3, d_cap=0.02, f_cap=240e3, d_pc=0.03, d_c=0.001, f_c=80e3
+    )
+    member = frames.FrameMember(30e9, 1.0, 100.0, flexure={0.0: spring})
+    made = rbsdem.Frame.grid([3.0], columns=member, floor_mass=40e3)
+    column = rbsdem.Column(
+        height=3.0, n=1, mass=1.0, top_mass=40e3, shear=Elastic(1e12), flexure=spring
+    )
+    path = [0.02, -0.03, 0.1, -0.1, 0.12]
+    for call in (
+        lambda own: rbsdem.cyclic(own, displacement=path),
+        lambda own: rbsdem.pushover(own, drift=-0.04, points=7),
+    ):
+        one, two = (call(own).limit_states() for own in (column, made))
+        assert one.names() == two.names() == ["cracking", "first_yield", "cap", "strength_loss"]
+        for state in one:
+            for name in ("time", "drift", "force"):
+                expected = pytest.approx(getattr(state, name), rel=1e-4)
+                assert getattr(two[state.name], name) == expected, (state.name, name)
+    assert two["cap"].source == "flexure of C-1-1 start"
+    record = rbsdem.motions.synthetic(1)[0]
+    given = {"method": "newmark", "dt": 0.01, "collapse_drift": 0.03}
+    one, two = (rbsdem.time_history(own, record, **given) for own in (column, made))
+    assert one.limit_states().names() == two.limit_states().names()
+    found = one.refined_error(), two.refined_error()
+    assert found[1].response_rms == pytest.approx(found[0].response_rms, rel=0.01)
+    assert two.error_estimate.measured == found[1].largest

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from rbsdem.checks.criteria import Criterion, criteria
 from rbsdem.curves.envelope import strength_loss_point
 from rbsdem.errors import InputError
 from rbsdem.model.response import Response
+from rbsdem.model.rows import Rows
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.strength import axial_failure_drift
 
@@ -42,7 +44,7 @@ class LimitState:
     force : float
         Of the loop there [N], see `Result.loop_force`.
     threshold : float
-        The value that is reached: a strain, a rotation [rad], a slip [m] or a share.
+        The value that is reached: a strain, a rotation [rad], a slip [m] or a share; NaN of a frame.
     source : str
         Where the threshold comes from.
     """
@@ -68,7 +70,7 @@ class LimitStates(Tabular):
         Those that are reached.
     """
 
-    def __init__(self, result: Response, states: list[LimitState]) -> None:
+    def __init__(self, result: Rows, states: list[LimitState]) -> None:
         self.result = result
         self._states = sorted(states, key=lambda state: (state.time, state.row))
 
@@ -112,8 +114,49 @@ class LimitStates(Tabular):
 _LOSS = 0.2
 
 
-def limit_states(result: Response) -> LimitStates:
+#: Limit states by the group of springs of an event, and by what happens.
+_EVENTS = {
+    ("flexure", "cracking"): "cracking",
+    ("flexure", "yield"): "first_yield",
+    ("flexure", "cap"): "cap",
+    ("flexure", "spalling"): "spalling",
+    ("shear", "cracking"): "shear_cracking",
+    ("shear", "yield"): "shear_yield",
+    ("shear", "cap"): "shear_failure",
+    ("member", "shear failure"): "shear_failure",
+    ("member", "lost"): "axial_failure",
+}
+
+
+def limit_states(result: Rows) -> LimitStates:
     """Return the limit states that a result reaches; see `Result.limit_states`."""
+    first = _of_column(result) if isinstance(result, Response) else _of_frame(result)
+    states = [*first.values(), *_losses(result), *_axial_failure(result, first)]
+    ends = {
+        "axial_failure": ("axial_failure", "the layers lose the axial load"),
+        "collapsed": ("collapse", "collapse_drift"),
+    }
+    name, source = ends.get(result.summary["status"], ("", ""))
+    if name and name not in {state.name for state in states}:
+        states.append(_state(result, name, result.path.time.size - 1, math.nan, source))
+    return LimitStates(result, states)
+
+
+def _of_frame(result: Any) -> dict[str, LimitState]:
+    """Return the first event of each kind."""
+    first: dict[str, LimitState] = {}
+    path = result.path
+    for event in path.events:
+        name = _EVENTS.get((event.group.replace("panel", "flexure"), event.what), "")
+        if name and name not in first:
+            place = float(np.interp(event.step, path.time, np.arange(path.time.size)))
+            source = f"{event.group} of {event.member} {event.end}".rstrip()
+            first[name] = _state(result, name, place, math.nan, source)
+    return first
+
+
+def _of_column(result: Response) -> dict[str, LimitState]:
+    """Return the first criterion of each state that is met."""
     watched, joints = criteria(result.column), result.column.joint_numbers
     path = result.path
     if any(criterion.opening for criterion in watched):
@@ -126,15 +169,7 @@ def limit_states(result: Response) -> LimitStates:
             found = _in_time(result, criterion, *result.reached[place])
         if found is not None and (found.name not in first or found.time < first[found.name].time):
             first[found.name] = found
-    states = [*first.values(), *_losses(result), *_axial_failure(result, first)]
-    ends = {
-        "axial_failure": ("axial_failure", "the layers lose the axial load"),
-        "collapsed": ("collapse", "collapse_drift"),
-    }
-    name, source = ends.get(result.summary["status"], ("", ""))
-    if name and name not in {state.name for state in states}:
-        states.append(_state(result, name, path.time.size - 1, math.nan, source))
-    return LimitStates(result, states)
+    return first
 
 
 def _in_time(
@@ -146,7 +181,7 @@ def _in_time(
     place = float(np.interp(time, result.time, np.arange(result.time.size)))
     state = _state(result, criterion.name, place, criterion.threshold, criterion.source)
     at = float(displacement)
-    return replace(state, time=float(time), displacement=at, drift=at / result.column.height)
+    return replace(state, time=float(time), displacement=at, drift=at / result.structure.height)
 
 
 def _in_rows(result: Response, path: Response, criterion: Criterion, at: int) -> LimitState | None:
@@ -161,7 +196,7 @@ def _in_rows(result: Response, path: Response, criterion: Criterion, at: int) ->
     return _state(result, criterion.name, place, threshold, criterion.source)
 
 
-def _losses(result: Response) -> list[LimitState]:
+def _losses(result: Rows) -> list[LimitState]:
     """Return where a fifth of the strength of a side is lost first, as the comparison has it."""
     path = result.path
     place, loss = strength_loss_point(path.displacement, path.loop_force, share=_LOSS)
@@ -170,16 +205,16 @@ def _losses(result: Response) -> list[LimitState]:
     source = "20 % of the largest force of a side, on its envelope"
     state = _state(result, "strength_loss", place, _LOSS, source)
     at = math.copysign(loss, state.displacement)
-    return [replace(state, displacement=at, drift=at / result.column.height)]
+    return [replace(state, displacement=at, drift=at / result.structure.height)]
 
 
-def _axial_failure(result: Response, first: dict[str, LimitState]) -> list[LimitState]:
+def _axial_failure(result: Rows, first: dict[str, LimitState]) -> list[LimitState]:
     """Return where a column that has failed in shear loses its axial load.
 
     Its shear spring has yielded, and its drift is that at which the friction along the shear crack
     carries the axial load no more (`rbsdem.section.strength.axial_failure_drift`).
     """
-    column = result.column
+    column = result.structure
     if "shear_yield" not in first or not isinstance(column, LayeredColumn):
         return []
     assert column.drawing is not None
@@ -193,7 +228,7 @@ def _axial_failure(result: Response, first: dict[str, LimitState]) -> list[Limit
     return [_state(result, "axial_failure", float(rows[0]), limit, source)]
 
 
-def _state(result: Response, name: str, place: float, threshold: float, source: str) -> LimitState:
+def _state(result: Rows, name: str, place: float, threshold: float, source: str) -> LimitState:
     """Return the state at a row of the path, or between two with the share of the way."""
     path = result.path
     rows = np.arange(path.time.size)
@@ -203,7 +238,7 @@ def _state(result: Response, name: str, place: float, threshold: float, source: 
     )
     # Round-off of a time that is one of the rows does not take the next one.
     row = np.searchsorted(result.time, time - 1e-12 * abs(time))
-    at, drift = min(int(row), result.time.size - 1), displacement / result.column.height
+    at, drift = min(int(row), result.time.size - 1), displacement / result.structure.height
     return LimitState(name, at, time, displacement, drift, force, threshold, source)
 
 

@@ -287,7 +287,7 @@ def limit_states(states: LimitStates, *, ax: Axes | None = None) -> Axes:
     """
     result = states.result
     with axes_or_new(ax, (4.6, 3.4)) as drawn:
-        loop(result, height=result.column.height, ax=drawn, color="0.55", linewidth=0.6)
+        loop(result, height=result.structure.height, ax=drawn, color="0.55", linewidth=0.6)
         for state, marker in zip(states, _MARKERS, strict=False):
             at, name = (1e3 * state.displacement, 1e-3 * state.force), state.name.replace("_", " ")
             drawn.plot(*at, marker=marker, label=name, **_STATE)

@@ -8,6 +8,7 @@ import numpy as np
 
 from rbsdem._types import Array
 from rbsdem.model.response import Response
+from rbsdem.model.rows import Rows
 
 
 @dataclass(frozen=True)
@@ -18,7 +19,7 @@ class Answer:
     ----------
     time, response, moment : ndarray, shape (m,)
         Times of the loading [s], top displacement [m] there (lateral force [N] if the displacement
-        is driven), and moment of the lowest joint [N m].
+        is driven), and moment of the lowest joint [N m], of a frame its base shear [N].
     taken : ndarray, shape (m,)
         Energy that springs and damping have taken by then [J]: the energy dissipated and the energy
         that the springs still store.
@@ -70,7 +71,8 @@ class Errors:
     response_rms, response_max : float
         Root mean square and largest difference of the responses over the largest response.
     moment : float
-        Root mean square difference of the base moments over the largest base moment.
+        Root mean square difference of the base moments over the largest, of a frame of the base
+        shears.
     energy : float
         Difference of the energies at the end over the largest energy.
     peak : float
@@ -142,12 +144,13 @@ def at_times(wanted: Array, time: Array, values: Array) -> Array:
     return result
 
 
-def answer_of(run: Response, times: Array, driven: bool = False) -> Answer:
+def answer_of(run: Rows, times: Array, driven: bool = False) -> Answer:
     """Return what is compared, at some times; `driven`: the displacement is, not the force."""
     time = run.time
     response = run.force if driven else run.displacement
     taken = run.energy["spring"] + run.energy["damping"]
-    histories = [np.array(values) for values in (response, run.moment[:, 0], taken)]
+    moment = run.moment[:, 0] if isinstance(run, Response) else run.base_shear
+    histories = [np.array(values) for values in (response, moment, taken)]
     if not run.dynamic and time.size != times.size:
         places = (2 * times + 1).astype(int)
         places = places[places < time.size]

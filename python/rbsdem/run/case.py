@@ -19,8 +19,7 @@ from rbsdem._types import Array
 from rbsdem.errors import InputError, SolveError
 from rbsdem.model.column import Column, Damping, Footing, notes_off
 from rbsdem.model.frame import Frame, Structure
-from rbsdem.model.frame_result import FrameResult
-from rbsdem.model.rows import FORMAT, FORMAT_VERSION, SAVED, check_ending, same
+from rbsdem.model.rows import FORMAT, FORMAT_VERSION, SAVED, Rows, check_ending, same
 from rbsdem.run.groups import (
     SPRING_GROUPS,
     frame_of,
@@ -28,7 +27,7 @@ from rbsdem.run.groups import (
     recipe_of,
     springs_of_joints,
 )
-from rbsdem.run.result import Result, cyclic, time_history
+from rbsdem.run.result import FrameResult, Result, cyclic, time_history
 from rbsdem.run.solver import Solver
 
 #: Arguments of analyses that no case file has.
@@ -244,7 +243,7 @@ def case_of_text(text: str) -> Case:
             raise InputError(str(error).replace(str(path), "case")) from None
 
 
-def case_of(result: Result | FrameResult) -> Case:
+def case_of(result: Rows) -> Case:
     """Return the case of a result: what was run, or its structure, loading and settings.
 
     Parameters
@@ -259,7 +258,7 @@ def case_of(result: Result | FrameResult) -> Case:
     size = next(values.size for values in loads.values() if values is not None)
     method = given.pop("method", "auto") if result.dynamic else "static"
     time = given.pop("time", np.arange(float(size)))
-    return Case("", result.column, method, time, **loads, settings=given)
+    return Case("", result.structure, method, time, **loads, settings=given)
 
 
 # A loading that completes the text of a column to a case.

@@ -21,9 +21,9 @@ from rbsdem.checks.limit_states import Hinge, LimitStates
 from rbsdem.checks.limit_states import hinge as hinge_of
 from rbsdem.checks.limit_states import limit_states as find_limit_states
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError, warn
+from rbsdem.model import frame_result
 from rbsdem.model.column import NOTES_ON, Column
 from rbsdem.model.frame import Frame, Structure, checked_structure
-from rbsdem.model.frame_result import FrameResult, span_note
 from rbsdem.model.response import Response
 from rbsdem.model.rows import HasEndState, Rows, settings_of, state_of
 from rbsdem.motions.motion import GroundMotion, acting
@@ -92,9 +92,8 @@ class ErrorEstimate:
         )
 
 
-@dataclass(frozen=True, repr=False, eq=False)
-class Result(Response):
-    """The result of `cyclic` and `time_history`: a response with its limit states and its error."""
+class Judged(Rows):
+    """Rows with the limit states that they reach, and their error."""
 
     def limit_states(self) -> LimitStates:
         """Return the limit states that the response reaches, with row, drift and source.
@@ -105,7 +104,8 @@ class Result(Response):
         where a layer yields in tension. Other springs: their `Spring.landmarks`, cracking, yield
         and cap.
         All: the same of shear springs, loss of 20 % of the strength, collapse, loss of the axial
-        load. Nothing of the response is changed.
+        load. Of a frame: the first of its `events` of each kind, with the spring as source.
+        Nothing of the response is changed.
 
         Raises
         ------
@@ -114,30 +114,12 @@ class Result(Response):
         """
         return find_limit_states(self)
 
-    def hinge(self, joint: int = 1, *, length: float | None = None) -> Hinge:
-        """Return rotation, plastic rotation and curvature of a hinge.
-
-        Parameters
-        ----------
-        joint : int, optional
-            The joint, from 1 at the ground to n.
-        length : float, optional
-            Length of the hinge for its curvature [m]. Known of the hinge of a column that was made
-            from its drawing by the layered model.
-
-        Raises
-        ------
-        InputError
-            If there is no such joint, or the openings of a layered hinge were not kept in time.
-        """
-        return hinge_of(self, joint, length)
-
     @property
     def error_estimate(self) -> ErrorEstimate:
         """Estimate of the error: measured where that takes about 0.1 s, else by its method."""
         about = self.summary
         method = METHODS[about["method"]]
-        short = self.dynamic and about["steps"] * self.column.n <= _SHORT
+        short = self.dynamic and about["steps"] * self.structure.n <= _SHORT
         measured = math.nan
         if short and about["status"] == "completed":
             with contextlib.suppress(SolveError):
@@ -171,6 +153,35 @@ class Result(Response):
         return _refined_error(self)
 
 
+@dataclass(frozen=True, repr=False, eq=False)
+class Result(Judged, Response):
+    """The result of `cyclic` and `time_history`: a response with its limit states and its error."""
+
+    def hinge(self, joint: int = 1, *, length: float | None = None) -> Hinge:
+        """Return rotation, plastic rotation and curvature of a hinge.
+
+        Parameters
+        ----------
+        joint : int, optional
+            The joint, from 1 at the ground to n.
+        length : float, optional
+            Length of the hinge for its curvature [m]. Known of the hinge of a column that was made
+            from its drawing by the layered model.
+
+        Raises
+        ------
+        InputError
+            If there is no such joint, or the openings of a layered hinge were not kept in time.
+        """
+        return hinge_of(self, joint, length)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class FrameResult(Judged, frame_result.FrameResult):
+    """The result of an analysis of a frame."""
+
+
+FrameResult.__doc__ = frame_result.FrameResult.__doc__
 Result.__doc__ = Response.__doc__
 
 
@@ -482,7 +493,7 @@ def _return(
     if error is not None:
         error.result = result
         raise error
-    told = span_note(result) if isinstance(result, FrameResult) else ""
+    told = frame_result.span_note(result) if isinstance(result, FrameResult) else ""
     for text in (note, told):
         if text:
             _tell(text)
@@ -547,14 +558,14 @@ def pushover(
         return error.result
 
 
-def _refined_error(result: Response) -> Errors:
+def _refined_error(result: Rows) -> Errors:
     """Return the differences of a result from that of the next finer setting."""
     with unwarned():
         # They were told with the result itself.
         if result.dynamic:
-            finer: Any = time_history(result.column, **_finer(result))
+            finer: Any = time_history(result.structure, **_finer(result))
         else:
-            finer = cyclic(result.column, **_divided(result))
+            finer = cyclic(result.structure, **_divided(result))
     driven = "displacement" in result.call
     one, other = (answer_of(run, result.time, driven) for run in (result, finer))
     found = asdict(errors_of(one, other))
@@ -563,7 +574,7 @@ def _refined_error(result: Response) -> Errors:
     return Errors(**{name: max(error, least) for name, error in found.items()})
 
 
-def _finer(result: Response) -> dict[str, Any]:
+def _finer(result: Rows) -> dict[str, Any]:
     """Return the keywords of `time_history` for the next finer setting."""
     call, about = dict(result.call), result.summary
     method = METHODS[about["method"]]
@@ -590,7 +601,7 @@ def _finer(result: Response) -> dict[str, Any]:
     return call | {"dt": interval / parts if regular else step / 2}
 
 
-def _divided(result: Response) -> dict[str, Any]:
+def _divided(result: Rows) -> dict[str, Any]:
     """Return the keywords of `cyclic` with each increment cut in two."""
     call = dict(result.call)
     name = "displacement" if "displacement" in call else "force"
