@@ -467,3 +467,37 @@ def test_measured_columns_of_the_paper(key):
     assert fit.nrmse < 0.12 < fit.before.nrmse
     assert fit.evaluations < 900
     assert fit.after.energy_ratio == pytest.approx(1, abs=0.1)
+
+
+def portal(column, beam):
+    """Return two storeys whose columns have rigid ends, and whose beams have springs."""
+    ends = Bilinear(k=6e7, d_y=beam / 6e7, k_post=6e5)
+    kinds = (
+        rbsdem.FrameMember(30e9, 0.16, 2.1e-3, yield_moment=column, hardening=0.02, name="column"),
+        rbsdem.FrameMember(30e9, 0.15, 3e-3, flexure=(ends, ends), shear=Elastic(6e7), name="beam"),
+    )
+    columns = {(line, 0): replace(kinds[0], rigid_end=0.1 * line) for line in (1, 2)}
+    return rbsdem.Frame.grid([3.2, 3.0], [5.0], columns=columns, beams=kinds[1], beam_load=15e3)
+
+
+def test_kinds_of_a_frame_are_fitted_to_its_loop():
+    path = np.interp(np.linspace(0, 5, 101), range(6), [0, 0.05, -0.05, 0.1, -0.1, 0.15])
+    test = rbsdem.cyclic(portal(260e3, 150e3), displacement=path)
+    start = portal(200e3, 200e3)
+    # The rigid lengths of the cells stay their own, and each kind is stated once.
+    assert list(start.named_kinds) == ["column", "beam"]
+    known = free_names(start)
+    assert known["column.yield_moment"].unit == "N m"
+    assert known["beam.flexure[0].d_y"].unit == "rad"
+    assert known["beam.shear[0].k"].unit == "N/m"
+    fit = rbsdem.calibrate(
+        start, (test.displacement, test.force), ["column.yield_moment", "beam.flexure[*].d_y"],
+        evaluations=200,
+    )  # fmt: skip
+    assert fit.column.named_kinds["column"].yield_moment == pytest.approx(260e3, rel=1e-6)
+    # A factor on both ends.
+    values = {one.name: one.value for one in fit.parameters}
+    assert values["beam.flexure[*].d_y"] == pytest.approx(0.75, rel=1e-6)
+    assert [fit.column.columns[line, 0].rigid_end for line in (1, 2)] == [0.1, 0.2]
+    with pytest.raises(InputError, match=r"did you mean 'beam.flexure\[0\].d_y'"):
+        rbsdem.calibrate(start, (test.displacement, test.force), ["beam.flexure[0].d_x"])

@@ -21,19 +21,20 @@ from rbsdem.calibration.paths import Parameters, free_parameters
 from rbsdem.calibration.search import Search
 from rbsdem.curves.scores import Comparison, compare
 from rbsdem.errors import InputError, warn
-from rbsdem.model.column import Column, Parameter
+from rbsdem.model.column import Parameter
+from rbsdem.model.frame import Structure
 from rbsdem.run.result import reached_force
 
 #: Number of random points, besides the start, at which the effect of a parameter is tried.
 _LOOKS = 3
 
 
-def free_names(column: Column) -> dict[str, Parameter | None]:
+def free_names(column: Structure) -> dict[str, Parameter | None]:
     """Return the parameters of a column that may be free, with default bounds.
 
     Parameters
     ----------
-    column : Column
+    column : Column or Frame
         The column.
 
     Returns
@@ -45,7 +46,7 @@ def free_names(column: Column) -> dict[str, Parameter | None]:
 
 
 def undetermined(
-    column: Column,
+    column: Structure,
     test: Any,
     free: Sequence[str],
     bounds: Mapping[str, Sequence[float]] | None = None,
@@ -54,7 +55,7 @@ def undetermined(
 
     Parameters
     ----------
-    column : Column
+    column : Column or Frame
         The column.
     test : MeasuredTest, PeerTest, or pair of array_like of shape (m,)
         The measured loop.
@@ -83,7 +84,7 @@ def undetermined(
 
 
 def calibrate(
-    column: Column,
+    column: Structure,
     test: Any,
     free: Sequence[str],
     bounds: Mapping[str, Sequence[float]] | None = None,
@@ -103,9 +104,10 @@ def calibrate(
 
     Parameters
     ----------
-    column : Column
-        The column to start from. A column made from a drawing offers its parameters as `parameters`
-        and changes them by `with_parameters`; in any other column the names are paths.
+    column : Column or Frame
+        The structure to start from. A column made from a drawing offers its parameters as
+        `parameters` and changes them by `with_parameters`; in any other the names are paths, in a
+        frame of its kinds of members (`Frame.named_kinds`).
     test : MeasuredTest, PeerTest, or pair of array_like of shape (m,)
         The measured loop: displacement [m] and net horizontal force [N], as for `rbsdem.compare`.
     free : sequence of str
@@ -211,7 +213,7 @@ def _fitted(misfit: Misfit, places: ArrayLike, found: Determined) -> tuple[Fitte
     )
 
 
-def _compared(column: Column, target: Target, start: Column) -> Comparison:
+def _compared(column: Structure, target: Target, start: Structure) -> Comparison:
     """Return the scores of a column; the force is NaN after the end of a failed analysis."""
     reached, _ = reached_force(column, target.displacement)
     force = np.full(target.force.size, np.nan)

@@ -13,7 +13,8 @@ from rbsdem import _arguments
 from rbsdem._types import Array
 from rbsdem.curves.metrics import N_POINTS, PathPoints, half_cycle_numbers, work
 from rbsdem.errors import InputError
-from rbsdem.model.column import Column, Parameter
+from rbsdem.model.column import Parameter
+from rbsdem.model.frame import Structure
 from rbsdem.run.result import reached_force
 
 #: Points along the path of displacement at which the error is taken, as in a comparison.
@@ -114,7 +115,7 @@ class Misfit:
 
     def __init__(
         self,
-        build: Callable[[Mapping[str, float]], Column],
+        build: Callable[[Mapping[str, float]], Structure],
         free: Mapping[str, Parameter],
         target: Target,
         loss: str,
@@ -153,7 +154,7 @@ class Misfit:
             for (name, one), place in zip(self.free.items(), places, strict=True)
         }
 
-    def column(self, places: Array) -> Column:
+    def column(self, places: Array) -> Structure:
         """Return the column, or raise `InputError` if it is refused."""
         return self._build(self.values(places))
 

@@ -10,7 +10,7 @@ import numpy as np
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame
 from rbsdem.curves.scores import Comparison
-from rbsdem.model.column import Column
+from rbsdem.model.frame import Structure
 
 _HEAD = ("", "Unit", "Start", "Low", "High", "Fitted", "Std. error", "Effect", "Rise", "At")
 
@@ -62,7 +62,7 @@ class Calibration(Tabular):
 
     Attributes
     ----------
-    column, start : Column
+    column, start : Column or Frame
         The fitted column and the initial one.
     parameters : tuple of Fitted
         The parameters that were free.
@@ -83,8 +83,8 @@ class Calibration(Tabular):
         Wall time [s].
     """
 
-    column: Column
-    start: Column
+    column: Structure
+    start: Structure
     parameters: tuple[Fitted, ...]
     before: Comparison
     after: Comparison

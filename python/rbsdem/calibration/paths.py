@@ -1,9 +1,9 @@
 """Names of the parameters in a column, such as ``flexure.k_y`` or ``flexure[0].d_y``.
 
-A name is the path to a parameter through the frozen dataclasses of a column. Only parameters on
-which a static path depends have one. Where there are several springs, ``flexure[*].k_y`` is a
-factor on all of them, and ``flexure.layers[*].f_y`` a factor on all layers of a joint that have an
-``f_y``.
+In a frame they begin with a kind of members, as ``kind-1.yield_moment``. A name is the path to a
+parameter through frozen dataclasses. Only parameters on which a static path depends have one. Where
+there are several springs, ``flexure[*].k_y`` is a factor on all of them, and
+``flexure.layers[*].f_y`` a factor on all layers of a joint that have an ``f_y``.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ from typing import Any
 
 from rbsdem import _arguments, _core
 from rbsdem.errors import InputError
-from rbsdem.model.column import Column, Parameter, checked_column, has_parameters
+from rbsdem.model.column import Column, Parameter, has_parameters
+from rbsdem.model.frame import Frame, Structure, checked_structure
 from rbsdem.model.springs import Spring
 
 #: Parameters of springs are searched within this factor, unless their rule sets other bounds.
@@ -36,6 +37,8 @@ LIMITS |= dict.fromkeys(("b1", "kappa_f", "kappa_d"), (0.02, 1.0))
 AFTER_YIELD = ("k_u", "k_post")
 
 _PLAIN = ("height", "axial_load")
+#: What a kind of members has that is no parameter of its own.
+_OF_LAYOUT = ("rigid_end", "length", "sections", "failure_drift", "failure_load", "shear_drift")
 #: Units of the quantities that the keys of springs name.
 _NORMAL = {"stiffness": "N/m", "deformation": "m", "force": "N"}
 _TURNING = {"stiffness": "N m/rad", "deformation": "rad", "force": "N m"}
@@ -45,8 +48,15 @@ _UNITS = {"shear": _NORMAL, "flexure": _TURNING, "axial_spring": _NORMAL}
 ParameterPath = tuple[str | int | None, ...]
 
 
-def paths(column: Column) -> dict[str, ParameterPath]:
-    """Return the names of all parameters of a column that its static path may depend on."""
+def paths(column: Structure) -> dict[str, ParameterPath]:
+    """Return the names of all parameters of a structure that its static path may depend on."""
+    if isinstance(column, Frame):
+        return {
+            f"{name}{rest}": (name, *path)
+            for name, kind in column.named_kinds.items()
+            for rest, path in _below(kind)
+            if path[0] not in _OF_LAYOUT
+        }
     found: dict[str, ParameterPath] = {name: (name,) for name in _PLAIN}
     for kind in _UNITS:
         springs = getattr(column, kind)
@@ -60,7 +70,7 @@ def paths(column: Column) -> dict[str, ParameterPath]:
     return found
 
 
-def parameter(column: Column, name: str, path: ParameterPath) -> Parameter | None:
+def parameter(column: Structure, name: str, path: ParameterPath) -> Parameter | None:
     """Return the parameter at a path with its default bounds; None if they must be given."""
     value = value_at(column, path)
     bounds = default_bounds("" if None in path else str(path[-1]), value, len(path) == 1)
@@ -72,35 +82,37 @@ def parameter(column: Column, name: str, path: ParameterPath) -> Parameter | Non
     )
 
 
-def unit_of(column: Column, path: ParameterPath) -> str:
+def unit_of(column: Structure, path: ParameterPath) -> str:
     """Return the unit of the parameter at a path; empty for a factor."""
     unit = str(_key(column, path).get("unit") or "")
     # Layers of a joint are normal springs.
-    return (_NORMAL if "layers" in path else _UNITS.get(str(path[0]), {})).get(unit, unit)
+    group = next((_UNITS[str(step)] for step in path if step in _UNITS), {})
+    return (_NORMAL if "layers" in path else group).get(unit, unit)
 
 
-def ends(column: Column, path: ParameterPath) -> tuple[float, float]:
+def ends(column: Structure, path: ParameterPath) -> tuple[float, float]:
     """Return the least and the largest value that the key of a parameter takes."""
     key = _key(column, path)
     least, most = key.get("least"), key.get("most")
     return (-math.inf if least is None else float(least), math.inf if most is None else float(most))
 
 
-def _key(column: Column, path: ParameterPath) -> dict[str, Any]:
+def _key(column: Structure, path: ParameterPath) -> dict[str, Any]:
     """Return the key of the parameter at a path, as `rbsdem keys` has it; empty for a factor."""
     if None in path:
         return {}
     rule = ""
     for place in range(1, len(path)):
         rule = getattr(_get(column, path[:place]), "rule", rule)
-    return _keys_of(rule).get(str(path[-1]), {})
+    group = "member_kind" if isinstance(column, Frame) else "column"
+    return _keys_of(rule, group).get(str(path[-1]), {})
 
 
 @cache
-def _keys_of(rule: str) -> dict[str, dict[str, Any]]:
-    """Return the keys of a rule by name; without a rule those of the column."""
+def _keys_of(rule: str, group: str) -> dict[str, dict[str, Any]]:
+    """Return the keys of a rule by name; without a rule those of a group."""
     known = _core.keys()
-    keys = known["rules"][rule]["keys"] if rule else known["groups"]["column"]
+    keys = known["rules"][rule]["keys"] if rule else known["groups"][group]
     return {key["name"]: key for key in keys}
 
 
@@ -118,26 +130,31 @@ def default_bounds(name: str, value: float, measured: bool) -> tuple[float, floa
     return min(ends), max(ends)
 
 
-def value_at(column: Column, path: ParameterPath) -> float:
+def value_at(column: Structure, path: ParameterPath) -> float:
     """Return the parameter at a path; 1 for a factor on several."""
     return 1.0 if None in path else _get(column, path)
 
 
 def with_values(
-    column: Column, paths: Mapping[str, ParameterPath], values: Mapping[str, float]
-) -> Column:
-    """Return the column with other parameters at some paths.
+    column: Structure, paths: Mapping[str, ParameterPath], values: Mapping[str, float]
+) -> Structure:
+    """Return the structure with other parameters at some paths.
 
     Raises
     ------
     InputError
-        If the column refuses them.
+        If it refuses them.
     """
     # Springs check their parameters together, so all parameters of one spring change at once.
     changes: dict[str, dict[ParameterPath, float]] = {}
     for name, value in values.items():
         path = paths[name]
         changes.setdefault(str(path[0]), {})[path[1:]] = value
+    if isinstance(column, Frame):
+        kinds = column.named_kinds
+        return column.with_kinds(
+            {name: _changed(kinds[name], own) for name, own in changes.items()}
+        )
     parts: Any = {
         name: _changed_part(column, getattr(column, name), own) for name, own in changes.items()
     }
@@ -185,6 +202,8 @@ def _spring(item: Any) -> Any:
 
 
 def _get(part: Any, path: ParameterPath) -> Any:
+    if isinstance(part, Frame):
+        part, path = part.named_kinds[str(path[0])], path[1:]
     for step in path:
         if isinstance(step, int):
             # One spring for all joints is the spring of each of them.
@@ -233,10 +252,10 @@ _MANY = 30
 class Parameters:
     """The parameters of one column: those that it offers, or otherwise the paths in it."""
 
-    def __init__(self, column: Column) -> None:
+    def __init__(self, column: Structure) -> None:
         self.offered = has_parameters(column)
         if not self.offered:
-            checked_column(column, "calibrate: ")
+            checked_structure(column, "calibrate: ")
         self.column: Any = column  # with `parameters`, if it offers them
         self.paths = {} if self.offered else paths(column)
 
@@ -257,10 +276,10 @@ class Parameters:
             return float(self.column.parameters[name].value)
         return value_at(self.column, self.paths[name])
 
-    def build(self, values: Mapping[str, float]) -> Column:
-        """Return the column with other values, or raise `InputError` if it is refused."""
+    def build(self, values: Mapping[str, float]) -> Structure:
+        """Return the structure with other values, or raise `InputError` if it is refused."""
         if self.offered:
-            changed: Column = self.column.with_parameters(**values)
+            changed: Structure = self.column.with_parameters(**values)
             return changed
         return with_values(self.column, self.paths, values)
 

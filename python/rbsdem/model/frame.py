@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from itertools import count
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
@@ -709,6 +710,29 @@ class Frame:
         columns, beams = (cells[letter] or None for letter in "CB")
         return replace(self, columns=columns, beams=beams, members=tuple(own.values()))
 
+    @cached_property
+    def named_kinds(self) -> dict[str, FrameMember]:
+        """Kinds of its members by their names in a case file, without their rigid lengths."""
+        cells: Any = self.columns, self.beams
+        kinds = [one for own in cells for one in (own or {}).values() if one]
+        named = _names_of([*kinds, *(member.kind for member in self.members)])
+        return {name: kind for (_, kind), name in named.items()}
+
+    def with_kinds(self, kinds: Mapping[str, FrameMember]) -> Self:
+        """Return the frame with other kinds of members in place of some of `named_kinds`."""
+        names = {(kind.name, kind): name for name, kind in self.named_kinds.items()}
+
+        def changed(kind: FrameMember | None) -> FrameMember | None:
+            own = kind and kinds.get(names[_stated(kind)])
+            return with_rigid_end(own, kind.rigid_end) if own and kind else kind
+
+        columns, beams = (
+            {at: changed(kind) for at, kind in own.items()} if own else own  # type: ignore[union-attr]
+            for own in (self.columns, self.beams)
+        )
+        members = tuple(replace(one, kind=changed(one.kind) or one.kind) for one in self.members)
+        return replace(self, columns=columns, beams=beams, members=members)
+
     def load_of(self, member: str) -> float:
         """Return the dead load on a member, downward, per length along x [N/m]."""
         for own in self.members:
@@ -740,15 +764,7 @@ class Frame:
         drawn = drawn or {}
         kinds = [one for own in places for one in own.values() if one and one not in drawn]
         kinds += [member.kind for member in self.members]
-        # The same kind may end in nodes of different sizes.
-        names: dict[FrameMember, str] = {}
-        taken = {own.name for own in kinds if own.name}
-        for own in (with_rigid_end(kind, 0.0) for kind in kinds):
-            if own not in names:
-                number = len(names) + 1
-                while f"kind-{number}" in taken:
-                    number += 1
-                names[own] = own.name or f"kind-{number}"
+        names = _names_of(kinds)
         usual = {"kinematics": "small", "base": "fixed", "pattern": "triangular", "control": "x"}
         usual["collapse"] = "storey"
         grid = {
@@ -759,23 +775,25 @@ class Frame:
         parts = [_core.group("frame", own_values | more)]
         parts += self._floors()
         layers: dict[Spring, int] = {}
-        for kind, name in names.items():
+        for (_, kind), name in names.items():
             parts += kind._groups(name, layers)
         parts.append(layer_springs(layers))
         keys: dict[Any, dict[str, Any]] = {None: {"kind": _core.Text("none")}, **drawn}
-        for kind in kinds:
-            keys[kind] = {"kind": _core.Text(names[with_rigid_end(kind, 0.0)])} | _rigid_lengths(
-                kind.rigid_end
-            )
+
+        def keys_of(cell: Any) -> dict[str, Any]:
+            if not isinstance(cell, FrameMember):
+                return keys[cell]
+            return {"kind": _core.Text(names[_stated(cell)])} | _rigid_lengths(cell.rigid_end)
+
         for group, at, own_cells in zip(
             ("column_of", "beam_of"), ("line", "bay"), places, strict=True
         ):
             for (line, storey), cell in own_cells.items():
                 where = {at: line or None, "storey": storey or None}
-                parts.append(_core.group(group, where | keys[cell]))
+                parts.append(_core.group(group, where | keys_of(cell)))
         for node in self.nodes:
             parts += node._groups()
-        parts += [member._group(names[with_rigid_end(member.kind, 0.0)]) for member in self.members]
+        parts += [member._group(names[_stated(member.kind)]) for member in self.members]
         parts += [
             _core.group("loss", {"member": _core.Text(member), "time": time})
             for member, time in (self.losses or {}).items()
@@ -844,6 +862,27 @@ def place_of(name: str, names: tuple[str, ...], what: str) -> int:
             f"{what} = {_arguments.shown(name)} is not of this frame; did you mean {near[0]!r}?"
         )
     return names.index(name)
+
+
+#: A kind of members as a case file has it: its name, and itself without its rigid lengths, as like
+#: members may end in nodes of different sizes.
+NamedKind = tuple[str, FrameMember]
+
+
+def _stated(kind: FrameMember) -> NamedKind:
+    return kind.name, with_rigid_end(kind, 0.0)
+
+
+def _names_of(kinds: Iterable[FrameMember]) -> dict[NamedKind, str]:
+    """Return the names of kinds of members, made up where there is none."""
+    given = dict.fromkeys(map(_stated, kinds))
+    names: dict[NamedKind, str] = {}
+    taken = {name for name, _ in given}
+    for name, own in given:
+        numbers = (f"kind-{i}" for i in count(len(names) + 1))
+        names[name, own] = name or next(one for one in numbers if one not in taken)
+        taken.add(names[name, own])
+    return names
 
 
 def _rigid_lengths(rigid_end: float | tuple[float, float]) -> dict[str, float | None]:

@@ -299,7 +299,7 @@ def cyclic(
     return _return(column, run, {"analysis": "static", "driven": name}, call)
 
 
-def reached_force(column: Column, displacement: ArrayLike) -> tuple[Array, SolveError | None]:
+def reached_force(column: Structure, displacement: ArrayLike) -> tuple[Array, SolveError | None]:
     """Return the lateral forces along a path up to its end or the first that is not finite [N].
 
     The last row of an analysis that stopped is where it failed, and left out; the error is returned
