@@ -44,7 +44,7 @@ class LimitState:
     force : float
         Of the loop there [N], see `Result.loop_force`.
     threshold : float
-        The value that is reached: a strain, a rotation [rad], a slip [m] or a share; NaN of a frame.
+        The value reached: a strain, a rotation [rad], a slip [m] or a share; NaN of a frame.
     source : str
         Where the threshold comes from.
     """
