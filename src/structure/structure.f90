@@ -373,11 +373,13 @@ contains
       integer, intent(in) :: signal
       !> Deformations of the springs and their velocities (springs)
       real(wp), intent(in), contiguous :: d(:), v(:)
-      real(wp) :: x(self%unknowns)
+      ! Asked for in every explicit step of a chain, which allocates nothing.
+      real(wp), allocatable :: x(:)
 
       if (allocated(self%pattern(signal)%arm)) then
          speed = inner_product(size(d), self%pattern(signal)%arm, v)
       else
+         allocate (x(self%unknowns))
          call self%unknown_rates(v(:size(d)), x)
          speed = self%work_of(signal, x)
       end if

@@ -68,9 +68,9 @@ module rbs_structure_frame_element
       integer :: number(6) = 0
       !> Elongation and rotations against the chord from the displacements of the nodes, (x, y, theta) each
       real(wp) :: to_basic(3, 6) = 0.0_wp
-      !> The same, and the rotation of the chord, from the unknowns alone, without branches: zero and the
-      !> first unknown where a support holds a displacement
-      real(wp) :: from_unknowns(3, 6) = 0.0_wp, chord(6) = 0.0_wp
+      !> The same, and the rotations of rigid ends and chord, from the unknowns alone, without branches: zero
+      !> and the first unknown where a support holds a displacement
+      real(wp) :: from_unknowns(3, 6) = 0.0_wp, lean(3, 6) = 0.0_wp
       integer :: unknown(6) = 1
       !> Springs of the frame before its first; how many bend or slip, and how many open behind these
       integer :: before = 0, bending = 0, opening = 0
@@ -114,7 +114,7 @@ module rbs_structure_frame_element
 
 contains
 
-   !> Rows per unknown from `number`, `to_basic` and `chord`: zero where a support holds a displacement.
+   !> Rows per unknown from `number`, `to_basic` and `lean`: zero where a support holds a displacement.
    pure subroutine leave_out_supports(self)
       class(frame_element), intent(inout) :: self
       integer :: k
@@ -124,7 +124,7 @@ contains
             self%unknown(k) = self%number(k)
             self%from_unknowns(:, k) = self%to_basic(:, k)
          else
-            self%chord(k) = 0.0_wp
+            self%lean(:, k) = 0.0_wp
          end if
       end do
    end subroutine leave_out_supports

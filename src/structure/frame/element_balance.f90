@@ -25,15 +25,26 @@ contains
       real(wp), intent(in), contiguous :: x(:)
       real(wp) :: q(3)
 
-      associate (b => e%from_unknowns, at => e%unknown)
-         if (e%is_panel) then
+      if (e%is_panel) then
+         associate (b => e%from_unknowns, at => e%unknown)
             q = [b(1, 3)*x(at(3)) + b(1, 6)*x(at(6)), 0.0_wp, 0.0_wp]
-         else
-            q = b(:, 1)*x(at(1)) + b(:, 2)*x(at(2)) + b(:, 3)*x(at(3)) &
-                + b(:, 4)*x(at(4)) + b(:, 5)*x(at(5)) + b(:, 6)*x(at(6))
-         end if
-      end associate
+         end associate
+      else
+         q = motion_along(e%from_unknowns, e%unknown, x)
+      end if
    end function end_motion
+
+   !> Three motions that are rows of the displacements of the ends.
+   pure function motion_along(row, at, x) result(q)
+      real(wp), intent(in) :: row(3, 6)
+      !> Unknowns of the ends
+      integer, intent(in) :: at(6)
+      real(wp), intent(in), contiguous :: x(:)
+      real(wp) :: q(3)
+
+      q = row(:, 1)*x(at(1)) + row(:, 2)*x(at(2)) + row(:, 3)*x(at(3)) &
+          + row(:, 4)*x(at(4)) + row(:, 5)*x(at(5)) + row(:, 6)*x(at(6))
+   end function motion_along
 
    !> Sizes of the terms that elongation and rotations of an element are sums of.
    pure function motion_terms(e, x) result(terms)
@@ -53,12 +64,8 @@ contains
    pure real(wp) function chord_rotation(e, x) result(rotation)
       type(frame_element), intent(in) :: e
       real(wp), intent(in), contiguous :: x(:)
-      integer :: j
 
-      rotation = 0.0_wp
-      do j = 1, 6
-         rotation = rotation + e%chord(j)*x(e%unknown(j))
-      end do
+      rotation = sum(e%lean(3, :)*x(e%unknown))
    end function chord_rotation
 
    !> Motion of the ends of an element less that which its springs and its dead load make: what its elastic
@@ -162,18 +169,26 @@ contains
       real(wp), intent(in) :: s(3)
       !> (unknowns)
       real(wp), intent(inout) :: g(:)
-      integer :: k
 
       if (e%is_panel) then
          g(e%unknown(3)) = g(e%unknown(3)) + s(1)*e%from_unknowns(1, 3)
          g(e%unknown(6)) = g(e%unknown(6)) + s(1)*e%from_unknowns(1, 6)
-         return
+      else
+         call add_along(e%from_unknowns, e%unknown, s, g)
       end if
-      do k = 1, 6
-         g(e%unknown(k)) = g(e%unknown(k)) + (s(1)*e%from_unknowns(1, k) + s(2)*e%from_unknowns(2, k) &
-                                              + s(3)*e%from_unknowns(3, k))
-      end do
    end subroutine add_end_forces
+
+   !> Forces on the unknowns of forces along three rows.
+   pure subroutine add_along(row, at, s, g)
+      real(wp), intent(in) :: row(3, 6), s(3)
+      integer, intent(in) :: at(6)
+      real(wp), intent(inout) :: g(:)
+      integer :: k
+
+      do k = 1, 6
+         g(at(k)) = g(at(k)) + (s(1)*row(1, k) + s(2)*row(2, k) + s(3)*row(3, k))
+      end do
+   end subroutine add_along
 
    !> Second-order forces of the compression of an element, N sum l r (r . x): rows r are the rotations of its
    !> rigid ends and of its chord. What bends off the chord is in the elastic rest.
@@ -181,18 +196,10 @@ contains
       type(frame_element), intent(in) :: e
       real(wp), intent(in), contiguous :: x(:)
       real(wp), intent(inout), contiguous :: g(:)
-      real(wp) :: turn
-      integer :: j
 
-      do j = 1, 2
-         associate (at => e%number(3*j))
-            if (e%rigid(j) > 0.0_wp .and. at > 0) g(at) = g(at) + e%compression*e%rigid(j)*x(at)
-         end associate
-      end do
-      turn = e%compression*e%length*chord_rotation(e, x)
-      do j = 1, 6
-         g(e%unknown(j)) = g(e%unknown(j)) + turn*e%chord(j)
-      end do
+      associate (turned => motion_along(e%lean, e%unknown, x))
+         call add_along(e%lean, e%unknown, e%compression*[e%rigid, e%length]*turned, g)
+      end associate
    end subroutine add_second_order
 
    !> Add B' A B of an element to a lower band, B its elongation and rotations per unknown.
@@ -201,21 +208,8 @@ contains
       real(wp), intent(in) :: a(3, 3)
       !> (half_width + 1, unknowns)
       real(wp), intent(inout), contiguous :: band(:, :)
-      real(wp) :: row(3)
-      integer :: i, j
 
-      do j = 1, 6
-         associate (column => e%number(j))
-            if (column == 0) cycle
-            row = a(:, 1)*e%to_basic(1, j) + a(:, 2)*e%to_basic(2, j) + a(:, 3)*e%to_basic(3, j)
-            do i = 1, 6
-               if (e%number(i) < column) cycle
-               associate (entry => band(1 + e%number(i) - column, column))
-                  entry = entry + sum(e%to_basic(:, i)*row)
-               end associate
-            end do
-         end associate
-      end do
+      call add_product(e%number, e%to_basic, a, band)
    end subroutine add_band
 
    !> Add the derivatives of the second-order forces of an axial force, with their sign turned.
@@ -223,27 +217,36 @@ contains
       type(frame_element), intent(in) :: e
       real(wp), intent(in) :: compression
       real(wp), intent(inout), contiguous :: band(:, :)
-      integer :: i, j
-      real(wp) :: along(6)
+      real(wp) :: a(3, 3)
 
-      do j = 1, 2
-         associate (at => e%number(3*j))
-            if (at > 0) band(1, at) = band(1, at) - compression*e%rigid(j)
-         end associate
-      end do
-      along = (compression*e%length)*e%chord
+      a = 0.0_wp
+      a(1, 1) = -compression*e%rigid(1)
+      a(2, 2) = -compression*e%rigid(2)
+      a(3, 3) = -compression*e%length
+      call add_product(e%number, e%lean, a, band)
+   end subroutine add_geometric_band
+
+   !> Add B' A B of three rows of the displacements of the ends.
+   pure subroutine add_product(number, b, a, band)
+      integer, intent(in) :: number(6)
+      real(wp), intent(in) :: b(3, 6), a(3, 3)
+      real(wp), intent(inout), contiguous :: band(:, :)
+      real(wp) :: row(3)
+      integer :: i, j
+
       do j = 1, 6
-         if (.not. abs(along(j)) > 0.0_wp) cycle
-         associate (column => e%number(j))
+         associate (column => number(j))
+            if (column == 0) cycle
+            row = a(:, 1)*b(1, j) + a(:, 2)*b(2, j) + a(:, 3)*b(3, j)
             do i = 1, 6
-               if (e%number(i) < column) cycle
-               associate (entry => band(1 + e%number(i) - column, column))
-                  entry = entry - along(i)*e%chord(j)
+               if (number(i) < column) cycle
+               associate (entry => band(1 + number(i) - column, column))
+                  entry = entry + sum(b(:, i)*row)
                end associate
             end do
          end associate
       end do
-   end subroutine add_geometric_band
+   end subroutine add_product
 
    !> Changes of the deformations of springs with those of the ends of their element.
    pure subroutine spring_motion(e, springs, numbers, tangent, q, dd)

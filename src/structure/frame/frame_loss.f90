@@ -1,7 +1,7 @@
 !> Members of a frame that fail in shear, lose their axial load or are removed, and collapse after that.
 submodule (rbs_structure_frame_frame) rbs_structure_frame_frame_loss
    use rbs_base_check, only: is_given
-   use rbs_structure_frame_element_balance, only: energy_of_rest
+   use rbs_structure_frame_element_balance, only: energy_of_rest, chord_rotation
    use rbs_structure_spring_place, only: shear, flexure
    implicit none
 
@@ -49,7 +49,7 @@ contains
       integer :: i
 
       associate (e => frame%element(member), x => springs%d(frame%springs + 1:))
-         drift = abs(sum(e%chord*x(e%unknown)))
+         drift = abs(chord_rotation(e, x))
          has_failed = is_given(frame%shear_drift(member)) .and. drift >= abs(frame%shear_drift(member))
          do i = e%before + 1, e%before + e%bending
             if (frame%place(i)%kind /= shear) cycle

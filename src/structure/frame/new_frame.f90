@@ -290,7 +290,9 @@ contains
                chord = [-across, -m%rigid(1), across, -m%rigid(2)]/clear
                e%to_basic(2, :) = [0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp] - chord
                e%to_basic(3, :) = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp] - chord
-               e%chord = chord
+               e%lean(1, 3) = 1.0_wp
+               e%lean(2, 6) = 1.0_wp
+               e%lean(3, :) = chord
                call e%leave_out_supports()
                e%before = before
                e%opening = count(m%kind == axial)
