@@ -291,7 +291,7 @@ MOST_FAULTS = 25
 
 @contextmanager
 def collected(faults: list[str], who: str = "") -> Iterator[None]:
-    """Add what is wrong with an input to the faults, to tell all of them at once."""
+    """Add the error of an input to the faults, which are raised together."""
     try:
         yield
     except InputError as error:

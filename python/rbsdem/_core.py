@@ -107,7 +107,7 @@ def group(name: str, values: Mapping[str, Any]) -> Statement:
 
 
 def _number_or_switch(value: Any, name: str) -> float:
-    """Return what a key takes that is no word."""
+    """Return the number of a value that is no word."""
     if isinstance(value, (bool, np.bool_)):
         return float(value)
     try:

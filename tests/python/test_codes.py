@@ -21,7 +21,7 @@ import rbsdem
 from rbsdem.checks import formulas
 from rbsdem.checks.code_values import backbones, drift_at_loss, yield_drift
 from rbsdem.codes import code_values, compare, quantities
-from rbsdem.section.axial_moment import nominal_moment
+from rbsdem.section.strength import nominal_moment
 from rbsdem.springs import Bilinear, Elastic
 
 C1 = quantities(SECTION, 1.5, 1750e3)

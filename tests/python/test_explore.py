@@ -30,7 +30,7 @@ from rbsdem.springs import Elastic
 from rbsdem.web import answers as web_answers
 from rbsdem.web import exports, frames
 from rbsdem.web.answers import Answers, shown_rows
-from rbsdem.web.pages import PAGE, REPORT, parts
+from rbsdem.web.exports import PAGE, REPORT, parts
 from rbsdem.web.report import report, report_data, write_report
 from rbsdem.web.server import MOST_STATE, ExploreServer
 from rbsdem.web.state import DEFAULT

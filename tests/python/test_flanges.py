@@ -14,8 +14,8 @@ import rbsdem
 from rbsdem import Concrete, InputError, RectangularSection, Steel, Ties, plot
 from rbsdem.frames import FrameNode, Member, TeeSection
 from rbsdem.section import diagram, flange_width, moment_curvature, rigid_ends
-from rbsdem.section.axial_moment import nominal_moment
 from rbsdem.section.hinge import cut
+from rbsdem.section.strength import nominal_moment
 from rbsdem.springs import Elastic
 
 FY = 420e6

@@ -15,7 +15,7 @@ from samples import TWELVE_BARS as ROUND
 
 import rbsdem
 from rbsdem import InputError
-from rbsdem.section import axial_moment
+from rbsdem.section import strength
 from rbsdem.section.curvature import _moments
 from rbsdem.springs import SteelSpring
 
@@ -177,6 +177,6 @@ def test_depth_of_the_aci_block_is_that_of_its_table(fc, share):
 
     Without bars the neutral axis at the far face carries 0.85 f'c over the share of the depth.
     """
-    block = axial_moment._aci_block(replace(SQUARE, concrete=rbsdem.Concrete(fc)))
+    block = strength._aci_block(replace(SQUARE, concrete=rbsdem.Concrete(fc)))
     assert block.share == pytest.approx(share, abs=1e-12)
     assert block.stress == pytest.approx(0.85 * fc)

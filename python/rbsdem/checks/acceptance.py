@@ -24,7 +24,7 @@ from rbsdem.errors import InputError
 from rbsdem.model.frame import MemberGeometry
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.shape import RectangularSection, Section, TeeSection
-from rbsdem.section.axial_moment import nominal_moment
+from rbsdem.section.strength import nominal_moment
 
 AcceptanceCode = Literal["asce_41", "en_1998_3"]
 

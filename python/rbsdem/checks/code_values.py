@@ -23,9 +23,13 @@ from rbsdem.errors import InputError
 from rbsdem.model.column import Column
 from rbsdem.model.response import Response
 from rbsdem.model.shape import Section
-from rbsdem.section.axial_moment import nominal_moment
 from rbsdem.section.layered import LayeredColumn
-from rbsdem.section.strength import axial_failure_drift, shear_failure_drift, shear_strength_sezen
+from rbsdem.section.strength import (
+    axial_failure_drift,
+    nominal_moment,
+    shear_failure_drift,
+    shear_strength_sezen,
+)
 
 
 @dataclass(frozen=True)
@@ -98,7 +102,7 @@ class CodeValues(Tabular):
 
 
 def code_values(section: Section, height: float, axial_load: float) -> CodeValues:
-    """Return what codes and regressions say of a column with a section.
+    """Return the values of codes and regressions for a column with a section.
 
     Stiffness, strengths, chord and plastic rotations, drifts at failures: ASCE 41-17 (ACI 369.1),
     EN 1998-3, Panagiotakos and Fardis, Elwood and Eberhard, Elwood and Moehle, Sezen and Moehle,

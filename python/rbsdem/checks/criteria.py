@@ -78,7 +78,7 @@ class Criterion:
     opening: float = 0.0
 
     def values(self, result: Response, at: int) -> Array:
-        """Return what is compared with the threshold, shape (rows,); `at` is the joint's place."""
+        """Return the values that the threshold bounds, shape (rows,); `at` is the joint's place."""
         if self.slip:
             return np.asarray(self.slip * result.slip[:, at])
         turned = result.rotation[:, at]
@@ -158,7 +158,7 @@ def _of_joints(frame: Frame, springs: Sequence[FrameSpring], number: int) -> Ite
 
 
 def all_thresholds(column: Structure, openings: bool) -> Array:
-    """Return what a run is watched for: all criteria, those of openings only if they are kept.
+    """Return the criteria of a run in numbers, those of openings only if they are kept.
 
     Each counts for itself. A run without openings is told of the others, but cannot reach them.
     """

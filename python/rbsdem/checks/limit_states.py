@@ -175,7 +175,7 @@ def _of_column(result: Response) -> dict[str, LimitState]:
 def _in_time(
     result: Response, criterion: Criterion, time: float, displacement: float
 ) -> LimitState | None:
-    """Return what all steps of an analysis in time have seen."""
+    """Return the limit state that the steps of an analysis in time have reached."""
     if math.isnan(time):
         return None
     place = float(np.interp(time, result.time, np.arange(result.time.size)))

@@ -2,6 +2,12 @@
 
 The definitions are those of `rbsdem.curves`. Every function takes plain arrays in any
 consistent units (SI inside rbsdem); row i of each array is the same moment of the test.
+
+A half-cycle belongs to a turning point of the displacement, its tip. It lasts from where the force
+changes its sign before the tip to where it does so after it. The work between the two is taken for
+the energy dissipated: one elastic spring stores nothing at zero force. Under P-Delta and in layered
+joints some stays stored there, in moments without a lateral force. Each curve has its own zeros of
+force; the tips are those of the displacement, which a test and a model driven through it share.
 """
 
 from __future__ import annotations

@@ -1,4 +1,8 @@
-"""Running an ensemble."""
+"""Running an ensemble.
+
+Tasks go to an executor of `concurrent.futures` and back, until all are done or the user ends the
+work.
+"""
 
 from __future__ import annotations
 
@@ -586,7 +590,7 @@ class _TaskSizer:
         self._slower = 0.5 if 2 * lanes.sum() > lanes.size else 4.0
 
     def learn(self, expected: float, result: Outcome) -> None:
-        """Take what a task took in place of what was expected."""
+        """Take the time of a task in place of the expected one."""
         if result.fates.all() and expected > 0:
             self._slower = result.seconds / expected
 
@@ -603,7 +607,7 @@ def _of_part(runs: int, part: tuple[int, int]) -> NDArray[np.int_]:
 
 
 def _told(found: Ensemble, store: Any) -> str:
-    """Return what an interruption has left."""
+    """Return the text of an interruption."""
     done = int((found.status != "").sum())
     kept = (
         "this error has them as `ensemble`; with store= the next call computes the rest"

@@ -250,7 +250,7 @@ class Counts:
         return np.asarray(np.nansum(self.failed, axis=1).astype(int))
 
     def bounds(self) -> Bounds:
-        """Return what is known of the capacities."""
+        """Return the known bounds of the capacities."""
         return bounds_of_counts(self.intensity, self.number, self.failures)
 
     def fit_samples(
@@ -298,7 +298,7 @@ class Capacities:
         return np.sqrt(self.lower * self.upper)
 
     def bounds(self) -> Bounds:
-        """Return what is known of the capacities."""
+        """Return the known bounds of the capacities."""
         return self._bounds(np.arange(self.size))
 
     def fit_samples(
@@ -564,7 +564,7 @@ class WithFragility(Tabular, ABC):
 
     @abstractmethod
     def _data(self, measure: str, limit: float) -> Counts | Capacities:
-        """Return what the curve of a limit state is fitted to."""
+        """Return the data of the curve of a limit state."""
 
     def fragility(
         self, edp: str = "collapse", threshold: float | None = None, *, beta: float | None = None

@@ -244,7 +244,7 @@ def one_run(
 
 
 def watched(column: Structure, states: tuple[str, ...]) -> Array:
-    """Return what runs of a column are watched for, as `_core.batch` takes it."""
+    """Return the criteria of runs of a column, as `_core.batch` takes them."""
     numbers = {name: number for number, name in enumerate(("first_yield", *states), 1)}
     found = criteria(column, numbers)
     if not found:

@@ -330,7 +330,7 @@ class Collector:
         return collapsed
 
     def tried(self, column: int, motion: int, *names: str) -> list[NDArray[Any]]:
-        """Return what is named of the runs so far of a column under a motion."""
+        """Return named arrays of the runs so far of a column under a motion."""
         own = [(p["column"] == column) & (p["motion"] == motion) for p in self.parts]
         return [
             np.concatenate([part[name][kept] for part, kept in zip(self.parts, own, strict=True)])
@@ -414,7 +414,7 @@ def make_collector(
     client: Any = None,
     **solver: Unpack[Solver],
 ) -> Collector:
-    """Return what makes the runs of an analysis; the keywords are those of `RunOptions`."""
+    """Return the collector of an analysis; the keywords are those of `RunOptions`."""
     named = columns_by_name(columns)
     measure = make_intensity(intensity, next(iter(named.values())), period, damping)
     settings = {"method": "auto"} | checked_solver(solver, who)

@@ -236,7 +236,7 @@ class Store:
 
 
 def store_status(folder: Path) -> list[str]:
-    """Return what a store of runs has, in lines: runs by status, parts, and the failures.
+    """Return the contents of a store in lines: runs by status, parts, and the failures.
 
     Parameters
     ----------
@@ -282,7 +282,7 @@ _MOST_FAILURES = 10
 
 @contextmanager
 def _clear(folder: Path) -> Iterator[None]:
-    """Say what an error of the disk means."""
+    """Explain an error of the disk."""
     try:
         yield
     except OSError as error:

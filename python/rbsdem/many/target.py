@@ -345,7 +345,7 @@ def _control(frame: Frame, x: Array) -> float:
 
 
 def _pdelta_slope(frame: Frame, shape: Array, gamma: float) -> float:
-    """Return what the axial forces of the columns take from the slope of the curve [N/m].
+    """Return the slope that the axial forces of the columns take from the curve [N/m].
 
     By virtual work on the shape phi of the mode: gamma times the sum of P (change of phi)^2/length.
     """

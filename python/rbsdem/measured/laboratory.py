@@ -223,7 +223,7 @@ def _code(code: int | None, length: float | None, axial_load: float | None) -> i
 
 
 def _pair(given: object, what: str, examples: str) -> tuple[object, object]:
-    """Return what is given for displacement and force."""
+    """Return the two values for displacement and force."""
     if isinstance(given, Mapping):
         strange = [key for key in given if key not in _QUANTITIES]
         if strange:

@@ -1,4 +1,4 @@
-"""The settings to try, from coarse to fine, within a budget of wall time."""
+"""The case of a study of methods, and its settings from coarse to fine within a budget of time."""
 
 from __future__ import annotations
 
@@ -391,7 +391,7 @@ class Budget:
         return clock.perf_counter() - self.begin
 
     def left(self, share: float = 1.0) -> float:
-        """Return what is left of a share of the budget, counted from the start [s]."""
+        """Return the rest of a share of the budget, counted from the start [s]."""
         return share * self.seconds - self.used()
 
 

@@ -1,4 +1,8 @@
-"""Which parts of the model matter: the answer with one part switched on or off."""
+"""The reference of a study of methods, and the parts of the model that matter.
+
+The reference is two independent methods, refined until they agree; a part matters if the answer
+changes where it is switched on or off.
+"""
 
 from __future__ import annotations
 

@@ -26,8 +26,7 @@ from rbsdem.model.shape import RectangularSection
 from rbsdem.model.springs import Bilinear, Elastic, Spring
 from rbsdem.run.analysis import modes
 from rbsdem.run.result import cyclic, time_history
-from rbsdem.section.axial_moment import interaction
-from rbsdem.section.strength import axial_failure_drift
+from rbsdem.section.strength import axial_failure_drift, interaction
 
 RIGID = 1e9
 
@@ -175,7 +174,7 @@ def cantilever(n: int, **options: Any) -> Column:
 
 
 def limit(of: Callable[[int], Any], n: int) -> Array:
-    """Return what chains of n and 2 n bodies, whose errors have order 2, say of the beam."""
+    """Return the limit of chains of n and 2 n bodies, whose errors have order 2."""
     return np.asarray((4 * np.asarray(of(2 * n)) - np.asarray(of(n))) / 3)
 
 

@@ -469,7 +469,7 @@ class Column:
         return (*beneath, *springs)
 
     def gauge(self, joint: int) -> Gauge | None:
-        """Return what the layers of a joint stand for, and over which lengths; None if not known.
+        """Return parts and lengths of the layers of a joint; None if not known.
 
         It is known of the hinge of a column that was made from its drawing.
 

@@ -419,7 +419,7 @@ class MemberGeometry:
         return np.asarray(one * (1 - s) - two * s + hung * s * (1 - s))
 
     def shear(self, first: ArrayLike, last: ArrayLike, shares: ArrayLike) -> Array:
-        """Return what the moments lose per length on the way from start to end [N]."""
+        """Return shear forces along the clear length: the loss of moment per length [N]."""
         s, sway = np.asarray(shares, float), (np.asarray(first) + np.asarray(last)) / self.clear
         return np.asarray(sway + self.across_load * self.clear * (s - 0.5))
 

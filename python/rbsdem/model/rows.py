@@ -1,4 +1,7 @@
-"""Common parts of all results: loops, tables, states, and one file that describes itself."""
+"""Common parts of all results: loops, tables, states, and one file that describes itself.
+
+Works to cite for a result are those of its rules, methods and fitted relations, and rbsdem.
+"""
 
 from __future__ import annotations
 
@@ -557,7 +560,7 @@ def check_ending(path: str | os.PathLike[str]) -> None:
 
 
 def _parts(result: Any) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return what is written as text, and the arrays by name."""
+    """Return the fields that are written as text, and the arrays by name."""
     arrays: dict[str, Any] = {}
     about: dict[str, Any] = {"format": FORMAT, "format_version": FORMAT_VERSION}
     about |= {"version": _core.version(), "units": _core.units()}

@@ -143,7 +143,7 @@ class Section(_Fields, ABC):
         """Return the sizes of the shape, by the names of their keys [m]."""
 
     def _turned(self) -> dict[str, Any]:
-        """Return what of the concrete is not the same upside down."""
+        """Return the sizes of the concrete that change when it is upside down."""
         return {}
 
     @property

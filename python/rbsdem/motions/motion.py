@@ -1,4 +1,10 @@
-"""A ground motion: accelerations at equal steps, what is computed of them, and how they act."""
+"""A ground motion: accelerations at equal steps, what is computed of them, and how they act.
+
+Of synthetic records, white noise, its strength over time shaped as that of an earthquake, goes
+through the ground of Kanai (1957) and Tajimi (1960), with the filter of Clough and Penzien (1975)
+that leaves no velocity behind. They are like each other as records of one magnitude and distance
+are: peak, frequency and damping of the ground, rise and length of the strong part are drawn.
+"""
 
 from __future__ import annotations
 

@@ -312,7 +312,7 @@ def _first_value(lines: list[str]) -> int:
 
 
 def _about(head: Sequence[str]) -> str:
-    """Return what lines of key and value say of station, component and event."""
+    """Return station, component and event from lines of key and value."""
     found = [match for line in head if (match := _ABOUT.match(line))]
     return ", ".join(dict.fromkeys(match[2].strip() for match in found))
 

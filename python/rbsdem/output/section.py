@@ -27,11 +27,11 @@ from rbsdem.output.style import (
     style_of,
 )
 from rbsdem.section import shear
-from rbsdem.section.axial_moment import Code, InteractionDiagram
 from rbsdem.section.curvature import Diagram, Events, strains
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.paper_springs import SectionSprings
 from rbsdem.section.shear import ShearDiagram, ShearSpring
+from rbsdem.section.strength import Code, InteractionDiagram
 
 EVENT_MARKS: dict[str, Line] = {
     "cracking": {"marker": "o", "markerfacecolor": "white"},

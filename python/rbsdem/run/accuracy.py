@@ -145,7 +145,7 @@ def at_times(wanted: Array, time: Array, values: Array) -> Array:
 
 
 def answer_of(run: Rows, times: Array, driven: bool = False) -> Answer:
-    """Return what is compared, at some times; `driven`: the displacement is, not the force."""
+    """Return the compared part of a result at some times; `driven`: by displacement."""
     time = run.time
     response = run.force if driven else run.displacement
     taken = run.energy["spring"] + run.energy["damping"]

@@ -404,7 +404,7 @@ def _normal_points(number: int) -> Array:
 
 
 def half_band(force: Array, samples: Array, scatter: Scatter) -> tuple[Array, Array]:
-    """Return what the band is above and below a prediction before it is widened [N].
+    """Return the band above and below a prediction before it is widened [N].
 
     Parameters
     ----------

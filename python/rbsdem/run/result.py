@@ -438,7 +438,7 @@ def _tell(note: str, kind: type[Warning] = AccuracyWarning) -> None:
 
 
 def _recorded_state(initial: Any) -> Any:
-    """Return what a result records of `initial`: a path as text, of a result its state."""
+    """Return the record of `initial`: a path as text, of a result its state."""
     if isinstance(initial, HasEndState):
         return initial.state
     return os.fspath(initial) if isinstance(initial, (str, os.PathLike)) else initial

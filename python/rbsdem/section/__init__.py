@@ -5,7 +5,6 @@ Most functions take a `rbsdem.RectangularSection` or `rbsdem.CircularSection` fi
 the face that a positive curvature puts in tension.
 """
 
-from rbsdem.section.axial_moment import interaction as interaction
 from rbsdem.section.columns import column as column
 from rbsdem.section.columns import member as member
 from rbsdem.section.curvature import diagram as diagram
@@ -18,4 +17,5 @@ from rbsdem.section.paper_springs import SectionSprings as SectionSprings
 from rbsdem.section.paper_springs import springs as springs
 from rbsdem.section.parameters import parameters as parameters
 from rbsdem.section.shear import shear_diagram as shear_diagram
+from rbsdem.section.strength import interaction as interaction
 from rbsdem.section.strength import shear_strength as shear_strength

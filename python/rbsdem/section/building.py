@@ -445,7 +445,7 @@ class _Grid:
 
 
 def _at(cells: Mapping[tuple[int, int], Any], i: int, k: int) -> Any:
-    """Return what stands in a place: the last that fits."""
+    """Return the section of a place: the last that fits."""
     found = [one for (at, level), one in cells.items() if at in (0, i) and level in (0, k)]
     return found[-1] if found else None
 

@@ -11,12 +11,11 @@ from rbsdem.model.column import MOST_BODIES, Column, Footing, Top, bodies
 from rbsdem.model.frame import FrameMember
 from rbsdem.model.shape import Section, checked_section
 from rbsdem.model.springs import Elastic, Spring, Takeda, unchecked
-from rbsdem.section.axial_moment import nominal_moment
 from rbsdem.section.curvature import axial_load_note, column_length
 from rbsdem.section.layered import LayeredColumn, LayeredModel, body_lengths, lumping
 from rbsdem.section.paper_springs import springs
 from rbsdem.section.parameters import VERSION, ModelParameters, parameters
-from rbsdem.section.strength import axial_failure_law, shear_failure_drift
+from rbsdem.section.strength import axial_failure_law, nominal_moment, shear_failure_drift
 
 Model: TypeAlias = Literal["layered", "paper"]
 """Name of a model."""

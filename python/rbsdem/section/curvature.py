@@ -1,4 +1,7 @@
-"""Moment against curvature of a section under a constant axial load, and its events."""
+"""Moment against curvature of a section under a constant axial load, and its events.
+
+Ranges of loads and lengths that a user plausibly gives beside a section are checked here.
+"""
 
 from __future__ import annotations
 

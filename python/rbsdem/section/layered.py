@@ -26,11 +26,11 @@ from rbsdem.model.springs import (
     check_springs,
     unchecked,
 )
-from rbsdem.section.axial_moment import InteractionDiagram, joint_interaction
 from rbsdem.section.curvature import axial_load_note, outside
 from rbsdem.section.hinge import HingeJoint, hinge_joint
 from rbsdem.section.parameters import FACTORS, ModelParameters, table
 from rbsdem.section.shear import shear_spring
+from rbsdem.section.strength import InteractionDiagram, joint_interaction
 
 #: Strain at which all concrete is crushed.
 _CRUSHED = 0.02
@@ -148,7 +148,7 @@ class LayeredModel:
             If one of them is beyond its limits.
         """
         values, names = self.parameters.values, tuple(names)
-        # Those of the shear spring are not worth their time where only the hinge changes.
+        # Limits of the shear spring take time: they are found only where it changes.
         of_shear = any("shear" in _made_from(name) for name in names)
         limits = self.limits if of_shear else self.joint.limits
         for name in names:
@@ -340,7 +340,7 @@ class LayeredColumn(Column):
         return replace(self, drawing=drawing, **made)
 
     def gauge(self, joint: int) -> Gauge | None:
-        """Return what the layers of a joint stand for; None unless it is the hinge of the model."""
+        """Return parts and lengths of the layers; None unless it is the hinge of the model."""
         hinge = self._drawing.joint
         numbers, springs = self.joint_numbers, self.joints("flexure")
         foot = joint == 1 and springs[numbers.index(1)] == hinge.spring

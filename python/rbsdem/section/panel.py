@@ -4,6 +4,8 @@ Strength of panels with hoops by class: ACI 318-19, table 18.8.4.3. ASCE 41-17, 
 same numbers for hoops at half of the depth of the column or closer, and lower ones for others. The
 spring of a panel without hoops cracks and fails at principal tensions (Pampanin and others;
 O'Reilly and Sullivan, J. Earthquake Eng. 23 (2019) 1262-1296).
+
+Beams with slabs end in nodes: width of the flange, and rigid ends.
 """
 
 from __future__ import annotations
@@ -21,8 +23,8 @@ from rbsdem.errors import InputError
 from rbsdem.model.materials import Ties
 from rbsdem.model.shape import RectangularSection, Section, checked_section
 from rbsdem.model.springs import Pinching
-from rbsdem.section.axial_moment import nominal_moment
 from rbsdem.section.curvature import carried_load
+from rbsdem.section.strength import nominal_moment
 
 PanelClass = Literal["interior", "exterior", "knee"]
 

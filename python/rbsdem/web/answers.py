@@ -35,9 +35,9 @@ from rbsdem.output.section import hoop_lines
 from rbsdem.run.bands import band as band_of
 from rbsdem.run.case import Case
 from rbsdem.run.result import Result
-from rbsdem.section.axial_moment import InteractionDiagram, interaction
 from rbsdem.section.curvature import diagram as diagram_of
 from rbsdem.section.layered import LayeredColumn
+from rbsdem.section.strength import InteractionDiagram, interaction
 from rbsdem.web import exports, frames
 from rbsdem.web.state import (
     MOST_VALUES,
@@ -141,7 +141,7 @@ class Answers:
         return self._once(state, solve)
 
     def _once(self, about: object, solve: Callable[[], Answered]) -> Answered:
-        """Return what was solved for an input, which is kept."""
+        """Return the answer of an input, solved once and kept."""
         key = key_of(about)
         if key in self._kept:
             self._kept.move_to_end(key)
@@ -152,7 +152,7 @@ class Answers:
         except Exception as error:
             answered = Answered(faults=[{"field": "", "text": defect(error)}])
         answered = replace(answered, seconds=time.perf_counter() - begun)
-        # What was refused may be right later: a record may be opened meanwhile.
+        # A refused input may be right later: a record may be opened meanwhile.
         if answered.result is not None or answered.frame is not None:
             self._kept[key] = answered
             while len(self._kept) > _KEPT:
@@ -467,7 +467,7 @@ def _interval(interval: Any, factor: float = 1.0) -> list[float | None]:
 
 
 def defect(error: Exception) -> str:
-    """Return what is said of an error that is no `InputError`; its traceback is printed."""
+    """Return the text of an error that is no `InputError`; its traceback is printed."""
     traceback.print_exception(error)
     return (
         f"A defect of rbsdem, not of the input ({type(error).__name__}: {error}). Please report it "
@@ -476,7 +476,7 @@ def defect(error: Exception) -> str:
 
 
 def _tried(make: Callable[..., Any], *given: Any) -> Any:
-    """Return what a function makes, or the text of its error."""
+    """Return the value of a function, or the text of its error."""
     with unwarned(Warning):
         try:
             return make(*given)

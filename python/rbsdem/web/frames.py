@@ -328,7 +328,7 @@ def judged(
 
 
 def checked(result: FrameResult, state: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what `judged` returns as the page draws it."""
+    """Return the outcome of `judged` as the page draws it."""
     try:
         with unwarned(Warning):
             made, point, none = judged(result, state)

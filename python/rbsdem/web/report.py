@@ -39,12 +39,12 @@ from rbsdem.output.tables import PAPER, cells
 from rbsdem.run.analysis import modes
 from rbsdem.run.case import Case, case_of
 from rbsdem.run.result import Result
-from rbsdem.section.axial_moment import Code, interaction
 from rbsdem.section.curvature import diagram
 from rbsdem.section.layered import LayeredColumn
+from rbsdem.section.strength import Code, interaction
 from rbsdem.web.answers import Answered, Answers
+from rbsdem.web.exports import REPORT, one_file, plain
 from rbsdem.web.frames import judged
-from rbsdem.web.pages import REPORT, one_file, plain
 from rbsdem.web.state import Drawn, state_of
 
 #: Keys that only number things, or say how finely the program divides.
@@ -280,7 +280,7 @@ def _head(title: str, author: str, project: str, date: str | None) -> str:
 
 
 def _column_data(result: Result, case: Case, title: str) -> dict[str, Any]:
-    """Return what the page shows of a result; one without the openings of its hinge is run again.
+    """Return the answers about a result; one without the openings of its hinge is run again.
 
     Strains of layers, from which most limit states follow, need them.
     """

@@ -23,7 +23,7 @@ from rbsdem.errors import InputError
 from rbsdem.measured.specimens import Specimens
 from rbsdem.web import frames
 from rbsdem.web.answers import LANES, ONCE, Answers, defect
-from rbsdem.web.pages import TYPES, parts
+from rbsdem.web.exports import TYPES, parts
 from rbsdem.web.report import report_of_page
 from rbsdem.web.state import DEFAULT, RefusedError
 
@@ -238,7 +238,7 @@ class _Handler(BaseHTTPRequestHandler):
         self._send(200, json.dumps(answer, allow_nan=False).encode(), "application/json")
 
     def _body(self, most: int) -> dict[str, Any]:
-        """Return what was sent, a JSON object without NaN."""
+        """Return the body of a request, a JSON object without NaN."""
         length = self.headers.get("Content-Length", "")
         if self.headers.get("Transfer-Encoding") or not length.isascii() or not length.isdigit():
             raise RefusedError(411, "Content-Length is missing")
