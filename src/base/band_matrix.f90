@@ -304,18 +304,18 @@ contains
       integer :: m
 
       if (.not. allocated(self%border)) allocate (self%border(self%size, 2), self%flexible(self%size, 2))
-      m = merge(2, 1, present(row))
       self%border(:, 1) = column
+      self%border(:, 2) = column
       if (present(row)) self%border(:, 2) = row
-      call scale_rows(self, m, self%border)
+      call scale_rows(self, 2, self%border)
+      ! Of a positive definite matrix the left one is not needed.
+      m = merge(1, 2, self%positive .or. .not. present(row))
       self%flexible(:, :m) = self%border(:, :m)
       call solve_scaled(self, m, self%flexible, regular)
-      if (.not. present(row)) then
-         self%border(:, 2) = self%border(:, 1)
-         self%flexible(:, 2) = self%flexible(:, 1)
-      end if
-      self%from_left = dot_product(self%flexible(:, 2), self%border(:, 1))
+      if (m == 1) self%flexible(:, 2) = self%flexible(:, 1)
       self%from_right = dot_product(self%border(:, 2), self%flexible(:, 1))
+      self%from_left = self%from_right
+      if (m == 2) self%from_left = dot_product(self%flexible(:, 2), self%border(:, 1))
       regular = regular .and. abs(self%from_left) > 0.0_wp .and. abs(self%from_right) > 0.0_wp
    end subroutine set_border
 
@@ -355,8 +355,8 @@ contains
       call scale_rows(self, size(g), x)
    end subroutine solve_bordered
 
-   !> Mixed block elimination: once from the left, which gives most of y, and once from the right for
-   !> what is missing.
+   !> Block elimination. Where the matrix is not positive definite it is the mixed one: once from the left,
+   !> which gives most of y, and once from the right for what is missing.
    subroutine eliminate(self, f, g, x, y, regular)
       type(band_matrix), intent(inout) :: self
       real(wp), intent(in) :: f(:, :), g(:)
@@ -366,10 +366,14 @@ contains
       real(wp) :: more
       integer :: j
 
-      do j = 1, size(g)
-         y(j) = (g(j) - dot_product(self%flexible(:, 2), f(:, j)))/self%from_left
-         x(:, j) = f(:, j) + self%border(:, 1)*y(j)
-      end do
+      y = 0.0_wp
+      x = f
+      if (.not. self%positive) then
+         do j = 1, size(g)
+            y(j) = (g(j) - dot_product(self%flexible(:, 2), f(:, j)))/self%from_left
+            x(:, j) = f(:, j) + self%border(:, 1)*y(j)
+         end do
+      end if
       call solve_scaled(self, size(g), x, regular)
       if (.not. regular) return
       do j = 1, size(g)

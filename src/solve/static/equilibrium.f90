@@ -9,7 +9,8 @@
 !> with F' = 1 or u' = 1. K is a band, bordered by p and c where the displacement is driven. The pattern is
 !> that of the lateral load, or the dead load of a frame, which grows from 0 to 1. Deformations that are small
 !> differences of unknowns lose digits; the residual is taken in the deformations and solved for once more.
-!> Joints of a chain that nothing couples have a diagonal K and need no factor.
+!> Joints of a chain that nothing couples have a diagonal K and need no factor. A few bodies are solved in their
+!> deformations, with full matrices, which loses no digits.
 module rbs_solve_static_equilibrium
    use rbs_base_band_matrix, only: band_matrix
    use rbs_base_constants, only: no_stiffness
@@ -40,6 +41,13 @@ module rbs_solve_static_equilibrium
    !> A displacement, in shares of the height, or a rotation that is no more than round-off.
    real(wp), parameter :: of_round_off = 1.0e-12_wp
 
+   !> Most springs of a chain for full matrices, and the length of its equations: the springs, the force and
+   !> two right-hand sides.
+   integer, parameter :: few = 4, row_length = few + 3
+
+   !> A pivot that is round-off of numbers of the order of one.
+   real(wp), parameter :: no_pivot = 1.0e-13_wp
+
    type :: equilibrium_type
       !> Whether the dead load of a frame grows with the force, from 0 to 1, in place of the lateral one
       logical :: of_dead_load = .false.
@@ -62,6 +70,11 @@ module rbs_solve_static_equilibrium
       !> Whether the unknowns are coupled; if not, K is diagonal in the deformations. Whether deformations
       !> follow from the unknowns alone, so that lost digits can be recovered
       logical, private :: coupled = .false., refines = .false.
+      !> Whether the springs are few; then their geometric stiffness, the equations without stiffness, and what
+      !> they are scaled with: one over the root of the initial stiffness, and the largest arm
+      logical, private :: are_few = .false.
+      real(wp), private :: geometric(few, few) = 0.0_wp, equation(row_length, few + 1) = 0.0_wp
+      real(wp), private :: scale(few) = 0.0_wp, most = 1.0_wp
       type(band_matrix), private :: matrix
       !> Pivots of the initial stiffness (unknowns)
       real(wp), allocatable, private :: pivot(:)
@@ -137,7 +150,40 @@ contains
       call hold_still(self)
       call self%matrix%factor()
       self%pivot = 1.0_wp/self%matrix%triangle(1, :)
+      self%are_few = self%refines .and. .not. self%has_still .and. springs <= few
+      if (self%are_few) call create_few(self)
    end subroutine create
+
+   !> The equations of a few springs from the second-order forces by a unit of each deformation.
+   subroutine create_few(self)
+      class(equilibrium_type), intent(inout) :: self
+      real(wp) :: no_load(signals), moved(self%moving, self%moving)
+      integer :: i, j
+
+      associate (structure => self%structure, m => self%moving, scale => self%scale, row => self%equation)
+         no_load = 0.0_wp
+         do j = 1, m
+            self%more = 0.0_wp
+            self%more(j) = 1.0_wp
+            call structure%unknown_rates(self%more, moved(:, j))
+         end do
+         do j = 1, m
+            self%more = 0.0_wp
+            self%more(j) = 1.0_wp
+            self%f = 0.0_wp
+            call structure%forces(self%more, no_load, self%axial, self%tangent, self%f, self%residual, self%inner)
+            self%geometric(j, :m) = -matmul(self%residual, moved)
+         end do
+         scale(:m) = 1.0_wp/sqrt(structure%initial_stiffness)
+         self%most = maxval(structure%arm*scale(:m))
+         do i = 1, m
+            row(:m, i) = self%geometric(:m, i)*scale(:m)*scale(i)
+            row(m + 1, i) = -structure%arm(i)*scale(i)/self%most
+            row(i, m + 1) = -row(m + 1, i)
+         end do
+         row(m + 2, m + 1) = 1.0_wp/self%most
+      end associate
+   end subroutine create_few
 
    !> Hold the unknowns that do not move.
    subroutine hold_still(self)
@@ -165,6 +211,11 @@ contains
 
       self%lost_digits = .false.
       gap = displacement - self%structure%top_displacement(springs%d)
+      if (self%are_few .and. .not. by_force) then
+         call self%find_unbalance(springs, force)
+         call follow_few(self, springs%k, gap, rate, found)
+         if (found) return
+      end if
       if (self%coupled) then
          call follow_band(self, springs, by_force, gap, force, rate, found)
          return
@@ -187,6 +238,71 @@ contains
          self%displacement_rate = sum(arm*rate(:self%moving))
       end associate
    end subroutine follow
+
+   !> A few springs, driven by the displacement. Not found where the equations have next to no pivot.
+   subroutine follow_few(self, k, gap, rate, found)
+      class(equilibrium_type), intent(inout) :: self
+      real(wp), intent(in), contiguous :: k(:)
+      !> Of the displacement [m]
+      real(wp), intent(in) :: gap
+      real(wp), intent(inout), contiguous :: rate(:)
+      logical, intent(out) :: found
+      real(wp) :: row(row_length, few + 1), settled
+      integer :: i
+
+      associate (m => self%moving, scale => self%scale)
+         row = self%equation
+         do i = 1, m
+            row(i, i) = row(i, i) + k(i)*scale(i)**2
+            row(m + 3, i) = self%f(i)*scale(i)
+         end do
+         row(m + 3, m + 1) = gap/self%most
+         call solve_rows(m + 1, row, found)
+         if (.not. found) return
+         found = maxval(abs(row(m + 2, :m))*scale(:m)) < without_end
+         settled = merge(1.0_wp, 0.0_wp, maxval(abs(row(m + 3, :m))*scale(:m)) <= &
+                         no_more*self%structure%total_height)
+         do i = 1, m
+            rate(i) = row(m + 2, i)*scale(i)
+            self%correction(i) = settled*row(m + 3, i)*scale(i)
+         end do
+         self%force_rate = row(m + 2, m + 1)/self%most
+         self%force_correction = settled*row(m + 3, m + 1)/self%most
+         self%displacement_rate = 1.0_wp
+         self%dead_load_work_rate = 0.0_wp
+      end associate
+   end subroutine follow_few
+
+   !> Solve a few equations of one length by elimination with pivots.
+   pure subroutine solve_rows(n, row, regular)
+      integer, intent(in) :: n
+      !> Each column an equation: its coefficients (n), and right-hand sides, which the solutions replace
+      real(wp), intent(inout) :: row(row_length, few + 1)
+      logical, intent(out) :: regular
+      real(wp) :: pivot(row_length)
+      integer :: i, j, p
+
+      regular = .false.
+      do j = 1, n
+         p = j
+         do i = j + 1, n
+            if (abs(row(j, i)) > abs(row(j, p))) p = i
+         end do
+         if (.not. abs(row(j, p)) > no_pivot) return
+         pivot = row(:, p)/row(j, p)
+         row(:, p) = row(:, j)
+         row(:, j) = pivot
+         do i = j + 1, n
+            row(:, i) = row(:, i) - row(j, i)*pivot
+         end do
+      end do
+      do j = n, 2, -1
+         do i = 1, j - 1
+            row(n + 1:n + 2, i) = row(n + 1:n + 2, i) - row(j, i)*row(n + 1:n + 2, j)
+         end do
+      end do
+      regular = .true.
+   end subroutine solve_rows
 
    !> The same with the band.
    subroutine follow_band(self, springs, by_force, gap, force, rate, found)
@@ -353,7 +469,7 @@ contains
       real(wp), intent(in) :: force
       integer :: i
 
-      if (self%coupled) then
+      if (self%coupled .and. .not. self%are_few) then
          ! Where an element snaps back its last tangent serves.
          call self%structure%linearise(springs%k, self%tangent, self%unstable)
          call find_residual(self, springs, force)
@@ -363,6 +479,7 @@ contains
       associate (structure => self%structure)
          do i = 1, self%moving
             self%f(i) = structure%arm(i)*force - (springs%f0(i) + springs%k(i)*(springs%d(i) - springs%d0(i)))
+            if (self%are_few) self%f(i) = self%f(i) - dot_product(self%geometric(:self%moving, i), springs%d)
             self%unbalance = max(self%unbalance, abs(self%f(i))/merge(structure%total_height, 1.0_wp, &
                                                                       structure%place(i)%kind == flexure))
          end do

@@ -35,6 +35,8 @@ module rbs_solve_static_straight
       !> The line: what is driven, position (coordinates), force and displacement where it begins
       real(wp) :: start = 0.0_wp
       real(wp), allocatable :: q(:)
+      !> Springs near the ends of their lines, a work array (moving)
+      integer, allocatable :: near(:)
       real(wp) :: force_start = 0.0_wp, displacement_start = 0.0_wp
       !> Its end, and the spring that ends it (0: none)
       real(wp) :: finish = 0.0_wp
@@ -76,6 +78,7 @@ contains
       path%may_go_back = .not. by_force
       path%of_dead_load = equilibrium%of_dead_load
       allocate (path%q(structure%coordinates), source=0.0_wp)
+      allocate (path%near(equilibrium%moving))
       call begin_path(path, by_force, equilibrium%moving, .false., task%before, error)
       if (allocated(error)) return
       call path%follow(target, task, error)
@@ -96,12 +99,12 @@ contains
       direction = 0
       idle = 0
       do while (idle <= most_idle + most_idle_per_spring*self%springs%count)
-         if (self%task%stops()) return
-         idle = idle + 1
          if (.not. self%goes_back) then
             if (.not. abs(target - self%control) > 0.0_wp) return
             direction = merge(1, -1, target > self%control)
          end if
+         if (self%task%stops()) return
+         idle = idle + 1
          if (self%direction == 0 .or. (self%direction /= direction .and. .not. self%goes_back)) then
             went_back = self%goes_back
             ! Where the top turns back at a target, springs turn as they must.
@@ -239,12 +242,12 @@ contains
       class(straight_path), intent(inout) :: self
       real(wp), intent(in) :: control
       real(wp) :: change, force, displacement, moved, d
-      integer :: near(self%moving), count, j
+      integer :: count, j
 
       change = control - self%start
-      call go_along(self%springs, self%moving, self%q, self%rate, abs(change), nearly, near, count)
+      call go_along(self%springs, self%moving, self%q, self%rate, abs(change), nearly, self%near, count)
       do j = 1, count
-         associate (i => near(j))
+         associate (i => self%near(j))
             d = self%q(i) + self%rate(i)*abs(change)
             if (is_on_end(self%springs, i, d, self%rate(i))) call arrive(self, i)
          end associate

@@ -520,8 +520,10 @@ contains
       m = size(d)
       n = self%n
       row(1) = self%top_height(d)
-      row(2:m + 1) = d
-      row(m + 2:2*m + 1) = springs%forces(d)
+      do i = 1, m
+         row(1 + i) = d(i)
+         row(1 + m + i) = springs%f0(i) + springs%k(i)*(d(i) - springs%d0(i))
+      end do
       at = 2*m + 1
       if (contents%in_time) then
          if (self%damped) then
