@@ -42,8 +42,8 @@ module rbs_solve_static_equilibrium
    real(wp), parameter :: of_round_off = 1.0e-12_wp
 
    !> Most springs of a chain for full matrices, and the length of its equations: the springs, the force and
-   !> two right-hand sides.
-   integer, parameter :: few = 4, row_length = few + 3
+   !> two right-hand sides, and one number more, as processors take two or four at a time.
+   integer, parameter :: few = 4, row_length = few + 4
 
    !> A pivot that is round-off of numbers of the order of one.
    real(wp), parameter :: no_pivot = 1.0e-13_wp
@@ -171,7 +171,8 @@ contains
             self%more = 0.0_wp
             self%more(j) = 1.0_wp
             self%f = 0.0_wp
-            call structure%forces(self%more, no_load, self%axial, self%tangent, self%f, self%residual, self%inner)
+            call structure%forces(self%more, no_load, self%axial, self%tangent, self%f, self%residual, &
+                                  self%inner)
             self%geometric(j, :m) = -matmul(self%residual, moved)
          end do
          scale(:m) = 1.0_wp/sqrt(structure%initial_stiffness)
@@ -247,7 +248,7 @@ contains
       real(wp), intent(in) :: gap
       real(wp), intent(inout), contiguous :: rate(:)
       logical, intent(out) :: found
-      real(wp) :: row(row_length, few + 1), settled
+      real(wp) :: row(row_length, few + 1), largest, correction
       integer :: i
 
       associate (m => self%moving, scale => self%scale)
@@ -259,15 +260,21 @@ contains
          row(m + 3, m + 1) = gap/self%most
          call solve_rows(m + 1, row, found)
          if (.not. found) return
-         found = maxval(abs(row(m + 2, :m))*scale(:m)) < without_end
-         settled = merge(1.0_wp, 0.0_wp, maxval(abs(row(m + 3, :m))*scale(:m)) <= &
-                         no_more*self%structure%total_height)
+         largest = 0.0_wp
+         correction = 0.0_wp
          do i = 1, m
             rate(i) = row(m + 2, i)*scale(i)
-            self%correction(i) = settled*row(m + 3, i)*scale(i)
+            self%correction(i) = row(m + 3, i)*scale(i)
+            largest = max(largest, abs(rate(i)))
+            correction = max(correction, abs(self%correction(i)))
          end do
+         found = largest < without_end
          self%force_rate = row(m + 2, m + 1)/self%most
-         self%force_correction = settled*row(m + 3, m + 1)/self%most
+         self%force_correction = row(m + 3, m + 1)/self%most
+         if (correction > no_more*self%structure%total_height) then
+            self%correction = 0.0_wp
+            self%force_correction = 0.0_wp
+         end if
          self%displacement_rate = 1.0_wp
          self%dead_load_work_rate = 0.0_wp
       end associate
@@ -279,7 +286,7 @@ contains
       !> Each column an equation: its coefficients (n), and right-hand sides, which the solutions replace
       real(wp), intent(inout) :: row(row_length, few + 1)
       logical, intent(out) :: regular
-      real(wp) :: pivot(row_length)
+      real(wp) :: pivot(row_length), share
       integer :: i, j, p
 
       regular = .false.
@@ -289,16 +296,20 @@ contains
             if (abs(row(j, i)) > abs(row(j, p))) p = i
          end do
          if (.not. abs(row(j, p)) > no_pivot) return
-         pivot = row(:, p)/row(j, p)
+         pivot = row(:, p)
          row(:, p) = row(:, j)
          row(:, j) = pivot
+         share = 1.0_wp/pivot(j)
          do i = j + 1, n
-            row(:, i) = row(:, i) - row(j, i)*pivot
+            row(:, i) = row(:, i) - (row(j, i)*share)*pivot
          end do
       end do
-      do j = n, 2, -1
+      do j = n, 1, -1
+         row(n + 1, j) = row(n + 1, j)/row(j, j)
+         row(n + 2, j) = row(n + 2, j)/row(j, j)
          do i = 1, j - 1
-            row(n + 1:n + 2, i) = row(n + 1:n + 2, i) - row(j, i)*row(n + 1:n + 2, j)
+            row(n + 1, i) = row(n + 1, i) - row(j, i)*row(n + 1, j)
+            row(n + 2, i) = row(n + 2, i) - row(j, i)*row(n + 2, j)
          end do
       end do
       regular = .true.
@@ -467,6 +478,7 @@ contains
       class(equilibrium_type), intent(inout) :: self
       type(spring_array), intent(in) :: springs
       real(wp), intent(in) :: force
+      real(wp) :: d(few)
       integer :: i
 
       if (self%coupled .and. .not. self%are_few) then
@@ -476,10 +488,14 @@ contains
          return
       end if
       self%unbalance = 0.0_wp
+      if (self%are_few) then
+         d = 0.0_wp
+         d(:self%moving) = springs%d(:self%moving)
+      end if
       associate (structure => self%structure)
          do i = 1, self%moving
             self%f(i) = structure%arm(i)*force - (springs%f0(i) + springs%k(i)*(springs%d(i) - springs%d0(i)))
-            if (self%are_few) self%f(i) = self%f(i) - dot_product(self%geometric(:self%moving, i), springs%d)
+            if (self%are_few) self%f(i) = self%f(i) - sum(self%geometric(:, i)*d)
             self%unbalance = max(self%unbalance, abs(self%f(i))/merge(structure%total_height, 1.0_wp, &
                                                                       structure%place(i)%kind == flexure))
          end do

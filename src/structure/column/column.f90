@@ -79,6 +79,8 @@ module rbs_structure_column_column
       real(wp), allocatable :: axial_slip(:)
       !> Axial forces in second-order work: `axial_body` times the lengths, then `axial_slip` (2 n) [N m, N]
       real(wp), allocatable :: second_order(:)
+      !> The same of a unit of axial force (2 n) [m, -]
+      real(wp), allocatable :: unit_axial(:)
       !> Axial force of load and weight in the joints of the straight column, compression positive (n) [N]
       real(wp), allocatable :: compression(:)
       !> The same per vertical acceleration of the ground, from all masses (n) [kg]
@@ -133,6 +135,8 @@ contains
       self%axial_slip = self%axial_joint
       if (self%held) self%axial_slip(self%n) = 0.0_wp
       self%second_order = [self%axial_body*self%length, self%axial_slip]
+      self%unit_axial = [self%length, (1.0_wp, i=1, self%n)]
+      if (self%held) self%unit_axial(2*self%n) = 0.0_wp
       self%compression = load + above(:self%n)
       self%axially_loaded = self%kinematics /= small .and. (abs(dead) > 0.0_wp .or. self%gravity > 0.0_wp)
       ! Layered joints and axial springs carry the axial load of load and weight above them.
@@ -336,15 +340,9 @@ contains
    pure real(wp) function top_height(self, d) result(y)
       class(column_type), intent(in) :: self
       real(wp), intent(in), contiguous :: d(:)
-      real(wp) :: unit(2*self%n)
 
       y = self%joint_height(self%n + 1)
-      if (self%kinematics /= small) then
-         unit = 1.0_wp
-         unit(:self%n) = self%length
-         if (self%held) unit(2*self%n) = 0.0_wp
-         y = y + second_order_energy(self%n, unit, d)
-      end if
+      if (self%kinematics /= small) y = y + second_order_energy(self%n, self%unit_axial, d)
       if (self%opens) y = y + sum(d(2*self%n + 1:))
    end function top_height
 
