@@ -1,13 +1,14 @@
 """Times of rbsdem on this machine, goal and measured side by side. Nothing is asserted.
 
-    python tests/benchmarks/benchmark.py [--quick] [--only PART] [--build DIR] [--against DIR]
+    python tests/benchmarks/benchmark.py [--quick] [--only PART] [--build DIR] [--against OTHER]
 
-Medians over repeats, with the fastest and the slowest: wall time through Python, processor time
-elsewhere, which another load of the machine disturbs less. What runs inside Fortran is timed by
+Medians over repeats of the processor time, which another load of the machine disturbs less than the
+wall time, with the fastest and the slowest. What runs inside Fortran is timed by
 `time_solver`, built like the unit tests: meson setup build/fortran, then meson compile -C
 build/fortran. There `yardstick` is built too, if there is a C compiler: the same work written by
 hand for one case, by which the solver is measured. --against takes the build folder of another
-version (of an older commit, say) and runs both in turns. Rows that need a program that is not
+version (of an older commit, say) or its Python interpreter, and runs both in
+turns. Rows that need a program that is not
 there say so.
 """
 
@@ -25,12 +26,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from compare import INSIDE, against_rows, yardstick_rows
+from compare import INSIDE, against_rows, package_rows, yardstick_rows
 from rows import ROOT, Row, newest, show
 
 import rbsdem
 from rbsdem import _core, peer
-from rbsdem.springs import Takeda
+from rbsdem.springs import Bilinear, Elastic, Takeda
+
+CHAIN = Takeda(k_c=2.5e8, d_c=3e-4, k_y=6e7, d_y=2.7e-3, k_u=7e6, b1=0.3)
 
 
 def seconds(action: Callable[[], Any], repeats: int) -> list[float]:
@@ -38,9 +41,9 @@ def seconds(action: Callable[[], Any], repeats: int) -> list[float]:
     action()
     times = []
     for _ in range(repeats):
-        start = time.perf_counter()
+        start = time.process_time()
         action()
-        times.append(time.perf_counter() - start)
+        times.append(time.process_time() - start)
     return times
 
 
@@ -56,6 +59,28 @@ def through_python(repeats: int) -> list[Row]:
     column = rbsdem.peer.paper_columns()["soesianawati_1"]
     path = growing_cycles(20_000)
     static = seconds(lambda: rbsdem.cyclic(column, displacement=path), 3 * repeats)
+    chain = rbsdem.Column(2.0, 1e4, Elastic(2e7), CHAIN, axial_load=3e5, kinematics="pdelta")
+    chains = [dataclasses.replace(chain, n=n) for n in (1, 10)]
+    one, ten = (
+        seconds(lambda chain=chain: rbsdem.cyclic(chain, displacement=path[::5]), 3 * repeats)
+        for chain in chains
+    )
+    loaded = dataclasses.replace(column, top_mass=744e3 / 9.81)
+    time_, motion = record_20_s()
+    newmark = seconds(
+        lambda: rbsdem.time_history(
+            loaded, time_, ground_acceleration=motion, method="newmark", dt=0.005
+        ),
+        3 * repeats,
+    )
+    hinged = rbsdem.frames.FrameMember(
+        modulus=3e10, area=0.16, inertia=2e-3, flexure=[Bilinear(1e8, 2e-3, 2e6)] * 2
+    )
+    frame = rbsdem.Frame.grid(
+        [3.2] * 3, [6.0] * 3, columns=hinged, beams=hinged, beam_load=1.5e4, floor_mass=1.2e5,
+        kinematics="pdelta",
+    )  # fmt: skip
+    pushed = seconds(lambda: rbsdem.pushover(frame, drift=0.02), 3 * repeats)
     rotation = path / column.height
     spring = Takeda(k_c=2.5428e8, d_c=3.1891e-4, k_y=6.2937e7, d_y=2.7183e-3, k_u=7.5772e6, b1=0.22)
     response = seconds(lambda: spring.response(rotation), 3 * repeats)
@@ -71,6 +96,10 @@ def through_python(repeats: int) -> list[Row]:
     )
     return [
         Row("static, N = 1, 20 000 points", "ms", 10, [1e3 * t for t in static]),
+        Row("static, P-Delta, one body, 4000 points", "ms", None, [1e3 * t for t in one]),
+        Row("static, P-Delta, ten bodies, 4000 points", "ms", None, [1e3 * t for t in ten]),
+        Row("Newmark, N = 1, 4000 steps", "ms", None, [1e3 * t for t in newmark]),
+        Row("push-over, 3 x 3 of point hinges", "ms", None, [1e3 * t for t in pushed]),
         Row("Takeda spring, 20 000 points", "ms", None, [1e3 * t for t in response]),
         Row("section, 100 moments", "ms", 5, [1e3 * t for t in moments]),
         Row("section, shear diagram", "ms", 20, [1e3 * t for t in shear]),
@@ -231,8 +260,12 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--repeats", type=int, metavar="N", help="default 9, with --quick 3")
     parser.add_argument("--build", type=Path, metavar="DIR", help="build folder of time_solver")
     parser.add_argument(
-        "--against", type=Path, metavar="DIR", help="build folder of another version"
+        "--against",
+        type=Path,
+        metavar="OTHER",
+        help="build folder or Python of another version",
     )
+    parser.add_argument("--plain", action="store_true", help="names and least times alone")
     given = parser.parse_args()
     if given.repeats is None:
         given.repeats = 3 if given.quick else 9
@@ -252,16 +285,21 @@ def main() -> None:
             *through_python(repeats),
             *predicted_column(repeats),
             *crossing(repeats),
-            *each_prediction(given.quick),
+            *([] if given.plain else each_prediction(given.quick)),
         ]
     if "fortran" in parts:
         driver = newest("time_solver", given.build)
         rows["Inside Fortran"] = inside_fortran(driver, repeats, divisor)
     if "yardstick" in parts:
         rows["By the yardstick"] = yardstick_rows(given.build, repeats, divisor)
-    if given.against:
+    if given.against and given.against.is_dir():
         rows["Now against before"] = against_rows(given.build, given.against, repeats, divisor)
-    show(rows)
+    elif given.against:
+        rows["Now against before"] = package_rows(given.against, repeats)
+    if given.plain:
+        print(*(f"{row.what}\t{min(row.values)}" for row in rows["Through Python"]), sep="\n")
+    else:
+        show(rows)
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import statistics
 import subprocess
+import sys
 from collections import defaultdict
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -191,3 +192,19 @@ def against_rows(build: Path | None, other: Path, repeats: int, divisor: int) ->
             if name in now and name in before:
                 ratios[name].append(now[name] / before[name])
     return [Row(INSIDE[name][0], "x before", 1.05, values) for name, values in ratios.items()]
+
+
+def package_rows(other: Path, repeats: int) -> list[Row]:
+    """Measure this package against that of another interpreter, through Python."""
+    ratios: dict[str, list[float]] = {}
+    script = Path(__file__).with_name("benchmark.py")
+    for _ in range(repeats):
+        tables = []
+        for python in (sys.executable, other):
+            command = [python, script, "--only", "python", "--plain", "--repeats", "2"]
+            text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+            tables.append(dict(line.split("\t") for line in text.splitlines()))
+        now, before = tables
+        for name in now:
+            ratios.setdefault(name, []).append(float(now[name]) / float(before[name]))
+    return [Row(name, "x before", 1.05, values) for name, values in ratios.items()]

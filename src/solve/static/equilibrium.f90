@@ -9,8 +9,8 @@
 !> with F' = 1 or u' = 1. K is a band, bordered by p and c where the displacement is driven. The pattern is
 !> that of the lateral load, or the dead load of a frame, which grows from 0 to 1. Deformations that are small
 !> differences of unknowns lose digits; the residual is taken in the deformations and solved for once more.
-!> Joints of a chain that nothing couples have a diagonal K and need no factor. A few bodies are solved in their
-!> deformations, with full matrices, which loses no digits.
+!> Joints of a chain that nothing couples have a diagonal K and need no factor. A few bodies are solved in
+!> their deformations, with full matrices, which loses no digits.
 module rbs_solve_static_equilibrium
    use rbs_base_band_matrix, only: band_matrix
    use rbs_base_constants, only: no_stiffness
@@ -70,8 +70,8 @@ module rbs_solve_static_equilibrium
       !> Whether the unknowns are coupled; if not, K is diagonal in the deformations. Whether deformations
       !> follow from the unknowns alone, so that lost digits can be recovered
       logical, private :: coupled = .false., refines = .false.
-      !> Whether the springs are few; then their geometric stiffness, the equations without stiffness, and what
-      !> they are scaled with: one over the root of the initial stiffness, and the largest arm
+      !> Whether the springs are few; then their geometric stiffness, the equations without stiffness, and
+      !> what they are scaled with: one over the root of the initial stiffness, and the largest arm
       logical, private :: are_few = .false.
       real(wp), private :: geometric(few, few) = 0.0_wp, equation(row_length, few + 1) = 0.0_wp
       real(wp), private :: scale(few) = 0.0_wp, most = 1.0_wp
