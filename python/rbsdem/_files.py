@@ -40,7 +40,7 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
 
     Parameters
     ----------
-    path : path
+    path : path-like
         Final name.
 
     Yields
@@ -87,7 +87,7 @@ def write_csv(path: str | os.PathLike[str], rows: Iterable[Sequence[object]]) ->
 
     Parameters
     ----------
-    path : path
+    path : path-like
         File to write.
     rows : iterable of sequences
         Cells: numbers are written with six digits, None and numbers that are not finite as blanks,
@@ -122,7 +122,7 @@ class Tabular:
 
         Parameters
         ----------
-        path : path
+        path : path-like
             File to write.
         """
         save_frame(self.to_pandas(), path)
@@ -163,7 +163,7 @@ def save_frame(frame: DataFrame, path: str | os.PathLike[str]) -> None:
     ----------
     frame : DataFrame
         The table; its index is left out unless it has a name.
-    path : path
+    path : path-like
         File to write, as by `write_csv`.
     """
     if frame.index.name is not None:
@@ -178,7 +178,7 @@ def write_figure(drawn: Any, path: str | os.PathLike[str], **options: Any) -> No
     ----------
     drawn : matplotlib Figure or Axes, or array of Axes
         The figure, or axes of it.
-    path : path
+    path : path-like
         File to write; its ending says in which format.
     **options
         Of `savefig`.

@@ -184,7 +184,7 @@ def read_lines(source: str | os.PathLike[str]) -> tuple[str, list[str]]:
 
     Parameters
     ----------
-    source : path or str
+    source : path-like or str
         A file, or a text of two lines or more.
 
     Raises
@@ -231,7 +231,7 @@ def read_table(
 
     Parameters
     ----------
-    source : path, str or (str, list of str)
+    source : path-like, str or (str, list of str)
         A file, a text, or what `read_lines` returned.
     separator, decimal : str, optional
         Separator of two values: ",", ";", a tab or a blank; and before decimals: "." or ",".

@@ -378,7 +378,7 @@ def ensemble(
         of its own.
     jobs : int, optional
         Threads; by default one for each processor that this process may use.
-    store : path, optional
+    store : path-like, optional
         A folder that keeps the runs, written every few seconds, and the rest at Ctrl-C and SIGTERM.
         A second start computes the runs that are missing there, after whatever end of the first,
         and so does one with more columns, motions or scales. Needs pyarrow

@@ -30,7 +30,7 @@ def write_nrml(
 
     Parameters
     ----------
-    path : path
+    path : path-like
         File to write, as ``"pier.xml"``.
     curves : mapping of str to Fragility
         Lognormal curves of one analysis, as of `IDA.fragilities`. They are the limit states of the
@@ -82,7 +82,7 @@ def write_pelicun(
 
     Parameters
     ----------
-    path : path
+    path : path-like
         File to write, as ``"fragility.csv"``.
     curves, intensity : optional
         As of `write_nrml`; pelicun has no averaged spectral acceleration.

@@ -257,7 +257,7 @@ class RunStore(Store):
 
     Parameters
     ----------
-    folder : path
+    folder : path-like
         It is made if it is not there.
     plan : Plan
         The runs.

@@ -141,7 +141,7 @@ class RunOptions(Solver, total=False):
         finds.
     jobs, progress
         As for `rbsdem.ensemble`.
-    store : path
+    store : path-like
         Folder that keeps the runs, as for `rbsdem.ensemble`; a second start, with more records too,
         computes what is missing.
     shard : (int, int)

@@ -60,7 +60,7 @@ class Store:
 
     Parameters
     ----------
-    folder : path
+    folder : path-like
         It is made if it is not there.
     manifest : mapping
         About the rows, for JSON. "digests" of another store of this folder must be the same, and
@@ -240,7 +240,7 @@ def store_status(folder: Path) -> list[str]:
 
     Parameters
     ----------
-    folder : path
+    folder : path-like
         Of the store.
 
     Raises

@@ -64,11 +64,11 @@ def read_test(
 
     Parameters
     ----------
-    path : path
+    path : path-like
         File with a row of numbers a line, or its text. Above them there may be any lines; the last
         may have the names of the columns, or their names and below them their units. Columns of
         texts, dates or clocks are left out.
-    displacement, force : path, optional
+    displacement, force : path-like, optional
         Two files in place of one, each with one value a line or all values in a line.
     structure : {"column", "frame"}, optional
         The structure that was tested. The force of a frame is the sum of its actuators; it has no

@@ -329,9 +329,9 @@ def find_history(
 
     Parameters
     ----------
-    key : str or path
+    key : str or path-like
         Key of a column (soesianawati_1, tanaka_park_1, tanaka_park_5, zahn_7) or a file name.
-    folder : path, optional
+    folder : path-like, optional
         Folder to search; by default that of the environment variable RBSDEM_PEER_DIR.
 
     Returns

@@ -182,7 +182,7 @@ def predict(
 
     Parameters
     ----------
-    specimens : Specimen, iterable of Specimen, or path
+    specimens : Specimen, iterable of Specimen, or path-like
         One test or column; several, as from `rbsdem.peer.read_specimens`; or a folder, of which all
         tests with a history are predicted.
     model : str or callable, optional
@@ -194,7 +194,7 @@ def predict(
         Samples of a band, as for `rbsdem.peer.band`.
     displacement : array_like, shape (m,), optional
         Path of the top [m], for columns that nobody tested. Without it, that of each test.
-    near : path, or iterable of Specimen or Prediction, optional
+    near : path-like, or iterable of Specimen or Prediction, optional
         Tests, or their folder, of which the five that are most like each column stand beside it.
         Those that are not predicted yet are predicted by the same model.
     limit_states : bool, optional

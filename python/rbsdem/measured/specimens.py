@@ -480,7 +480,7 @@ def read_specimens(path: str | os.PathLike[str]) -> Specimens:
 
     Parameters
     ----------
-    path : path
+    path : path-like
         The folder with `specimens.csv` and the histories, or the table itself. Columns may be
         fewer or more, and in any order.
 

@@ -64,7 +64,7 @@ class Verification(Tabular):
 
     Attributes
     ----------
-    comparisons : tuple of Comparison
+    comparisons : tuple of rbsdem.methods.verification.Comparison
         In the order of the problems.
     """
 

@@ -373,7 +373,7 @@ class Rows(_Channels):
 
         Parameters
         ----------
-        path : path
+        path : path-like
             File to write.
         """
         table, about, case = self.columns(), self.summary, self.case
@@ -397,7 +397,7 @@ class Rows(_Channels):
 
         Parameters
         ----------
-        path : path
+        path : path-like
             File to write, ``.npz``.
 
         Raises
@@ -412,7 +412,7 @@ class Rows(_Channels):
 
         Parameters
         ----------
-        path : path
+        path : path-like
             File to write, whole or not at all.
 
         Raises
@@ -471,7 +471,7 @@ def state_of(initial: Any, call: str) -> Array:
 
     Parameters
     ----------
-    initial : Response or path
+    initial : Response or path-like
         As the user gave it.
     call : str
         Name of the analysis, for messages.

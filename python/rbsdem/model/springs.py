@@ -836,7 +836,7 @@ class Strains:
 
         Parameters
         ----------
-        path : path
+        path : path-like
             The file; it is written whole or not at all.
         layers : bool, optional
             Whether to write a column for each layer, as ``bar_-0.16``.

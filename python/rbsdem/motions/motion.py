@@ -280,7 +280,7 @@ class GroundMotion:
 
         Parameters
         ----------
-        path : path
+        path : path-like
             File to write; `read_motion` and the loading of a case read it.
         """
         head = f"# {_arguments.one_line(self.description or self.name)}\ntime_s,acceleration_m/s2\n"

@@ -603,7 +603,7 @@ def read_motion(
 
     Parameters
     ----------
-    path : path
+    path : path-like
         An AT2 file of the PEER databases, old or new; an ASCII file of ESM, AFAD, K-NET or KiK-net;
         or a file with columns of time and acceleration, or with one column. A text of more than
         one line is taken as such a file.
@@ -694,7 +694,7 @@ def read_motions(
 
     Parameters
     ----------
-    folder : path
+    folder : path-like
         Folder with files that end with .AT2, .csv, .txt, .asc, or as those of K-NET; other files
         are left out.
     units : str, optional

@@ -143,7 +143,7 @@ def save(figure: Any, path: str | os.PathLike[str], *, pdf: bool = False) -> lis
     ----------
     figure : matplotlib Figure or Axes, or array of Axes
         The figure.
-    path : path
+    path : path-like
         File to write; the ending .png is added if it is missing, and the folder is created.
     pdf : bool, default False
         Write the PDF as well.

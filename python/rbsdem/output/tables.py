@@ -39,7 +39,7 @@ def write_parquet(frame: DataFrame, path: str | os.PathLike[str]) -> None:
     ----------
     frame : DataFrame
         The table; its index is left out.
-    path : path
+    path : path-like
         File to write.
     """
     with atomic_write(path) as file:

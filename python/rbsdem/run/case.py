@@ -171,7 +171,7 @@ def read_case(path: str | os.PathLike[str]) -> Case:
 
     Parameters
     ----------
-    path : str or path
+    path : str or path-like
         Path of the namelist file; paths of histories are relative to its folder.
 
     Raises
@@ -277,7 +277,7 @@ def read_result(path: str | os.PathLike[str]) -> Result | FrameResult:
 
     Parameters
     ----------
-    path : path
+    path : path-like
         The file.
 
     Returns

@@ -235,7 +235,7 @@ def cyclic(
         of the column; it changes in proportion on the way from point to point, and the path starts
         under its first value. With `Column(axial_force_ratio=r)` the load is this one plus r F.
         With `kinematics` "small" it acts on axial springs and layered joints alone.
-    initial : Result or path, optional
+    initial : Result or path-like, optional
         The result of this column in whose end the path begins, or a file that
         `Result.save_state` or the executable wrote. A static result that was driven by the same
         quantity gives the same numbers as one path, to the last bit. After a response in time the
@@ -345,7 +345,7 @@ def time_history(
         Lateral force at the top [N], linear between the times.
     ground_acceleration : array_like of shape (m,), or GroundMotion, optional
         Acceleration of the ground [m/s2], linear between the times.
-    initial : mapping, Result or path, optional
+    initial : mapping, Result or path-like, optional
         State at the start. As a mapping: "slip" [m], "rotation" [rad], "opening" [m], and
         "slip_velocity", "rotation_velocity", "opening_velocity", each of shape (n,). The springs
         are loaded from zero to this state. Without "opening" the joints start in equilibrium under
@@ -523,7 +523,7 @@ def pushover(
         Shares of the lateral load of a frame in place of its own, see `Frame`.
     points : int, optional
         Rows at equal steps; there is one at each event in addition.
-    initial : FrameResult, Result or path, optional
+    initial : FrameResult, Result or path-like, optional
         The state that the path begins in.
 
     Returns

@@ -167,7 +167,7 @@ def write_report(
 
     Parameters
     ----------
-    path : path
+    path : path-like
         File to write.
     state, title, near
         As for `report_data`.
@@ -208,7 +208,7 @@ def report(
     ----------
     record : Result, FrameResult, Assessment, Section, Ensemble or IDA
         What it is about.
-    path : path
+    path : path-like
         File to write; the names of the others begin with its own.
     title, author, project, date : str, optional
         For its head; the date is that of today.
