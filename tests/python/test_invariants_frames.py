@@ -339,6 +339,15 @@ def test_joints_with_one_layer_left_keep_the_path(case: int) -> None:
     assert gaps(run) < 1e-9
 
 
+@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
+def test_a_search_in_vain_leaves_the_springs_at_their_corner() -> None:
+    """Where no way leads through a corner, that is what stops the path, not forces that jumped."""
+    rng = np.random.default_rng(40)
+    made = frame(rng, "capped")
+    with pytest.raises(rbsdem.SolveError, match="snaps back"):
+        rbsdem.cyclic(made, displacement=drifts(rng, made))
+
+
 def sides(given: Any) -> Any:
     """Return springs of a column at its places, for a column whose left is its right."""
     return None if given is None else {place: one.mirrored() for place, one in given}

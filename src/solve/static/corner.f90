@@ -94,9 +94,11 @@ contains
          else
             left = left - 1
          end if
-         if (left < 0) then
+         if (left < 0 .and. may_pass) then
             call pass()
             if (found) return
+            ! Where the way was sought in vain the springs are on the lines of the corner again.
+            if (.not. may_pass) cycle
          end if
          if (may_pass .and. .not. marked) then
             call path%springs%mark()

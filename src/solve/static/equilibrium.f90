@@ -389,11 +389,7 @@ contains
             if (self%has_still) where (self%still) self%load(:, 1) = 0.0_wp
             call solve_once(2, displacement - self%structure%top_displacement(self%moved(:, j)), more, &
                             regular)
-            if (.not. regular) then
-               ! Of a frame nothing but round-off is left to correct.
-               regular = .not. self%refines
-               return
-            end if
+            if (.not. regular) exit
             y(j) = y(j) + more
             call self%structure%spring_rates(self%tangent, self%change(:, 2), self%more)
             if (.not. self%refines) self%more = self%more + inner
@@ -403,8 +399,9 @@ contains
             ! One more would add about the square of this share.
             if (maxval(abs(self%change(:, 2))) <= few_digits*maxval(abs(self%change(:, 1)))) return
          end do
-         regular = .false.
-         if (j == 1) self%lost_digits = .true.
+         ! Of a frame round-off is left to correct, or what parts share that are free to move.
+         self%lost_digits = regular .and. self%refines .and. j == 1
+         regular = .not. self%refines
       end subroutine solve
 
       subroutine solve_once(i, displacement, more, regular)
