@@ -143,6 +143,17 @@ def test_missing_later_and_damaged_files_are_told(tmp_path):
         rbsdem.read_result(path)
 
 
+def test_a_frame_that_loses_a_member_in_time_is_read_back(tmp_path):
+    """Its losses are refused in a static case, by which the structure of a file was read."""
+    kind = rbsdem.FrameMember(3e10, 0.16, 2e-3)
+    given = {"columns": kind, "beams": kind, "floor_mass": 1e4, "beam_load": 2e4}
+    frame = rbsdem.Frame.grid([3.0, 3.0], [5.0], losses={"C-2-2": 0.05}, **given)
+    time = np.linspace(0.0, 0.1, 11)
+    result = rbsdem.time_history(frame, time, ground_acceleration=np.sin(50.0 * time))
+    result.save(tmp_path / "a.npz")
+    assert rbsdem.read_result(tmp_path / "a.npz") == result
+
+
 def test_state_between_rows_is_linear():
     result = RESULTS["dynamic"]
     middle = 0.5 * (result.time[4] + result.time[5])

@@ -261,10 +261,6 @@ def case_of(result: Rows) -> Case:
     return Case("", result.structure, method, time, **loads, settings=given)
 
 
-# A loading that completes the text of a column to a case.
-_LOADING = "&loading drive = 'force', values = 0, 0 /\n"
-
-
 #: Errors that readers of damaged archives raise.
 _DAMAGED = (
     OSError, ValueError, KeyError, TypeError, EOFError, NotImplementedError, zipfile.BadZipFile,
@@ -332,11 +328,14 @@ def _read_npz(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, A
 
 def _result(about: dict[str, Any], arrays: dict[str, Any]) -> Result | FrameResult:
     with notes_off():
-        structure = case_of_text(about["column"] + _LOADING).column
+        # Losses at a time are refused in a static case.
+        method = "auto" if about["summary"]["analysis"] == "dynamic" else "static"
+        analysis = f"\n&analysis method = '{method}' /\n"
+        structure = case_of_text(about["column"] + analysis).column
         case = None if about["case"] is None else case_of_text(about["case"])
         if about.get("drawing"):
             with contextlib.suppress(InputError):
-                drawn = case_of_text(about["drawing"] + _LOADING).column
+                drawn = case_of_text(about["drawing"] + analysis).column
                 structure = drawn if drawn == structure else structure
     own = {name: _together(about[name], arrays) for name in SAVED}
     return (FrameResult if isinstance(structure, Frame) else Result)(
