@@ -368,9 +368,14 @@ PROBLEMS: list[Problem] = [
             (2, True, "0 100 150 200", {"tip": KIP}, "336 470 601 856 0.907 1.34 1.77 2.60"),
         )
     ),
-    Problem("Beam-column", "AISC Design Guide 25, closed form",
-            "moments [kip in], sways [in] at 1/4, 1/2 and 0.67 of Euler's load", *
-            frames.beam_column((0.25, 0.5, 0.67))),
+    *(
+        Problem(name, "AISC Design Guide 25, closed form",
+                "moments [kip in], sways [in] at 1/4, 1/2 and 0.67 of Euler's load",
+                *frames.beam_column((0.25, 0.5, 0.67), halves))
+        for name, halves in (("Beam-column", 1), ("Beam-column, guided top", 2))
+    ),
+    Problem("Portals that sway", "phi tan phi = 6 on pins, phi = -6 tan phi on fixed feet",
+            "P h^2/E I of each column, phi^2", "1.8213 7.3792", frames.swaying_portals),
     Problem("Slender cantilever", "CSI, test problem 109, closed form",
             "moment [N m], displacement [m]", "1126.5 0.169134", frames.slender),
     Problem("Sway mechanism of a portal", "limit analysis, 4 M_p/h", "load over M_p/h",

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from rbsdem._types import Array, ArrayLike
+from rbsdem.errors import SolveError
 from rbsdem.model.frame import FrameMember, FrameNode, Member
+from rbsdem.model.springs import Elastic, Spring
 from rbsdem.run.analysis import modes
 from rbsdem.run.result import cyclic, pushover
 from rbsdem.section.building import Frame
@@ -91,10 +95,13 @@ def flexible_beams() -> Array:
     return np.asarray(modes(frame, 2).omega / np.sqrt(2e11 * inertia / (mass * height**3)))
 
 
-def strut(kind: FrameMember, length: float, loads: ArrayLike, **more: float) -> Array:
+def strut(
+    kind: FrameMember, length: float, loads: ArrayLike, guide: Spring | None = None, **more: float
+) -> Array:
     """Return moments [N m], then displacements across [m], of a strut under axial loads [N].
 
-    With `tip`, a force across [N], it is a cantilever, of its foot and top; with `across`, a load
+    With `tip`, a force across [N], it is a cantilever, of its foot and top, which a spring may
+    guide against rotation; with `across`, a load
     per length [N/m], it has pins at both ends, and the numbers are those of its middle. It
     is one member, or two.
     """
@@ -111,6 +118,7 @@ def strut(kind: FrameMember, length: float, loads: ArrayLike, **more: float) -> 
             FrameNode(
                 f"{i}", length * i / parts, 0.0, ends.get(i, "free"),
                 load_x=-load if i == parts else 0.0, push_y=float(-(i == at)),
+                flexure=guide if i == parts else None,
             )
             for i in range(parts + 1)
         ]  # fmt: skip
@@ -122,7 +130,7 @@ def strut(kind: FrameMember, length: float, loads: ArrayLike, **more: float) -> 
     return np.ravel([under(float(load)) for load in np.ravel(loads)], "F")
 
 
-def aisc(loads: str, *, shear: bool, **more: float) -> Array:
+def aisc(loads: str, *, shear: bool, **more: Any) -> Array:
     """Return moments [kip in], then displacements [in], of a W14x48 of 28 ft."""
     rigidity = 11200 * 13.8 * 0.34 * KIP if shear else 0.0
     kind = FrameMember(
@@ -132,24 +140,44 @@ def aisc(loads: str, *, shear: bool, **more: float) -> Array:
     return np.asarray(found / np.repeat([KIP * INCH, INCH], found.size // 2))
 
 
-def beam_column(shares: ArrayLike) -> tuple[str, Callable[[], Array]]:
-    """Return moment and displacement of a cantilever under shares of Euler's load, in both ways.
+def beam_column(shares: ArrayLike, halves: int) -> tuple[str, Callable[[], Array]]:
+    """Return moment and displacement of a column under shares of Euler's load, in both ways.
+
+    It is a cantilever, or two `halves` of that with a top that is guided.
 
     L = 196 in, E = 29 500 ksi, A = 51.7 in2, I = 2150 in4, 10 kip across.
     """
     length, modulus, inertia, across = 196.0, 29500.0, 2150.0, 10.0
-    critical = np.pi**2 * modulus * inertia / (2 * length) ** 2
+    critical = halves**2 * np.pi**2 * modulus * inertia / (2 * length) ** 2
     u = np.pi / 2 * np.sqrt(np.asarray(shares))
-    moments = across * length * np.tan(u) / u
-    sways = across * length**3 / (3 * modulus * inertia) * 3 * (np.tan(u) - u) / u**3
+    moments = across * length / halves * np.tan(u) / u
+    sways = across * length**3 / (halves**2 * modulus * inertia) * (np.tan(u) - u) / u**3
     kind = FrameMember(modulus * KSI, 51.7 * INCH**2, inertia * INCH**4)
 
     def solve() -> Array:
         loads = np.asarray(shares) * critical * KIP
-        found = strut(kind, length * INCH, loads, tip=across * KIP)
+        guide = Elastic(1e9 * kind.modulus * kind.inertia) if halves > 1 else None
+        found = strut(kind, length * INCH, loads, guide, tip=across * KIP)
         return np.asarray(found / np.repeat([KIP * INCH, INCH], u.size))
 
     return " ".join(f"{value:.4g}" for value in (*moments, *sways)), solve
+
+
+def swaying_portals() -> list[float]:
+    """Return the critical loads of the columns over E I/h^2, on pins and on fixed feet.
+
+    The beam has their length and inertia. The loads are those that a refusal tells.
+    """
+    kind, found = FrameMember(30e9, 1e3, 2e-3), []
+    for base, load in (("pinned", 3.0), ("fixed", 10.0)):
+        nodes = [FrameNode(f"N-{i}-1", load_y=-load * 30e9 * 2e-3 / 9.0) for i in (1, 2)]
+        try:
+            Frame.grid([3.0], [3.0], columns=kind, beams=kind, nodes=nodes, base=base,
+                       kinematics="pdelta")  # fmt: skip
+        except SolveError as error:
+            said = re.search(r"under it: ([.e\d-]+) of it", str(error))
+            found.append(load * float(said[1]) if said else 0.0)
+    return found
 
 
 def slender() -> Array:
