@@ -5,9 +5,10 @@
 submodule (rbs_solve_time_implicit) rbs_solve_time_snap
    implicit none
 
-   !> Rounds in which a member snaps and trials of each, the residuals that they leave, that of a state at
-   !> rest, and the least and the largest resistance as shares of the initial stiffness.
-   integer, parameter :: most_rounds = 100, few_trials = 8
+   !> Rounds in which a member snaps and trials of each, rounds that a resistance is kept for after a smaller
+   !> one has failed, the residuals that they leave, that of a state at rest, and the least and the largest
+   !> resistance as shares of the initial stiffness.
+   integer, parameter :: most_rounds = 100, few_trials = 8, patience = 4
    real(wp), parameter :: loose = 1.0e-6_wp, at_rest = 1.0e-9_wp, least_resistance = 1.0e-6_wp, &
                           most_resistance = 1.0e4_wp
 
@@ -51,13 +52,14 @@ contains
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
       real(wp) :: resistance, wanted, tried, way, way_before, at_last
-      integer :: round, trials
+      integer :: round, trials, waits
 
       wanted = self%wanted
       trials = self%most_trials
       self%most_trials = few_trials
       resistance = 1.0_wp
       at_last = resistance
+      waits = 0
       tried = huge(1.0_wp)
       way_before = huge(1.0_wp)
       call self%try_start(state)
@@ -85,13 +87,16 @@ contains
             call go_back(self, state)
             self%converged = .false.
             resistance = 3.0_wp*resistance
+            waits = patience
             if (resistance > most_resistance) exit
             cycle
          end if
          self%converged = .false.
          way_before = way
          at_last = resistance
-         resistance = max(0.3_wp*resistance, least_resistance)
+         ! A smaller one that has just failed is tried again later.
+         waits = waits - 1
+         if (waits < 0) resistance = max(0.3_wp*resistance, least_resistance)
          self%runaway = state%motion%structure%unbounded_spring(self%step%q1)
          if (self%runaway > 0) exit
       end do
