@@ -464,11 +464,12 @@ class FrameResult(Rows):
         return found
 
     def _springs(self) -> list[tuple[FrameSpring, Array, Array]]:
-        found = []
-        for group, (deformation, force) in _CHANNELS.items():
-            for i, spring in enumerate(self.frame.parts.springs_of(group)):
-                found.append((spring, self.springs[deformation][:, i], self.springs[force][:, i]))
-        return found
+        springs = self.springs
+        return [
+            (spring, springs[deformation][:, i], springs[force][:, i])
+            for group, (deformation, force) in _CHANNELS.items()
+            for i, spring in enumerate(self.frame.parts.springs_of(group))
+        ]
 
     @staticmethod
     def _reached(point: Landmark, values: Array) -> int | None:
@@ -618,9 +619,10 @@ def span_note(result: FrameResult) -> str:
     """
     frame, parts = result.frame, result.frame.parts
     bent: dict[str, list[tuple[FrameSpring, float]]] = {}
-    for spring, _, force in result._springs():
+    moments = result.springs.get("moment", np.empty((0, 0)))
+    largest_of = np.abs(moments).max(axis=0, initial=0.0).tolist()
+    for spring, largest in zip(parts.springs_of("flexure"), largest_of, strict=True):
         if spring.group == "flexure":
-            largest = float(np.abs(force).max(initial=0.0))
             bent.setdefault(spring.member, []).append((spring, largest))
     found: list[tuple[float, str, float, float]] = []
     for name, all_springs in bent.items():
@@ -635,7 +637,7 @@ def span_note(result: FrameResult) -> str:
         inside = (shares > 0) & (shares < 1)
         moment = np.where(inside, where.moment(first, last, shares), 0.0)
         row = int(np.abs(moment).argmax()) if moment.size else 0
-        known = max(largest for _, largest in springs)
+        known = max(of_spring for _, of_spring in springs)
         if moment.size and abs(moment[row]) > over * known:
             known = max(known, *(_yield_moment(frame, spring) for spring, _ in springs))
         if moment.size and abs(moment[row]) > over * known:
