@@ -5,6 +5,8 @@ import pytest
 
 import rbsdem
 from rbsdem import frames
+from rbsdem.codes import DesignSpectrum, target
+from rbsdem.run.case import case_of_text
 from rbsdem.springs import Bilinear, Elastic, PeakOriented
 
 STIFF = frames.FrameMember(30e9, 4.0, 4.0)
@@ -206,3 +208,82 @@ def test_limit_states_and_error_are_those_of_a_column():
     found = one.refined_error(), two.refined_error()
     assert found[1].response_rms == pytest.approx(found[0].response_rms, rel=0.01)
     assert two.error_estimate.measured == found[1].largest
+
+
+def free_nodes(made, kinds, **more):
+    """Return a grid put together of nodes with floors and of members."""
+    parts, masses = made.parts, np.broadcast_to(made.floor_mass, len(made.storeys))
+    share = np.array([3.0, 5.25, 2.25]) / 10.5
+    nodes = [
+        frames.FrameNode(
+            f"n{name[1:]}", x, y, "fixed" if k == 0 else "", floor=int(k),
+            mass=masses[k - 1] * share[int(name[2]) - 1] if k else 0.0,
+            load_y=-40e3 if k and name[2] != "2" else 0.0,
+        )
+        for name, x, y, k in zip(parts.nodes, parts.x, parts.y, parts.floor, strict=True)
+    ]  # fmt: skip
+    members = [
+        frames.Member(
+            name.lower(), nodes[one.start].name, nodes[one.end].name,
+            kinds["BC".index(name[0])], one.rigid, one.load,
+        )
+        for name, one in made.geometry.items()
+    ]  # fmt: skip
+    last = nodes[parts.nodes.index("N-1-3")].name
+    return rbsdem.Frame(
+        nodes=nodes, members=members, kinematics="pdelta", control_node=last, **more
+    )
+
+
+@pytest.mark.parametrize("pattern", ["triangular", "uniform", "modal"])
+def test_storeys_of_free_nodes_are_those_of_a_grid(pattern):
+    grid = frame("pdelta", pattern=pattern)
+    kinds = grid.named_kinds["kind-2"], grid.named_kinds["kind-1"]
+    free = free_nodes(grid, kinds, pattern=pattern)
+    assert free.storey_heights == pytest.approx((4.0, 3.2, 3.0), rel=1e-12)
+    assert set(free.supports) == {"n-1-0", "n-2-0", "n-3-0"}
+    assert (
+        case_of_text(free.to_namelist() + "&loading drive = 'force', values = 1 /").column == free
+    )
+    one, two = (rbsdem.pushover(made, drift=0.02, points=10) for made in (grid, free))
+    for name in ("storey_drift", "storey_shear", "floor_displacement"):
+        expected = getattr(one, name)[-1]
+        np.testing.assert_allclose(getattr(two, name)[-1], expected, rtol=1e-6, err_msg=name)
+    if pattern == "modal":
+        spectrum = DesignSpectrum.en_1998(0.1, "C")
+        drifts = [target(push, spectrum, "en_1998").storey_drift for push in (one, two)]
+        np.testing.assert_allclose(*drifts, rtol=1e-6)
+        record = rbsdem.motions.synthetic(1)[0]
+        given = {"method": "newmark", "dt": 0.01, "progress": False, "scales": [1.0, 8.0]}
+        runs = [
+            rbsdem.ensemble(made, [record], measures=["peak_storey_drift_2"], **given)
+            for made in (grid, free)
+        ]
+        np.testing.assert_array_equal(*(own.status for own in runs))
+        np.testing.assert_allclose(
+            *(own.measures["peak_storey_drift_2"] for own in runs), rtol=1e-4
+        )
+
+
+def test_floors_that_cannot_be():
+    kind = frames.FrameMember(30e9, 0.16, 2.1e-3)
+
+    def cantilever(*floors):
+        nodes = [
+            frames.FrameNode(f"n{i}", 0.0, 3.0 * i, "" if i else "fixed", floor=floor)
+            for i, floor in enumerate(floors)
+        ]
+        members = [frames.Member(f"m{i}", f"n{i}", f"n{i + 1}", kind) for i in (0, 1)]
+        return rbsdem.Frame(nodes=nodes, members=members)
+
+    assert cantilever(0, None, 1).storey_heights == (6.0,)
+    assert cantilever(None, None, None).storey_heights == ()
+    for floors, text in (
+        ((0, 1, 3), "floor 2 has no node"),
+        ((None, 1, 2), "floor 0 has no node"),
+        ((0, 2, 1), "floor 2 is not above floor 1"),
+    ):
+        with pytest.raises(rbsdem.InputError, match=text):
+            cantilever(*floors)
+    with pytest.raises(rbsdem.InputError, match="N-1-1' belongs to the grid, which has its floor"):
+        rbsdem.Frame.grid([3.0], columns=kind, nodes=[frames.FrameNode("N-1-1", floor=1)])

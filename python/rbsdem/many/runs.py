@@ -455,7 +455,7 @@ def own_records(motions: dict[str, GroundMotion], options: RunOptions) -> dict[s
 def drift_of(structures: Iterable[Structure]) -> str:
     """Return the measure of drift that collapse is judged by: of storeys, or of the top."""
     by_storeys = [
-        isinstance(one, Frame) and bool(one.storeys) and one.collapse == "storey"
+        isinstance(one, Frame) and bool(one.storey_heights) and one.collapse == "storey"
         for one in structures
     ]
     return "peak_storey_drift" if by_storeys and all(by_storeys) else "peak_drift"

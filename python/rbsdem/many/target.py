@@ -327,7 +327,7 @@ def capacity(push: FrameResult) -> Capacity:
     side = 1.0 if push.displacement[-1] >= push.displacement[0] else -1.0
     u = side * (push.displacement - push.displacement[0])
     v = side * (push.base_shear - push.base_shear[0])
-    storeys = len(frame.storeys or ())  # type: ignore[arg-type]
+    storeys = len(frame.storey_heights)
     slope = _pdelta_slope(frame, first.x[:, 0] / phi, gamma)
     made = Capacity(
         u, v, gamma, modal_mass, frame.parts.mass, max(storeys, 1), float(first.period[0]),

@@ -201,6 +201,8 @@ class FrameNode:
         Its name; nodes of a grid are called N-line-floor, with floor 0 at the base.
     x, y : float, optional
         Place [m]; not for a node of the grid.
+    floor : int, optional
+        Floor that a node outside of the grid is of, from 0 at the base: the frame then has storeys.
     support : {"free", "roller", "pinned", "fixed"}, optional
         Its support: a roller along y alone, a pin along x and y.
     mass, inertia : float, optional
@@ -236,6 +238,7 @@ class FrameNode:
     axial_spring: Spring | None = None
     flexure: Spring | None = None
     panel: Spring | None = None
+    floor: int | None = None
 
     def __post_init__(self) -> None:
         _arguments.convert(self, "FrameNode")
@@ -247,12 +250,12 @@ class FrameNode:
         values = {
             own.name: getattr(self, own.name) or None
             for own in fields(self)
-            if own.name not in (*_PLACES, "panel", "x", "y")
+            if own.name not in (*_PLACES, "panel", "x", "y", "floor")
         }
         for name in ("name", "moves_with"):
             if values[name]:
                 values[name] = _core.Text(values[name])
-        yield _core.group("node", values | {"x": self.x, "y": self.y})
+        yield _core.group("node", values | {"x": self.x, "y": self.y, "floor": self.floor})
         for group in _PLACES:
             spring = getattr(self, group)
             if spring is not None:
@@ -617,6 +620,8 @@ class Frame:
         held: dict[str, str] = {
             name: self.base for name, i in zip(parts.nodes, parts.floor, strict=True) if i == 0
         }
+        # Nodes outside of the grid are held by their own supports alone.
+        held |= {node.name: "free" for node in self.nodes if node.floor is not None}
         for node in self.nodes:
             how = node.support or held.get(node.name, "free")
             sprung = any((node.shear, node.axial_spring, node.flexure))
@@ -627,6 +632,15 @@ class Frame:
     def height(self) -> float:
         """Height from the lowest to the highest node, of a beam alone its length [m]."""
         return float(np.ptp(self.parts.y) or np.ptp(self.parts.x))
+
+    @cached_property
+    def storey_heights(self) -> tuple[float, ...]:
+        """Heights of the storeys of the grid, or between the floors of nodes [m]; empty without."""
+        parts, given = self.parts, self.storeys
+        floors = range(parts.floor.max(initial=0) + 1)
+        level = [parts.y[parts.floor == i].max() for i in floors] if len(floors) > 1 else [0.0]
+        grid: Any = given if given is not None and len(given) == len(floors) - 1 else None  # type: ignore[arg-type]
+        return tuple(grid or np.diff(level).tolist())
 
     @property
     def n(self) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, Literal, NamedTuple
+from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 
@@ -217,7 +217,7 @@ class FrameResult(Rows):
 
     @property
     def storey_drift(self) -> Array:
-        """Drift ratio of each storey of the grid, shape (rows, storeys).
+        """Drift ratio of each storey, shape (rows, storeys).
 
         Difference of the displacements of the floors, mean of their nodes, over the height.
         """
@@ -393,10 +393,12 @@ class FrameResult(Rows):
         return shear, weight
 
     def _storeys(self) -> tuple[float, ...]:
-        storeys: Any = self.frame.storeys
-        if not storeys:
-            raise InputError("the frame has no grid, and no storeys; look at `x` of its nodes")
-        return tuple(storeys)
+        if not self.frame.storey_heights:
+            raise InputError(
+                "the frame has no storeys; give it a grid, or its nodes their floors "
+                "(FrameNode(floor=...)), or look at `x` of its nodes"
+            )
+        return self.frame.storey_heights
 
     def node(self, name: str) -> Array:
         """Return displacement along x and upward [m] and rotation [rad] of a node, (rows, 3)."""

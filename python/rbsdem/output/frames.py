@@ -273,7 +273,7 @@ def storey_drift(result: FrameResult, *, ax: Axes | None = None, **line: Any) ->
     """
     _arguments.instance(result, "plot.storey_drift", FrameResult)
     drifts = 100 * result.storey_drift
-    storeys: Any = result.frame.storeys
+    storeys = result.frame.storey_heights
     floors = float(result.frame.parts.y.min()) + np.concatenate(([0.0], np.cumsum(storeys)))
 
     def steps(values: Array) -> tuple[Array, Array]:

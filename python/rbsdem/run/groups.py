@@ -298,7 +298,7 @@ def _by_floor(name: str, storeys: int, groups: Groups) -> list[float]:
 
 def _nodes(groups: Groups, lines: int) -> list[FrameNode]:
     """Return the nodes with the springs that hold them to the ground."""
-    nodes = {given["name"]: dict(given) for given in groups.get("node", [])}
+    nodes = {own["name"]: _core.typed("node", own) for own in groups.get("node", [])}
     for group in SPRING_GROUPS:
         for spring in groups.get(group, []):
             name = spring.get("node", "")

@@ -404,7 +404,7 @@ def _of_frame(result: FrameResult) -> Iterator[Sheet]:
     )
     yield Sheet("Frame", f"{result.scope_note} {whole}", shapes)
     drawn: list[Callable[[], Any]] = [partial(frames.pushover, result)]
-    if result.frame.storeys:
+    if result.frame.storey_heights:
         drawn.append(partial(frames.storey_drift, result))
     yield Sheet("Response", figures=tuple(drawn), table=_summary(result.summary))
     events = [event._asdict() for event in result.events]
@@ -449,10 +449,10 @@ def _of_assessment(
     if found.displacement is not None:
         away = np.abs(result.displacement - found.displacement)
         row = int(away.argmin())
-    if result.frame.storeys:
+    if result.frame.storey_heights:
         yield Sheet("Storeys", _STOREYS, table=_storeys(found))
     drawn: list[Callable[[], Any]] = [partial(frames.frame, result, row=row)]
-    if result.frame.storeys and found.displacement is None:
+    if result.frame.storey_heights and found.displacement is None:
         drawn.append(partial(frames.storey_drift, result))
     drawn.append(partial(buildings.assessment, found))
     counts = ", ".join(f"{name}: {number}" for name, number in found.counts().items())

@@ -301,6 +301,10 @@ contains
                self%node(number)%name = given%name
                self%node(number)%x = given%x
                self%node(number)%y = given%y
+               self%node(number)%storey = max(given%floor, -1)
+            else if (given%floor >= 0) then
+               call messages%add("node '"//trim(given%name)//"' belongs to the grid, which has its "// &
+                                 'floor; remove floor')
             else if (is_given(given%x) .or. is_given(given%y)) then
                call messages%add("node '"//trim(given%name)//"' belongs to the grid, which places it; "// &
                                  'remove x and y')
@@ -330,7 +334,28 @@ contains
          end associate
       end do
       call find_leaders(self%node, messages)
+      call check_floors(self%node, messages)
    end subroutine put_nodes
+
+   !> Refuse floors without nodes, and those that are not above the floor before.
+   subroutine check_floors(node, messages)
+      type(frame_node), intent(in) :: node(:)
+      type(message_list), intent(inout) :: messages
+      integer :: i
+
+      if (all(node%storey < 1)) return
+      do i = 0, maxval(node%storey)
+         if (all(node%storey /= i)) then
+            call messages%add('floor '//to_text(i)//' has no node; give nodes their floors from 0, the '// &
+                              'base, up')
+         else if (i > 0) then
+            if (maxval(node%y, mask=node%storey == i) <= maxval(node%y, mask=node%storey == i - 1)) then
+               call messages%add('floor '//to_text(i)//' is not above floor '//to_text(i - 1)// &
+                                 '; give nodes their floors from the base up')
+            end if
+         end if
+      end do
+   end subroutine check_floors
 
    !> The one node of each group whose displacement along x the others share; a support of any of them holds
    !> all.
@@ -590,7 +615,7 @@ contains
                call messages%add('nodes '//trim(self%node(j)%name)//' and '//trim(node%name)// &
                                  ' are at one place; move one of them, or use one in place of both')
             end do
-            if (.not. has_member(i) .and. node%storey /= 0) then
+            if (.not. has_member(i) .and. (node%storey /= 0 .or. i > self%grid_nodes)) then
                call messages%add("node '"//trim(node%name)//"' has no member; connect it, or remove it")
             end if
             if (all(node%held) .and. any(abs(node%load) > 0.0_wp)) then
@@ -624,7 +649,7 @@ contains
 
       has_member = end_nodes(self, .true.) .or. end_nodes(self, .false.)
       do i = 1, size(self%node)
-         if (self%node(i)%storey /= 0 .or. has_member(i)) cycle
+         if (self%node(i)%storey /= 0 .or. i > self%grid_nodes .or. has_member(i)) cycle
          self%node(i)%held = .true.
          self%node(i)%ground%rule = ''
       end do

@@ -60,6 +60,8 @@ module rbs_structure_frame_frame_record
    type, extends(visited_record), public :: node_record
       character(len=name_length) :: name = ''
       real(wp) :: x = unset, y = unset
+      !> Floor that it is of, 0 at the base; -1: none
+      integer :: floor = -1
       character(len=8) :: support = ''
       real(wp) :: mass = 0.0_wp, inertia = 0.0_wp
       real(wp) :: load_x = 0.0_wp, load_y = 0.0_wp, load_moment = 0.0_wp
@@ -301,6 +303,8 @@ contains
                   required=.true.)
       call v%key('x', self%x, 'm', any_number, 'place to the right', optional=.true.)
       call v%key('y', self%y, 'm', any_number, 'place above the ground', optional=.true.)
+      call v%key('floor', self%floor, '', any_number, 'floor of a node outside of the grid, from 0 at the '// &
+                 'base; -1: none')
       call v%word('support', self%support, 'what holds it: a roller only along y, a pin along x and y', &
                   support_names)
       call v%key('mass', self%mass, 'kg', not_negative, 'mass of the node')
