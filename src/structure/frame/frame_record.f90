@@ -303,8 +303,8 @@ contains
                   required=.true.)
       call v%key('x', self%x, 'm', any_number, 'place to the right', optional=.true.)
       call v%key('y', self%y, 'm', any_number, 'place above the ground', optional=.true.)
-      call v%key('floor', self%floor, '', any_number, 'floor of a node outside of the grid, from 0 at the '// &
-                 'base; -1: none')
+      call v%key('floor', self%floor, '', any_number, 'floor of a node outside of the grid, from 0 at '// &
+                 'the base; -1: none')
       call v%word('support', self%support, 'what holds it: a roller only along y, a pin along x and y', &
                   support_names)
       call v%key('mass', self%mass, 'kg', not_negative, 'mass of the node')
