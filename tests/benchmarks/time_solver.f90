@@ -226,7 +226,7 @@ contains
       events = 0
       turning = 0.0_wp
       do run = 1, runs
-         call spring%create(rules, spread([0], 1, 2), joint%axial_load)
+         call spring%create(rules, spread([0], 1, 2), joint%axial_load, 1)
          call cpu_time(begin)
          turning = turning - begin
          do i = 1, cycles

@@ -127,6 +127,8 @@ contains
       allocate (self%reach(m), source=1.0_wp)
       do i = 1, size(structure%group)
          associate (of => structure%group(i))
+            ! The group of a frame without springs has none.
+            if (of%last_spring < of%first_spring) cycle
             if (structure%place(of%first_spring)%kind /= flexure) cycle
             self%reach(of%first:of%first + (of%count - 1)*of%step:of%step) = structure%total_height
          end associate
