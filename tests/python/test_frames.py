@@ -844,6 +844,23 @@ def test_damping_of_modes_is_that_of_each():
     assert run.summary["relative_energy_residual"] < 1e-9
 
 
+@pytest.mark.parametrize("kinematics", ["small", "pdelta"])
+def test_a_frame_without_springs_goes_on_from_its_state(kinematics):
+    """Its position is in the unknowns alone: an elastic push is the same after a shake."""
+    frame = Frame.grid(
+        [3.0] * 2, [6.0], columns=ELASTIC, beams=ELASTIC, floor_mass=5e4, beam_load=1e4,
+        kinematics=kinematics,
+    )  # fmt: skip
+    first = rbsdem.cyclic(frame, displacement=[0.02, -0.03])
+    t = np.arange(51) * 0.01
+    shaken = rbsdem.time_history(
+        frame, t, ground_acceleration=np.sin(9 * t), method="newmark", initial=first
+    )
+    again = rbsdem.cyclic(frame, displacement=[0.02], initial=shaken)
+    assert again.force[0] == pytest.approx(first.force[0], rel=1e-12)
+    assert again.summary["relative_energy_residual"] < 1e-11
+
+
 def test_tangent_damping_is_the_initial_one_while_springs_are_elastic():
     """What members damp as wholes their springs do not damp once more."""
     t = np.arange(0, 1.005, 0.01)
