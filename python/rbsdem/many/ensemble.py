@@ -371,7 +371,7 @@ def ensemble(
     collapse_drift : float, optional
         Drift at which a run ends as collapsed, as for `time_history`; by default 0.1. None: no run
         ends before its record.
-    initial : Result, path, or sequence or mapping of them, optional
+    initial : Result, path-like, or sequence or mapping of them, optional
         The state that the runs begin in, which another analysis has ended in, as for
         `time_history`: one for all columns, or one for each, in their order or by their names
         (None: at rest). A column that begins in several states is given once for each, under names

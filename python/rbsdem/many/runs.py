@@ -136,7 +136,7 @@ class RunOptions(Solver, total=False):
     measures : sequence
         Measures that are kept of each run, as for `rbsdem.ensemble`; the default is `MEASURES`, and
         those of the storeys of frames.
-    initial : Result, path, or sequence or mapping of them
+    initial : Result, path-like, or sequence or mapping of them
         The state that all runs of a column begin in, as for `rbsdem.ensemble`: what an aftershock
         finds.
     jobs, progress

@@ -90,7 +90,7 @@ class Prediction:
         Warnings.
     seconds : float
         Wall time for the column and its analysis [s].
-    comparison : Comparison or None
+    comparison : rbsdem.curves.scores.Comparison or None
         Scores; None without a history, and along another path than that of the test. A test that
         failed has an nrmse of 1.
     band : Band or None

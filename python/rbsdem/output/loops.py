@@ -301,7 +301,7 @@ def comparison(comparison: Comparison, *, ax: Axes | None = None, **line: Any) -
 
     Parameters
     ----------
-    comparison : Comparison
+    comparison : rbsdem.curves.scores.Comparison
         The comparison, as `rbsdem.compare` returns it.
     ax : matplotlib Axes, optional
         Where to draw; a new figure without it.
