@@ -237,7 +237,7 @@ def compare(result: Curve, test: Curve, *, height: float | None = None) -> Compa
 
     Returns
     -------
-    Comparison
+    rbsdem.curves.scores.Comparison
         Scores, drift at 20 % strength loss of both, half-cycles, figure.
 
     Raises
