@@ -52,13 +52,15 @@ def pushed(family: str, frames: int) -> None:
         run = rbsdem.pushover(frame(rng, family), drift=0.05)
         told = "" if run.summary["status"] == "completed" else run.summary["reason"]
         sound = np.isfinite(run.force).all() and run.summary["relative_energy_residual"] < 1e-9
-        named = re.search(r"\b[CB]-\d+-\d+\b", told) is not None
-        text = re.sub(r"\b[CBN]-\d+-\d+\b", "M", re.split(r"; |\. |: ", told)[0]) or "completed"
+        unnamed = told and not re.search(r"\b[CB]-\d+-\d+\b", told)
+        text = re.sub(r"\b[CBN]-\d+-\d+\b", "M", re.split(r"; |\. ", told.split(": ", 1)[-1])[0])
+        text = text or "completed"
         text = re.sub(r"-?\d[\d.e+-]*", "#", text)[:110]
-        ends[text + (", silent" if not (told or sound) else "") + ", unnamed" * (not named)] += 1
+        silent = not (told or sound)
+        ends[text + ", silent" * silent + ", without a member" * bool(unnamed)] += 1
     print(f"\n{frames} push-overs of springs of family '{family}' to a drift of 5 %")
     for text, number in ends.most_common():
-        print(f"{number:6d}  {text.removesuffix(', unnamed') if text[0] == 'c' else text}")
+        print(f"{number:6d}  {text}")
 
 
 if __name__ == "__main__":

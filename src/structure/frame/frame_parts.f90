@@ -152,26 +152,23 @@ contains
          end if
       end do
       do i = 1, size(record%column_of)
-         call check_storey('column_of', record%column_of(i)%storey)
-         call check_cell_kind(record%column_of(i), 'column_of')
-         if (record%column_of(i)%line > bays + 1) call refuse('column_of: line', record%column_of(i)%line, &
-                                                              'lines of columns', bays + 1)
+         call check_cell(record%column_of(i), 'column_of', 'line', 'lines of columns', bays + 1)
       end do
       do i = 1, size(record%beam_of)
-         call check_storey('beam_of', record%beam_of(i)%storey)
-         call check_cell_kind(record%beam_of(i), 'beam_of')
-         if (record%beam_of(i)%line > bays) call refuse('beam_of: bay', record%beam_of(i)%line, 'bays', bays)
+         call check_cell(record%beam_of(i), 'beam_of', 'bay', 'bays', bays)
       end do
 
    contains
 
-      subroutine check_cell_kind(cell, group)
+      subroutine check_cell(cell, group, key, what, most)
          type(cell_record), intent(in) :: cell
-         character(len=*), intent(in) :: group
+         character(len=*), intent(in) :: group, key, what
+         integer, intent(in) :: most
 
-         if (cell%kind == 'none') return
-         call check_reference(cell%kind, [record%kind%name], group, 'kind', messages)
-      end subroutine check_cell_kind
+         call check_storey(group, cell%storey)
+         if (cell%kind /= 'none') call check_reference(cell%kind, [record%kind%name], group, 'kind', messages)
+         if (cell%line > most) call refuse(group//': '//key, cell%line, what, most)
+      end subroutine check_cell
 
       subroutine check_storey(group, storey)
          character(len=*), intent(in) :: group
@@ -257,17 +254,9 @@ contains
       type(frame_node), intent(inout) :: node
       character(len=*), intent(in) :: support
 
-      node%held = .false.
-      select case (support)
-      case ('fixed')
-         node%held = .true.
-      case ('pinned')
-         node%held(1) = .true.
-         node%held(2) = .true.
-      case ('roller')
-         node%held(2) = .true.
-      case default                                  ! free
-      end select
+      node%held(1) = support == 'fixed' .or. support == 'pinned'
+      node%held(2) = node%held(1) .or. support == 'roller'
+      node%held(3) = support == 'fixed'
    end subroutine hold
 
    !> Nodes by name: new ones, and what those of the grid have in addition.
@@ -545,7 +534,7 @@ contains
             end if
          end associate
       end do
-      if (.not. stiffest(2) > 0.0_wp) then
+      if (all([(is_rigid(record%kind(self%member(i)%kind_of), record%spring), i=1, size(self%member))])) then
          call messages%add('frame: all of its members are rigid; give one of them stiffness, or springs')
          return
       end if
