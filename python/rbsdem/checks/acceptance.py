@@ -561,7 +561,7 @@ def rows_at(result: FrameResult, at: Any) -> tuple[float | None, Array]:
     if result.dynamic:
         raise InputError("assess: a response in time is judged by its envelope; leave out at")
     if not getattr(at, "reached", True):
-        raise InputError("assess: the curve ends before the target; push further")
+        raise InputError("the push-over ends before the target; push further")
     wanted = _arguments.number(getattr(at, "signed", at), "assess: at")
     x = result.displacement
     side = 1.0 if x[-1] >= x[0] else -1.0

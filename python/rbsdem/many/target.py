@@ -13,6 +13,7 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame, NDArray, Unpack
+from rbsdem.checks.acceptance import between, rows_at
 from rbsdem.checks.capacity import Capacity, Estimate, asce_41, capacity_spectrum, en_1998
 from rbsdem.errors import InputError
 from rbsdem.many.ensemble import ensemble
@@ -76,18 +77,9 @@ class Target(Estimate):
     @cached_property
     def storey_drift(self) -> Array:
         """Storey drifts at the target displacement, beyond those of the dead load."""
-        push = self._pushed
-        rows = np.abs(push.displacement - push.displacement[0])
-        drifts = np.abs(push.storey_drift - push.storey_drift[0])
-        # Rows of a path that came back are left out, as the curve leaves them out.
-        so_far = np.maximum.accumulate(np.concatenate(([-1.0], rows[:-1])))
-        kept = rows > so_far
-        if not self.reached:
-            raise InputError(
-                f"target: the curve ends at {self.curve.largest:.3g} m, before the target of "
-                f"{self.displacement:.3g} m; push further"
-            )
-        return np.array([np.interp(self.displacement, rows[kept], each[kept]) for each in drifts.T])
+        drift = self._pushed.storey_drift
+        there: Array = between(rows_at(self._pushed, self)[1], np.abs(drift - drift[0]))[0]
+        return there
 
     @property
     def _pushed(self) -> FrameResult:
