@@ -19,7 +19,7 @@ import rbsdem
 from rbsdem import __main__ as command
 from rbsdem.run.accuracy import Answer, errors_of
 from rbsdem.run.solver import METHODS
-from rbsdem.springs import Elastic
+from rbsdem.springs import Bilinear, Elastic
 
 COLUMN = rbsdem.peer.paper_columns("pdelta", top_mass=75.9e3)["soesianawati_1"]
 TIME = np.arange(0.0, 3.0, 0.01)
@@ -72,6 +72,14 @@ def test_no_error_is_zero(exact):
     elastic = rbsdem.Column(2.0, 500.0, Elastic(1e9), Elastic(1e9))
     found = rbsdem.cyclic(elastic, displacement=[0.0, 0.01, -0.01]).refined_error()
     assert min(found.peak, found.energy, found.largest) >= np.finfo(float).eps
+
+
+def test_rows_of_corners_are_not_points_of_a_push():
+    """Without exact rotations no increment matters: the distance is round-off."""
+    column = rbsdem.Column(2.0, 500.0, Bilinear(1e8, 1e-4, 1e6), Bilinear(1e8, 1e-3, 1e6))
+    push = rbsdem.pushover(column, drift=0.01, points=7)
+    assert push.time.size > 7
+    assert push.refined_error().largest < 1e-12
 
 
 def test_irregular_times_and_thinned_rows_can_be_refined(exact):

@@ -144,16 +144,20 @@ def at_times(wanted: Array, time: Array, values: Array) -> Array:
     return result
 
 
-def answer_of(run: Rows, times: Array, driven: bool = False) -> Answer:
-    """Return the compared part of a result at some times; `driven`: by displacement."""
+def answer_of(run: Rows, times: Array, driven: bool = False, parts: int = 1) -> Answer:
+    """Return the compared part of a result at some times.
+
+    `driven`: by displacement. `parts`: increments of a static path for each one between the times.
+    """
     time = run.time
     response = run.force if driven else run.displacement
     taken = run.energy["spring"] + run.energy["damping"]
     moment = run.moment[:, 0] if isinstance(run, Response) else run.base_shear
     histories = [np.array(values) for values in (response, moment, taken)]
-    if not run.dynamic and time.size != times.size:
-        places = (2 * times + 1).astype(int)
-        places = places[places < time.size]
+    if not run.dynamic:
+        # Rows of corners and of the start stand between the points of the path.
+        wanted = parts * (times + 1) - 1
+        places = np.searchsorted(time, wanted[wanted <= time[-1]])
         histories = [values[places] for values in histories]
         time = times[: places.size]
     elif run.dynamic and not np.array_equal(time, times):

@@ -567,7 +567,11 @@ def _refined_error(result: Rows) -> Errors:
         else:
             finer = cyclic(result.structure, **_divided(result))
     driven = "displacement" in result.call
-    one, other = (answer_of(run, result.time, driven) for run in (result, finer))
+    points = result.time
+    if not result.dynamic:
+        points = points[(points >= 0) & (points == np.floor(points))]
+    one = answer_of(result, points, driven)
+    other = answer_of(finer, points, driven, 1 if result.dynamic else 2)
     found = asdict(errors_of(one, other))
     # Two runs with the same digits say no more than that the error is within their last ones.
     least = math.sqrt(one.time.size) * sys.float_info.epsilon
@@ -609,4 +613,4 @@ def _divided(result: Rows) -> dict[str, Any]:
     fine = np.repeat(call[name], 2)
     fine[::2] = 0.5 * (path[:-1] + path[1:])
     # From the middle of the first increment, every second point is one of the path.
-    return call | {name: fine, "every": None}
+    return call | {name: fine, "every": None, "corners": False}
