@@ -290,7 +290,11 @@ contains
                self%node(number)%name = given%name
                self%node(number)%x = given%x
                self%node(number)%y = given%y
-               self%node(number)%storey = max(given%floor, -1)
+               self%node(number)%storey = given%floor
+               if (given%floor < -1) then
+                  call messages%add("node '"//trim(given%name)//"': floor = "//to_text(given%floor)// &
+                                    ' must be 0 at the base or more; leave it out for a node of none')
+               end if
             else if (given%floor >= 0) then
                call messages%add("node '"//trim(given%name)//"' belongs to the grid, which has its "// &
                                  'floor; remove floor')
