@@ -29,7 +29,7 @@ This takes nine times the predictions of all tests with their samples. `--once` 
 of the scatter of all groups, and parameters that the judged group was left out of for its own tests
 alone. The numbers that are shipped are the same, and what is judged hardly differs.
 
-`--write` puts the tables into docs/peer.md and the numbers into data/layered_spread.json.
+`--write` puts scatter and coverage into docs/peer.md and the numbers into data/layered_spread.json.
 """
 
 from __future__ import annotations
@@ -407,7 +407,8 @@ def main() -> None:
     print(f"\n{VERSION}: {shipped!r}\n{time.perf_counter() - began:.0f} s")
     if given.write:
         names = (*NAMES.values(), "shape", "force", *NUMBERS)
-        write({name: getattr(shipped, name) for name in names}, tables)
+        paged = {name: tables[name] for name in ("scatter", "coverage")}
+        write({name: getattr(shipped, name) for name in names}, paged)
 
 
 if __name__ == "__main__":
