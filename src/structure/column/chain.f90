@@ -13,7 +13,6 @@
 !> top: B' f. It is M^-1 r of eqs 1-3 without M. Stiffness is a band of half-width 3, band(1 + i - j, j) =
 !> a(i, j) for j <= i <= j + 3; the y are a chain of their own behind the rest.
 module rbs_structure_column_chain
-   use rbs_base_inner_product, only: inner_product
    use rbs_base_kinds, only: wp
    implicit none
    private
@@ -143,10 +142,16 @@ contains
    pure real(wp) function second_order_energy(n, axial, d) result(energy)
       integer, intent(in) :: n
       real(wp), intent(in) :: axial(2*n), d(2*n)
-      real(wp) :: g(2*n)
+      real(wp) :: rotation, below
+      integer :: i
 
-      call geometric_forces(n, axial, d, g)
-      energy = 0.5_wp*inner_product(2*n, d, g)
+      energy = 0.0_wp
+      rotation = 0.0_wp
+      do i = 1, n
+         below = rotation
+         rotation = rotation + d(n + i)
+         energy = energy - (axial(n + i)*d(i)*below + 0.5_wp*rotation*(axial(i)*rotation))
+      end do
    end function second_order_energy
 
    !> Add B' diag(k) B of the springs.
