@@ -413,7 +413,6 @@ def frame(page):
 def test_a_frame_is_pushed_and_its_hinges_show(frame):
     page = frame
     assert len(page.all("#frame .member")) == 15
-    assert len(page.all("#frame .hinge")) > 3  # beams have cracked under the dead load
     page.one("#play").click()
     page.wait(lambda: page.value("#scrub") == page.one("#scrub").get_attribute("max"))
     assert page.all("#frame .hinge.beyond")[1:]

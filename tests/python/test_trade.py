@@ -19,7 +19,7 @@ from reference_chain import Linear, chain
 
 import rbsdem
 from rbsdem import compare_methods
-from rbsdem.methods import study_case as cases
+from rbsdem.methods import ladder
 from rbsdem.methods.ladder import study_case
 from rbsdem.methods.physics import split_bodies
 from rbsdem.methods.study import MethodStudy
@@ -38,7 +38,7 @@ CYCLES = LENGTH * rbsdem.protocol([0.005, 0.01, 0.02], cycles=1)
 
 @pytest.fixture(autouse=True)
 def _short_runs_are_run_once(monkeypatch):
-    monkeypatch.setattr(cases, "SHORT", 0.0)
+    monkeypatch.setattr(ladder, "SHORT", 0.0)
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +88,7 @@ def test_common_interval_divides_what_can_be_divided():
 
 def test_a_loading_of_few_times_is_the_same_at_more_of_them():
     made = study_case(ELASTIC, [0.0, 1.0, 3.0], {"force": [0.0, 2.0, -2.0]}, None, None)
-    assert made.time.size > cases.LEAST_ROWS
+    assert made.time.size > ladder.LEAST_ROWS
     assert {0.0, 1.0, 3.0} <= set(made.time)
     expected = np.interp(made.time, [0.0, 1.0, 3.0], [0.0, 2.0, -2.0])
     np.testing.assert_allclose(made.loads["force"], expected, atol=1e-15)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from rbsdem._types import Array, ArrayLike
 from rbsdem.calibration import determined
 from rbsdem.calibration.determined import Determined, without_effect
 from rbsdem.calibration.misfit import LOSSES, Misfit, Target
-from rbsdem.calibration.outcome import Calibration, Fitted
+from rbsdem.calibration.outcome import AnyStructure, Calibration, Fitted
 from rbsdem.calibration.paths import Parameters, free_parameters
 from rbsdem.calibration.search import Search
 from rbsdem.curves.scores import Comparison, compare
@@ -84,7 +84,7 @@ def undetermined(
 
 
 def calibrate(
-    column: Structure,
+    column: AnyStructure,
     test: Any,
     free: Sequence[str],
     bounds: Mapping[str, Sequence[float]] | None = None,
@@ -95,7 +95,7 @@ def calibrate(
     *,
     evaluations: int = 800,
     seconds: float | None = None,
-) -> Calibration:
+) -> Calibration[AnyStructure]:
     """Fit parameters of a column to a measured loop.
 
     The column is driven through the measured displacements. The error of the force is minimised by
@@ -164,7 +164,7 @@ def calibrate(
             status = Search(misfit, seed, evaluations, seconds).run()
             places = misfit.best_places.copy()
             found = determined.determine(misfit, places)
-        fitted = misfit.column(places)
+        fitted = cast(AnyStructure, misfit.column(places))
         before, after = (_compared(tried, target, column) for tried in (column, fitted))
     lines = tuple(determined.warnings_of(list(chosen), found))
     for line in lines:

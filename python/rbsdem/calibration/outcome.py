@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
+from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -56,8 +57,12 @@ class Fitted:
     at_bound: str
 
 
+#: A fit has the type of the structure that it was made for.
+AnyStructure = TypeVar("AnyStructure", bound=Structure)
+
+
 @dataclass(frozen=True, repr=False, eq=False)
-class Calibration(Tabular):
+class Calibration(Tabular, Generic[AnyStructure]):
     """A column fitted to a test.
 
     Attributes
@@ -83,8 +88,8 @@ class Calibration(Tabular):
         Wall time [s].
     """
 
-    column: Structure
-    start: Structure
+    column: AnyStructure
+    start: AnyStructure
     parameters: tuple[Fitted, ...]
     before: Comparison
     after: Comparison

@@ -324,7 +324,7 @@ def _over_test(scores: Comparison, title: str, ax: Axes | None, line: Line) -> A
 
 
 def calibration(
-    fit: Calibration, *, axes: Sequence[Axes] | AxesArray | None = None, **line: Any
+    fit: Calibration[Any], *, axes: Sequence[Axes] | AxesArray | None = None, **line: Any
 ) -> AxesArray:
     """Draw the loops before and after a calibration over the test, to the same scale.
 
