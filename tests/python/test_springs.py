@@ -152,6 +152,16 @@ def test_takeda_zero_force_reached_exactly_is_not_passed() -> None:
         np.testing.assert_allclose(force[4:], [1, -1 / 6, to_6, 1.5], rtol=1e-9)
 
 
+@pytest.mark.parametrize("inner", ["kc", "kr", "one"])
+def test_takeda_back_at_its_peak_but_for_round_off_unloads_from_it(inner: Any) -> None:
+    """Not by the inner unloading, which has the slope of reloading with b1 = 0.01."""
+    spring = Takeda(**ROUND, b1=0.01, inner=inner)
+    outer = (1.6 + 1) / (3 + 1)
+    for turn in (3.0 - 1e-14, 3.0, 3.0 + 1e-14):
+        force = spring.response([3.0, -3.0, turn, 2.0])
+        assert force[-2:] == pytest.approx([1.6, 1.6 - outer], rel=1e-12)
+
+
 def test_takeda_section_2b_the_secant_wins_over_k_r() -> None:
     """Side - was loaded for the first time before side + went on to 600, where K_r is 61.9/600.
 

@@ -38,6 +38,10 @@ module rbs_hysteresis_rules_takeda
    !> Below this share of the yield force a reversal counts as one at zero force.
    real(wp), parameter :: no_force = 1.0e-12_wp
 
+   !> Reloading that turns this close to the peak of the backbone, relative to it, turns there: round-off does
+   !> not decide between outer and inner unloading where a hinge in series yields at the same moment again.
+   real(wp), parameter :: same_place = 1.0e-11_wp
+
    !> A branch this close to the slope of the yielded backbone does not meet it. K_r is so close only at
    !> unrealistic ductilities.
    real(wp), parameter :: parallel = 1.0e-9_wp
@@ -187,6 +191,10 @@ contains
       case (reloading)
          if (outward) then
             call reach_target(spring)
+         else if (now%aim%goal_number == 0_int64 .and. &
+                  abs(here%d - now%aim%goal%d) <= same_place*abs(here%d)) then
+            open%count = 0
+            call unload_from_peak(spring, here)
          else
             call unload_from_inner_peak(spring, here)
          end if
