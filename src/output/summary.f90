@@ -66,7 +66,7 @@ module rbs_output_summary
       !> Method that was used and, if the program chose it, why
       character(len=20) :: method = ''
       character(len=200) :: reason = ''
-      !> Members that snapped or fell
+      !> Members that snapped or fell, and snap-backs over which no test goes
       character(len=400) :: remark = ''
       !> Steps in which members snapped, the member that lost most in one and when [s]; a member that fell; 0:
       !> none

@@ -92,10 +92,10 @@ module rbs_solve_static_path
       integer, allocatable :: arrived(:)
       logical, allocatable :: one_way(:)
       real(wp), allocatable :: k_in(:), way_in(:)
-      !> Number of snap-backs, and the energy that the structure gave back in them while the displacement of a
-      !> test would have been held [J]
+      !> Number of snap-backs; the energy that the structure gave back in them while the displacement of a
+      !> test would have been held, and the energy that it gained in others [J]
       integer :: snap_backs = 0
-      real(wp) :: released = 0.0_wp
+      real(wp) :: released = 0.0_wp, gained = 0.0_wp
       !> How often each spring has changed its line at the present corner (springs)
       integer, allocatable :: changed(:)
       !> Energy of springs and axial load at the start, work of the axial load as far as it varies [J], and
@@ -318,6 +318,9 @@ contains
             task%summary%cut_steps = self%cuts
             task%summary%snap_backs = self%snap_backs
             task%summary%released = self%released
+            if (self%gained > 0.0_wp) task%summary%remark = 'the path leads over snap-backs to states '// &
+               'that hold '//to_text(self%gained)//' J more than those before them at the same '// &
+               'displacement: a test does not go there by itself; a response in time takes another way'
          end if
          if (allocated(failure)) call move_alloc(failure, error)
          if (allocated(error) .or. ends) return

@@ -45,9 +45,10 @@ module rbs_solve_static_straight
       !> present target
       integer :: last_way = 0
       real(wp) :: farthest = 0.0_wp, share = 0.0_wp
-      !> Whether the path is in a loop of snap-backs, and control and work where it began [m, J]
+      !> Whether the path is in a loop of snap-backs; control, force and work where it began [m, N, J]; way of
+      !> the load since then [m]
       logical :: in_loop = .false.
-      real(wp) :: loop_control = 0.0_wp, loop_work = 0.0_wp
+      real(wp) :: loop_control = 0.0_wp, loop_force = 0.0_wp, loop_work = 0.0_wp, loop_way = 0.0_wp
    contains
       procedure :: advance
       procedure :: solve_line
@@ -164,7 +165,9 @@ contains
       if (self%in_loop) return
       self%in_loop = .true.
       self%loop_control = self%control
+      self%loop_force = self%force
       self%loop_work = self%work
+      self%loop_way = 0.0_wp
    end subroutine begin_loop
 
    !> Report that the way back has no end.
@@ -266,6 +269,7 @@ contains
          moved = displacement - self%displacement &
                                 + line%dead_load_work_rate*(control - self%control)
          self%work = self%work + 0.5_wp*(force + self%force)*moved
+         self%loop_way = self%loop_way + moved
       end associate
       call self%see_crossing(displacement, force)
       self%force = force
@@ -275,18 +279,21 @@ contains
 
    contains
 
-      !> The displacement at which the loop began is reached again: the difference of works is what a test,
-      !> whose displacement does not go back, would release.
+      !> The displacement at which the loop began is reached again. A test, whose displacement does not go
+      !> back, would release the work that the loads of all storeys do while their force goes from the one to
+      !> the other, less that of the loop. Where energy is missing a test does not go there.
       subroutine end_loop()
-         real(wp) :: at, work
+         real(wp) :: at, way, energy
 
          if (self%goes_back .or. .not. abs(self%control - self%loop_control) > 0.0_wp) return
          associate (line => self%equilibrium)
             at = self%force_start + line%force_rate*(self%loop_control - self%start)
-            work = self%work + 0.5_wp*(at + self%force)*(1.0_wp + line%dead_load_work_rate) &
-                   *(self%loop_control - self%control)
+            way = (1.0_wp + line%dead_load_work_rate)*(self%loop_control - self%control)
          end associate
-         self%released = self%released + (self%loop_work - work)
+         energy = 0.5_wp*((self%loop_force + at)*(self%loop_way + way) - (at + self%force)*way) &
+                  - (self%work - self%loop_work)
+         self%released = self%released + max(energy, 0.0_wp)
+         self%gained = self%gained + max(-energy, 0.0_wp)
          self%in_loop = .false.
       end subroutine end_loop
 
