@@ -84,8 +84,8 @@ class Criterion:
         turned = result.rotation[:, at]
         if not self.opening:
             return np.asarray(self.rotation * turned)
-        if result.rest is not None:
-            turned = turned + result.rest[:, at]
+        if (rest := result.rest) is not None:
+            turned = turned + rest[:, at]
         return np.asarray(self.rotation * turned + self.opening * result.opening[:, at])
 
 

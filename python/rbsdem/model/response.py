@@ -106,7 +106,7 @@ class Response(Rows):
     @property
     def opening(self) -> Array:
         """Openings of the joints at the middle of the section [m]."""
-        return self.channels.get("opening", np.zeros(self.slip.shape))
+        return self.channels["opening"] if "opening" in self.channels else np.zeros(self.slip.shape)
 
     @property
     def top(self) -> Array:
