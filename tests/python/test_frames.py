@@ -1567,3 +1567,18 @@ def test_numbers_in_another_unit_and_members_too_unlike_are_told(kind, text):
     # Sound numbers are told nothing.
     strong = FrameMember(**given, yield_moment=170e3)
     Frame.grid([3.0], [5.0], columns=strong, beams=other, floor_mass=2e4, beam_load=1e4)
+
+
+@pytest.mark.parametrize("kinematics", ["small", "pdelta"])
+def test_a_beam_beyond_its_capacity_is_told_with_the_share_that_it_carries(kinematics):
+    """Three hinges between nodes that stand still: w l^2/16 is the yield moment."""
+    beam = FrameMember(3e10, 0.1, 1e-3, yield_moment=1e5, hardening=0.0)
+    post = FrameMember(3e10, 0.1, 1e-3)
+    share = f"{16 * 1e5 / (1e5 * 6**2):.6g}"
+    with pytest.raises(
+        rbsdem.SolveError, match=f"capacity of the frame: at a share of {share} .*B-1-1"
+    ):
+        Frame.grid(
+            [3.0], [6.0], columns=post, beams=beam, floor_mass=1e3, beam_load=1e5,
+            kinematics=kinematics,
+        )  # fmt: skip

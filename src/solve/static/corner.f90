@@ -18,7 +18,8 @@ module rbs_solve_static_corner
    !> How often all springs may be changed at once while their least number without room stays the same.
    integer, parameter :: patience = 3
 
-   !> Rate of a spring at rest, as a share of the largest, which says how far it may go back virtually.
+   !> Rate of a spring at rest, as a share of the largest, which says how far it may go back virtually; force
+   !> of a structure without strength, as a share of its peak.
    real(wp), parameter :: at_rest = 1.0e-6_wp
 
    !> Most springs whose ways are tried in all combinations on curved paths, and most springs times
@@ -401,11 +402,17 @@ contains
                           'left. Take stiff springs less stiff, a million times the others is rigid '// &
                           'enough, or '// &
                           'fewer bodies')
+      else if (.not. path%by_force .and. abs(path%force) <= at_rest*abs(path%task%summary%peak_force)) then
+         call fatal_error(error, analysis_failed, 'the strength of the structure is used up at '// &
+                          trim(state_of(path))//': nothing resists its motion to '//to_text(target)// &
+                          ' m; '//trim(weakest_spring(path))//' has the least stiffness left. End the '// &
+                          'path before, or give the springs a residual force')
       else if (.not. path%by_force) then
          call fatal_error(error, analysis_failed, 'the equilibrium is not unique at the displacement '// &
                           to_text(target)//' m at '//trim(state_of(path))//': '// &
-                          trim(weakest_spring(path))//' and the axial load leave it without stiffness. '// &
-                          'Change the axial load or the stiffness after yield')
+                          trim(weakest_spring(path))//trim(merge(' and the axial load leave', &
+                          ' leaves                  ', path%structure%axially_loaded))//' it without '// &
+                          'stiffness. Change its stiffness after yield, or the axial load if there is one')
       else if (path%of_dead_load) then
          call fatal_error(error, analysis_failed, 'it is beyond the capacity of the frame: at a share of '// &
                           to_text(path%force)//' of it '//trim(weakest_spring(path))// &

@@ -27,6 +27,9 @@ module rbs_solve_static_equilibrium
    !> A displacement or rotation per displacement of the top that no stable part of a structure has [-, 1/m].
    real(wp), parameter :: without_end = 1.0e8_wp
 
+   !> Deformation inside of members by all of the dead load that none has which carries it [m or rad].
+   real(wp), parameter :: falls = 1.0e3_wp
+
    !> A displacement, in shares of the height, or a rotation that no correction of round-off comes to unless a
    !> part is free to move.
    real(wp), parameter :: no_more = 1.0_wp
@@ -339,6 +342,8 @@ contains
          ! A part that gives way beside the top moves without end while the top does not.
          call solve(1, 1.0_wp, found)
          if (.not. by_force) found = found .and. maxval(abs(self%change(:, 1))) < without_end
+         ! Where hinges make a mechanism of a member between nodes that stand, its own load moves it.
+         if (self%of_dead_load .and. shares) found = found .and. maxval(abs(self%inner_load)) < falls
          if (.not. found) return
          rate = self%moved(:, 1)
          if (.not. self%refines) then
