@@ -52,8 +52,8 @@ module rbs_base_band_matrix
       real(wp), allocatable, private :: border(:, :), flexible(:, :)
       !> Products of the two: once from the left, once from the right
       real(wp), private :: from_left = 0.0_wp, from_right = 0.0_wp
-      !> Work arrays (size, number of right-hand sides)
-      real(wp), allocatable, private :: right(:, :), more(:, :)
+      !> Work arrays (size)
+      real(wp), allocatable, private :: right(:), more(:)
    contains
       procedure :: create
       procedure :: hold
@@ -322,65 +322,54 @@ contains
    !> With border.
    subroutine solve_bordered(self, f, g, x, y, regular)
       class(band_matrix), intent(inout) :: self
-      !> Right-hand sides (size, m), (m)
-      real(wp), intent(in), contiguous :: f(:, :)
-      real(wp), intent(in) :: g(:)
-      !> Solutions (size, m), (m)
-      real(wp), intent(out), contiguous :: x(:, :)
-      real(wp), intent(out) :: y(:)
+      !> Right-hand side (size), and that of the border
+      real(wp), intent(in), contiguous :: f(:)
+      real(wp), intent(in) :: g
+      !> Solution (size), and that of the border
+      real(wp), intent(out), contiguous :: x(:)
+      real(wp), intent(out) :: y
       !> Whether the system has a unique solution
       logical, intent(out) :: regular
-      real(wp) :: change(size(g)), missing(size(g))
-      integer :: j
+      real(wp) :: change
 
       if (.not. allocated(self%right)) allocate (self%right, self%more, mold=f)
       self%right = f
-      call scale_rows(self, size(g), self%right)
+      call scale_rows(self, 1, self%right)
       call eliminate(self, self%right, g, x, y, regular)
       if (.not. regular) return
       if (.not. self%positive) then
          ! One step of refinement. Its size also shows whether the system has a solution.
-         do j = 1, size(g)
-            self%right(:, j) = self%right(:, j) - times(self, x(:, j)) + self%border(:, 1)*y(j)
-            missing(j) = g(j) - dot_product(self%border(:, 2), x(:, j))
-         end do
-         call eliminate(self, self%right, missing, self%more, change, regular)
-         do j = 1, size(g)
-            regular = regular .and. maxval(abs(self%more(:, j))) <= no_answer*maxval(abs(x(:, j)))
-         end do
+         self%right(:) = self%right - times(self, x) + self%border(:, 1)*y
+         call eliminate(self, self%right, g - dot_product(self%border(:, 2), x), self%more, change, regular)
+         regular = regular .and. maxval(abs(self%more)) <= no_answer*maxval(abs(x))
          if (.not. regular) return
          x = x + self%more
          y = y + change
       end if
-      call scale_rows(self, size(g), x)
+      call scale_rows(self, 1, x)
    end subroutine solve_bordered
 
    !> Block elimination. Where the matrix is not positive definite it is the mixed one: once from the left,
    !> which gives most of y, and once from the right for what is missing.
    subroutine eliminate(self, f, g, x, y, regular)
       type(band_matrix), intent(inout) :: self
-      real(wp), intent(in) :: f(:, :), g(:)
-      real(wp), intent(out), contiguous :: x(:, :)
-      real(wp), intent(out) :: y(:)
+      real(wp), intent(in) :: f(:), g
+      real(wp), intent(out), contiguous :: x(:)
+      real(wp), intent(out) :: y
       logical, intent(out) :: regular
       real(wp) :: more
-      integer :: j
 
       y = 0.0_wp
       x = f
       if (.not. self%positive) then
-         do j = 1, size(g)
-            y(j) = (g(j) - dot_product(self%flexible(:, 2), f(:, j)))/self%from_left
-            x(:, j) = f(:, j) + self%border(:, 1)*y(j)
-         end do
+         y = (g - dot_product(self%flexible(:, 2), f))/self%from_left
+         x = f + self%border(:, 1)*y
       end if
-      call solve_scaled(self, size(g), x, regular)
+      call solve_scaled(self, 1, x, regular)
       if (.not. regular) return
-      do j = 1, size(g)
-         more = (g(j) - dot_product(self%border(:, 2), x(:, j)))/self%from_right
-         x(:, j) = x(:, j) + self%flexible(:, 1)*more
-         y(j) = y(j) + more
-      end do
+      more = (g - dot_product(self%border(:, 2), x))/self%from_right
+      x = x + self%flexible(:, 1)*more
+      y = y + more
    end subroutine eliminate
 
    !> Solve with the scaled matrix.

@@ -72,7 +72,7 @@ contains
    subroutine bordered(error)
       type(error_type), allocatable, intent(inout) :: error
       type(band_matrix) :: a
-      real(wp) :: x(2, 1), y(1)
+      real(wp) :: x(2), y
       logical :: regular
 
       call a%create(2, 1, stiffness=[1.0_wp, 4.0_wp])
@@ -81,9 +81,9 @@ contains
       call check_true(error, .not. a%positive, 'no inverse')
       call a%set_border([0.0_wp, 1.0_wp], regular=regular)
       call check_true(error, regular, 'border')
-      call a%solve_bordered(reshape([3.0_wp, -5.0_wp], [2, 1]), [7.0_wp], x, y, regular)
+      call a%solve_bordered([3.0_wp, -5.0_wp], 7.0_wp, x, y, regular)
       call check_true(error, regular, 'regular')
-      call check_close(error, [x(:, 1), y], [3.0_wp, 7.0_wp, 5.0_wp], 1.0e-12_wp, 0.0_wp, 'solution')
+      call check_close(error, [x, y], [3.0_wp, 7.0_wp, 5.0_wp], 1.0e-12_wp, 0.0_wp, 'solution')
    end subroutine bordered
 
    subroutine tridiagonal(error)

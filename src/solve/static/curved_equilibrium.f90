@@ -307,8 +307,10 @@ contains
          else
             call self%tangent%set_border(self%arm, regular=found)
          end if
-         if (found) call self%tangent%solve_bordered(self%right, [self%driven(2), missing], self%change, y, &
-                                                     found)
+         if (found) call self%tangent%solve_bordered(self%right(:, 1), self%driven(2), self%change(:, 1), &
+                                                     y(1), found)
+         if (found) call self%tangent%solve_bordered(self%right(:, 2), missing, self%change(:, 2), &
+                                                     y(2), found)
          point%displacement_rate = self%driven(2)
       end if
       if (.not. found) return

@@ -89,7 +89,7 @@ module rbs_solve_static_equilibrium
       !> Height for moments, 1 for forces (unknowns)
       real(wp), allocatable, private :: reach(:)
       !> Load per unit, residual, and an array for the loads that are solved for (unknowns)
-      real(wp), allocatable, private :: pattern(:), residual(:), load(:, :)
+      real(wp), allocatable, private :: pattern(:), residual(:), load(:)
       !> Changes of the unknowns and what was added for lost digits (unknowns, 2); changes of the position
       !> with what is driven and by correction (coordinates, 2)
       real(wp), allocatable, private :: change(:, :), moved(:, :)
@@ -139,7 +139,7 @@ contains
       if (allocated(structure%reach)) self%reach(:) = structure%reach
       self%coupled = structure%axially_loaded .or. structure%has_held .or. .not. self%refines
       inside = merge(0, structure%coordinates, self%refines)
-      allocate (self%tangent(structure%tangent_numbers), self%pattern(m), self%residual(m), self%load(m, 1), &
+      allocate (self%tangent(structure%tangent_numbers), self%pattern(m), self%residual(m), self%load(m), &
                 self%change(m, 2), self%moved(structure%coordinates, 2), self%f(springs), &
                 self%flexible(springs), self%inner(inside), self%inner_load(inside), &
                 self%more(structure%coordinates), self%correction(structure%coordinates), source=0.0_wp)
@@ -376,8 +376,8 @@ contains
          integer :: again
 
          y(j) = merge(1.0_wp, 0.0_wp, by_force .and. j == 1)
-         self%load(:, 1) = y(j)*self%pattern
-         if (j == 2) self%load(:, 1) = self%residual
+         self%load(:) = y(j)*self%pattern
+         if (j == 2) self%load(:) = self%residual
          call solve_once(1, displacement, more, regular)
          if (.not. regular) return
          y(j) = y(j) + more
@@ -391,9 +391,9 @@ contains
             if (.not. self%of_dead_load) signal(lateral) = y(j)
             self%f = springs%k*self%moved(:springs%count, j)
             call self%structure%forces(self%moved(:, j), signal, self%axial, self%tangent, self%f, &
-                                       self%load(:, 1), inner, merge(y(j), 0.0_wp, self%of_dead_load))
-            if (j == 2) self%load(:, 1) = self%load(:, 1) + self%residual
-            if (self%has_still) where (self%still) self%load(:, 1) = 0.0_wp
+                                       self%load, inner, merge(y(j), 0.0_wp, self%of_dead_load))
+            if (j == 2) self%load(:) = self%load + self%residual
+            if (self%has_still) where (self%still) self%load = 0.0_wp
             call solve_once(2, displacement - self%structure%top_displacement(self%moved(:, j)), more, &
                             regular)
             if (.not. regular) exit
@@ -417,16 +417,13 @@ contains
          real(wp), intent(in) :: displacement
          real(wp), intent(out) :: more
          logical, intent(out) :: regular
-         real(wp) :: of_border(1)
 
          more = 0.0_wp
          if (by_force) then
-            self%change(:, i) = self%load(:, 1)
+            self%change(:, i) = self%load
             call self%matrix%solve(self%change(:, i:i), regular)
          else
-            call self%matrix%solve_bordered(self%load, [displacement], self%change(:, i:i), of_border, &
-                                            regular)
-            more = of_border(1)
+            call self%matrix%solve_bordered(self%load, displacement, self%change(:, i), more, regular)
          end if
       end subroutine solve_once
 
