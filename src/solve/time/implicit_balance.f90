@@ -270,7 +270,8 @@ contains
       type(state_type), intent(in) :: state
       !> Deformations of the springs and their velocities (springs), velocities of the unknowns
       real(wp), intent(in), contiguous :: q(:), w(:), v(:)
-      real(wp), intent(in) :: load(signals), damping_tangent(:)
+      real(wp), intent(in) :: load(signals)
+      real(wp), intent(in), contiguous :: damping_tangent(:)
       type(motion_result), intent(inout) :: now
       real(wp), intent(out), contiguous :: g(:)
 

@@ -193,7 +193,10 @@ contains
          response%displacement = state%motion%structure%top_displacement(state%q)
          response%force = state%load(lateral)
          response%ground = state%load(horizontal)
-         if (.not. allocated(response%v)) allocate (response%v, response%f, response%a, source=state%v)
+         if (.not. allocated(response%v)) then
+            allocate (response%v, response%a, source=state%v)
+            allocate (response%f(state%springs%count))
+         end if
          response%v(:) = state%v
          if (task%recorder%channels%contents%motion) then
             call state%motion%acceleration(state%springs, state%q, state%v, state%load, now)
