@@ -48,7 +48,7 @@ contains
       if (abs(part) < abs(whole) .and. part*whole > 0.0_wp) share = part/whole
    end function share_of
 
-   !> What it does not exceed in size.
+   !> Bound of its size within the step.
    pure real(wp) function bound_of(c) result(bound)
       real(wp), intent(in) :: c(4)
 

@@ -105,7 +105,7 @@ def assessment(found: Assessment, *, ax: Axes | None = None, **line: Any) -> Axe
     Returns
     -------
     matplotlib.axes.Axes
-        The axes, in m. What is beyond its shear strength has the colour of the last level.
+        The axes, in m. Members beyond their shear strength have the colour of the last level.
     """
     _arguments.instance(found, "plot.assessment", Assessment, "as of rbsdem.codes.assess")
     structure, states = found.result.frame, found.states()

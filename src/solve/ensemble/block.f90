@@ -1,6 +1,6 @@
 !> A block of runs: columns under ground motions, each of which is scaled. No run stops the others.
 module rbs_solve_ensemble_block
-   use rbs_base_error, only: error_type
+   use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_output_recorder, only: array_recorder
    use rbs_solve_end_state, only: end_state, checkpoint_type
@@ -233,6 +233,9 @@ contains
       call take_before(column, task%before)
       call run_dynamic(column%structure, column%analysis, plan, motion%time, loads, at_rest, task, error, &
                        monitor)
+      if (task%summary%stopped .and. .not. allocated(error)) then
+         call fatal_error(error, analysis_failed, task%summary%remark)
+      end if
       call collect(monitor%reached, task%summary, error, result)
    end subroutine run_alone
 

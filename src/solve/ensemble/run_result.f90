@@ -50,13 +50,9 @@ contains
       real(wp) :: nothing
 
       nothing = ieee_value(nothing, ieee_quiet_nan)
-      if (allocated(error) .or. summary%stopped) then
+      if (allocated(error)) then
          result%fate = fate_failed
-         if (allocated(error)) then
-            result%message = error%message
-         else
-            result%message = summary%remark
-         end if
+         result%message = error%message
          result%value = nothing
          result%reached = spread(nothing, 1, size(reached))
          return
