@@ -18,7 +18,7 @@ import numpy as np
 
 from rbsdem.curves.metrics import summarise, turning_points
 from rbsdem.errors import RbsdemError
-from rbsdem.measured.measured import HISTORY_FILES
+from rbsdem.measured.tests import HISTORY_FILES
 from rbsdem.peer import find_history
 from rbsdem.section.paper import paper_sections
 

@@ -19,7 +19,7 @@ import numpy as np
 
 import rbsdem
 from rbsdem import peer
-from rbsdem.measured.measured import HISTORY_FILES
+from rbsdem.measured.tests import HISTORY_FILES
 from rbsdem.section.columns import MODELS
 
 SCORES = ("nrmse", "peak_ratio", "energy_ratio", "stiffness_ratio")

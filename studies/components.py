@@ -32,7 +32,7 @@ from matplotlib import pyplot as plt
 
 import rbsdem
 from rbsdem import peer
-from rbsdem.measured.measured import HISTORY_FILES
+from rbsdem.measured.tests import HISTORY_FILES
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 

@@ -52,8 +52,8 @@ from rbsdem._package import unwarned
 from rbsdem._types import Array, DataFrame
 from rbsdem.errors import RbsdemError
 from rbsdem.measured.drawing import checked_specimen, draw
-from rbsdem.measured.measured import MeasuredTest
 from rbsdem.measured.specimens import Specimen, Specimens, read_specimens
+from rbsdem.measured.tests import MeasuredTest
 from rbsdem.section.curvature import diagram
 
 #: Share of the largest drift beyond which the growth of the base moment is taken.

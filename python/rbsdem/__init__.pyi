@@ -15,7 +15,7 @@ from rbsdem.errors import InputError as InputError
 from rbsdem.errors import SolveError as SolveError
 from rbsdem.many.ensemble import ensemble as ensemble
 from rbsdem.many.ida import ida as ida
-from rbsdem.measured.laboratory import read_test as read_test
+from rbsdem.measured.tests import read_test as read_test
 from rbsdem.methods.study import compare_methods as compare_methods
 from rbsdem.methods.verification import verify as verify
 from rbsdem.model.column import Column as Column

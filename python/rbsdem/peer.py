@@ -7,14 +7,6 @@ points come with rbsdem.
 
 from rbsdem.measured.drawing import column as column
 from rbsdem.measured.drawing import draw as draw
-from rbsdem.measured.laboratory import read_test as read_test
-from rbsdem.measured.measured import FOLDER_VARIABLE as FOLDER_VARIABLE
-from rbsdem.measured.measured import MeasuredTest as MeasuredTest
-from rbsdem.measured.measured import find_history as find_history
-from rbsdem.measured.measured import measured_loops as measured_loops
-from rbsdem.measured.measured import net_force as net_force
-from rbsdem.measured.measured import read_peer as read_peer
-from rbsdem.measured.measured import shipped_reversals as shipped_reversals
 from rbsdem.measured.predict import Prediction as Prediction
 from rbsdem.measured.predict import nearest as nearest
 from rbsdem.measured.predict import predict as predict
@@ -23,6 +15,14 @@ from rbsdem.measured.predict import scores as scores
 from rbsdem.measured.specimens import Specimen as Specimen
 from rbsdem.measured.specimens import Specimens as Specimens
 from rbsdem.measured.specimens import read_specimens as read_specimens
+from rbsdem.measured.tests import FOLDER_VARIABLE as FOLDER_VARIABLE
+from rbsdem.measured.tests import MeasuredTest as MeasuredTest
+from rbsdem.measured.tests import find_history as find_history
+from rbsdem.measured.tests import measured_loops as measured_loops
+from rbsdem.measured.tests import net_force as net_force
+from rbsdem.measured.tests import read_peer as read_peer
+from rbsdem.measured.tests import read_test as read_test
+from rbsdem.measured.tests import shipped_reversals as shipped_reversals
 from rbsdem.run.bands import Band as Band
 from rbsdem.run.bands import band as band
 from rbsdem.section.paper import paper_columns as paper_columns

@@ -5,13 +5,13 @@ take SI and draw millimetres and kilonewtons. Without axes they make a figure in
 axes that are given keep the style of the caller.
 """
 
-from rbsdem.output.buildings import assessment as assessment
-from rbsdem.output.buildings import target as target
+from rbsdem.output.frames import assessment as assessment
 from rbsdem.output.frames import frame as frame
 from rbsdem.output.frames import member_forces as member_forces
 from rbsdem.output.frames import mode as mode
 from rbsdem.output.frames import pushover as pushover
 from rbsdem.output.frames import storey_drift as storey_drift
+from rbsdem.output.frames import target as target
 from rbsdem.output.loops import Subplot as Subplot
 from rbsdem.output.loops import calibration as calibration
 from rbsdem.output.loops import code_comparison as code_comparison

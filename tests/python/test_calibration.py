@@ -13,9 +13,8 @@ import pytest
 import rbsdem
 from rbsdem import Column, InputError, SolveError
 from rbsdem.calibration import free_names, paths, undetermined
-from rbsdem.calibration.determined import determine
-from rbsdem.calibration.misfit import POINTS, Misfit, Target
-from rbsdem.calibration.search import COARSE, Search
+from rbsdem.calibration.outcome import determine
+from rbsdem.calibration.search import COARSE, POINTS, Misfit, Search, Target
 from rbsdem.curves.metrics import half_cycle_numbers
 from rbsdem.errors import AccuracyWarning
 from rbsdem.model.column import Parameter
@@ -201,8 +200,8 @@ def test_standard_error_covers_the_truth():
                 free, Target((d, f)), "nrmse", 1, lambda done, best: None,
             )  # fmt: skip
             best = _elastic_best(one, free["shear.k"])
-            error = determine(one, np.array([free["shear.k"].place(best)])).standard_error[0]
-            inside += abs(best - 3e7) < 2 * error
+            (found,), _ = determine(one, np.array([free["shear.k"].place(best)]))
+            inside += abs(best - 3e7) < 2 * found.standard_error
     assert 175 <= inside <= 199
 
 
@@ -441,7 +440,7 @@ def test_report():
     text = fit.report
     for part in ("nrmse", "before", "after", "flexure.k_y", "N m/rad", "Std. error", "Correlation"):
         assert part in text
-    assert f"{fit.nrmse:.4f} after" in text
+    assert f"{fit.before.nrmse:.4f} {fit.nrmse:.4f}" in " ".join(text.split())
     assert f"{fit.evaluations} analyses" in text
     assert f"{fit.values['flexure.k_y']:.4g}" in text
     assert max(map(len, text.splitlines())) <= 110

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Mapping, Sequence
 from typing import Any, cast
@@ -12,15 +11,19 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._package import unwarned
 from rbsdem._progress import progress_bar
-from rbsdem._types import Array, ArrayLike
-from rbsdem.calibration import determined
-from rbsdem.calibration.determined import Determined, without_effect
-from rbsdem.calibration.misfit import LOSSES, Misfit, Target
-from rbsdem.calibration.outcome import AnyStructure, Calibration, Fitted
+from rbsdem._types import Array
+from rbsdem.calibration.outcome import (
+    AnyStructure,
+    Calibration,
+    determine,
+    refuse,
+    warnings_of,
+    without_effect,
+)
 from rbsdem.calibration.paths import Parameters, free_parameters
-from rbsdem.calibration.search import Search
+from rbsdem.calibration.search import LOSSES, Misfit, Search, Target
 from rbsdem.curves.scores import Comparison, compare
-from rbsdem.errors import InputError, warn
+from rbsdem.errors import warn
 from rbsdem.model.column import Parameter
 from rbsdem.model.frame import Structure
 from rbsdem.run.result import reached_force
@@ -160,22 +163,22 @@ def calibrate(
         with Misfit(parameters.build, chosen, target, loss, jobs, show) as misfit:
             start = misfit.start_places()
             misfit.column(start)
-            determined.refuse(misfit, without_effect(misfit, _looks(start, seed)))
+            refuse(misfit, without_effect(misfit, _looks(start, seed)))
             status = Search(misfit, seed, evaluations, seconds).run()
             places = misfit.best_places.copy()
-            found = determined.determine(misfit, places)
+            found, correlation = determine(misfit, places)
         fitted = cast(AnyStructure, misfit.column(places))
         before, after = (_compared(tried, target, column) for tried in (column, fitted))
-    lines = tuple(determined.warnings_of(list(chosen), found))
+    lines = tuple(warnings_of(found, correlation))
     for line in lines:
         warn(f"calibrate: {line}")
     return Calibration(
         column=fitted,
         start=column,
-        parameters=_fitted(misfit, places, found),
+        parameters=found,
         before=before,
         after=after,
-        correlation=found.correlation,
+        correlation=correlation,
         status=status,
         warnings=lines,
         loss=loss,
@@ -186,31 +189,16 @@ def calibrate(
 
 
 def _check(seed: int, jobs: int, evaluations: int, seconds: float | None) -> None:
-    for name, value in (("seed", seed), ("jobs", jobs), ("evaluations", evaluations)):
-        least = 0 if name == "seed" else 1
-        if _arguments.integer(value, f"calibrate: {name}") < least:
-            raise InputError(f"calibrate: {name} = {value} must be {least} or more")
-    if seconds is not None and not 0 < _arguments.number(seconds, "calibrate: seconds") < math.inf:
-        raise InputError(f"calibrate: seconds = {seconds} must be a positive number")
+    _arguments.integer(seed, "calibrate: seed", least=0)
+    _arguments.integer(jobs, "calibrate: jobs", least=1)
+    _arguments.integer(evaluations, "calibrate: evaluations", least=1)
+    if seconds is not None:
+        _arguments.number(seconds, "calibrate: seconds", above=0)
 
 
 def _looks(start: Array, seed: int) -> list[Array]:
     """Return the points from which the effect of each parameter is tried."""
     return [start, *np.random.default_rng(seed).random((_LOOKS, start.size))]
-
-
-def _fitted(misfit: Misfit, places: ArrayLike, found: Determined) -> tuple[Fitted, ...]:
-    values = misfit.values(np.asarray(places))
-
-    def figures(i: int) -> dict[str, Any]:
-        names = ("standard_error", "effect", "rise")
-        numbers = {name: float(getattr(found, name)[i]) for name in names}
-        return numbers | {"at_bound": found.at_bound[i]}
-
-    return tuple(
-        Fitted(name, one.unit, one.what, one.value, one.low, one.high, values[name], **figures(i))
-        for i, (name, one) in enumerate(misfit.free.items())
-    )
 
 
 def _compared(column: Structure, target: Target, start: Structure) -> Comparison:

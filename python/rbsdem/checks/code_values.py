@@ -21,7 +21,7 @@ from rbsdem.curves.envelope import envelope, strength_loss
 from rbsdem.curves.metrics import Curve, loop_pair, summarise
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
-from rbsdem.model.response import Response
+from rbsdem.model.rows import Response
 from rbsdem.model.shape import Section
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.strength import (

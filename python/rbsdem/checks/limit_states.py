@@ -1,12 +1,14 @@
-"""The limit states that a response has reached, and the rotation of its hinges.
+"""Limit states: linear criteria on the deformations of joints, and when a response reaches them.
 
-They are read from it and change nothing.
+A strain of a layered hinge is linear in the rotation and the opening of its joint, and a spring
+leaves its line at a deformation. So one list serves the rows of a result and the runs of an
+ensemble, which keep no rows.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -15,13 +17,288 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame
-from rbsdem.checks.criteria import Criterion, criteria
+from rbsdem.checks.formulas import goodnight_buckling_strain, quantities
 from rbsdem.curves.envelope import strength_loss_point
 from rbsdem.errors import InputError
-from rbsdem.model.response import Response
-from rbsdem.model.rows import Rows
+from rbsdem.model.column import Column
+from rbsdem.model.frame import Frame, FrameSpring, Structure
+from rbsdem.model.rows import Response, Rows
+from rbsdem.model.shape import Section
+from rbsdem.model.springs import Gauge, Landmark, Layered, Spring
 from rbsdem.section.layered import LayeredColumn
 from rbsdem.section.strength import axial_failure_drift
+
+#: The limit states that criteria find, and what each is.
+WATCHED: dict[str, str] = {
+    "cracking": "the section cracks, or a spring leaves its first line",
+    "first_yield": "the first bar, or a flexural spring, yields",
+    "nominal_moment": "the extreme fibre is at the strain of the nominal moment",
+    "hoop_yield": "the core is at the peak of its confined strength, where its hoops yield",
+    "spalling": "the cover spalls",
+    "bar_buckling": "a bar is stretched so far that it buckles on reversal",
+    "hoop_fracture": "the core is at the strain at which its hoops fracture",
+    "bar_fracture": "a bar in tension breaks",
+    "cap": "a flexural spring is at its largest moment, from which on it falls",
+    "shear_cracking": "a shear spring leaves its first line",
+    "shear_yield": "a shear spring yields",
+    "shear_failure": "a shear spring is at its largest force, from which on it falls",
+}
+
+
+#: Limit states of springs by the landmarks at which they are reached.
+_TURNS = {"cracking": "cracking", "yield": "first_yield", "cap": "cap"}
+_SLIPS = {"cracking": "shear_cracking", "yield": "shear_yield", "cap": "shear_failure"}
+
+_OF_BARS = {
+    "first_yield": "f_y/E_s of a bar in tension",
+    "bar_fracture": "eps_u of a bar in tension",
+    "bar_buckling": "tensile strain before bars buckle on reversal (Goodnight, Kowalsky, Nau 2016)",
+}
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """A limit state is reached where a sum of a joint's deformations is at a threshold.
+
+    Attributes
+    ----------
+    name : str
+        The limit state, one of `WATCHED`.
+    joint : int
+        The joint, from 1 at the ground.
+    threshold : float
+        A strain, a rotation [rad] or a slip [m].
+    source : str
+        Where the threshold comes from.
+    slip, rotation, opening : float
+        Factors of the slip, of the rotation with that at rest, and of the opening.
+    """
+
+    name: str
+    joint: int
+    threshold: float
+    source: str
+    slip: float = 0.0
+    rotation: float = 0.0
+    opening: float = 0.0
+
+    def values(self, result: Response, at: int) -> Array:
+        """Return the values that the threshold bounds, shape (rows,); `at` is the joint's place."""
+        if self.slip:
+            return np.asarray(self.slip * result.slip[:, at])
+        turned = result.rotation[:, at]
+        if not self.opening:
+            return np.asarray(self.rotation * turned)
+        if (rest := result.rest) is not None:
+            turned = turned + rest[:, at]
+        return np.asarray(self.rotation * turned + self.opening * result.opening[:, at])
+
+
+def criteria(column: Structure, names: Collection[str] = tuple(WATCHED)) -> Sequence[Criterion]:
+    """Return the criteria of a column; a state may have several, of which the first counts.
+
+    Parameters
+    ----------
+    column : Column or Frame
+        The structure.
+    names : collection of str, optional
+        The limit states that are wanted.
+    """
+    if set(WATCHED) <= set(names):
+        # Once for all analyses, as a frozen column does not change.
+        if "_criteria" not in column.__dict__:
+            object.__setattr__(column, "_criteria", tuple(_criteria(column, names)))
+        every: tuple[Criterion, ...] = column.__dict__["_criteria"]
+        return every
+    return _criteria(column, names)
+
+
+def _criteria(column: Structure, names: Collection[str]) -> list[Criterion]:
+    found: list[Criterion] = []
+    if isinstance(column, Frame):
+        for group, states, what in (("flexure", _TURNS, "rotation"), ("shear", _SLIPS, "slip")):
+            springs = column.parts.springs_of(group)
+            single = [own for own in springs if own.rule != "layered"]
+            if group == "flexure":
+                found += _of_joints(column, springs, len(single))
+            for number, own in enumerate(single, 1):
+                where = f"the {group} spring of {own.member} at {own.place:g} of its length"
+                if own.group == "panel":
+                    where = f"the panel of node {own.member}"
+                marks = column.landmarks[own]
+                found += _of_landmarks(number, marks, where, states, what)
+        return [criterion for criterion in found if criterion.name in names]
+    for joint, spring in zip(column.joint_numbers, column.joints("flexure"), strict=True):
+        if joint == 0:  # A footing is not the column.
+            continue
+        if isinstance(spring, Layered):
+            found += _of_layers(column, joint, spring, names)
+        else:
+            found += _of_spring(joint, spring, _TURNS, "rotation")
+    for joint, spring in zip(column.joint_numbers, column.joints("shear"), strict=True):
+        if joint > 0:
+            found += _of_spring(joint, spring, _SLIPS, "slip")
+    return [criterion for criterion in found if criterion.name in names]
+
+
+def _of_joints(frame: Frame, springs: Sequence[FrameSpring], number: int) -> Iterator[Criterion]:
+    """Yield where layers yield in tension; they are numbered behind the rotational springs."""
+    for own in springs:
+        if own.rule != "layered":
+            continue
+        made = frame.kinds[own.member].at(own.group, own.place)
+        assert isinstance(made, Layered)
+        places: dict[Spring, list[float]] = {}
+        for y, layer in made.layers:
+            places.setdefault(layer, []).append(y)
+        for y, layer in made.layers:
+            number += 1
+            # Plane sections: of equal layers the outermost ones are stretched most.
+            if y not in (min(places[layer]), max(places[layer])):
+                continue
+            for mark in layer.landmarks():
+                if mark.name == "yield" and mark.side > 0:
+                    source = f"{mark.source} of a {type(layer).__name__} layer of {own.member}"
+                    yield Criterion("first_yield", number, mark.deformation, source, rotation=1.0)
+
+
+def all_thresholds(column: Structure, openings: bool) -> Array:
+    """Return the criteria of a run in numbers, those of openings only if they are kept.
+
+    Each counts for itself. A run without openings is told of the others, but cannot reach them.
+    """
+    found = criteria(column)
+    numbers = thresholds(column, found, range(1, len(found) + 1))
+    if not openings:
+        numbers[[bool(each.opening) for each in found], 5] = np.finfo(np.float64).max
+        numbers[:, 4] = 0.0
+    return numbers
+
+
+def thresholds(column: Structure, found: Sequence[Criterion], states: Iterable[int]) -> Array:
+    """Return criteria in numbers, shape (criteria, 6), as the Fortran part takes them.
+
+    Parameters
+    ----------
+    column : Column
+        The column.
+    found : sequence of Criterion
+        Its criteria, or some of them.
+    states : iterable of int
+        The number of the limit state of each.
+    """
+    # The rows of a run count the joints from the ground, a footing's included.
+    at = {joint: place for place, joint in enumerate(column.joint_numbers, 1)}
+    rows = [
+        (state, at[c.joint], c.slip, c.rotation, c.opening, c.threshold)
+        for state, c in zip(states, found, strict=True)
+    ]
+    return np.array(rows, dtype=float).reshape(-1, 6)
+
+
+def _of_spring(
+    joint: int, spring: Spring, names: Mapping[str, str], what: str
+) -> Iterator[Criterion]:
+    """Yield where a spring leaves its lines, to either side."""
+    kind = f"{type(spring).__name__}{' shear' if what == 'slip' else ''}"
+    where = f"the {kind} spring of joint {joint}"
+    yield from _of_landmarks(joint, spring.landmarks(), where, names, what)
+
+
+def _of_landmarks(
+    joint: int, marks: Sequence[Landmark], where: str, names: Mapping[str, str], what: str
+) -> Iterator[Criterion]:
+    for mark in marks:
+        source = f"{mark.source} of {where}"
+        side = float(mark.side)
+        yield Criterion(names[mark.name], joint, mark.deformation, source, **{what: side})
+
+
+def _of_layers(
+    column: Column, joint: int, spring: Layered, names: Collection[str]
+) -> Iterator[Criterion]:
+    if column.opens:  # Its openings are those of axial springs.
+        return
+    gauge = column.gauge(joint)
+    if gauge is not None and isinstance(column, LayeredColumn) and column.drawing is not None:
+        section = column.drawing.section
+        yield from _of_bars(section, column, joint, (spring, gauge), "bar_buckling" in names)
+        if not set(names) <= set(_OF_BARS):
+            yield from _of_fibres(section, joint, gauge)
+        return
+    for y, layer in spring.layers:
+        for mark in layer.landmarks():
+            if mark.name == "yield" and mark.side > 0:
+                source = (
+                    f"{mark.source} of a {type(layer).__name__} layer of joint {joint}, in tension"
+                )
+                at = mark.deformation
+                yield Criterion("first_yield", joint, at, source, rotation=y, opening=1.0)
+
+
+def _of_fibres(section: Section, joint: int, gauge: Gauge) -> Iterator[Criterion]:
+    """Yield strains of the concrete of a hinge that knows its drawing."""
+    law, core = section.concrete_law, section.confinement
+    half = 0.5 * section.depth
+    length = next(
+        length for part, length in zip(gauge.part, gauge.length, strict=True) if part != "bar"
+    )
+
+    def strain(name: str, y: float, at: float, source: str, sign: float = 1.0) -> Criterion:
+        turn, open_ = sign * y / length, sign / length
+        return Criterion(name, joint, float(at), source, rotation=turn, opening=open_)
+
+    for y in (half, -half):
+        if law["ft"] > 0:  # Without tensile strength there is nothing to crack.
+            source = "f_t/E_c at the extreme fibre, over the length of the hinge"
+            yield strain("cracking", y, law["ft"] / law["ec"], source)
+        source = "0.003 at the extreme fibre (ACI 318-19, 22.2.2.1)"
+        yield strain("nominal_moment", y, 0.003, source, -1.0)
+        source = "eps_spall of the concrete"
+        yield strain("spalling", y, section.concrete.eps_spall, source, -1.0)
+        if core is None:
+            continue
+        edge = math.copysign(0.5 * core.depth, y)
+        source = "eps_cc at the edge of the core (Mander, Priestley, Park 1988)"
+        yield strain("hoop_yield", edge, core.eps_cc, source, -1.0)
+        source = "eps_cu at the edge of the core (Priestley, Seible, Calvi 1996, eq 5.14)"
+        yield strain("hoop_fracture", edge, core.eps_cu, source, -1.0)
+
+
+def _of_bars(
+    section: Section, column: Column, joint: int, layers: tuple[Layered, Gauge], buckling: bool
+) -> Iterator[Criterion]:
+    """Yield strains of the bars of a hinge that knows its drawing."""
+    spring, gauge = layers
+    buckles = buckling_strain(section, column) if buckling else math.inf
+    outer: dict[tuple[float, float, float], list[float]] = {}
+    rows = zip(spring.layers, gauge.part, gauge.length, strict=True)
+    layers_of_bars = [(y, over) for (y, _), part, over in rows if part == "bar"]
+    # They are in the order of the bars: at one place there may be bars of several steels.
+    for (y, over), (_, _, steel) in zip(layers_of_bars, section.bars, strict=True):
+        outer.setdefault((steel.fy / steel.es, steel.eps_u, over), []).append(y)
+    for (yields, breaks, over), places in outer.items():
+        # Plane sections: of equal bars the outermost ones are stretched most.
+        for y in dict.fromkeys((max(places), min(places))):
+            lever = {"rotation": y / over, "opening": 1.0 / over}
+            for name, at in zip(_OF_BARS, (yields, breaks, buckles), strict=True):
+                if math.isfinite(at):
+                    yield Criterion(name, joint, float(at), _OF_BARS[name], **lever)
+
+
+def buckling_strain(section: Section, column: Column) -> float:
+    """Return the tensile strain beyond which bars buckle on reversal; infinite if not known.
+
+    It is known of solid sections with hoops and bars near both faces, in compression.
+    """
+    if section.hollow or section.ties is None:
+        return math.inf
+    span = column.height / (2 if column.top == "fixed" else 1)
+    try:
+        given = quantities(section, span, column.axial_load)
+    except InputError:
+        return math.inf
+    return max(goodnight_buckling_strain(given), 0.01)
 
 
 @dataclass(frozen=True)

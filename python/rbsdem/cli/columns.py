@@ -20,7 +20,7 @@ from rbsdem._files import data_frame, save_frame, write_figure
 from rbsdem._package import extra, recorded
 from rbsdem._tables import read_table
 from rbsdem._types import DataFrame
-from rbsdem.checks.criteria import WATCHED
+from rbsdem.checks.limit_states import WATCHED
 from rbsdem.cli import CASE, FILE, FOLDER, INTERRUPTED, quiet, tell
 from rbsdem.errors import InputError, RepairWarning
 from rbsdem.many.ensemble import ensemble as run_ensemble

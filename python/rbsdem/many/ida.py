@@ -19,7 +19,7 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._progress import progress_bar
 from rbsdem._types import Array, ArrayLike, NDArray, Unpack
-from rbsdem.checks.criteria import WATCHED
+from rbsdem.checks.limit_states import WATCHED
 from rbsdem.errors import InputError
 from rbsdem.many.fragility import Capacities, Counts, WithFragility
 from rbsdem.many.inputs import Measure, is_switch, limit_states, measures_in_a_list

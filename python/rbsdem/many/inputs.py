@@ -15,12 +15,11 @@ import numpy as np
 
 from rbsdem import _arguments, _core
 from rbsdem._types import Array, ArrayLike
-from rbsdem.checks.criteria import WATCHED
+from rbsdem.checks.limit_states import WATCHED
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
 from rbsdem.model.frame import Frame, Structure, checked_structure
-from rbsdem.model.response import Response
-from rbsdem.model.rows import state_of
+from rbsdem.model.rows import Response, state_of
 from rbsdem.run.result import Result
 
 #: The state of a column at rest.

@@ -19,7 +19,7 @@ import numpy as np
 from rbsdem import _core
 from rbsdem._package import code_digest, extra
 from rbsdem._types import Array, NDArray
-from rbsdem.checks.criteria import criteria, thresholds
+from rbsdem.checks.limit_states import criteria, thresholds
 from rbsdem.errors import InputError, RbsdemError
 from rbsdem.many import inputs
 from rbsdem.many.store import Store, digest

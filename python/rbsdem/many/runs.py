@@ -12,7 +12,7 @@ import numpy as np
 from rbsdem import _arguments
 from rbsdem._files import Tabular, data_frame
 from rbsdem._types import Array, DataFrame, NDArray, Unpack
-from rbsdem.checks.criteria import WATCHED
+from rbsdem.checks.limit_states import WATCHED
 from rbsdem.errors import InputError, Interrupted, warn
 from rbsdem.many import inputs
 from rbsdem.many.ensemble import checked_part, ensemble

@@ -16,7 +16,7 @@ from rbsdem import _arguments
 from rbsdem._files import data_frame
 from rbsdem._package import recorded, unwarned
 from rbsdem._types import Array, ArrayLike, DataFrame
-from rbsdem.checks.criteria import WATCHED
+from rbsdem.checks.limit_states import WATCHED
 from rbsdem.curves.scores import SCORES, Comparison, compare
 from rbsdem.errors import InputError, RbsdemError, SolveError, warn
 from rbsdem.measured.drawing import check_options, checked_specimen, draw

@@ -18,8 +18,7 @@ from rbsdem.curves.metrics import Curve, loop_pair
 from rbsdem.curves.scores import Comparison
 from rbsdem.errors import InputError
 from rbsdem.model.column import bodies
-from rbsdem.model.response import Response
-from rbsdem.model.rows import ENERGIES
+from rbsdem.model.rows import ENERGIES, Response
 from rbsdem.output.style import (
     MODEL_LINE,
     TEST_LINE,

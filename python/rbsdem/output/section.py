@@ -8,10 +8,10 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from rbsdem._types import Array, ArrayLike, Axes
-from rbsdem.checks.criteria import buckling_strain
+from rbsdem.checks.limit_states import buckling_strain
 from rbsdem.errors import InputError
 from rbsdem.model.materials import Tension
-from rbsdem.model.response import Response
+from rbsdem.model.rows import Response
 from rbsdem.model.shape import Section
 from rbsdem.output.style import (
     MODEL_LINE,

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rbsdem._types import Array
-from rbsdem.model.response import Response
-from rbsdem.model.rows import Rows
+from rbsdem.model.rows import Response, Rows
 
 
 @dataclass(frozen=True)

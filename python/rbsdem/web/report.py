@@ -32,7 +32,7 @@ from rbsdem.measured.specimens import Specimens
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.shape import Section
-from rbsdem.output import buildings, frames, many, section
+from rbsdem.output import frames, many, section
 from rbsdem.output.loops import history
 from rbsdem.output.style import style
 from rbsdem.output.tables import PAPER, cells
@@ -433,7 +433,7 @@ def _of_assessment(
     curves: list[Callable[[], Any]] = [partial(frames.pushover, result)]
     text = repr(found)
     if target is not None:
-        curves.append(partial(buildings.target, target))
+        curves.append(partial(frames.target, target))
         end = () if target.reached else ("The push-over ends before the target.",)
         text = " ".join((f"{target.source}.", *end, *target.notes))
     table = None if target is None else target.to_pandas()
@@ -454,7 +454,7 @@ def _of_assessment(
     drawn: list[Callable[[], Any]] = [partial(frames.frame, result, row=row)]
     if result.frame.storey_heights and found.displacement is None:
         drawn.append(partial(frames.storey_drift, result))
-    drawn.append(partial(buildings.assessment, found))
+    drawn.append(partial(frames.assessment, found))
     counts = ", ".join(f"{name}: {number}" for name, number in found.counts().items())
     told = ["What is beyond its strength in shear has the colour of the last level.", *found.notes]
     text = f"{found.source}: ends and joints beyond each level: {counts}."
