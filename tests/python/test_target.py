@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import rbsdem
-from rbsdem.checks.capacity import equivalent
 from rbsdem.codes import Capacity, DesignSpectrum, target
+from rbsdem.many.target import equivalent
 from rbsdem.motions.design import damping_factor
 
 #: g of the sources over that of the program.

@@ -35,13 +35,13 @@ from rbsdem.many.plan import (
     Outcome,
     Piece,
     Plan,
-    RunStore,
     Share,
     compute,
     cut,
     expected,
     one_run,
 )
+from rbsdem.many.store import Store
 from rbsdem.model.frame import Frame, Structure
 from rbsdem.model.rows import bibtex, parts_of
 from rbsdem.run.result import Result
@@ -453,7 +453,7 @@ def ensemble(
     kept = None
     if store is not None:
         own_names = column_names, [item.name for item in motion_items]
-        kept = RunStore(_arguments.path(store), plan, own_names, part, seeds)
+        kept = Store(_arguments.path(store), plan, own_names, part, seeds)
     own = _of_part(each.size, part)
     outcome, resumed, end = _carried_out(plan, own, (each, lanes), kept, client, jobs, progress)
     states = zip(column_names, before, strict=True)
@@ -481,7 +481,7 @@ def _carried_out(
     plan: Plan,
     own: NDArray[np.int_],
     cost: tuple[Array, NDArray[np.int32]],
-    kept: RunStore | None,
+    kept: Store | None,
     client: Any,
     jobs: int | None,
     progress: bool,

@@ -8,20 +8,27 @@ from __future__ import annotations
 
 import errno
 import hashlib
+import inspect
 import io
 import json
 import os
 import re
 import time
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from rbsdem import _core
 from rbsdem._files import atomic_write
-from rbsdem._package import extra
+from rbsdem._package import code_digest, extra
+from rbsdem._types import NDArray
 from rbsdem.errors import InputError
+from rbsdem.many import inputs
+from rbsdem.many.plan import Outcome, Plan, watched
 
 try:
     import fcntl
@@ -56,40 +63,47 @@ def _table_of(data: bytes) -> Any:
 
 
 class Store:
-    """A folder of shards.
+    """A folder for the runs of ensembles with the same settings and measures.
 
     Parameters
     ----------
     folder : path-like
         It is made if it is not there.
-    manifest : mapping
-        About the rows, for JSON. "digests" of another store of this folder must be the same, and
-        so must "version" and "code", if they are there.
-    growing : sequence of str, optional
-        Mappings in the manifest that keep what an earlier start has put there.
-    part : tuple of two int, optional
+    plan : Plan
+        The runs.
+    names : tuple of lists
+        Names of the columns and of the motions.
+    part : tuple of two int
         Which part of how many this process does.
+    seeds : mapping
+        Seeds that the inputs were drawn with, for the manifest.
 
     Raises
     ------
     InputError
-        If the folder holds rows of another kind or version, or other files.
+        If the folder holds an ensemble of other settings or measures, that of another version, or
+        other files, or a function among the measures has no source.
     """
 
     def __init__(
         self,
         folder: Path,
-        manifest: Mapping[str, Any],
-        growing: Sequence[str] = (),
-        part: tuple[int, int] = (1, 1),
+        plan: Plan,
+        names: tuple[list[str | int], list[str | int]],
+        part: tuple[int, int],
+        seeds: Any = None,
     ) -> None:
-        self.folder = folder
-        self._shards = folder / "shards"
-        self._part = part
+        extra("pyarrow.parquet")
+        self.folder, self._shards, self._part = folder, folder / "shards", part
+        self._plan, self._names = plan, names
+        self._columns = [_column_key(plan, i) for i in range(len(plan.columns))]
+        self._motions = [
+            digest(motion.time.tobytes(), motion.acceleration.tobytes()) for motion in plan.motions
+        ]
         self._waiting: list[Any] = []
         self._written = time.monotonic()
         self._check_folder()
-        wanted = dict(manifest)
+        wanted = self._manifest(seeds)
         _manifest_text(wanted)
         with self._alone():
             if self._shards.exists() and not self._shards.is_dir():
@@ -98,7 +112,7 @@ class Store:
             known = self._known()
             if known is not None:
                 _compare(folder, known, wanted)
-                for name in growing:
+                for name in ("columns", "motions"):
                     wanted[name] = known.get(name, {}) | wanted[name]
                 wanted |= {name: known.get(name) for name in wanted if wanted[name] is None}
             if wanted != known:
@@ -193,24 +207,93 @@ class Store:
     def _prefix(self) -> str:
         return "{}-of-{}-".format(*self._part)
 
-    def tables(self) -> Iterator[Any]:
+    def _manifest(self, seeds: Any) -> dict[str, Any]:
+        plan = self._plan
+        columns, motions = self._names
+        return {
+            "version": _core.version(),
+            "code": code_digest().hex(),
+            "digests": {
+                "settings": digest(json.dumps(plan.settings, sort_keys=True).encode()),
+                "measures": digest(
+                    *(name.encode() for name in plan.names[len(inputs.core_measures()) :]),
+                    *(f"{name}\0{_source(f)}".encode() for name, f in plan.functions.items()),
+                ),
+            },
+            "settings": plan.settings,
+            "measures": list(plan.functions),
+            "seeds": seeds,
+            "columns": {
+                key: {"name": str(name), "case": column.to_namelist(), "at_rest": not before.size}
+                for key, name, column, before in zip(
+                    self._columns, columns, plan.columns, plan.initial, strict=True
+                )
+            },
+            "motions": dict(zip(self._motions, map(str, motions), strict=True)),
+        }
+
+    def read(self, into: Outcome) -> int:
+        """Put the runs that the store has into the outcome; return their number."""
+        tables = list(self._tables())
+        if not tables:
+            return 0
+        import pyarrow as pa  # noqa: PLC0415
+
+        table = pa.concat_tables(tables).unify_dictionaries()
+        keys = (table[name].to_pylist() for name in ("column_key", "motion_key", "scale"))
+        row_of = {key: row for row, key in enumerate(zip(*keys, strict=True))}
+        plan = self._plan
+        rows = np.array(
+            [
+                row_of.get((self._columns[i], self._motions[j], scale), -1)
+                for i, j, scale in zip(plan.column, plan.motion, plan.scale.tolist(), strict=True)
+            ]
+        )
+        runs = np.flatnonzero(rows >= 0)
+        table = table.take(rows[runs])
+        codes = [inputs.STATUSES.index(word) for word in table["status"].to_pylist()]
+        known = Outcome(
+            np.array(codes, dtype=np.int8),
+            np.array([table[name].to_numpy() for name in plan.names]),
+            {name: table[name].to_numpy() for name in plan.functions},
+            {run: text for run, text in enumerate(table["error"].to_pylist()) if text},
+        )
+        into.put(runs, known)
+        return runs.size
+
+    def add(self, runs: NDArray[np.int_], result: Outcome) -> None:
+        """Take the runs that are done of a task; they are written a few seconds later."""
+        done = np.flatnonzero(result.fates)
+        if not done.size:
+            return
+        import pyarrow as pa  # noqa: PLC0415
+
+        runs, plan = runs[done], self._plan
+        columns, motions = (list(map(str, names)) for names in self._names)
+        coded = pa.DictionaryArray.from_arrays
+        errors = np.full(result.fates.size, "", dtype=object)
+        errors[list(result.errors)] = list(result.errors.values())
+        measures = dict(zip(plan.names, result.values, strict=True)) | result.extra
+        data: dict[str, Any] = {
+            "column": coded(plan.column[runs], columns),
+            "motion": coded(plan.motion[runs], motions),
+            "scale": pa.array(plan.scale[runs]),
+            "status": coded(result.fates[done], list(inputs.STATUSES)),
+            **{name: pa.array(values[done]) for name, values in measures.items()},
+            "error": pa.array(errors[done]),
+            "column_key": coded(plan.column[runs], self._columns),
+            "motion_key": coded(plan.motion[runs], self._motions),
+        }
+        self._waiting.append(pa.table(data))
+        self.write_if_due()
+
+    def _tables(self) -> Iterator[Any]:
         """Yield the rows of each whole shard; its name has the digest of its bytes."""
         for path in sorted(self._shards.glob(_SHARDS)):
             with suppress(OSError, KeyError, ValueError, TypeError):  # Those of pyarrow among them.
                 data = path.read_bytes()
                 if path.stem.endswith(digest(data)):
                     yield _table_of(data)
-
-    def keep(self, rows: Any) -> None:
-        """Take rows that are done; they are written a few seconds later.
-
-        Raises
-        ------
-        OSError
-            If the disk does not take them; what was there before stays.
-        """
-        self._waiting.append(rows)
-        self.write_if_due()
 
     def write_if_due(self) -> None:
         """Write a shard of what waits if the last one is some seconds old."""
@@ -233,6 +316,27 @@ class Store:
         path = self._shards / f"{self._prefix}{digest(data)}.parquet"
         with _clear(self.folder), atomic_write(path) as shard:
             shard.write(data)
+
+
+def _column_key(plan: Plan, i: int) -> str:
+    """Return the digest of a column and of the state that its runs begin in."""
+    column = plan.columns[i]
+    statement = column._statement
+    # Limit states follow from the drawing, which the statement does not have.
+    thresholds = watched(column, plan.states).tobytes()
+    text = f"{statement.text}\0{statement.numbers!r}".encode()
+    return digest(text, thresholds, plan.initial[i].tobytes())
+
+
+def _source(function: inputs.Measure) -> str:
+    """Return the source of a measure, by which it is known again."""
+    try:
+        return inspect.getsource(function)
+    except (OSError, TypeError):
+        raise InputError(
+            f"measures: the function {function.__name__} has no source, so a store cannot know "
+            "whether it has changed; write it into a file, or give no store"
+        ) from None
 
 
 def store_status(folder: Path) -> list[str]:
@@ -272,7 +376,7 @@ def store_status(folder: Path) -> list[str]:
             for part, (number, last) in sorted(parts.items())
         ),
         *failures[:_MOST_FAILURES],
-        *([f"and {len(failures) - _MOST_FAILURES} more"] if len(failures) > _MOST_FAILURES else []),
+        *([f"and {more} more"] if (more := len(failures) - _MOST_FAILURES) > 0 else []),
     ]
 
 
@@ -307,8 +411,7 @@ def _manifest_text(manifest: dict[str, Any]) -> bytes:
 
 def _compare(folder: Path, known: dict[str, Any], wanted: dict[str, Any]) -> None:
     """Raise `InputError` if a store holds rows of another kind."""
-    made_by = [name for name in ("version", "code") if name in wanted]
-    if any(known.get(name, wanted[name]) != wanted[name] for name in made_by):
+    if any(known.get(name, wanted[name]) != wanted[name] for name in ("version", "code")):
         raise InputError(
             f"store: {folder} was written by rbsdem {known.get('version')}, or by other code of "
             f"it, and this is {wanted.get('version')}; give another folder, or remove this one"
