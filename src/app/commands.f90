@@ -6,9 +6,8 @@ module rbs_app_commands
    use rbs_base_constants, only: pi
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: to_text
+   use rbs_base_text, only: next_line, to_text, text_buffer
    use rbs_case_key_list, only: keys_as_json, keys_as_table
-   use rbs_case_text_buffer, only: text_buffer
    use rbs_io_case_file, only: case_history, load_case
    use rbs_io_csv, only: csv_recorder
    use rbs_io_namelist, only: read_case
@@ -74,12 +73,9 @@ contains
       call run%recorder%file%close(.not. allocated(error), run%recorder%count > 0, closing)
       if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
       if (allocated(error)) then
-         if (run%recorder%count > 0) then
-            if (run%recorder%file%kept /= '') then
-               error%message = error%message//new_line('a')//'the '//to_text(run%recorder%count)// &
-                               ' rows up to there are in '//run%recorder%file%kept
-            end if
-         end if
+         if (run%recorder%count == 0 .or. run%recorder%file%kept == '') return
+         error%message = error%message//new_line('a')//'the '//to_text(run%recorder%count)// &
+                         ' rows up to there are in '//run%recorder%file%kept
          return
       end if
       ! Among rows on standard output a summary would be in the way.
@@ -269,17 +265,15 @@ contains
       character(len=:), allocatable :: text
 
       call prepare(run, path, error)
-      if (.not. allocated(error)) then
-         if (run%case%analysis%dynamic()) then
-            call plan_dynamic(run%structure, run%case%analysis, run%history%time, run%history%loads, plan, &
-                              error)
-         end if
+      if (.not. allocated(error) .and. run%case%analysis%dynamic()) then
+         call plan_dynamic(run%structure, run%case%analysis, run%history%time, run%history%loads, plan, error)
       end if
-      if (.not. allocated(error)) call structure_notes(run%case, run%structure, notes)
       if (allocated(error)) then
          if (as_json) call print_json()
          return
-      else if (run%case%analysis%dynamic()) then
+      end if
+      call structure_notes(run%case, run%structure, notes)
+      if (run%case%analysis%dynamic()) then
          call long_run_note(run%structure, plan, text)
          if (text /= '') call notes%add(text)
       else if (all(run%case%loading(:run%case%loadings)%drive /= 'force') .and. &
@@ -320,9 +314,8 @@ contains
          character(len=:), allocatable :: number
          integer :: first, last, at, digits
 
-         first = 1
-         do while (first <= len(message))
-            last = index(message(first:)//new_line('a'), new_line('a')) + first - 2
+         last = -1
+         do while (next_line(message, first, last))
             if (first > 1) call buffer%append(', ')
             if (numbered) then
                number = 'null'
@@ -335,7 +328,6 @@ contains
             else
                call buffer%append(json_text(message(first:last)))
             end if
-            first = last + 2
          end do
       end subroutine append_lines
 
@@ -357,6 +349,7 @@ contains
       logical :: understood
       character(len=96) :: line
       real(wp) :: period
+      integer, allocatable :: wanted
       integer :: i
 
       call read_case(path, case, messages, understood)
@@ -364,11 +357,9 @@ contains
       if (allocated(error)) return
       call make_structure(case, structure, before, error)
       if (allocated(error)) return
-      if (count > 0) then
-         call find_modes(structure, modes, error, count)
-      else
-         call find_modes(structure, modes, error)
-      end if
+      ! Not allocated, it is an argument that is left out.
+      if (count > 0) wanted = count
+      call find_modes(structure, modes, error, wanted)
       if (.not. allocated(error) .and. with_matrices) then
          call assemble_matrices(structure, .false., matrices, error)
       end if
@@ -489,11 +480,9 @@ contains
       integer :: first, last
 
       if (notes%count == 0) return
-      first = 1
-      do while (first <= len(notes%text))
-         last = index(notes%text(first:)//new_line('a'), new_line('a')) + first - 2
+      last = -1
+      do while (next_line(notes%text, first, last))
          call say('note: '//notes%text(first:last), error)
-         first = last + 2
       end do
    end subroutine print_notes
 

@@ -7,6 +7,7 @@ program rbsdem
    use rbs_app_progress, only: say
    use rbs_app_signals, only: prepare_process
    use rbs_base_error, only: error_type
+   use rbs_base_text, only: next_line
    use rbs_version, only: version
    implicit none
 
@@ -55,16 +56,12 @@ contains
    !> Print a message, each line after the name of the program.
    subroutine print_error(message)
       character(len=*), intent(in) :: message
-      integer :: first, length
+      integer :: first, last
 
-      first = 1
-      do
-         length = index(message(first:), new_line('a')) - 1
-         if (length < 0) exit
-         write (error_unit, '(a)') 'rbsdem: '//message(first:first + length - 1)
-         first = first + length + 1
+      last = -1
+      do while (next_line(message, first, last))
+         write (error_unit, '(a)') 'rbsdem: '//message(first:last)
       end do
-      write (error_unit, '(a)') 'rbsdem: '//message(first:)
    end subroutine print_error
 
    !> The help of a command, or of all.

@@ -386,11 +386,7 @@ contains
          return
       end if
       do j = 1, m
-         if (self%width <= narrow) then
-            call solve_narrow(self%size, self%triangle, b(:, j))
-         else
-            call solve_wide(self%size, self%width, self%triangle, b(:, j))
-         end if
+         call self%substitute(b(:, j))
       end do
 
    contains

@@ -123,22 +123,19 @@ contains
          below = x <= bound%least
          if (bound%least > -huge(1.0_wp) .and. bound%most < huge(1.0_wp) .and. &
              .not. (bound%least_open .or. bound%most_open)) then
-            text = 'must be from '//to_text(bound%least)//' to '//to_text(bound%most)//' '//bound%reason
+            text = 'must be from '//to_text(bound%least)//' to '//to_text(bound%most)
+         else if (.not. below) then
+            text = trim(merge('must be below    ', 'must not be above', bound%most_open))//' '// &
+                   to_text(bound%most)
+         else if (.not. abs(bound%least) > 0.0_wp) then
+            text = merge('must be above zero  ', 'must not be negative', bound%least_open)
             return
-         else if (below .and. abs(bound%least) > 0.0_wp .and. bound%least_open) then
+         else if (bound%least_open) then
             text = 'must be above '//to_text(bound%least)
-         else if (below .and. abs(bound%least) > 0.0_wp) then
-            text = 'must be '//to_text(bound%least)//' or more'
-         else if (below .and. bound%least_open) then
-            text = 'must be above zero'
-         else if (below) then
-            text = 'must not be negative'
-         else if (bound%most_open) then
-            text = 'must be below '//to_text(bound%most)
          else
-            text = 'must not be above '//to_text(bound%most)
+            text = 'must be '//to_text(bound%least)//' or more'
          end if
-         if (.not. below .or. abs(bound%least) > 0.0_wp) text = trim(text)//' '//bound%reason
+         text = trim(text)//' '//bound%reason
       end function refusal
 
    end subroutine check_number
@@ -163,8 +160,7 @@ contains
          if (bound%most_open) text = trim(text)//' below'
          text = adjustl(trim(text)//' '//to_text(bound%most))
       else if (bound%least > -huge(1.0_wp)) then
-         text = merge('> ', '>=', bound%least_open)//' '//to_text(bound%least)
-         if (bound%least_open) text = '> '//to_text(bound%least)
+         text = trim(merge('> ', '>=', bound%least_open))//' '//to_text(bound%least)
       end if
    end function bound_text
 
@@ -186,12 +182,11 @@ contains
       character(len=choice_length) :: name
 
       place = 0
-      if (word == '') return
       do
-         place = place + 1
-         name = choice_name(key, place)
-         if (name == word) return
+         name = choice_name(key, place + 1)
          if (name == '') exit
+         place = place + 1
+         if (name == word) return
       end do
       place = 0
    end function choice_place

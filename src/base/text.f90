@@ -8,7 +8,7 @@ module rbs_base_text
    implicit none
    private
 
-   public :: to_text, exact_text, integer_length, lower, suggestion, list_of
+   public :: to_text, exact_text, integer_length, lower, suggestion, list_of, next_line, text_buffer
 
    !> Longest text of a number.
    integer, parameter :: longest = 32
@@ -17,6 +17,16 @@ module rbs_base_text
    interface to_text
       module procedure :: real_to_text, integer_to_text
    end interface to_text
+
+   !> A text to which other texts are appended.
+   type :: text_buffer
+      !> Number of characters so far
+      integer :: length = 0
+      !> The text, followed by free space
+      character(len=:), allocatable :: text
+   contains
+      procedure :: append
+   end type text_buffer
 
 contains
 
@@ -68,8 +78,8 @@ contains
    pure subroutine write_real(x, text)
       real(wp), intent(in) :: x
       character(len=longest), intent(out) :: text
-      character(len=longest) :: buffer, form
-      integer :: mark, power
+      character(len=longest) :: digits, exponent
+      integer :: power
 
       if (ieee_is_nan(x)) then
          text = 'NaN'
@@ -78,23 +88,14 @@ contains
       else if (.not. abs(x) > 0.0_wp) then
          text = '0'
       else
-         write (buffer, '(es13.5e3)') x
-         buffer = adjustl(buffer)
-         mark = index(buffer, 'E')
-         read (buffer(mark + 1:), *) power
+         call find_digits(x, 6, digits, power)
          if (power >= -4 .and. power <= 5) then
-            write (form, '(a, i0, a)') '(f24.', 5 - power, ')'
-            write (text, form) x
-            text = adjustl(text)
-            if (text(1:1) == '.') text = '0'//text(:longest - 1)
-            if (text(1:2) == '-.') text = '-0'//text(2:longest - 1)
-            call cut_zeros(text)
+            text = with_point(trim(digits), power)
          else
-            text = buffer(:mark - 1)
-            call cut_zeros(text)
-            write (form, '(sp, i0.2)') power
-            text = trim(text)//'e'//form
+            write (exponent, '(sp, i0.2)') power
+            text = trim(with_point(trim(digits), 0))//'e'//exponent
          end if
+         if (x < 0.0_wp) text = '-'//text(:longest - 1)
       end if
    end subroutine write_real
 
@@ -102,53 +103,76 @@ contains
    pure character(len=longest) function exact_text(x) result(text)
       !> Finite
       real(wp), intent(in) :: x
-      character(len=longest) :: buffer, digits
+      character(len=longest) :: digits
       real(wp) :: again
-      integer :: count, mark, power, last
+      integer :: count, power
 
       text = '0'
       if (.not. abs(x) > 0.0_wp) return
       do count = 15, 17
-         write (digits, '(a, i0, a)') '(es', 26, '.'//to_text(count - 1)//'e3)'
-         write (buffer, digits) abs(x)
-         read (buffer, *) again
+         call find_digits(x, count, digits, power)
+         if (power >= -4 .and. power <= 8) then
+            text = with_point(trim(digits), power)
+         else
+            text = trim(with_point(trim(digits), 0))//'e'//to_text(power)
+         end if
+         read (text, *) again
          if (.not. abs(again - abs(x)) > 0.0_wp) exit
       end do
+      if (x < 0.0_wp) text = '-'//text(:longest - 1)
+   end function exact_text
+
+   !> Significant digits of a number without trailing zeros, and the power of ten of the first.
+   pure subroutine find_digits(x, count, digits, power)
+      !> Finite and not zero
+      real(wp), intent(in) :: x
+      integer, intent(in) :: count
+      character(len=longest), intent(out) :: digits
+      integer, intent(out) :: power
+      character(len=longest) :: buffer, form
+      integer :: mark
+
+      write (form, '(a, i0, a)') '(es32.', count - 1, 'e3)'
+      write (buffer, form) abs(x)
       buffer = adjustl(buffer)
       mark = index(buffer, 'E')
       read (buffer(mark + 1:), *) power
       digits = buffer(1:1)//buffer(3:mark - 1)
-      last = verify(digits(:mark - 2), '0', back=.true.)
-      if (power >= last - 1 .and. power <= 8) then
-         text = digits(:last)//repeat('0', power - last + 1)
-      else if (power >= 0 .and. power <= 8) then
-         text = digits(:power + 1)//'.'//digits(power + 2:last)
-      else if (power < 0 .and. power >= -4) then
-         text = '0.'//repeat('0', -power - 1)//digits(:last)
-      else if (last == 1) then
-         text = digits(1:1)//'e'//to_text(power)
+      digits = digits(:verify(trim(digits), '0', back=.true.))
+   end subroutine find_digits
+
+   !> A decimal number from its digits and the power of ten of the first.
+   pure character(len=longest) function with_point(digits, power) result(text)
+      character(len=*), intent(in) :: digits
+      integer, intent(in) :: power
+
+      if (power < 0) then
+         text = '0.'//repeat('0', -power - 1)//digits
+      else if (power < len(digits) - 1) then
+         text = digits(:power + 1)//'.'//digits(power + 2:)
       else
-         text = digits(1:1)//'.'//digits(2:last)//'e'//to_text(power)
+         text = digits//repeat('0', power - len(digits) + 1)
       end if
-      if (x < 0.0_wp) text = '-'//text(:longest - 1)
-   end function exact_text
+   end function with_point
 
-   !> Remove trailing zeros, and a trailing point, from a decimal number.
-   pure subroutine cut_zeros(number)
-      character(len=longest), intent(inout) :: number
-      integer :: last
+   !> Append a text.
+   subroutine append(self, text)
+      class(text_buffer), intent(inout) :: self
+      character(len=*), intent(in) :: text
+      character(len=:), allocatable :: longer
 
-      last = len_trim(number)
-      if (index(number, '.') == 0) return
-      do while (number(last:last) == '0')
-         last = last - 1
-      end do
-      if (number(last:last) == '.') last = last - 1
-      number = number(:last)
-   end subroutine cut_zeros
+      if (.not. allocated(self%text)) allocate (character(len=1024) :: self%text)
+      if (self%length + len(text) > len(self%text)) then
+         allocate (character(len=2*(self%length + len(text))) :: longer)
+         longer(:self%length) = self%text(:self%length)
+         call move_alloc(longer, self%text)
+      end if
+      self%text(self%length + 1:self%length + len(text)) = text
+      self%length = self%length + len(text)
+   end subroutine append
 
    !> Lower case (ASCII).
-   pure function lower(word) result(text)
+   elemental function lower(word) result(text)
       character(len=*), intent(in) :: word
       character(len=len(word)) :: text
       integer :: i, code
@@ -159,6 +183,18 @@ contains
          if (code >= iachar('A') .and. code <= iachar('Z')) text(i:i) = achar(code + 32)
       end do
    end function lower
+
+   !> Whether there is a further line in a text; its first and last character, from those of the line before.
+   logical function next_line(text, first, last)
+      character(len=*), intent(in) :: text
+      !> Before the first line 0 and -1
+      integer, intent(inout) :: first, last
+
+      first = last + 2
+      next_line = first <= len(text)
+      last = index(text(first:), new_line('a')) + first - 2
+      if (last == first - 2) last = len(text)
+   end function next_line
 
    !> The names joined by commas, for "valid names are ...".
    pure function list_of(names) result(text)

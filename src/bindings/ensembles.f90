@@ -4,12 +4,11 @@ module rbs_bindings_ensembles
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: to_text
+   use rbs_base_text, only: to_text, text_buffer
    use rbs_bindings_exchange, only: request_type, answer_type
    use rbs_bindings_runs, only: choose_method, watches_of
    use rbs_bindings_statements, only: structure_from_statements
    use rbs_case_case_record, only: case_record
-   use rbs_case_text_buffer, only: text_buffer
    use rbs_solve_end_state, only: end_state
    use rbs_solve_ensemble_block, only: plan_column, run_block
    use rbs_solve_ensemble_run_result, only: run_result, measure_count

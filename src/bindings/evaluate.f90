@@ -2,7 +2,7 @@
 module rbs_bindings_evaluate
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    use rbs_base_error, only: message_list
-   use rbs_base_text, only: list_of
+   use rbs_base_text, only: list_of, text_buffer
    use rbs_bindings_exchange, only: request_type, answer_type
    use rbs_bindings_ensembles, only: plan_ensemble, run_ensemble
    use rbs_bindings_files, only: case_from_file, case_to_text, test_from_file
@@ -12,7 +12,6 @@ module rbs_bindings_evaluate
    use rbs_case_case_record, only: case_record
    use rbs_case_key_list, only: keys_as_json
    use rbs_case_methods, only: method_rows
-   use rbs_case_text_buffer, only: text_buffer
    use rbs_hysteresis_spring_record, only: spring_record
    use rbs_hysteresis_springs, only: follow_path
    use rbs_loading_named_protocols, only: named_protocol
@@ -171,13 +170,12 @@ contains
 
       subroutine tell_modes()
          type(modes_type) :: modes
+         integer, allocatable :: count
          integer :: i, j
 
-         if (size(request%array('count')) > 0) then
-            call find_modes(structure, modes, answer%error, request%whole('count'))
-         else
-            call find_modes(structure, modes, answer%error)
-         end if
+         ! Not allocated, it is an argument that is left out.
+         if (size(request%array('count')) > 0) count = request%whole('count')
+         call find_modes(structure, modes, answer%error, count)
          if (allocated(answer%error)) return
          answer%text = trim(modes%warning)
          answer%value = [modes%stable_step, modes%omega]

@@ -59,7 +59,7 @@ contains
       statements%is_statement = .true.
       call write_case(case, statements)
       answer%text = statements%buffer%text(:statements%buffer%length)
-      answer%value = statements%number(:statements%count)
+      answer%value = statements%numbers%value(:statements%numbers%count)
    end subroutine case_from_file
 
    !> Whether a signal acts, and its values at common times; at its own points they are exactly its values.

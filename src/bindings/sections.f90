@@ -14,6 +14,7 @@ module rbs_bindings_sections
    use rbs_section_resultants, only: laws_type, resultants_type, section_laws
    use rbs_section_section_build, only: make_section, outline_core, figures_of_section, values_of_point, &
                                         values_of_shear_point
+   use rbs_section_section_record, only: section_record
    use rbs_section_shape, only: shape_type
    use rbs_section_shear_diagram, only: check_curvatures, follow_shear, shear_diagram_type
    use rbs_section_steel_law, only: steel_stress
@@ -29,7 +30,8 @@ contains
    subroutine evaluate_section(request, answer)
       type(request_type), intent(in) :: request
       type(answer_type), intent(inout) :: answer
-      type(group_reader) :: reader
+      type(group_reader), target :: reader
+      type(section_record), pointer :: drawn
       type(section_type) :: section
       type(message_list) :: messages
 
@@ -37,15 +39,16 @@ contains
       call put_statements(request%statement, request%number, reader, messages)
       call messages%raise(answer%error)
       if (allocated(answer%error)) return
+      drawn => reader%case%drawing(1)%section
       select case (request%what)
       case ('concrete_response')
          call respond_concrete(request%array('strain'))
          return
       case ('steel_response')
-         call reader%case%drawing%section%steels(1)%validate(messages)
+         call drawn%steels(1)%validate(messages)
          call messages%raise(answer%error)
          if (.not. allocated(answer%error)) then
-            answer%value = steel_stress(reader%case%drawing%section%steels(1)%law(), request%array('strain'))
+            answer%value = steel_stress(drawn%steels(1)%law(), request%array('strain'))
          end if
          return
       case ('section_strips')
@@ -53,7 +56,7 @@ contains
          return
       case default                                  ! asks for the section, which is made next
       end select
-      call make_section(reader%case%drawing%section, section, answer%error)
+      call make_section(drawn, section, answer%error)
       if (allocated(answer%error)) return
       select case (request%what)
       case ('check_section')
@@ -150,10 +153,10 @@ contains
          type(concrete_type) :: law
          type(message_list) :: messages
 
-         call reader%case%drawing%section%concrete%validate(messages)
+         call drawn%concrete%validate(messages)
          call messages%raise(answer%error)
          if (allocated(answer%error)) return
-         law = reader%case%drawing%section%concrete%law()
+         law = drawn%concrete%law()
          law%tension = tension_place(reader%diagram%tension)
          answer%value = concrete_stress(law, strain)
       end subroutine respond_concrete
@@ -165,10 +168,10 @@ contains
          type(shape_type), allocatable :: inside
          type(strips_type) :: strips
 
-         call outline_core(reader%case%drawing%section, round_core, inside)
-         call cut_strips(reader%case%drawing%section%shape, inside, number, strips)
+         call outline_core(drawn, round_core, inside)
+         call cut_strips(drawn%shape, inside, number, strips)
          allocate (answer%rows(4, number))
-         call strip_centroids(reader%case%drawing%section%shape, inside, strips, answer%rows(1, :), &
+         call strip_centroids(drawn%shape, inside, strips, answer%rows(1, :), &
                               answer%rows(3, :))
          answer%rows(2, :) = strips%core_area
          answer%rows(4, :) = strips%area - strips%core_area

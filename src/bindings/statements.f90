@@ -6,6 +6,7 @@
 module rbs_bindings_statements
    use, intrinsic :: iso_c_binding, only: c_double
    use rbs_base_error, only: error_type, message_list, fatal_error, bad_input
+   use rbs_base_text, only: next_line
    use rbs_case_case_record, only: case_record
    use rbs_case_group_reader, only: group_reader
    use rbs_hysteresis_layered_layered_joint, only: check_axial_load
@@ -32,13 +33,10 @@ contains
       integer :: first, last, at
 
       at = 0
-      first = 1
-      do while (first <= len(text))
-         last = index(text(first:), new_line('a'))
-         if (last == 0) last = len(text) - first + 2
-         if (last > 1) call put_group(text(first:first + last - 2))
+      last = -1
+      do while (next_line(text, first, last))
+         if (last >= first) call put_group(text(first:last))
          if (messages%count > 0) return
-         first = first + last
       end do
       call setter%finish(messages)
 
@@ -50,14 +48,12 @@ contains
          integer :: first, last
          logical :: ok
 
-         last = index(line, tab)
-         if (last == 0) last = len(line) + 1
+         last = index(line//tab, tab)
          call setter%open(line(:last - 1), '', messages, ok)
          do while (ok .and. last <= len(line))
             first = last + 1
-            last = index(line(first:), tab)
-            if (last == 0) last = len(line) - first + 2
-            last = first + last - 1
+            last = index(line(first:), tab) + first - 1
+            if (last < first) last = len(line) + 1
             call put_item(line(first:last - 1))
          end do
       end subroutine put_group
@@ -67,19 +63,15 @@ contains
          character(len=*), intent(in) :: item
          integer :: mark, place, count
 
-         mark = scan(item, '=:')
-         if (mark == 0) mark = len(item) + 1
+         mark = scan(item//':', '=:')
          call setter%find(item(:mark - 1), '', place, messages)
          if (place == 0) return
-         if (mark <= len(item)) then
-            if (item(mark:mark) == '=') then
-               call setter%put_text(place, item(mark + 1:), messages)
-               return
-            end if
-            read (item(mark + 1:), *) count
-         else
-            count = 1
+         if (index(item, '=') == mark) then
+            call setter%put_text(place, item(mark + 1:), messages)
+            return
          end if
+         count = 1
+         if (mark < len(item)) read (item(mark + 1:), *) count
          call setter%put_numbers(place, number(at + 1:at + count))
          at = at + count
       end subroutine put_item

@@ -111,22 +111,18 @@ contains
    pure logical function dynamic(self)
       class(analysis_record), intent(in) :: self
 
-      type(method_type) :: method
-
-      method = method_named(self%method)
-      dynamic = method%in_time .and. method%name /= ''
+      dynamic = any(methods%name == self%method .and. methods%in_time)
    end function dynamic
 
    !> Whether the method is one of the table.
    pure logical function known(self)
       class(analysis_record), intent(in) :: self
 
-      type(method_type) :: method
-
-      method = method_named(self%method)
-      known = method%name /= ''
+      known = any(methods%name == self%method)
    end function known
 
+   !> Add a message for every setting that is refused, or that the method does not use: the user expects it
+   !> to have an effect.
    subroutine validate_analysis(self, messages)
       class(analysis_record), intent(inout) :: self
       type(message_list), intent(inout) :: messages
@@ -142,18 +138,8 @@ contains
                               ' to 1')
          end if
       end if
-      call refuse_unused(self, messages)
-   end subroutine validate_analysis
-
-   !> Refuse settings that the method does not use: the user expects them to have an effect.
-   subroutine refuse_unused(self, messages)
-      class(analysis_record), intent(in) :: self
-      type(message_list), intent(inout) :: messages
-      type(method_type) :: method
-
-      method = method_named(self%method)
       ! A name that is not known has been reported already.
-      if (method%name == '') return
+      if (.not. self%known()) return
       call refuse('dt', is_given(self%dt))
       call refuse('duration', is_given(self%duration))
       call refuse('events', self%events /= '')
@@ -174,6 +160,6 @@ contains
                            "'; remove it or set method = "//names)
       end subroutine refuse
 
-   end subroutine refuse_unused
+   end subroutine validate_analysis
 
 end module rbs_case_analysis_record

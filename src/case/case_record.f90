@@ -5,7 +5,7 @@ module rbs_case_case_record
    use rbs_base_key_visitor, only: key_visitor, visited_record
    use rbs_base_units, only: unit_system, unit_named, length_units, force_units, mass_units
    use rbs_case_analysis_record, only: analysis_record, output_record
-   use rbs_case_drawing_record, only: add_drawing, drawing_groups, drawing_record
+   use rbs_case_drawing_record, only: drawing_groups, drawing_record
    use rbs_structure_column_column_record, only: column_record
    use rbs_loading_loading_record, only: loading_record
    use rbs_structure_frame_frame_parts, only: frame_parts
@@ -36,8 +36,8 @@ module rbs_case_case_record
       type(frame_record), allocatable :: frame
       !> Its nodes and members, once it has been validated
       type(frame_parts), allocatable :: parts
-      !> What its springs were drawn from, if that is known; of a drawn frame the last, and those before it
-      type(drawing_record), allocatable :: drawing, earlier(:)
+      !> Drawings that its springs were made of, if they are known: one of a column, several of a drawn frame
+      type(drawing_record), allocatable :: drawing(:)
       !> Number of loadings
       integer :: loadings = 0
       type(loading_record) :: loading(most_loadings)
@@ -60,6 +60,9 @@ contains
    subroutine open_group(self, group)
       class(case_record), intent(inout) :: self
       character(len=*), intent(in) :: group
+      type(drawing_record), allocatable :: longer(:)
+      logical :: is_new
+      integer :: n
 
       if (group == 'loading') self%loadings = self%loadings + 1
       if (any(frame_groups == group)) then
@@ -67,17 +70,19 @@ contains
          call self%frame%open_group(group)
       end if
       if (all(drawing_groups /= group)) return
-      if (allocated(self%drawing) .and. group == 'drawing') then
-         if (self%drawing%stated) then
-            call add_drawing(self%earlier, self%drawing)
-            deallocate (self%drawing)
-         end if
+      n = 0
+      if (allocated(self%drawing)) n = size(self%drawing)
+      is_new = n == 0
+      if (group == 'drawing' .and. n > 0) is_new = self%drawing(n)%stated
+      if (is_new) then
+         allocate (longer(n + 1))
+         if (n > 0) longer(:n) = self%drawing
+         call move_alloc(longer, self%drawing)
       end if
-      if (.not. allocated(self%drawing)) allocate (self%drawing)
-      call self%drawing%open_group(group)
+      call self%drawing(size(self%drawing))%open_group(group)
    end subroutine open_group
 
-   !> Present the keys of a group.
+   !> Present the keys of a group; those of a drawing are of the last one.
    subroutine visit_group(self, group, v, number)
       class(case_record), intent(inout) :: self
       character(len=*), intent(in) :: group
@@ -107,7 +112,7 @@ contains
          if (any(frame_groups == group)) then
             call self%frame%visit_group(group, v, number)
          else
-            call self%drawing%visit_group(group, v, number)
+            call self%drawing(size(self%drawing))%visit_group(group, v, number)
          end if
       end select
    end subroutine visit_group
@@ -190,12 +195,13 @@ contains
       else
          call self%column%validate(messages)
       end if
-      if (allocated(self%drawing)) call self%drawing%validate(allocated(self%frame), messages)
-      if (allocated(self%earlier)) then
-         do i = 1, size(self%earlier)
-            call self%earlier(i)%validate(allocated(self%frame), messages)
+      if (allocated(self%drawing)) then
+         do i = 1, size(self%drawing)
+            call self%drawing(i)%validate(allocated(self%frame), messages)
          end do
-         if (.not. allocated(self%frame)) call messages%add('drawing: a column has one; remove the others')
+         if (size(self%drawing) > 1 .and. .not. allocated(self%frame)) then
+            call messages%add('drawing: a column has one; remove the others')
+         end if
       end if
       if (self%analysis%method == '') then
          call messages%add("analysis: the loading has times, so method must be named: 'static' for the "// &
@@ -225,14 +231,13 @@ contains
          allocate (self%parts)
          with_kinds = self%frame
          ! Elastic members in place of drawn ones, for the checks of all else.
-         if (allocated(self%earlier)) then
-            do i = 1, size(self%earlier)
-               call stand_in(self%earlier(i)%name)
+         if (allocated(self%drawing)) then
+            do i = 1, size(self%drawing)
+               call stand_in(self%drawing(i)%name)
             end do
          end if
-         if (allocated(self%drawing)) call stand_in(self%drawing%name)
          call self%parts%find(with_kinds, messages)
-         if (allocated(self%earlier) .or. allocated(self%drawing)) deallocate (self%parts)
+         if (allocated(self%drawing)) deallocate (self%parts)
          call self%column%damping%check('damping', messages)
          if (any(self%loading(:self%loadings)%drive == 'axial_load')) then
             call messages%add("loading: drive = 'axial_load' is for columns; in a frame they carry the "// &

@@ -9,13 +9,13 @@ module rbs_case_drawing_record
    use rbs_base_kinds, only: wp
    use rbs_structure_column_column_record, only: most_bodies
    use rbs_structure_frame_frame_record, only: name_length
-   use rbs_section_cross_section, only: spiral, ties
+   use rbs_section_cross_section, only: no_ties, spiral, ties
    use rbs_section_section_record, only: append_steel, find_steel, section_record
    use rbs_section_shape, only: bar_size
    implicit none
    private
 
-   public :: add_drawing, drawing_record
+   public :: drawing_record
 
    !> The groups of a drawing.
    character(len=12), parameter, public :: drawing_groups(10) = [character(len=12) :: &
@@ -63,6 +63,7 @@ module rbs_case_drawing_record
       integer :: hoops = 0
    contains
       procedure :: open_group
+      procedure :: count_of
       procedure :: visit => visit_drawing
       procedure :: visit_group
       procedure :: validate
@@ -97,6 +98,20 @@ contains
       end select
    end subroutine open_group
 
+   !> How many groups of a name there are.
+   pure integer function count_of(self, group) result(number)
+      class(drawing_record), intent(in) :: self
+      character(len=*), intent(in) :: group
+
+      number = 1
+      if (group == 'steel') number = size(self%section%steels)
+      if (group == 'parameter') number = size(self%parameters)
+      if (group == 'layout') number = merge(1, 0, allocated(self%layout))
+      if (group == 'inner_layout') number = merge(1, 0, allocated(self%inner_layout))
+      if (group == 'ties') number = merge(1, 0, self%section%hoops%kind == ties)
+      if (group == 'spiral') number = merge(1, 0, all(self%section%hoops%kind /= [no_ties, ties]))
+   end function count_of
+
    !> Present the keys of a group.
    subroutine visit_group(self, group, v, number)
       class(drawing_record), intent(inout) :: self
@@ -106,9 +121,7 @@ contains
       integer, intent(in), optional :: number
       integer :: i
 
-      i = 0
-      if (group == 'steel') i = size(self%section%steels)
-      if (group == 'parameter') i = size(self%parameters)
+      i = self%count_of(group)
       if (present(number)) i = number
       select case (group)
       case ('section')
@@ -189,9 +202,9 @@ contains
          if (of_frame) then
             if (self%name == '') call messages%add('drawing: name is missing; members of the frame name it')
          else
-            call require(is_given(self%height), 'height is missing; give it a value in m')
-            call require(is_given(self%axial_load), 'axial_load is missing; give it a value in N')
-            call require(is_given(self%n), 'n is missing; give it a value')
+            call require('height', is_given(self%height), ' in m')
+            call require('axial_load', is_given(self%axial_load), ' in N')
+            call require('n', is_given(self%n), '')
          end if
       end if
       call self%section%validate(messages)
@@ -208,28 +221,13 @@ contains
 
    contains
 
-      subroutine require(there, text)
-         logical, intent(in) :: there
-         character(len=*), intent(in) :: text
+      subroutine require(name, given, unit)
+         character(len=*), intent(in) :: name, unit
+         logical, intent(in) :: given
 
-         if (.not. there) call messages%add('drawing: '//text)
+         if (.not. given) call messages%add('drawing: '//name//' is missing; give it a value'//unit)
       end subroutine require
    end subroutine validate
-
-   !> Add a drawing to a list.
-   subroutine add_drawing(list, drawing)
-      type(drawing_record), allocatable, intent(inout) :: list(:)
-      type(drawing_record), intent(in) :: drawing
-      type(drawing_record), allocatable :: longer(:)
-      integer :: n
-
-      n = 0
-      if (allocated(list)) n = size(list)
-      allocate (longer(n + 1))
-      if (n > 0) longer(:n) = list
-      longer(n + 1) = drawing
-      call move_alloc(longer, list)
-   end subroutine add_drawing
 
    !> The values of a layout, and its steels.
    subroutine check_layout(section, name, layout, messages)

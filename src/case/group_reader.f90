@@ -3,8 +3,8 @@
 module rbs_case_group_reader
    use rbs_base_error, only: message_list
    use rbs_base_key_visitor, only: key_visitor
-   use rbs_base_keys, only: key_type, find_key, choice_list, choice_name, choice_place, text_kind, &
-                            word_kind, force, deformation, stiffness
+   use rbs_base_keys, only: key_type, find_key, choice_list, choice_name, choice_place, word_kind, &
+                            force, deformation, stiffness
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text, lower, suggestion, list_of
    use rbs_base_units, only: unit_system
@@ -80,7 +80,7 @@ contains
       character(len=*), intent(in) :: where
       type(message_list), intent(inout) :: messages
       logical, intent(out) :: ok
-      integer :: i, place, known, where_seen
+      integer :: i, place, known
 
       known = messages%count
       self%group = group
@@ -97,11 +97,9 @@ contains
          call messages%add_at(where, '&loading appears more than '//to_text(most_loadings)//' times')
       else if (group == 'drawing' .and. self%seen(place)) then
          ! Each drawing of a frame has groups of its own.
-         do i = 1, size(drawing_groups)
-            where_seen = findloc(group_names == drawing_groups(i), .true., dim=1)
-            self%seen(where_seen) = .false.
+         do i = 1, size(group_names)
+            if (any(drawing_groups == group_names(i))) self%seen(i) = i == place
          end do
-         self%seen(place) = .true.
       else if (self%seen(place) .and. all(repeated /= group)) then
          call messages%add_at(where, '&'//trim(group)//' appears twice; it may appear once')
       else
@@ -165,6 +163,7 @@ contains
       type(message_list), intent(inout) :: messages
       type(key_type), allocatable :: others(:)
       character(len=len(self%keys%name)) :: names(size(self%keys))
+      character(len=:), allocatable :: remedy
       integer :: i
 
       place = find_key(self%keys, name)
@@ -182,13 +181,9 @@ contains
          end associate
       end do
       names = self%keys%name
-      if (suggestion(name, names) /= '') then
-         call messages%add_at(where, '&'//trim(self%group)//" has no '"//trim(name)//"'"// &
-                              suggestion(name, names))
-      else
-         call messages%add_at(where, '&'//trim(self%group)//" has no '"//trim(name)//"'; rbsdem keys "// &
-                              trim(self%group)//' lists what it has')
-      end if
+      remedy = suggestion(name, names)
+      if (remedy == '') remedy = '; rbsdem keys '//trim(self%group)//' lists what it has'
+      call messages%add_at(where, '&'//trim(self%group)//" has no '"//trim(name)//"'"//remedy)
    end subroutine find
 
    !> Set the key at a place to numbers, whole numbers, or 0 and 1.
@@ -231,25 +226,21 @@ contains
             i = i + 1
          end do
       end if
-      if (self%is_spring()) then
-         if (key%name == 'rule') then
-            text = lower(text)
-            call self%entries%entry(self%entries%count)%set_rule(text)
-            call keys_of(text, self%rule_keys)
-            call self%collect_keys()
-         else if (key%kind == text_kind) then
-            call self%visitor%put(key%name, text=text)
-            call self%visit_open()
-            call self%visitor%end_check(messages)
-         else if (choice_place(key, text) > 0) then
+      if (self%is_spring() .and. key%name == 'rule') then
+         text = lower(text)
+         call self%entries%entry(self%entries%count)%set_rule(text)
+         call keys_of(text, self%rule_keys)
+         call self%collect_keys()
+         return
+      else if (self%is_spring() .and. key%kind == word_kind) then
+         if (choice_place(key, text) > 0) then
             call self%put_numbers(place, [real(choice_place(key, text), wp)])
          else
             call messages%add_at(self%where, trim(self%group)//' spring: '//trim(key%name)//" = '"// &
                                  trim(text)//"' is not known; it is one of "//trim(choice_list(key)))
          end if
          return
-      end if
-      if (key%kind == word_kind .and. text == '') then
+      else if (key%kind == word_kind .and. text == '') then
          call messages%add_at(self%where, trim(self%group)//': '//trim(key%name)// &
                               " = '' is not known; it is one of "//key%choices)
          return

@@ -5,17 +5,20 @@ module rbs_case_key_list
    use rbs_base_error, only: bad_input, error_type, fatal_error, message_list
    use rbs_base_key_visitor, only: key_visitor
    use rbs_base_keys, only: key_type, bound_text, choice_name, choice_length, real_kind, integer_kind, &
-                            logical_kind, word_kind
+                            logical_kind, word_kind, text_kind
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: exact_text, lower, suggestion, to_text
+   use rbs_base_text, only: exact_text, lower, suggestion, to_text, text_buffer
    use rbs_case_group_reader, only: group_names, group_reader, section_groups
-   use rbs_case_text_buffer, only: text_buffer
    use rbs_hysteresis_registry, only: rule_names, keys_of, places_of
    use rbs_section_shape, only: new_shape, shape_names, shape_type
    implicit none
    private
 
    public :: keys_as_json, keys_as_table
+
+   !> Kinds of values, and their names.
+   character(len=*), parameter :: kinds = real_kind//integer_kind//logical_kind//word_kind//text_kind
+   character(len=7), parameter :: kind_names(5) = ['real   ', 'integer', 'logical', 'word   ', 'text   ']
 
 contains
 
@@ -93,9 +96,11 @@ contains
       type(text_buffer), intent(inout) :: buffer
       type(key_type), intent(in) :: key
       character(len=choice_length) :: choice
+      character(len=:), allocatable :: quote
       integer :: i
 
-      call buffer%append('{"name": "'//trim(key%name)//'", "kind": "'//trim(kind_name(key%kind))//'"')
+      call buffer%append('{"name": "'//trim(key%name)//'", "kind": "'// &
+                         trim(kind_names(index(kinds, key%kind)))//'"')
       if (key%unit /= '') call buffer%append(', "unit": "'//trim(key%unit)//'"')
       if (key%bound%least > -huge(1.0_wp)) then
          call buffer%append(', "least": '//trim(exact_text(key%bound%least)))
@@ -116,33 +121,14 @@ contains
          call buffer%append(']')
       end if
       if (default_of(key) /= '') then
-         if (key%kind == real_kind .or. key%kind == integer_kind .or. key%kind == logical_kind) then
-            call buffer%append(', "default": '//trim(default_of(key)))
-         else
-            call buffer%append(', "default": "'//trim(default_of(key))//'"')
-         end if
+         quote = ''
+         if (key%kind == word_kind .or. key%kind == text_kind) quote = '"'
+         call buffer%append(', "default": '//quote//trim(default_of(key))//quote)
       end if
       if (key%optional) call buffer%append(', "optional": true')
       if (key%most > 1) call buffer%append(', "values": '//to_text(key%most))
       call buffer%append(', "meaning": "'//trim(key%meaning)//'"}')
    end subroutine append_key
-
-   pure character(len=8) function kind_name(kind) result(name)
-      character(len=1), intent(in) :: kind
-
-      select case (kind)
-      case (real_kind)
-         name = 'real'
-      case (integer_kind)
-         name = 'integer'
-      case (logical_kind)
-         name = 'logical'
-      case (word_kind)
-         name = 'word'
-      case default
-         name = 'text'
-      end select
-   end function kind_name
 
    !> The default as text; blank if there is none.
    pure character(len=32) function default_of(key) result(text)
@@ -201,26 +187,21 @@ contains
    subroutine append_rows(buffer, keys)
       type(text_buffer), intent(inout) :: buffer
       type(key_type), intent(in) :: keys(:)
-      character(len=24) :: name
-      character(len=8) :: kind
-      character(len=16) :: unit
-      character(len=32) :: default
+      character(len=77) :: columns
       character(len=48) :: bound
       integer :: i
 
       do i = 1, size(keys)
-         name = keys(i)%name
-         kind = kind_name(keys(i)%kind)
-         if (keys(i)%most > 1) kind = 'list'
-         unit = keys(i)%unit
-         default = default_of(keys(i))
-         bound = bound_text(keys(i)%bound)
-         if (keys(i)%kind == word_kind) bound = 'see meaning'
-         call buffer%append('  '//name//kind//' '//unit(:12)//bound(:18)//default(:12)//trim(keys(i)%meaning))
-         if (keys(i)%kind == word_kind .and. keys(i)%choices /= '') then
-            call buffer%append(': '//trim(keys(i)%choices))
-         end if
-         call buffer%append(new_line('a'))
+         associate (key => keys(i))
+            bound = bound_text(key%bound)
+            if (key%kind == word_kind) bound = 'see meaning'
+            write (columns, '(2x, a24, a7, 2x, a12, a18, a12)') key%name, &
+               merge('list   ', kind_names(index(kinds, key%kind)), key%most > 1), key%unit, bound, &
+               default_of(key)
+            call buffer%append(columns//trim(key%meaning))
+            if (key%kind == word_kind .and. key%choices /= '') call buffer%append(': '//trim(key%choices))
+            call buffer%append(new_line('a'))
+         end associate
       end do
    end subroutine append_rows
 

@@ -11,7 +11,7 @@ module rbs_case_spring_entry
    use rbs_hysteresis_registry, only: rule_names, suits
    use rbs_hysteresis_rule, only: in_layer
    use rbs_hysteresis_spring_record, only: spring_record
-   use rbs_structure_frame_frame_record, only: frame_record, frame_spring, name_length
+   use rbs_structure_frame_frame_record, only: frame_record, frame_spring
    implicit none
    private
 
@@ -27,21 +27,14 @@ module rbs_case_spring_entry
    character(len=16), parameter, public :: spring_groups(5) = [character(len=16) :: &
       'shear', 'flexure', 'axial_spring', 'layer_spring', 'layers']
 
-   !> One group of the input that gives a spring, or the layers of joints.
-   type :: spring_entry
-      !> 'shear', 'flexure', 'axial_spring', 'layer_spring' or 'layers'
-      character(len=16) :: group = ''
+   !> One of these groups: a spring of a joint, a spring of layers, or the layers of joints.
+   type, extends(frame_spring) :: spring_entry
       !> For messages: 'case.nml line 4: ' or blank
       character(len=80) :: where = ''
       !> Joints that have the spring; not allocated: all joints that no other group names
       integer, allocatable :: joint(:)
-      !> In a frame: the kind of members that has the spring, at places in shares of their length, the node
-      !> that it holds to the ground, or the node in whose panel it is
-      character(len=name_length) :: kind = '', node = '', panel = ''
-      real(wp), allocatable :: place(:)
       !> Number by which layers refer to the spring
       integer :: id = unset_integer
-      type(spring_record) :: spring
       !> Distances of layers [m], and their springs
       real(wp), allocatable :: y(:)
       integer, allocatable :: layer(:)
@@ -167,12 +160,7 @@ contains
             end if
             if (any(entry%group == spring_groups(4:))) cycle
             n = n + 1
-            spring(n)%group = entry%group
-            spring(n)%kind = entry%kind
-            spring(n)%node = entry%node
-            spring(n)%panel = entry%panel
-            spring(n)%spring = entry%spring
-            if (allocated(entry%place)) spring(n)%place = entry%place
+            spring(n) = entry%frame_spring
             if (entry%spring%rule /= 'layered' .or. messages%count > known) cycle
             ! The layers of its kind of members and its places
             do j = list%count, 1, -1

@@ -5,15 +5,14 @@ module rbs_case_writer
    use rbs_base_key_visitor, only: key_visitor, entry_type
    use rbs_base_keys, only: key_type, integer_kind, logical_kind
    use rbs_base_kinds, only: wp
-   use rbs_base_text, only: to_text, exact_text
+   use rbs_base_stream, only: stream_type
+   use rbs_base_text, only: to_text, exact_text, text_buffer
    use rbs_case_case_record, only: case_record
-   use rbs_case_drawing_record, only: drawing_record
+   use rbs_case_drawing_record, only: drawing_groups, drawing_record
    use rbs_case_spring_entry, only: entry_list, spring_entry
-   use rbs_case_text_buffer, only: text_buffer
    use rbs_structure_frame_frame_record, only: frame_groups
    use rbs_hysteresis_registry, only: keys_of
    use rbs_hysteresis_spring_record, only: spring_record
-   use rbs_section_cross_section, only: no_ties
    use rbs_section_shape, only: new_shape
    implicit none
    private
@@ -28,8 +27,8 @@ module rbs_case_writer
    type :: case_text
       logical :: is_statement = .false.
       type(text_buffer) :: buffer
-      integer :: count = 0
-      real(wp), allocatable :: number(:)
+      !> Numbers of a statement
+      type(stream_type) :: numbers
    contains
       procedure :: group => add_group
    end type case_text
@@ -42,7 +41,6 @@ contains
       type(case_text), intent(inout) :: text
       !> Springs of layers that have been written before
       type(entry_list) :: layer_springs
-      type(drawing_record), allocatable :: last
       integer :: i
 
       call write_record('case')
@@ -57,16 +55,11 @@ contains
          call write_springs('flexure', case%column%flexure)
          call write_springs('axial_spring', case%column%axial_spring)
       end if
-      if (allocated(case%earlier)) then
-         ! Keys are visited of the present drawing.
-         call move_alloc(case%drawing, last)
-         do i = 1, size(case%earlier)
-            case%drawing = case%earlier(i)
-            call write_drawing()
+      if (allocated(case%drawing)) then
+         do i = 1, size(case%drawing)
+            call write_drawing(case%drawing(i))
          end do
-         call move_alloc(last, case%drawing)
       end if
-      if (allocated(case%drawing)) call write_drawing()
       do i = 1, case%loadings
          call write_record('loading', i)
       end do
@@ -86,56 +79,49 @@ contains
             end do
          end do
          do i = 1, size(case%frame%spring)
-            entry = spring_entry(group=case%frame%spring(i)%group, spring=case%frame%spring(i)%spring)
-            entry%kind = case%frame%spring(i)%kind
-            entry%node = case%frame%spring(i)%node
-            entry%panel = case%frame%spring(i)%panel
-            if (allocated(case%frame%spring(i)%place)) entry%place = case%frame%spring(i)%place
+            entry%frame_spring = case%frame%spring(i)
             call write_spring(entry)
-            if (allocated(case%frame%spring(i)%spring%y)) call write_layers(entry)
+            if (allocated(entry%spring%y)) call write_layers(entry)
          end do
       end subroutine write_frame
 
       !> Write the values of a group that differ from those of a new record.
-      subroutine write_record(group, number)
+      subroutine write_record(group, number, drawing)
          character(len=*), intent(in) :: group
          !> Which of several
          integer, intent(in), optional :: number
+         !> Drawing that the group is of
+         type(drawing_record), intent(inout), optional :: drawing
          type(case_record) :: new
          type(key_visitor) :: v
 
          call new%open_group(group)
          if (group == 'section') then
-            call new_shape(case%drawing%section%shape_name, unset, unset, new%drawing%section%shape)
+            call new_shape(drawing%section%shape_name, unset, unset, new%drawing(1)%section%shape)
          end if
          call v%collect(group)
          call new%visit_group(group, v)
          call v%list()
-         call case%visit_group(group, v, number)
+         if (present(drawing)) then
+            call drawing%visit_group(group, v, number)
+         else
+            call case%visit_group(group, v, number)
+         end if
          if (v%listed > 0 .or. any(group == [character(len=7) :: 'column', 'loading', 'frame'])) then
             call text%group(group, v%entry(:v%listed))
          end if
       end subroutine write_record
 
-      !> Write what a column was drawn from.
-      subroutine write_drawing()
-         integer :: i
+      !> Write the groups of a drawing, in the order of their names.
+      subroutine write_drawing(drawing)
+         type(drawing_record), intent(inout) :: drawing
+         integer :: g, i
 
-         call write_record('drawing')
-         call write_record('section')
-         call write_record('concrete')
-         associate (drawing => case%drawing)
-            do i = 1, size(drawing%section%steels)
-               call write_record('steel', i)
+         do g = 1, size(drawing_groups)
+            do i = 1, drawing%count_of(drawing_groups(g))
+               call write_record(trim(drawing_groups(g)), i, drawing)
             end do
-            call write_record('bars')
-            if (allocated(drawing%layout)) call write_record('layout')
-            if (allocated(drawing%inner_layout)) call write_record('inner_layout')
-            if (drawing%section%hoops%kind /= no_ties) call write_record(trim(drawing%section%hoops%name()))
-            do i = 1, size(drawing%parameters)
-               call write_record('parameter', i)
-            end do
-         end associate
+         end do
       end subroutine write_drawing
 
       !> Write a spring, or the layers of joints.
@@ -162,10 +148,9 @@ contains
          type(spring_record) :: layer
          integer :: i, j
 
-         layers = spring_entry(group='layers', y=joint%spring%y)
-         if (allocated(joint%joint)) layers%joint = joint%joint
-         layers%kind = joint%kind
-         if (allocated(joint%place)) layers%place = joint%place
+         layers = joint
+         layers%group = 'layers'
+         layers%y = joint%spring%y
          allocate (layers%layer(size(layers%y)))
          do i = 1, size(layers%y)
             layer = joint%spring%layer(i)
@@ -205,7 +190,8 @@ contains
          end do
          do i = 1, size(spring)
             if (first(i) /= i) cycle
-            entry = spring_entry(group=group, spring=spring(i))
+            entry%group = group
+            entry%spring = spring(i)
             if (any(first /= 1) .or. beneath > 0) then
                entry%joint = pack([(j - beneath, j=1, size(first))], first == i)
             end if
@@ -220,7 +206,7 @@ contains
    subroutine add_group(self, name, entry)
       class(case_text), intent(inout) :: self
       character(len=*), intent(in) :: name
-      type(entry_type), intent(in) :: entry(:)
+      type(entry_type), intent(inout) :: entry(:)
 
       if (self%is_statement) then
          call statement_group()
@@ -243,24 +229,10 @@ contains
                cycle
             end if
             if (size(entry(i)%number) /= 1) call self%buffer%append(':'//to_text(size(entry(i)%number)))
-            call add_numbers(entry(i)%number)
+            call self%numbers%item(entry(i)%number)
          end do
          call self%buffer%append(new_line('a'))
       end subroutine statement_group
-
-      subroutine add_numbers(number)
-         real(wp), intent(in) :: number(:)
-         real(wp), allocatable :: longer(:)
-
-         if (.not. allocated(self%number)) allocate (self%number(256))
-         if (self%count + size(number) > size(self%number)) then
-            allocate (longer(2*(self%count + size(number))))
-            longer(:self%count) = self%number(:self%count)
-            call move_alloc(longer, self%number)
-         end if
-         self%number(self%count + 1:self%count + size(number)) = number
-         self%count = self%count + size(number)
-      end subroutine add_numbers
 
    end subroutine add_group
 

@@ -20,6 +20,7 @@ module rbs_io_history
    integer, parameter :: most_columns = 64
 
    character(len=1), parameter :: tab = achar(9)
+   character(len=*), parameter :: blanks = ' '//tab
 
    !> First and last characters of the fields of a line.
    type :: field_list
@@ -58,21 +59,18 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(text_file) :: file
 
+      logical :: at2
+
       call load_text(file, path, most_bytes, error)
       if (allocated(error)) return
       history%peer = format == 'peer'
       if (format == 'auto') history%peer = is_peer(file)
-      call file%go_back()
-      if (.not. history%peer) then
-         if (is_at2(file)) then
-            call file%go_back()
-            call read_at2()
-            return
-         end if
-         call file%go_back()
-      end if
+      at2 = .not. history%peer
+      if (at2) at2 = is_at2(file)
       if (history%peer) then
          call read_peer()
+      else if (at2) then
+         call read_at2()
       else
          call read_csv()
       end if
@@ -84,7 +82,7 @@ contains
          type(field_list) :: fields
          character(len=:), allocatable :: head
          real(wp) :: numbers(2), value
-         integer :: first, last, i, count, rows, status
+         integer :: first, last, i, count, status
          logical :: found
 
          history%name = path(index(path, '/', back=.true.) + 1:)
@@ -119,31 +117,24 @@ contains
          end if
          history%columns = 2
          history%labels = [character(len=len(history%labels)) :: 'time_s', 'acceleration_g']
-         allocate (history%values(2, nint(numbers(1))))
-         rows = 0
-         do
+         history%rows = nint(numbers(1))
+         allocate (history%values(2, history%rows))
+         count = 0
+         do while (count <= history%rows)
             call file%next_line(first, last, found)
             if (.not. found) exit
             call split(file%text(:last), first, ' ', fields)
             do i = 1, fields%count
-               associate (word => file%text(fields%first(i):fields%last(i)))
-                  call read_real(word, value, status)
-                  if (status /= number_ok) then
-                     call report_number(path, file%line, i, word, status, error)
-                     return
-                  end if
-               end associate
-               rows = rows + 1
-               if (rows > nint(numbers(1))) exit
-               history%values(1, rows) = (rows - 1)*numbers(2)
-               history%values(2, rows) = value
+               call read_field(fields, i, value)
+               if (allocated(error)) return
+               count = count + 1
+               if (count > history%rows) exit
+               history%values(:, count) = [(count - 1)*numbers(2), value]
             end do
-            if (rows > nint(numbers(1))) exit
          end do
-         history%rows = nint(numbers(1))
-         if (rows /= history%rows) then
+         if (count /= history%rows) then
             call fatal_error(error, bad_input, path//': line 4 declares '//to_text(history%rows)// &
-                             ' values, but there are '//trim(merge('more ', 'fewer', rows > history%rows))// &
+                             ' values, but there are '//trim(merge('more ', 'fewer', count > history%rows))// &
                              '; the file is cut or mixed up')
          end if
       end subroutine read_at2
@@ -225,7 +216,6 @@ contains
          history%labels = ''
          if (named) then
             do i = 1, fields%count
-               call trim_field(file%text, fields%first(i), fields%last(i))
                history%labels(i) = file%text(fields%first(i):fields%last(i))
             end do
          else
@@ -244,7 +234,7 @@ contains
       subroutine read_rows(separator)
          character(len=1), intent(in) :: separator
          type(field_list) :: fields
-         integer :: first, last, rows, i, status, begin(2)
+         integer :: first, last, rows, i, begin(2)
          logical :: found
 
          begin = file%place()
@@ -281,16 +271,30 @@ contains
             end if
             history%rows = history%rows + 1
             do i = 1, fields%count
-               associate (word => file%text(fields%first(i):fields%last(i)))
-                  call read_real(word, history%values(i, history%rows), status)
-                  if (status /= number_ok) then
-                     call report_number(path, file%line, i, word, status, error)
-                     return
-                  end if
-               end associate
+               call read_field(fields, i, history%values(i, history%rows))
+               if (allocated(error)) return
             end do
          end do
       end subroutine read_rows
+
+      !> Number of a field of the present line.
+      subroutine read_field(fields, i, value)
+         type(field_list), intent(in) :: fields
+         integer, intent(in) :: i
+         real(wp), intent(out) :: value
+         character(len=:), allocatable :: remedy
+         integer :: status
+
+         associate (word => file%text(fields%first(i):fields%last(i)))
+            call read_real(word, value, status)
+            if (status == number_ok) return
+            remedy = 'is not a number; correct the file ('//elsewhere//')'
+            if (status == number_not_finite) remedy = 'is not a finite number; correct the file'
+            if (word == '') remedy = 'is empty; correct the file'
+            call fatal_error(error, bad_input, path//' line '//to_text(file%line)//', value '//to_text(i)// &
+                             ": '"//snippet(word)//"' "//remedy)
+         end associate
+      end subroutine read_field
 
    end subroutine read_history
 
@@ -298,32 +302,40 @@ contains
    logical function is_peer(file)
       type(text_file), intent(inout) :: file
       type(field_list) :: fields
-      real(wp) :: value
-      integer :: first, last, status, i, numbers
+      integer :: first(3), last(3), i, columns
       logical :: found
 
-      is_peer = .false.
-      call file%next_line(first, last, found)
-      if (.not. found) return
-      call split(file%text(:last), first, ' ', fields)
-      if (fields%count == 0) return
+      call file%go_back()
+      do i = 1, 3
+         call file%next_line(first(i), last(i), found)
+      end do
+      call file%go_back()
+      call split(file%text(:last(3)), first(3), ' ', fields)
+      columns = fields%count
+      is_peer = found .and. columns >= 2
+      if (.not. is_peer) return
       ! The name of a test may be a number, but a line with as many numbers as a row is itself a row.
+      call split(file%text(:last(1)), first(1), ' ', fields)
+      is_peer = fields%count > 0 .and. (fields%count /= columns .or. &
+                                        count_numbers(file%text, fields) < columns)
+      ! A csv separated by blanks may have the row `0 0` there.
+      call split(file%text(:last(2)), first(2), ' ', fields)
+      is_peer = is_peer .and. count_of(file%text(first(2):last(2))) >= merge(0, 1, fields%count == 1)
+   end function is_peer
+
+   !> How many fields of a line are numbers.
+   integer function count_numbers(text, fields) result(numbers)
+      character(len=*), intent(in) :: text
+      type(field_list), intent(in) :: fields
+      real(wp) :: value
+      integer :: status, i
+
       numbers = 0
       do i = 1, fields%count
-         call read_real(file%text(fields%first(i):fields%last(i)), value, status)
+         call read_real(text(fields%first(i):fields%last(i)), value, status)
          if (status == number_ok) numbers = numbers + 1
       end do
-      if (numbers < fields%count) numbers = 0
-      call file%next_line(first, last, found)
-      if (.not. found) return
-      ! A csv separated by blanks may have the row `0 0` there.
-      call split(file%text(:last), first, ' ', fields)
-      if (count_of(file%text(first:last)) < merge(0, 1, fields%count == 1)) return
-      call file%next_line(first, last, found)
-      if (.not. found) return
-      call split(file%text(:last), first, ' ', fields)
-      is_peer = fields%count >= 2 .and. numbers /= fields%count
-   end function is_peer
+   end function count_numbers
 
    !> An AT2 file of a ground motion has four lines above its numbers, the last with their count, NPTS, and
    !> the time step, DT.
@@ -332,13 +344,12 @@ contains
       integer :: first, last, i
       logical :: found
 
-      is_at2 = .false.
+      call file%go_back()
       do i = 1, at2_head
          call file%next_line(first, last, found)
-         if (.not. found) return
       end do
-      is_at2 = index(file%text(first:last), 'NPTS') > 0
-      if (is_at2) is_at2 = index(file%text(first:last), 'DT') > 0
+      is_at2 = index(file%text(first:last), 'NPTS') > 0 .and. index(file%text(first:last), 'DT') > 0
+      call file%go_back()
    end function is_at2
 
    !> The count on the second line of a PEER file, alone or followed by one 0; -1 if the line is not a count.
@@ -357,20 +368,6 @@ contains
       end associate
    end function count_of
 
-   !> A field that is not a number, as an error.
-   subroutine report_number(path, line, column, word, status, error)
-      character(len=*), intent(in) :: path, word
-      integer, intent(in) :: line, column, status
-      type(error_type), allocatable, intent(out) :: error
-      character(len=:), allocatable :: remedy
-
-      remedy = 'is not a number; correct the file ('//elsewhere//')'
-      if (status == number_not_finite) remedy = 'is not a finite number; correct the file'
-      if (word == '') remedy = 'is empty; correct the file'
-      call fatal_error(error, bad_input, path//' line '//to_text(line)//', value '//to_text(column)// &
-                       ": '"//snippet(word)//"' "//remedy)
-   end subroutine report_number
-
    !> Cut a line into at most `most_columns` + 1 fields. If the separator is a blank, any run of blanks and
    !> tabs separates two fields.
    subroutine split(line, first, separator, fields)
@@ -382,18 +379,14 @@ contains
       integer :: at, last, stop_at
 
       at = first
-      last = len(line)
       ! Spreadsheets may write separators at the end of every line.
-      do while (last >= first)
-         if (scan(line(last:last), ' '//tab) == 0) exit
-         last = last - 1
-      end do
+      last = first - 1 + verify(line(first:), blanks, back=.true.)
       do while (at <= last .and. fields%count <= most_columns)
          if (separator == ' ') then
-            stop_at = verify(line(at:last), ' '//tab)
+            stop_at = verify(line(at:last), blanks)
             if (stop_at == 0) exit
             at = at + stop_at - 1
-            stop_at = scan(line(at:last), ' '//tab)
+            stop_at = scan(line(at:last), blanks)
          else
             stop_at = end_of_field(line(at:last), separator)
          end if
@@ -435,14 +428,8 @@ contains
       integer :: pass
 
       do pass = 1, 2
-         do while (first <= last)
-            if (scan(line(first:first), ' '//tab) == 0) exit
-            first = first + 1
-         end do
-         do while (last >= first)
-            if (scan(line(last:last), ' '//tab) == 0) exit
-            last = last - 1
-         end do
+         last = first - 1 + verify(line(first:last), blanks, back=.true.)
+         first = first + max(verify(line(first:last), blanks), 1) - 1
          if (pass == 2 .or. last <= first) return
          if (line(first:first) /= '"' .or. line(last:last) /= '"') return
          first = first + 1
@@ -454,7 +441,7 @@ contains
       character(len=*), intent(in) :: line
       integer :: at
 
-      at = verify(line, ' '//tab)
+      at = verify(line, blanks)
       is_blank = at == 0
       if (at > 0) is_blank = line(at:at) == '#'
    end function is_blank

@@ -60,18 +60,15 @@ contains
 
    contains
 
-      !> Take the times from their column, or from the interval between rows.
+      !> Take the times, in seconds, from their column or from the interval between rows.
       subroutine find_times()
+         character(len=*), parameter :: seconds(5) = [character(len=7) :: '', 's', 'sec', 'second', 'seconds']
          integer :: column, i
 
-         column = 0
+         column = findloc(is_time(history%labels), .true., dim=1)
          if (spec%time_column /= '') then
             call find_column(history, path, 'time', spec%time_column, 'time_column', column, error)
             if (allocated(error)) return
-         else
-            do i = history%columns, 1, -1
-               if (is_time(history%labels(i))) column = i
-            end do
          end if
          if (column > 0) then
             if (is_given(spec%interval)) then
@@ -80,8 +77,12 @@ contains
                                 ' as well; remove interval')
                return
             end if
-            call check_seconds(history%labels(column))
-            if (allocated(error)) return
+            if (all(seconds /= lower(unit_of(history%labels(column))))) then
+               call fatal_error(error, bad_input, path//': the times of column '// &
+                                trim(history%labels(column))//' are not in seconds; convert them and '// &
+                                'name the column time_s')
+               return
+            end if
             time = history%values(column, :)
             call check_range(time, path, column, 1.0e100_wp, error)
             if (allocated(error)) return
@@ -99,17 +100,6 @@ contains
                              'row to row with interval, in s, or name the column with time_column')
          end if
       end subroutine find_times
-
-      !> Times are in seconds: a column whose name ends with another unit is refused.
-      subroutine check_seconds(label)
-         character(len=*), intent(in) :: label
-         character(len=8), parameter :: seconds(5) = ['        ', 's       ', 'sec     ', 'second  ', &
-                                                      'seconds ']
-
-         if (any(seconds == lower(unit_of(label)))) return
-         call fatal_error(error, bad_input, path//': the times of column '//trim(label)// &
-                          ' are not in seconds; convert them and name the column time_s')
-      end subroutine check_seconds
 
    end subroutine loading_values
 
@@ -155,11 +145,11 @@ contains
       character(len=*), intent(in) :: key
       integer, intent(out) :: column
       type(error_type), allocatable, intent(out) :: error
-      character(len=64) :: wanted
+      character(len=64) :: wanted, label(size(history%labels))
       character(len=:), allocatable :: there
-      integer :: i, found
 
       column = 0
+      label = lower(history%labels)
       there = 'columns: '//list_of(history%labels)
       if (all(history%labels == '')) there = to_text(history%columns)//' columns without names'
       if (word == '') then
@@ -168,11 +158,8 @@ contains
          ! Files often have short names: 'vertical_g', 'axial_kN'.
          if (drive == 'vertical_acceleration') wanted = 'vertical'
          if (drive == 'axial_load') wanted = 'axial'
-         do i = 1, history%columns
-            if (index(lower(history%labels(i)), trim(wanted)) == 1 .or. &
-                index(lower(history%labels(i)), trim(drive)) == 1) column = i
-            if (column > 0) return
-         end do
+         column = findloc(index(label, trim(wanted)) == 1 .or. index(label, trim(drive)) == 1, .true., dim=1)
+         if (column > 0) return
          if (history%columns == 1 .and. .not. is_time(history%labels(1))) column = 1
          if (history%columns == 2 .and. is_time(history%labels(1))) column = 2
          if (column == 0) then
@@ -186,20 +173,14 @@ contains
                              'are 1 to '//to_text(history%columns))
          end if
       else
-         found = 0
-         do i = 1, history%columns
-            if (lower(history%labels(i)) == lower(word)) found = found + 1
-         end do
-         if (found > 1) then
+         column = findloc(label == lower(word), .true., dim=1)
+         if (count(label == lower(word)) > 1) then
             call fatal_error(error, bad_input, path//': '//key//" = '"//trim(word)//"' is the name of "// &
                              'more than one column; give the number of the column')
-            return
+         else if (column == 0) then
+            call fatal_error(error, bad_input, path//': '//key//" = '"//trim(word)//"' is not there ("// &
+                             there//')'//suggestion(word, history%labels))
          end if
-         do column = 1, history%columns
-            if (lower(history%labels(column)) == lower(word)) return
-         end do
-         call fatal_error(error, bad_input, path//': '//key//" = '"//trim(word)//"' is not there ("// &
-                          there//')'//suggestion(word, history%labels))
       end if
    end subroutine find_column
 
@@ -226,16 +207,15 @@ contains
       end if
       if (name == '') name = unit_of(history%labels(column))
       if (name == '') return
-      do i = 1, size(units)
-         if (lower(units(i)%name) == lower(name)) then
-            value = to_si(value, units(i))
-            return
-         end if
-      end do
       names = units%name
-      call fatal_error(error, bad_input, path//": the unit '"//trim(name)//"' of column "// &
-                       trim(history%labels(column))//' is not one of '//list_of(names)// &
-                       '; give the right one with unit ('//elsewhere//')')
+      i = findloc(lower(names) == lower(name), .true., dim=1)
+      if (i > 0) then
+         value = to_si(value, units(i))
+      else
+         call fatal_error(error, bad_input, path//": the unit '"//trim(name)//"' of column "// &
+                          trim(history%labels(column))//' is not one of '//list_of(names)// &
+                          '; give the right one with unit ('//elsewhere//')')
+      end if
    end subroutine convert
 
    !> Values must be small enough that conversion, scale and squares do not overflow.
@@ -247,13 +227,10 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: i
 
-      do i = 1, size(value)
-         if (abs(value(i)) <= largest) cycle
-         call fatal_error(error, bad_input, path//': row '//to_text(i)//' of column '//to_text(column)// &
-                          ', '//to_text(value(i))//', is outside the range of the arithmetic; '// &
-                          'correct the file')
-         return
-      end do
+      i = findloc(abs(value) <= largest, .false., dim=1)
+      if (i == 0) return
+      call fatal_error(error, bad_input, path//': row '//to_text(i)//' of column '//to_text(column)//', '// &
+                       to_text(value(i))//', is outside the range of the arithmetic; correct the file')
    end subroutine check_range
 
    !> The unit at the end of a column's name: `_mm`, ` (mm)`, `[mm]`, `/mm`, `-mm`, ` mm`.

@@ -259,9 +259,7 @@ contains
 
       is_ours = .false.
       if (.not. exists(path)) return
-      if (is_link(path)) return
-      if (is_folder(path)) return
-      if (is_special(path)) return
+      if (is_link(path) .or. is_folder(path) .or. is_special(path)) return
       descriptor = c_open(path//c_null_char, to_read + without_waiting)
       if (descriptor < 0_c_int) return
       words = ''

@@ -138,20 +138,6 @@ module rbs_io_posix
          integer(c_int), value :: mode
       end function c_access
 
-      !> In C: open a folder; a null pointer if the path is none.
-      type(c_ptr) function c_opendir(path) bind(c, name='opendir') result(folder)
-         import :: c_char, c_ptr
-         implicit none
-         character(kind=c_char), intent(in) :: path(*)
-      end function c_opendir
-
-      !> In C: close a folder; 0 on success.
-      integer(c_int) function c_closedir(folder) bind(c, name='closedir') result(status)
-         import :: c_int, c_ptr
-         implicit none
-         type(c_ptr), value :: folder
-      end function c_closedir
-
       !> In C: what a symbolic link says; -1 if the path is no link.
       integer(c_size_t) function c_readlink(path, text, length) bind(c, name='readlink') result(count)
          import :: c_char, c_int, c_size_t
@@ -187,16 +173,11 @@ contains
       if (.not. is_taken) is_taken = is_link(path)
    end function is_taken
 
-   !> Whether a path is a folder that can be read.
+   !> Whether a path is a folder: only a folder contains itself.
    logical function is_folder(path)
       character(len=*), intent(in) :: path
 
-      type(c_ptr) :: folder
-      integer(c_int) :: status
-
-      folder = c_opendir(path//c_null_char)
-      is_folder = c_associated(folder)
-      if (is_folder) status = c_closedir(folder)
+      is_folder = exists(path//'/.') .and. path /= ''
    end function is_folder
 
    !> Whether a path is a symbolic link.

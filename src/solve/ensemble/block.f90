@@ -1,22 +1,23 @@
 !> A block of runs: columns under ground motions, each of which is scaled. No run stops the others.
 module rbs_solve_ensemble_block
+   use rbs_base_check, only: is_given
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_output_recorder, only: array_recorder
    use rbs_solve_end_state, only: end_state, checkpoint_type
-   use rbs_solve_ensemble_lane_choice, only: takes_lanes
    use rbs_solve_ensemble_ensemble_input, only: ensemble_column, ensemble_motion, run_type, lane_task
    use rbs_solve_ensemble_run_result, only: run_result, collect
    use rbs_solve_ensemble_simd_batch, only: run_in_lanes
    use rbs_solve_task, only: task_type
    use rbs_solve_time_effort, only: expected_seconds
    use rbs_loading_loads, only: loads_type, horizontal
-   use rbs_solve_time_march, only: initial_state
+   use rbs_solve_time_march, only: initial_state, step_of
    use rbs_solve_time_plan, only: time_plan
    use rbs_solve_time_run_dynamic, only: run_dynamic, plan_dynamic
    use rbs_solve_time_monitor, only: response_monitor
    use rbs_solve_time_start, only: resume_state
    use rbs_solve_time_state, only: state_type
+   use rbs_structure_column_column, only: column_type, finite
    implicit none
    private
 
@@ -52,6 +53,39 @@ contains
       end do
       call check_start(column, motion(size(motion)), plan, error)
    end subroutine plan_column
+
+   !> Whether lanes can take a run: one body from rest, small rotations, a free top, joints that do not open
+   !> and are not layered, all steps equal, lines changed at the end of a step, no bound by the clock.
+   pure logical function takes_lanes(of_runs, plan, time)
+      type(ensemble_column), intent(in) :: of_runs
+      type(time_plan), intent(in) :: plan
+      real(wp), intent(in) :: time(:)
+      integer :: i
+
+      takes_lanes = .false.
+      if (allocated(of_runs%before) .or. is_given(of_runs%analysis%max_seconds)) return
+      select type (column => of_runs%structure)
+      class is (column_type)
+         if (column%unknowns /= 2 .or. column%held .or. column%kinematics == finite) return
+         if (any(column%rules%name == 'layered')) return
+      class default
+         return
+      end select
+      select case (plan%method)
+      case ('rk4')
+         if (plan%located .or. of_runs%analysis%events == 'located') return
+      case ('newmark', 'hht', 'generalised_alpha')
+         continue
+      case default
+         return
+      end select
+      if (plan%free .or. abs(time(1)) > 0.0_wp) return
+      if (any(plan%parts /= plan%parts(1))) return
+      do i = 1, size(time) - 1
+         if (abs(step_of(plan, (time(i + 1) - time(i))/plan%parts(1)) - plan%dt) > 0.0_wp) return
+      end do
+      takes_lanes = .true.
+   end function takes_lanes
 
    !> Whether runs of a column can begin in the state that it is given.
    subroutine check_start(column, motion, planned, error)
