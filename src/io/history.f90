@@ -134,7 +134,8 @@ contains
          end do
          if (count /= history%rows) then
             call fatal_error(error, bad_input, path//': line 4 declares '//to_text(history%rows)// &
-                             ' values, but there are '//trim(merge('more ', 'fewer', count > history%rows))// &
+                             ' values, but there are '// &
+                             trim(merge('more ', 'fewer', count > history%rows))// &
                              '; the file is cut or mixed up')
          end if
       end subroutine read_at2
