@@ -344,7 +344,7 @@ def followed(
         rows.append(rbsdem.cyclic(frame, force=np.linspace(run.force[-1], 0, 50), initial=run))
     seconds = time.process_time() - begin
     moved = np.concatenate([one.displacement for one in rows])
-    yields = (e for e in run.events if e.member == drawing.watched and e.what == "yield")
+    yields = (e for e in run.events if e.member == drawing.watched and e.name == "yield")
     first = next(((event.displacement, event.force) for event in yields), (math.nan, math.nan))
     turns = any(node.panel for node in drawing.nodes)
     panel = run.springs["rotation"][:, -1] if turns else np.zeros(moved.size)
@@ -647,8 +647,8 @@ def elwood_moehle() -> None:
     t = np.arange(0, 30, 0.005)
     ground = np.where(t < 10, 0.8 * t, 0.0) * np.sin(9 * t)
     quake = rbsdem.time_history(frame, t, ground_acceleration=ground, method="newmark", dt=0.005)
-    lost = next(event for event in quake.events if event.what == "lost")
-    row = int(np.flatnonzero(quake.time == lost.step)[0])
+    lost = next(event for event in quake.events if event.name == "lost")
+    row = int(np.flatnonzero(quake.time == lost.time)[0])
     down, weight = -quake.y[:, 1] * 99.9 * 4448.22 / 0.0254, 70 * 4448.22
     rows = [
         ["drift at shear failure", "2.1 %", f"{100 * kind.shear_drift:.1f} %"],

@@ -41,7 +41,7 @@ print("shares of the mass:", "  ".join(f"{share:.2f}" for share in modes.partici
 push = rbsdem.pushover(frame, drift=0.03)
 print(f"\nbase shear at the end {push.base_shear[-1] / 1e3:.0f} kN; hinges in their order:")
 for event in push.events:
-    where = f"{event.member} {event.end:5s} {event.what}"
+    where = f"{event.member} {event.end:5s} {event.name}"
     print(f"{where} at a roof drift of {100 * event.drift:.2f} %, {event.force / 1e3:.0f} kN")
 
 # One record, half as strong again.

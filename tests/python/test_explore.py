@@ -415,7 +415,7 @@ def test_a_frame_is_that_of_the_functions(post, grid, tmp_path):
         found = np.array(answer[name])[shown]
         np.testing.assert_allclose(found, known, atol=1e-4 * np.abs(known).max())
     assert answer["period"] == pytest.approx(rbsdem.modes(grid, 1).period[0], rel=1e-5)
-    keys = ("member", "end", "what")
+    keys = ("member", "end", "name")
     assert [tuple(one[key] for key in keys) for one in answer["events"]] == [
         tuple(getattr(event, key) for key in keys) for event in push.events
     ]

@@ -213,10 +213,10 @@ def test_a_beam_that_fails_in_shear_says_so():
     for way in (1, -1):
         push = rbsdem.cyclic(frame, displacement=way * np.linspace(0.003, 0.03, 200))
         told = [event for event in push.events if event.group == "shear"]
-        assert {(event.member, event.what) for event in told} == {
+        assert {(event.member, event.name) for event in told} == {
             ("beam", "cracking"), ("beam", "yield"),
         }  # fmt: skip
-        at = next(event for event in told if event.what == "yield")
+        at = next(event for event in told if event.name == "yield")
         assert abs(at.force) == pytest.approx(min(first.f_y, first.f_y_neg), rel=0.01)
         # The few bars below are pulled at the start where the far end goes up.
         assert (at.end == "start") == (way > 0)

@@ -157,10 +157,10 @@ def test_events_members_and_modes_are_printed_as_tables():
     made = rbsdem.Frame.grid([3.0], columns=section, floor_mass=1e5, kinematics="pdelta",
                              nodes=[frames.FrameNode("N-1-1", load_y=-1e6)])  # fmt: skip
     push = rbsdem.pushover(made, drift=0.04)
-    counts = push.events.to_pandas()["what"].value_counts()
+    counts = push.events.to_pandas()["name"].value_counts()
     # The cover is lost on the side that is pressed, after the bars have yielded.
     assert counts["spalling"] == 1
-    order = [event.what for event in push.events]
+    order = [event.name for event in push.events]
     assert order.index("yield") < order.index("spalling")
     text = str(push.events)
     assert "cracking" not in text
@@ -170,8 +170,8 @@ def test_events_members_and_modes_are_printed_as_tables():
     modes = rbsdem.modes(made, 1)
     assert f"{modes.period[0]:.4g}" in str(modes)
     # The cover of the frame's hinge is lost at the strain of its softening line.
-    (spalled,) = [event for event in push.events if event.what == "spalling"]
-    row = int(np.flatnonzero(push.time == spalled.step)[0])
+    (spalled,) = [event for event in push.events if event.name == "spalling"]
+    row = int(np.flatnonzero(push.time == spalled.time)[0])
     hinge = made.kinds["C-1-1"].at("flexure", 0.0)
     y, cover = max(hinge.layers, key=lambda one: abs(one[0]) if hasattr(one[1], "d_peak") else 0.0)
     closed = push.springs["opening"][row, 0] - abs(y) * abs(push.springs["rotation"][row, 0])

@@ -56,7 +56,7 @@ def test_a_portal_yields_where_its_mechanism_does():
     assert first == pytest.approx(exact, rel=1e-6)  # columns and beam hardly get longer
     # Feet before heads, each event exactly at its moment.
     assert [event.end for event in push.events] == ["start", "start", "end", "end"]
-    rows = [int(np.flatnonzero(push.time == event.step)[0]) for event in push.events]
+    rows = [int(np.flatnonzero(push.time == event.time)[0]) for event in push.events]
     for row, event in zip(rows, push.events, strict=True):
         moment = push.member(event.member).moment[row, event.end == "end"]
         assert abs(moment) == pytest.approx(plastic, rel=1e-12)
@@ -372,7 +372,7 @@ def test_a_panel_between_columns_and_beams(ends):
     left = strength * (1 - (turn[-1] - 0.02) / 0.2) / (2 * half)
     assert push.force[-1] == pytest.approx(left, rel=1e-9)
     events = push.events
-    assert [event.what for event in events] == ["cracking", "yield", "cap"]
+    assert [event.name for event in events] == ["cracking", "yield", "cap"]
     assert {(event.member, event.group, event.end) for event in events} == {("node", "panel", "")}
 
 
@@ -449,7 +449,7 @@ def test_a_column_of_layers_as_a_frame():
     assert np.abs(turned - one.rotation[:, 0]).max() < 1e-12
     assert np.abs(other.springs["opening"][:, 0] - one.opening[:, 0]).max() < 1e-12
     assert np.abs(other.springs["axial_force"] + 700e3).max() < 1e-12 * 700e3
-    (first,) = [event for event in other.events if event.what == "yield" and event.side == 1]
+    (first,) = [event for event in other.events if event.name == "yield" and event.side == 1]
     assert first.end == "start"
 
 
@@ -572,7 +572,7 @@ def test_a_drawn_beam_under_load_yields_in_its_span():
         theirs = brentq(turned, 0.01 * unit, 0.124 * unit, args=(load,))
         assert ends == pytest.approx(theirs, rel=0.13)
     ends, span, still = bent(kind, 0.75 * limit)
-    assert {("start", "yield"), ("0.5", "yield")} <= {(one.end, one.what) for one in still.events}
+    assert {("start", "yield"), ("0.5", "yield")} <= {(one.end, one.name) for one in still.events}
     assert max(ends, span) < section_moment
     with pytest.raises(rbsdem.SolveError, match="dead load"):
         bent(kind, limit)
@@ -603,7 +603,7 @@ def test_a_frame_of_drawings():
     shaken = rbsdem.time_history(frame, motion, method="newmark", dt=0.005)
     assert shaken.summary["relative_energy_residual"] < 1e-2
     runs = rbsdem.ensemble([frame], [motion], dt=0.005, method="newmark")
-    yields = [event.step for event in shaken.events if event.what == "yield"]
+    yields = [event.time for event in shaken.events if event.name == "yield"]
     assert runs.measures["first_yield"][0] == pytest.approx(min(yields), abs=0.02)
 
 
@@ -826,7 +826,7 @@ def test_damping_of_the_present_stiffness():
     run = rbsdem.time_history(frame, t, **ground)
     assert run.summary["cut_steps"] == 0
     assert run.summary["relative_energy_residual"] < 1e-3
-    assert any(event.what == "yield" for event in run.events)
+    assert any(event.name == "yield" for event in run.events)
     fine = rbsdem.time_history(frame, t, **ground | {"dt": 0.00125})
     assert run.displacement == pytest.approx(
         fine.displacement, abs=0.02 * np.ptp(fine.displacement)
@@ -921,7 +921,7 @@ def test_an_ensemble_takes_frames():
     measured = {name: values[0] for name, values in runs.measures.items()}
     assert measured["peak_base_shear"] == abs(alone.summary["peak_base_shear"])
     assert measured["peak_drift"] == abs(alone.summary["peak_displacement"]) / frame.height
-    yields = [event.step for event in alone.events if event.what == "yield"]
+    yields = [event.time for event in alone.events if event.name == "yield"]
     assert measured["first_yield"] == pytest.approx(min(yields), abs=2 * motion.dt)
     drifts = abs(alone.storey_drift)
     for name, value in {
@@ -1135,7 +1135,7 @@ def test_sudden_loss_of_a_column(moment):
     lost = replace(whole, nodes=[*nodes[:1], replace(held, load_y=0.0)], losses={"C-2-1": 0.1})
     gone = rbsdem.time_history(lost, 0.1 + t, force=0 * t, method="newmark", dt=2e-4)
     assert np.abs(gone.displacement - fall.displacement).max() < 1e-9 * furthest
-    assert next(event for event in gone.events if event.what == "lost").step == 0.1
+    assert next(event for event in gone.events if event.name == "lost").time == 0.1
     assert np.abs(gone.member("C-2-1").axial).max() < 1e-12 * carried
     # As large as that of steps over yielding.
     assert gone.summary["relative_energy_residual"] == pytest.approx(
@@ -1168,8 +1168,8 @@ def test_a_column_that_failed_in_shear_sheds_its_load():
     force = np.interp(t, [0, 2, 6, 6.5, 9], [0, 520e3, 520e3, 0, 0])
     load = {"force": force, "method": "newmark", "dt": 0.005}
     run = rbsdem.time_history(frame, t, **load)
-    (lost,) = [event for event in run.events if event.what == "lost"]
-    row = int(np.flatnonzero(run.time == lost.step)[0])
+    (lost,) = [event for event in run.events if event.name == "lost"]
+    row = int(np.flatnonzero(run.time == lost.time)[0])
     at = frame.parts.members.index("C-2-1")
     drift = np.diff(run.x[:, [1, 4]], axis=1)[:, 0] / 3.0
     limit = 0.1 / (1 + run.member_axial[:, at] / 200e3)
@@ -1192,7 +1192,7 @@ def test_a_column_that_failed_in_shear_sheds_its_load():
     assert [text.get_text() for text in legend][-1] == "C-2-1, is lost"
     assert plot.frame(run).lines[-1].get_label() == "beyond its cap"
     # Nothing of a member that is gone yields.
-    assert not [e for e in run.events if e.member == "C-2-1" and e.step > lost.step]
+    assert not [e for e in run.events if e.member == "C-2-1" and e.time > lost.time]
 
 
 def test_collapse_is_that_of_a_storey_unless_the_roof_is_asked_for():
@@ -1283,7 +1283,7 @@ def test_a_beam_that_cannot_carry_its_load_any_more_is_told():
     ):
         run = rbsdem.time_history(frame, t, ground_acceleration=ground, method="newmark", dt=0.005)
     assert run.summary["status"] == "collapsed"
-    assert [event.member for event in run.events if event.what == "fall"] == ["B-1-1"]
+    assert [event.member for event in run.events if event.name == "fall"] == ["B-1-1"]
     assert 100 < run.time.size < t.size
     assert run.summary["relative_energy_residual"] < 1e-2
     assert np.abs(run.springs["slip"]).max() < 3.0
@@ -1317,9 +1317,9 @@ def test_a_member_that_snaps_goes_to_the_next_equilibrium_of_its_inside(method):
     assert summary["snaps"] == 1
     assert summary["snap_energy"] == pytest.approx(480.0, rel=5e-3)
     assert summary["relative_energy_residual"] < 1e-3
-    (event,) = [event for event in run.events if event.what == "snap"]
+    (event,) = [event for event in run.events if event.name == "snap"]
     assert event.member == "post"
-    row = int(np.searchsorted(run.time, event.step * (1 - 1e-12)))
+    row = int(np.searchsorted(run.time, event.time * (1 - 1e-12)))
     shear = np.abs(run.springs["shear"][:, 0])
     assert shear[row - 1] == pytest.approx(cap, rel=5e-3)
     assert shear[row:] == pytest.approx(rest, rel=1e-9)
@@ -1393,13 +1393,13 @@ def test_a_static_path_ends_where_a_column_loses_its_load():
     limits = 0.1 / (1 + path.member_axial[[-2, -1], 1] / 200e3)
     assert before < limits[0] < 0.08
     assert last >= limits[1]
-    failed, lost = (e for e in path.events if e.what in ("shear failure", "lost"))
-    assert (failed.member, failed.what) == (lost.member, "shear failure") == ("C-2-1", failed.what)
+    failed, lost = (e for e in path.events if e.name in ("shear failure", "lost"))
+    assert (failed.member, failed.name) == (lost.member, "shear failure") == ("C-2-1", failed.name)
     assert lost.drift == path.drift[-1]
     assert lost.force == path.force[-1]
     # The spring yields at 2 mm, in the first row from there on.
     slip = np.abs(path.springs["slip"][:, 0])
-    row = int(np.flatnonzero(path.time == failed.step)[0])
+    row = int(np.flatnonzero(path.time == failed.time)[0])
     assert slip[row] >= 2e-3 * (1 - 1e-9) > 0.999 * slip[row - 1]
     # In tension, or without failure in shear, nothing is lost.
     strong = replace(SHEAR, f_y=600e3, f_cap=610e3)

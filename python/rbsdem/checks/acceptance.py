@@ -387,7 +387,7 @@ class Assessment(Tabular):
         """Explanations that a reader needs: of shear beyond its strength where no spring fails."""
         ends = sum(row["ratio_shear"] > 1.0 for row in self.rows if row["end"] in ("start", "end"))
         most = math.inf if self.displacement is None else abs(self.displacement)
-        failures = (one for one in self.result.events if one.what == "shear failure")
+        failures = (one for one in self.result.events if one.name == "shear failure")
         if not ends or any(abs(one.displacement) <= most for one in failures):
             return ()
         annex = " (A.12: over gamma_el, with a fifth of the concrete from L_V = 5 h on)"

@@ -9,20 +9,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from rbsdem import _arguments
-from rbsdem._files import Tabular, data_frame
-from rbsdem._types import Array, DataFrame
+from rbsdem._types import Array
 from rbsdem.checks.formulas import goodnight_buckling_strain, quantities
 from rbsdem.curves.envelope import strength_loss_point
 from rbsdem.errors import InputError
 from rbsdem.model.column import Column
 from rbsdem.model.frame import Frame, FrameSpring, Structure
-from rbsdem.model.rows import Response, Rows
+from rbsdem.model.rows import LimitState, LimitStates, Response, Rows
 from rbsdem.model.shape import Section
 from rbsdem.model.springs import Gauge, Landmark, Layered, Spring
 from rbsdem.section.layered import LayeredColumn
@@ -301,93 +300,6 @@ def buckling_strain(section: Section, column: Column) -> float:
     return max(goodnight_buckling_strain(given), 0.01)
 
 
-@dataclass(frozen=True)
-class LimitState:
-    """One limit state, where it is reached first.
-
-    Attributes
-    ----------
-    name : str
-        "cracking", "first_yield", "nominal_moment", "hoop_yield", "spalling", "bar_buckling",
-        "hoop_fracture", "bar_fracture", "cap", "shear_cracking", "shear_yield", "shear_failure",
-        "strength_loss", "collapse" or "axial_failure".
-    row : int
-        First row of the result at or behind it.
-    time : float
-        Time [s], linear between two rows; or point of a static path, between two with the share of
-        the way (`Result.path`).
-    displacement, drift : float
-        Of the top there [m], and over the height.
-    force : float
-        Of the loop there [N], see `Result.loop_force`.
-    threshold : float
-        The value reached: a strain, a rotation [rad], a slip [m] or a share; NaN of a frame.
-    source : str
-        Where the threshold comes from.
-    """
-
-    name: str
-    row: int
-    time: float
-    displacement: float
-    drift: float
-    force: float
-    threshold: float
-    source: str
-
-
-class LimitStates(Tabular):
-    """The limit states of a result in the order in which they are reached.
-
-    Parameters
-    ----------
-    result : Result
-        The response.
-    states : list of LimitState
-        Those that are reached.
-    """
-
-    def __init__(self, result: Rows, states: list[LimitState]) -> None:
-        self.result = result
-        self._states = sorted(states, key=lambda state: (state.time, state.row))
-
-    def __iter__(self) -> Iterator[LimitState]:
-        return iter(self._states)
-
-    def __len__(self) -> int:
-        return len(self._states)
-
-    def __contains__(self, name: object) -> bool:
-        """Return whether a limit state is reached."""
-        return any(state.name == name for state in self._states)
-
-    def __getitem__(self, name: str) -> LimitState:
-        """Return a limit state by its name; `KeyError` if it is not reached."""
-        for state in self._states:
-            if state.name == name:
-                return state
-        raise KeyError(f"{name!r} is not reached; reached are {', '.join(self.names()) or 'none'}")
-
-    def names(self) -> list[str]:
-        """Return the names in the order in which they are reached."""
-        return [state.name for state in self._states]
-
-    def drift(self, name: str) -> float:
-        """Return the drift, in size, at which a state is reached; NaN if it is not."""
-        return abs(self[name].drift) if name in self else float("nan")
-
-    def to_pandas(self) -> DataFrame:
-        """Return a DataFrame, a row for each state: the attributes of `LimitState`."""
-        names = list(LimitState.__dataclass_fields__)
-        frame = data_frame([asdict(state) for state in self], columns=names)
-        units = {"time": "time_s", "displacement": "displacement_m", "force": "force_N"}
-        return frame.rename(columns=units)
-
-    def __repr__(self) -> str:
-        states = ", ".join(f"{state.name} {100 * state.drift:.2f} %" for state in self)
-        return f"LimitStates({states})"
-
-
 _LOSS = 0.2
 
 
@@ -416,7 +328,7 @@ def limit_states(result: Rows) -> LimitStates:
     name, source = ends.get(result.summary["status"], ("", ""))
     if name and name not in {state.name for state in states}:
         states.append(_state(result, name, result.path.time.size - 1, math.nan, source))
-    return LimitStates(result, states)
+    return LimitStates(states, result)
 
 
 def _of_frame(result: Any) -> dict[str, LimitState]:
@@ -424,11 +336,12 @@ def _of_frame(result: Any) -> dict[str, LimitState]:
     first: dict[str, LimitState] = {}
     path = result.path
     for event in path.events:
-        name = _EVENTS.get((event.group.replace("panel", "flexure"), event.what), "")
+        name = _EVENTS.get((event.group.replace("panel", "flexure"), event.name), "")
         if name and name not in first:
-            place = float(np.interp(event.step, path.time, np.arange(path.time.size)))
+            place = float(np.interp(event.time, path.time, np.arange(path.time.size)))
             source = f"{event.group} of {event.member} {event.end}".rstrip()
-            first[name] = _state(result, name, place, math.nan, source)
+            where = {key: getattr(event, key) for key in ("member", "group", "end", "side")}
+            first[name] = replace(_state(result, name, place, math.nan, source), **where)
     return first
 
 

@@ -101,7 +101,7 @@ class Prediction:
         Where the column is outside the range of the tests that the model was fitted to.
     limit_states : dict of str to float, or None
         Drifts at which limit states are reached, in the order in which they are, by the names of
-        `rbsdem.checks.limit_states.LimitState`; None unless they were asked for.
+        `rbsdem.model.rows.LimitState`; None unless they were asked for.
     """
 
     specimen: Specimen

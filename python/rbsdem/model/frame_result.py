@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, Literal, NamedTuple
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from rbsdem import _core
-from rbsdem._files import Tabular, data_frame, text_table
-from rbsdem._types import Array, DataFrame
+from rbsdem._files import data_frame, text_table
+from rbsdem._types import Array
 from rbsdem.curves.envelope import Envelope
 from rbsdem.errors import InputError
 from rbsdem.model.frame import SCOPE_NOTE, Frame, FrameSpring, MemberGeometry, place_of
-from rbsdem.model.rows import Rows
+from rbsdem.model.rows import LimitState, LimitStates, Rows
 from rbsdem.model.springs import ConcreteSpring, Landmark, LandmarkName, Layered
 
 #: Names of the springs' deformations and forces in rows, by group.
@@ -31,63 +31,6 @@ _OVER_YIELD, _OVER_LAYERS = 1.005, 1.05
 
 #: A threshold counts as reached within round-off: a path stands on it exactly.
 _REACHED = 1.0 - 1e-9
-
-
-class FrameEvent(NamedTuple):
-    """A limit state of a spring, where it is reached first, or the loss of a member.
-
-    Attributes
-    ----------
-    step : float
-        Time [s], or number of the point of a static path with the share of the way.
-    member, group : str
-        Name of the member, and which of its springs: "flexure", "shear" or "axial_spring"; or name
-        of the node, and "panel"; "member" where it is lost as a whole.
-    end : str
-        "start", "end", or the place between them in shares of the clear length; "" in a panel.
-    what : str
-        "cracking", "yield" or "cap"; of a member "shear failure", from where on its drift decides
-        whether it carries its axial load, "lost" where it does not, "snap" where its inside jumps
-        to another equilibrium (the jump that loses most energy), or "fall" where it has none any
-        more.
-    side : int
-        1 or -1; 0 of a member as a whole.
-    displacement : float
-        Of the top [m].
-    drift : float
-        Displacement of the top over the height.
-    force : float
-        Lateral force, in time base shear [N].
-    """
-
-    step: float
-    member: str
-    group: str
-    end: str
-    what: str
-    side: int
-    displacement: float
-    drift: float
-    force: float
-
-
-class FrameEvents(tuple[FrameEvent, ...], Tabular):
-    """Events of a frame in the order in which they are reached; `print` makes a short table."""
-
-    def to_pandas(self, *, cracking: bool = True) -> DataFrame:
-        """Return a row for each event, those of cracking on request."""
-        rows = [one for one in self if cracking or one.what != "cracking"]
-        units = {"displacement": "displacement_m", "force": "force_N"}
-        return data_frame(rows, FrameEvent._fields).rename(columns=units)
-
-    def __str__(self) -> str:
-        table, cracks = self.to_pandas(cracking=False), sum(one.what == "cracking" for one in self)
-        return text_table(table) + (f"\nand {cracks} springs crack" if cracks else "")
-
-    def __repr__(self) -> str:
-        names = dict.fromkeys(one.what for one in self)
-        told = ", ".join(f"{sum(one.what == name for one in self)} {name}" for name in names)
-        return f"FrameEvents({told})"
 
 
 @dataclass(frozen=True, repr=False)
@@ -514,39 +457,28 @@ class FrameResult(Rows):
         ]
 
     @cached_property
-    def events(self) -> FrameEvents:
+    def events(self) -> LimitStates:
         """Limit states of the springs, in the order in which they are reached first.
 
         Cracking, yield and cap of each side; of drawn members spalling, where an outer layer of
         concrete has lost its strength; failures of members. On a path of `pushover` each of a
         spring is a row of its own; else it is that of the first row kept beyond it.
         """
-        forces = self.base_shear if self.dynamic else self.force
-        found = []
+        found: list[tuple[str, float, dict[str, Any]]] = []
         for spring, whole, _ in self._springs():
             # A lost member moves on without reaching anything.
             values = whole[: self._lost_at().get(spring.member)]
             points = [
                 (point, self._reached(point, values)) for point in self.frame.landmarks[spring]
             ]
-            for point, row in [*points, *self._yields(spring, values)]:
-                if row is None:
-                    continue
-                end = {0.0: "start", 1.0: "end"}.get(spring.place, f"{spring.place:g}")
-                end = "" if spring.group == "panel" else end
-                found.append(
-                    FrameEvent(
-                        float(self.time[row]),
-                        spring.member,
-                        spring.group,
-                        end,
-                        point.name,
-                        point.side,
-                        float(self.displacement[row]),
-                        float(self.displacement[row]) / self.frame.height,
-                        float(forces[row]),
-                    )
-                )
+            end = {0.0: "start", 1.0: "end"}.get(spring.place, f"{spring.place:g}")
+            where = {"member": spring.member, "group": spring.group}
+            where["end"] = "" if spring.group == "panel" else end
+            found += [
+                (point.name, float(self.time[row]), where | {"side": point.side})
+                for point, row in [*points, *self._yields(spring, values)]
+                if row is not None
+            ]
         wholes = [(name, "lost", float(self.time[row])) for name, row in self._lost_at().items()]
         wholes += self._failures()
         for what in ("snap", "fall"):
@@ -554,12 +486,20 @@ class FrameResult(Rows):
             if member:
                 at = self.summary["snap_time"] if what == "snap" else float(self.time[-1])
                 wholes.append((self.frame.parts.members[member - 1], what, at))
-        for name, what, at in wholes:
-            row = min(int(np.searchsorted(self.time, at * (1 - 1e-12))), self.time.size - 1)
-            top, force = float(self.displacement[row]), float(forces[row])
-            drift = top / self.frame.height
-            found.append(FrameEvent(at, name, "member", "", what, 0, top, drift, force))
-        return FrameEvents(sorted(found, key=lambda event: event.step))
+        found += [(what, at, {"member": name, "group": "member"}) for name, what, at in wholes]
+        rows = np.searchsorted(self.time, [at * (1 - 1e-12) for _, at, _ in found])
+        return LimitStates(
+            (
+                LimitState(
+                    name, row, at, float(self.displacement[row]), float(self.drift[row]),
+                    float(self.loop_force[row]), **where,
+                )
+                for (name, at, where), row in zip(
+                    found, np.minimum(rows, self.time.size - 1).tolist(), strict=True
+                )
+            ),
+            self,
+        )  # fmt: skip
 
     def _failures(self) -> list[tuple[str, str, float]]:
         """Return members that fail in shear, and that lose their axial load on a static path."""

@@ -10,15 +10,16 @@ import math
 import os
 import re
 import zipfile
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, overload, runtime_checkable
 
 import numpy as np
 
 from rbsdem import _arguments, _core, _package
-from rbsdem._files import atomic_write, data_frame
+from rbsdem._files import Tabular, atomic_write, data_frame, text_table
 from rbsdem._types import Array, DataFrame, Self
 from rbsdem.curves.envelope import Envelope, Idealisation, Method, strength_loss
 from rbsdem.curves.envelope import envelope as curve_envelope
@@ -89,6 +90,126 @@ FORMAT = "rbsdem result"
 FORMAT_VERSION = 2
 #: Fields that a file holds as they are.
 SAVED = ("channels", "summary", "call", "state", "reached")
+
+
+@dataclass(frozen=True)
+class LimitState:
+    """One limit state, where it is reached first.
+
+    Attributes
+    ----------
+    name : str
+        Of `limit_states()`: "cracking", "first_yield", "nominal_moment", "hoop_yield", "spalling",
+        "bar_buckling", "hoop_fracture", "bar_fracture", "cap", "shear_cracking", "shear_yield",
+        "shear_failure", "strength_loss", "collapse" or "axial_failure". Of the `events` of a frame
+        "cracking", "yield", "spalling" or "cap" of a spring; of a member "shear failure", from
+        where on its drift decides whether it carries its axial load, "lost" where it does not,
+        "snap" where its inside jumps to another equilibrium (the jump that loses most energy), or
+        "fall" where it has none any more.
+    row : int
+        First row of the result at or behind it.
+    time : float
+        Time [s], linear between two rows; or point of a static path, between two with the share of
+        the way (`Result.path`).
+    displacement, drift : float
+        Of the top there [m], and over the height.
+    force : float
+        Of the loop there [N], see `Result.loop_force`.
+    threshold : float
+        The value reached: a strain, a rotation [rad], a slip [m] or a share; NaN of a frame.
+    source : str
+        Where the threshold comes from.
+    member, group : str
+        Of a frame, name of the member, and which of its springs: "flexure", "shear" or
+        "axial_spring"; or name of the node, and "panel"; "member" where it is lost as a whole.
+    end : str
+        "start", "end", or the place between them in shares of the clear length; "" in a panel.
+    side : int
+        1 or -1; 0 of a member as a whole.
+    """
+
+    name: str
+    row: int
+    time: float
+    displacement: float
+    drift: float
+    force: float
+    threshold: float = math.nan
+    source: str = ""
+    member: str = ""
+    group: str = ""
+    end: str = ""
+    side: int = 0
+
+
+class LimitStates(Tabular):
+    """Limit states in the order in which they are reached; `print` makes a short table.
+
+    Parameters
+    ----------
+    states : iterable of LimitState
+        Those that are reached.
+    result : Result or FrameResult
+        The response.
+    """
+
+    def __init__(self, states: Iterable[LimitState], result: Any) -> None:
+        self.result = result
+        self._states = sorted(states, key=lambda state: (state.time, state.row))
+
+    def __iter__(self) -> Iterator[LimitState]:
+        return iter(self._states)
+
+    def __len__(self) -> int:
+        return len(self._states)
+
+    def __contains__(self, name: object) -> bool:
+        """Return whether a limit state is reached."""
+        return any(state.name == name for state in self)
+
+    @overload
+    def __getitem__(self, name: str | int) -> LimitState: ...
+    @overload
+    def __getitem__(self, name: slice) -> list[LimitState]: ...
+    def __getitem__(self, name: str | int | slice) -> LimitState | list[LimitState]:
+        """Return the first limit state of a name, `KeyError` if it is not reached; or by place."""
+        if not isinstance(name, str):
+            return self._states[name]
+        for state in self:
+            if state.name == name:
+                return state
+        raise KeyError(f"{name!r} is not reached; reached are {', '.join(self.names()) or 'none'}")
+
+    def names(self) -> list[str]:
+        """Return the names in the order in which they are reached."""
+        return list(dict.fromkeys(state.name for state in self))
+
+    def drift(self, name: str) -> float:
+        """Return the drift, in size, at which a state is reached; NaN if it is not."""
+        return abs(self[name].drift) if name in self else math.nan
+
+    def to_pandas(self, *, cracking: bool = True) -> DataFrame:
+        """Return a row for each state, those of cracking on request: what `LimitState` has."""
+        rows = [asdict(state) for state in self if cracking or state.name != "cracking"]
+        units = {"time": "time_s", "displacement": "displacement_m", "force": "force_N"}
+        frame = data_frame(rows, [field.name for field in fields(LimitState)])
+        if not any(state.member for state in self):
+            frame = frame.drop(columns=["member", "group", "end", "side"])
+        elif not any(state.source for state in self):
+            frame = frame.drop(columns=["threshold", "source"])
+        return frame.rename(columns=units)
+
+    def __str__(self) -> str:
+        table, cracks = self.to_pandas(cracking=False), sum(one.name == "cracking" for one in self)
+        return text_table(table) + (f"\nand {cracks} springs crack" if cracks else "")
+
+    def __repr__(self) -> str:
+        names = [state.name for state in self]
+        if len(names) == len(set(names)):
+            told = [f"{state.name} {100 * state.drift:.2f} %" for state in self]
+        else:
+            told = [f"{number} {name}" for name, number in Counter(names).items()]
+        return f"LimitStates({', '.join(told)})"
 
 
 @runtime_checkable

@@ -221,10 +221,10 @@ def pushover(result: FrameResult, *, ax: Axes | None = None, **line: Any) -> Axe
     with axes_or_new(ax, (4.6, 3.2)) as drawn:
         drawn.plot(1e3 * result.displacement, 1e-3 * result.base_shear, **line_of(MODEL_LINE, line))
         for what, mark in _MARKS.items():
-            events = [event for event in result.events if event.what == what]
+            events = [event for event in result.events if event.name == what]
             if not events:
                 continue
-            rows = np.searchsorted(result.time, [event.step for event in events])
+            rows = np.searchsorted(result.time, [event.time for event in events])
             first = events[0]
             more = f", then {len(events) - 1} more" if len(events) > 1 else ""
             end = f"at {float(first.end):.2f}" if first.end[:1].isdigit() else first.end
@@ -506,9 +506,9 @@ def _draw_hinges(
     reached: dict[tuple[str, str, str], str] = {}
     order = list(_STATES)
     for event in () if result is None else result.events:
-        if event.group != "member" and event.step <= result.time[row]:  # type: ignore[union-attr]
+        if event.group != "member" and event.time <= result.time[row]:  # type: ignore[union-attr]
             key = event.member, event.group, event.end
-            reached[key] = max(reached.get(key, ""), event.what, key=order.index)
+            reached[key] = max(reached.get(key, ""), event.name, key=order.index)
     turns = None if result is None else spring_turns(result, row)
     beside = _BESIDE * _size(structure)
     points: dict[str, list[Array]] = {state: [] for state in _STATES}

@@ -12,13 +12,12 @@ from rbsdem import _arguments
 from rbsdem._types import Array, ArrayLike, Axes, NDArray
 from rbsdem.calibration.outcome import Calibration
 from rbsdem.checks.code_values import CodeComparison
-from rbsdem.checks.limit_states import LimitStates
 from rbsdem.curves.envelope import Envelope, Method
 from rbsdem.curves.metrics import Curve, loop_pair
 from rbsdem.curves.scores import Comparison
 from rbsdem.errors import InputError
 from rbsdem.model.column import bodies
-from rbsdem.model.rows import ENERGIES, Response
+from rbsdem.model.rows import ENERGIES, LimitStates, Response
 from rbsdem.output.style import (
     MODEL_LINE,
     TEST_LINE,

@@ -16,14 +16,14 @@ import numpy as np
 from rbsdem import _arguments, _core
 from rbsdem._package import unwarned
 from rbsdem._types import Array, ArrayLike, Unpack
-from rbsdem.checks.limit_states import Hinge, LimitStates, all_thresholds
+from rbsdem.checks.limit_states import Hinge, all_thresholds
 from rbsdem.checks.limit_states import hinge as hinge_of
 from rbsdem.checks.limit_states import limit_states as find_limit_states
 from rbsdem.errors import AccuracyWarning, InputError, LongRunWarning, SolveError, warn
 from rbsdem.model import frame_result
 from rbsdem.model.column import NOTES_ON, Column
 from rbsdem.model.frame import Frame, Structure, checked_structure
-from rbsdem.model.rows import HasEndState, Response, Rows, settings_of, state_of
+from rbsdem.model.rows import HasEndState, LimitStates, Response, Rows, settings_of, state_of
 from rbsdem.motions.motion import GroundMotion, acting
 from rbsdem.run.accuracy import Errors, answer_of, common_interval, errors_of
 from rbsdem.run.solver import METHODS, Solver, checked_solver

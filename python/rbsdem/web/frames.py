@@ -294,9 +294,9 @@ def to_json(result: FrameResult) -> dict[str, Any]:
         "moved": rounded(np.swapaxes(np.array(moved) - still, 0, 1)),
         "forces": rounded(np.stack(forces, axis=-1), 4),
         "events": [
-            {name: getattr(event, name) for name in ("member", "end", "group", "what")}
-            | {name: number(getattr(event, name)) for name in ("step", "drift", "force")}
-            | {"dead": bool(event.step <= result.time[0])}
+            {name: getattr(event, name) for name in ("member", "end", "group", "name")}
+            | {name: number(getattr(event, name)) for name in ("time", "drift", "force")}
+            | {"dead": bool(event.time <= result.time[0])}
             for event in result.events
         ],
     }

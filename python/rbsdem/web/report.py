@@ -407,11 +407,8 @@ def _of_frame(result: FrameResult) -> Iterator[Sheet]:
     if result.frame.storey_heights:
         drawn.append(partial(frames.storey_drift, result))
     yield Sheet("Response", figures=tuple(drawn), table=_summary(result.summary))
-    events = [event._asdict() for event in result.events]
-    units = {"displacement": "displacement_m", "force": "force_N"}
-    units |= {"step": "time_s"} if result.dynamic else {}
-    if events:
-        yield Sheet("Limit states", table=data_frame(events).rename(columns=units), beside=True)
+    if result.events:
+        yield Sheet("Limit states", table=result.events.to_pandas(), beside=True)
     members = [result.member(name) for name in result.frame.parts.members]
     rows = {
         "member": [member.name for member in members],

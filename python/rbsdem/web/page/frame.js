@@ -340,7 +340,7 @@ function remove(name) {
 function drawCurve(host, found, row) {
   const [unit, factor] = unitOf(page.system, "force"), [length, metre] = unitOf(page.system, "length"), point = checks()?.target;
   const drifts = values => values.map(value => 100 * value / found.height), drift = drifts(found.displacement), shear = found.base_shear.map(value => value / factor);
-  const marks = found.dynamic ? [] : found.events.filter(event => event.what !== "cracking" && event.step <= found.time[row]).map(event => ({ x: 100 * event.drift, y: event.force / factor, shape: "circle", kind: "a", label: "yield or failure of a section", title: `${event.member}, ${event.end}: ${event.what}` }));
+  const marks = found.dynamic ? [] : found.events.filter(event => event.name !== "cracking" && event.time <= found.time[row]).map(event => ({ x: 100 * event.drift, y: event.force / factor, shape: "circle", kind: "a", label: "yield or failure of a section", title: `${event.member}, ${event.end}: ${event.name}` }));
   const lines = [{ x: drift, y: shear, kind: "test thin", label: "the whole way" }, { x: drift.slice(0, row + 1), y: shear.slice(0, row + 1), kind: "a", label: "so far" }];
   if (point?.reached) {
     lines.push({ x: drifts(point.lines[0].map(value => value + found.displacement[0])), y: point.lines[1].map(value => value / factor), kind: "b thin dashed", label: "two lines of the code" });
@@ -352,7 +352,7 @@ function drawCurve(host, found, row) {
 
 function showTables(found, row) {
   const [unit, factor] = unitOf(page.system, "force"), [length, metre] = unitOf(page.system, "length"), point = checks()?.target, { peak } = found;
-  const percent = value => `${shown(100 * value, 3)} %`, first = found.events.find(event => event.what === "yield");
+  const percent = value => `${shown(100 * value, 3)} %`, first = found.events.find(event => event.name === "yield");
   const facts = [["first period", found.period === null ? "–" : `${shown(found.period, 3)} s`], ["dead load", `${shown(found.weight / factor)} ${unit}`], ["largest base shear", `${shown(peak.base_shear / factor)} ${unit}`],
     ["the same over the dead load", found.weight ? shown(peak.base_shear / found.weight, 3) : "–"], ["largest roof drift", percent(peak.drift)], ["roof drift at the first yield", first ? (first.dead ? "under the dead load" : percent(Math.abs(first.drift))) : "–"]];
   if (found.dynamic) facts.push(["residual storey drift", percent(peak.residual)]);
@@ -361,9 +361,9 @@ function showTables(found, row) {
   const there = point?.storey_drift, drift = found.storey_drift[row], shear = found.storey_shear[row];
   get("storeytable").replaceChildren(table(["Storey", "drift %", `shear ${unit}`, "largest %", `largest ${unit}`, ...(there ? ["at target %"] : [])], drift.map((value, i) =>
     ({ cells: [String(i + 1), shown(100 * value, 3), shown(shear[i] / factor), shown(100 * peak.storey_drift[i], 3), shown(peak.storey_shear[i] / factor), ...(there ? [shown(100 * there[i], 3)] : [])] })).reverse(), `At a roof drift of ${percent(found.displacement[row] / found.height)}`));
-  const events = found.events.filter(event => event.what !== "cracking");
-  get("statetable").replaceChildren(events.length ? table(["Member", "section", "state", ...(found.dynamic ? ["time s"] : []), "roof drift %", `base shear ${unit}`], events.slice(0, 60).map(event => ({ kind: event.step <= found.time[row] ? "" : "later",
-    cells: [event.member, ["start", "end", ""].includes(event.end) ? event.end : shown(Number(event.end), 2), event.what, ...(found.dynamic ? [shown(event.step, 4)] : []), ...(event.dead ? ["dead load", "–"] : [shown(100 * event.drift, 3), shown(event.force / factor)])] })), events.length > 60 ? `${events.length - 60} more in the report` : "") : element("p", { className: "empty" }, "No section yields."));
+  const events = found.events.filter(event => event.name !== "cracking");
+  get("statetable").replaceChildren(events.length ? table(["Member", "section", "state", ...(found.dynamic ? ["time s"] : []), "roof drift %", `base shear ${unit}`], events.slice(0, 60).map(event => ({ kind: event.time <= found.time[row] ? "" : "later",
+    cells: [event.member, ["start", "end", ""].includes(event.end) ? event.end : shown(Number(event.end), 2), event.name, ...(found.dynamic ? [shown(event.time, 4)] : []), ...(event.dead ? ["dead load", "–"] : [shown(100 * event.drift, 3), shown(event.force / factor)])] })), events.length > 60 ? `${events.length - 60} more in the report` : "") : element("p", { className: "empty" }, "No section yields."));
 }
 
 // ---- what is done ----------------------------------------------------------------------------------
