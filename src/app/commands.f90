@@ -101,7 +101,7 @@ contains
                     recorder => run%recorder, task => run%task)
             if (allocated(case%analysis%initial)) then
                task%before = end_state()
-               call read_state(beside(run%path, case%analysis%initial), task%before%stream, error)
+               call read_state(from_case_folder(run%path, case%analysis%initial), task%before%stream, error)
                if (.not. allocated(error)) call task%before%check(structure, error)
                if (allocated(error)) return
             end if
@@ -143,7 +143,7 @@ contains
             end if
             call progress%finish()
             if (allocated(error) .or. .not. (allocated(case%output%state) .and. task%after%is_given())) return
-            call write_state(beside(run%path, case%output%state), task%after%stream, error)
+            call write_state(from_case_folder(run%path, case%output%state), task%after%stream, error)
          end associate
       end subroutine solve
 
@@ -156,7 +156,7 @@ contains
          clash = same_file(file, standard_input(run%path))
          do i = 1, run%case%loadings
             if (.not. allocated(run%case%loading(i)%file)) cycle
-            input = beside(run%path, run%case%loading(i)%file)
+            input = from_case_folder(run%path, run%case%loading(i)%file)
             if (same_file(file, input)) clash = .true.
             ! A failed run keeps its rows there.
             if (same_file(file//partial, input)) clash = .true.
@@ -175,7 +175,7 @@ contains
          if (allocated(output)) then
             path = output
          else if (allocated(run%case%output%file)) then
-            path = beside(run%path, run%case%output%file)
+            path = from_case_folder(run%path, run%case%output%file)
          else if (run%path == '-' .or. index(run%path, '/dev/') == 1 .or. index(run%path, '/proc/') == 1) then
             call fatal_error(error, bad_input, 'output: a case from '//standard_input(run%path)// &
                              ' has no name for its rows; give one with --output')
@@ -436,13 +436,13 @@ contains
    end subroutine prepare
 
    !> A path from the folder of the case.
-   function beside(case_path, path) result(found)
+   function from_case_folder(case_path, path) result(found)
       character(len=*), intent(in) :: case_path, path
       character(len=:), allocatable :: found
 
       found = path
       if (path(1:1) /= '/') found = case_path(:index(case_path, '/', back=.true.))//path
-   end function beside
+   end function from_case_folder
 
    !> Comment lines of the csv.
    function header(case, method) result(lines)

@@ -21,8 +21,8 @@ module rbs_app_signals
    !> Path of the file that is kept when the process is stopped, zero bytes if there is none, and the path
    !> that it then gets; what is written of it, and its length.
    character(kind=c_char), volatile :: own(longest) = c_null_char, partial(longest) = c_null_char
-   character(len=2*longest) :: told = ''
-   integer(c_size_t), volatile :: told_length = 0_c_size_t
+   character(len=2*longest) :: notice = ''
+   integer(c_size_t), volatile :: notice_length = 0_c_size_t
 
    interface
       !> In C: set what is done on a signal; what was done before.
@@ -74,8 +74,8 @@ contains
       own(1) = c_null_char
       if (len(path) == 0 .or. len(path) >= longest .or. len(name) >= longest) return
       call put(name, partial)
-      told = 'rbsdem: stopped by a signal; the rows up to there are in '//name//new_line('a')
-      told_length = int(len_trim(told), c_size_t)
+      notice = 'rbsdem: stopped by a signal; the rows up to there are in '//name//new_line('a')
+      notice_length = int(len_trim(notice), c_size_t)
       call put(path, own)
    end subroutine keep_if_stopped
 
@@ -100,7 +100,7 @@ contains
 
       if (own(1) /= c_null_char) then
          status = c_rename(own, partial)
-         written = c_write(2_c_int, told, told_length)
+         written = c_write(2_c_int, notice, notice_length)
       end if
       before = c_signal(number, action(by_default))
       status = c_raise(number)

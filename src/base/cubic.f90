@@ -67,16 +67,16 @@ contains
    !> Where it first has a value or is above it; 2 if it does not within the step.
    pure real(wp) function first_at(c, value) result(s)
       real(wp), intent(in) :: c(4), value
-      real(wp) :: way(4), low, high
+      real(wp) :: node(4), low, high
       integer :: i
 
-      way = [0.0_wp, turns_of(c), 1.0_wp]
-      i = findloc(cubic_at(way, c(1), c(2), c(3), c(4)) >= value, .true., dim=1)
+      node = [0.0_wp, turns_of(c), 1.0_wp]
+      i = findloc(cubic_at(node, c(1), c(2), c(3), c(4)) >= value, .true., dim=1)
       s = merge(0.0_wp, 2.0_wp, i == 1)
       if (i < 2) return
       ! It rises from the one to the other.
-      low = way(i - 1)
-      high = way(i)
+      low = node(i - 1)
+      high = node(i)
       do
          s = 0.5_wp*(low + high)
          if (.not. (s > low .and. s < high)) exit

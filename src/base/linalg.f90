@@ -48,14 +48,14 @@ module rbs_base_linalg
 contains
 
    !> Solve a symmetric positive definite tridiagonal system.
-   subroutine solve_tridiagonal(diagonal, beside, b, positive)
+   subroutine solve_tridiagonal(diagonal, off_diagonal, b, positive)
       !> Diagonal (n) and off-diagonal (n - 1), overwritten; right-hand side (n), replaced by the solution
-      real(wp), intent(inout), contiguous :: diagonal(:), beside(:), b(:)
+      real(wp), intent(inout), contiguous :: diagonal(:), off_diagonal(:), b(:)
       !> Whether the matrix is positive definite
       logical, intent(out) :: positive
       integer :: info
 
-      call dptsv(size(b), 1, diagonal, beside, b, size(b), info)
+      call dptsv(size(b), 1, diagonal, off_diagonal, b, size(b), info)
       positive = info == 0
    end subroutine solve_tridiagonal
 

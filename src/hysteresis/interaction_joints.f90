@@ -11,8 +11,9 @@ module rbs_hysteresis_interaction_joints
    implicit none
    private
 
-   public :: vary_axial_loads, fall_of, opening_of, rest_of, choose_lines, line_list, list_lines, place_lines
-   public :: moment_on_plane, put_on_plane, go_under
+   public :: vary_axial_loads, fall_of, opening_of, rest_of, update_branches, line_list, list_lines, &
+             place_lines
+   public :: moment_on_plane, put_on_plane, change_axial_loads
 
    !> Lines of the springs, then those of the layers of joints on planes, joint by joint (lines).
    type :: line_list
@@ -26,17 +27,18 @@ module rbs_hysteresis_interaction_joints
 contains
 
    !> The axial loads of the layered joints vary from now on: these joints follow straight paths in rotation
-   !> and axial load, towards `press_to`, and have no line of their own that the rotation alone could leave.
+   !> and axial load, towards `target_axial_load`, and have no line of their own that the rotation alone could
+   !> leave.
    subroutine vary_axial_loads(springs)
       type(spring_array), intent(inout) :: springs
 
-      springs%pressed = size(springs%layered) > 0
-      if (.not. springs%pressed) return
+      springs%axial_load_varies = size(springs%layered) > 0
+      if (.not. springs%axial_load_varies) return
       springs%on_plane(springs%layered) = .true.
-      allocate (springs%press_to(springs%count), springs%press_at(springs%count), &
+      allocate (springs%target_axial_load(springs%count), springs%reference_axial_load(springs%count), &
                 springs%centre(springs%count), source=0.0_wp)
       call springs%fit_planes()
-      springs%press_to(:) = springs%press_at
+      springs%target_axial_load(:) = springs%reference_axial_load
    end subroutine vary_axial_loads
 
    !> State of a joint that has lost its axial load.
@@ -79,7 +81,7 @@ contains
    end function rest_of
 
    !> Put the layers of a joint on the lines on which they go on along a straight path.
-   subroutine choose_lines(springs, i, turn, press)
+   subroutine update_branches(springs, i, turn, press)
       type(spring_array), intent(inout) :: springs
       integer, intent(in) :: i
       !> Rates of the rotation [rad] and of the axial load [N]
@@ -90,7 +92,7 @@ contains
          call choose_branches(section, turn, press)
       end select
       call read_plane(springs, i)
-   end subroutine choose_lines
+   end subroutine update_branches
 
    !> The present lines of springs and of layers on planes.
    pure subroutine list_lines(springs, lines)
@@ -100,7 +102,7 @@ contains
 
       if (.not. allocated(lines%joint)) then
          lines%joint = spread(0, 1, springs%count)
-         do j = 1, merge(size(springs%layered), 0, springs%pressed)
+         do j = 1, merge(size(springs%layered), 0, springs%axial_load_varies)
             i = springs%layered(j)
             select type (section => springs%slot(i)%memory)
             type is (fibre_section)
@@ -159,7 +161,7 @@ contains
       real(wp), intent(in) :: rotation, axial_load
 
       moment = springs%f0(i) + springs%k(i)*(rotation - springs%d0(i)) &
-               - springs%centre(i)*(axial_load - springs%press_at(i))
+               - springs%centre(i)*(axial_load - springs%reference_axial_load(i))
    end function moment_on_plane
 
    !> Move a layered joint on its plane to a point, where a layer (0: none) comes to the end of its line.
@@ -182,7 +184,7 @@ contains
    !> Springs that were restored go on under other axial loads: at their rotations layered joints go
    !> straight to them. Those under the load that they have stay as they are, unless they were on planes and
    !> are to be on lines.
-   subroutine go_under(springs, axial_load, from_planes)
+   subroutine change_axial_loads(springs, axial_load, from_planes)
       type(spring_array), intent(inout) :: springs
       !> Compression positive (count) [N]
       real(wp), intent(in) :: axial_load(:)
@@ -196,17 +198,17 @@ contains
          select type (section => springs%slot(i)%memory)
          type is (fibre_section)
             if (.not. abs(section%axial_load - axial_load(i)) > 0.0_wp .and. &
-                (springs%pressed .eqv. from_planes)) cycle
+                (springs%axial_load_varies .eqv. from_planes)) cycle
             call branch_under(section, springs%d(i), axial_load(i), springs%work(i), line)
          end select
-         if (springs%pressed) then
+         if (springs%axial_load_varies) then
             call read_plane(springs, i)
-            springs%press_to(i) = axial_load(i)
+            springs%target_axial_load(i) = axial_load(i)
          else
             call put_line(springs, i, line)
          end if
       end do
       springs%version = modulo(springs%version + 1, huge(1))
-   end subroutine go_under
+   end subroutine change_axial_loads
 
 end module rbs_hysteresis_interaction_joints

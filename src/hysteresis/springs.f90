@@ -56,12 +56,12 @@ module rbs_hysteresis_springs
       !> straight paths in rotation and axial load, and are on planes where other springs are on lines, see
       !> `rbs_hysteresis_interaction_joints`
       integer, allocatable :: layered(:)
-      logical :: pressed = .false.
+      logical :: axial_load_varies = .false.
       !> Whether a spring is on a plane (count)
       logical, allocatable :: on_plane(:)
       !> Where they vary (count): axial load that the joint is to reach, axial load of the present plane
       !> [N], and its centre of stiffness e = -dM/dN [m]
-      real(wp), allocatable :: press_to(:), press_at(:), centre(:)
+      real(wp), allocatable :: target_axial_load(:), reference_axial_load(:), centre(:)
    contains
       procedure :: create
       procedure :: restart
@@ -76,7 +76,7 @@ module rbs_hysteresis_springs
       procedure :: line_of
       procedure :: put
       procedure :: release
-      procedure :: is_released
+      procedure :: is_removed
       procedure :: mark
       procedure :: restore
       procedure :: retry
@@ -341,7 +341,7 @@ contains
       real(wp), intent(in), contiguous :: d(:)
       integer :: i
 
-      if (self%pressed) then
+      if (self%axial_load_varies) then
          call go_back(self)
          call self%move_all(d)
          return
@@ -409,7 +409,7 @@ contains
             if (self%unload_on_reversal(i) < 0) self%last(i) = self%d(i)
          end do
       end associate
-      if (self%pressed) call self%fit_planes()
+      if (self%axial_load_varies) call self%fit_planes()
    end subroutine go_back
 
    !> Save or restore where the springs are, and what their rules remember.
@@ -432,9 +432,9 @@ contains
          call self%slot(i)%memory%serialize(stream)
       end do
       self%version = modulo(self%version + 1, huge(1))
-      if (.not. (self%pressed .and. stream%restoring)) return
+      if (.not. (self%axial_load_varies .and. stream%restoring)) return
       call self%fit_planes()
-      self%press_to(:) = self%press_at
+      self%target_axial_load(:) = self%reference_axial_load
    end subroutine serialize
 
    !> The present line of a spring, in the form that its rule takes.
@@ -496,13 +496,13 @@ contains
    end subroutine release
 
    !> Whether it was let go: no rule has a line without stiffness and without ends.
-   pure logical function is_released(self, i)
+   pure logical function is_removed(self, i)
       class(spring_array), intent(in) :: self
       integer, intent(in) :: i
 
-      is_released = .not. abs(self%k(i)) > 0.0_wp .and. self%first(i) <= -unbounded .and. &
+      is_removed = .not. abs(self%k(i)) > 0.0_wp .and. self%first(i) <= -unbounded .and. &
                     self%last(i) >= unbounded .and. self%unload_on_reversal(i) == 0
-   end function is_released
+   end function is_removed
 
    !> Move every spring to a new deformation.
    subroutine move_all(self, d)
@@ -511,7 +511,7 @@ contains
       real(wp), intent(in), contiguous :: d(:)
       integer :: i
 
-      if (self%pressed) call press_joints(self, d)
+      if (self%axial_load_varies) call move_joints(self, d)
       if (size(self%d) == 2) then
          ! One body: while both springs stay on their lines, neither a loop nor a call is needed.
          if (d(1) <= self%last(1) .and. d(1) >= self%first(1) .and. &
@@ -537,7 +537,7 @@ contains
       !> New deformations (count) [m or rad]
       real(wp), intent(in), contiguous :: d(:)
 
-      stay_on_lines = are_within(self%count, d, self%first, self%last) .and. .not. self%pressed
+      stay_on_lines = are_within(self%count, d, self%first, self%last) .and. .not. self%axial_load_varies
    end function stay_on_lines
 
    !> Move every spring to a deformation on its present line.
@@ -546,7 +546,7 @@ contains
       !> New deformations (count) [m or rad]
       real(wp), intent(in), contiguous :: d(:)
 
-      if (self%pressed) call press_joints(self, d)
+      if (self%axial_load_varies) call move_joints(self, d)
       if (size(self%d) == 2) then
          call advance_pair(d, self%d0, self%f0, self%k, self%unload_on_reversal, self%d, self%work, &
                            self%first, self%last)
@@ -616,7 +616,8 @@ contains
 
       select type (section => self%slot(i)%memory)
       type is (fibre_section)
-         call section%read_plane(self%d0(i), self%press_at(i), self%f0(i), self%k(i), self%centre(i))
+         call section%read_plane(self%d0(i), self%reference_axial_load(i), self%f0(i), self%k(i), &
+                                 self%centre(i))
       end select
       self%first(i) = -unbounded
       self%last(i) = unbounded
@@ -634,8 +635,8 @@ contains
       end do
    end subroutine fit_planes
 
-   !> Layered joints whose axial loads vary go straight to new rotations and to `press_to`.
-   subroutine press_joints(self, d)
+   !> Layered joints whose axial loads vary go straight to new rotations and to `target_axial_load`.
+   subroutine move_joints(self, d)
       type(spring_array), intent(inout) :: self
       !> New deformations (count) [m or rad]
       real(wp), intent(in), contiguous :: d(:)
@@ -643,17 +644,18 @@ contains
 
       do j = 1, size(self%layered)
          i = self%layered(j)
-         if (.not. abs(d(i) - self%d(i)) + abs(self%press_to(i) - self%press_at(i)) > 0.0_wp) cycle
+         if (.not. abs(d(i) - self%d(i)) + &
+             abs(self%target_axial_load(i) - self%reference_axial_load(i)) > 0.0_wp) cycle
          if (self%journal%open) call self%journal%keep(i, self%line_of(i), self%slot(i))
          select type (section => self%slot(i)%memory)
          type is (fibre_section)
-            call go(section, d(i), self%press_to(i), self%work(i))
+            call go(section, d(i), self%target_axial_load(i), self%work(i))
          end select
          self%events = self%events + 1
          call read_plane(self, i)
          self%d(i) = d(i)
       end do
-   end subroutine press_joints
+   end subroutine move_joints
 
    !> The first layered joint that can no longer carry its axial load, 0 if all can.
    pure integer function lost_joint(self) result(lost)

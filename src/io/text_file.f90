@@ -85,29 +85,29 @@ contains
          character(len=1) :: one
          integer(c_size_t) :: count
          integer(int64) :: size
-         integer :: length, room, limit, status
+         integer :: length, capacity, limit, status
 
          ! The size of a file is known, that of a pipe is not.
          size = 0
          if (path /= '-') inquire (file=path, size=size)
          limit = most
          if (size < 1_int64) limit = min(most, most_of_pipe)
-         room = int(min(size, int(limit, int64)))
-         if (size < 1_int64) room = first_of_pipe
-         allocate (character(len=room) :: file%text, stat=status)
+         capacity = int(min(size, int(limit, int64)))
+         if (size < 1_int64) capacity = first_of_pipe
+         allocate (character(len=capacity) :: file%text, stat=status)
          length = 0
          count = 0_c_size_t
          do while (status == 0 .and. max(size, int(length, int64)) <= int(limit, int64))
-            if (length < room) then
-               count = read_some(descriptor, file%text(length + 1:room), length == 0)
+            if (length < capacity) then
+               count = read_some(descriptor, file%text(length + 1:capacity), length == 0)
             else
                count = read_some(descriptor, one, .false.)
             end if
             if (count <= 0_c_size_t) exit
             length = length + int(count)
-            if (length <= room .or. length > limit) cycle
-            room = int(min(2*int(room, int64), int(limit, int64)))
-            allocate (character(len=room) :: longer, stat=status)
+            if (length <= capacity .or. length > limit) cycle
+            capacity = int(min(2*int(capacity, int64), int(limit, int64)))
+            allocate (character(len=capacity) :: longer, stat=status)
             if (status /= 0) exit
             longer(:length - 1) = file%text
             longer(length:length) = one
@@ -126,7 +126,7 @@ contains
             call refuse('cannot be read; check the path and the permissions')
          else if (length == 0) then
             call refuse('is empty')
-         else if (length < room) then
+         else if (length < capacity) then
             file%text = file%text(:length)
          end if
       end subroutine read_all

@@ -52,7 +52,7 @@ module rbs_output_recorder
    type, extends(recorder_type) :: array_recorder
       !> Rows kept so far, and how many there will be as far as known
       integer :: count = 0, expected = 0
-      integer, private :: room = 0
+      integer, private :: capacity = 0
       !> One row a column (values of a row, rows kept and room for others)
       real(wp), allocatable :: rows(:, :)
    contains
@@ -86,7 +86,7 @@ contains
       integer :: most, status
 
       if (allocated(error)) return
-      if (self%count == self%room) then
+      if (self%count == self%capacity) then
          ! Room for all rows that are expected, then for twice as many: how many corners a path has is not
          ! known before.
          most = max(1, self%expected, 2*self%count)
@@ -96,7 +96,7 @@ contains
                              to_text(size(row))//' numbers; keep fewer of them with every')
             return
          end if
-         self%room = most
+         self%capacity = most
          if (self%count > 0) larger(:, :self%count) = self%rows
          call move_alloc(larger, self%rows)
       end if

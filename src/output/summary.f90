@@ -31,10 +31,10 @@ module rbs_output_summary
       !> storeys
       real(wp), allocatable :: storey_drift(:), peak_storey_drift(:)
    contains
-      procedure :: see_peak
-      procedure :: see_turn
-      procedure :: see_base
-      procedure :: see_floor
+      procedure :: update_peak
+      procedure :: update_rotation
+      procedure :: update_base_shear
+      procedure :: update_acceleration
    end type peaks_type
 
    type, extends(peaks_type) :: summary_type
@@ -76,7 +76,7 @@ module rbs_output_summary
       !> times of the loading (in time)
       real(wp) :: residual = 0.0_wp, largest = 0.0_wp
    contains
-      procedure :: see_energies
+      procedure :: update_energies
       procedure :: get_figures
       procedure :: status
    end type summary_type
@@ -87,7 +87,7 @@ module rbs_output_summary
 contains
 
    !> Take a displacement and a force into account.
-   pure subroutine see_peak(self, displacement, force)
+   pure subroutine update_peak(self, displacement, force)
       class(peaks_type), intent(inout) :: self
       !> Of the top [m], lateral [N]
       real(wp), intent(in) :: displacement, force
@@ -98,44 +98,44 @@ contains
          self%peak_force = force
          self%displacement_at_peak = displacement
       end if
-   end subroutine see_peak
+   end subroutine update_peak
 
    !> Take the largest rotation of a body into account.
-   pure subroutine see_turn(self, rotation)
+   pure subroutine update_rotation(self, rotation)
       class(peaks_type), intent(inout) :: self
       !> In size [rad]
       real(wp), intent(in) :: rotation
 
       self%peak_rotation = max(self%peak_rotation, rotation)
-   end subroutine see_turn
+   end subroutine update_rotation
 
    !> Take a shear force at the base into account.
-   pure subroutine see_base(self, shear)
+   pure subroutine update_base_shear(self, shear)
       class(peaks_type), intent(inout) :: self
       !> [N]
       real(wp), intent(in) :: shear
 
       if (abs(shear) > abs(self%peak_base_shear)) self%peak_base_shear = shear
-   end subroutine see_base
+   end subroutine update_base_shear
 
    !> Take an absolute acceleration of the top into account.
-   pure subroutine see_floor(self, acceleration)
+   pure subroutine update_acceleration(self, acceleration)
       class(peaks_type), intent(inout) :: self
       !> [m/s2]
       real(wp), intent(in) :: acceleration
 
       self%peak_floor_acceleration = max(self%peak_floor_acceleration, abs(acceleration))
-   end subroutine see_floor
+   end subroutine update_acceleration
 
    !> Take the energies of a moment into account; those of the last one stay.
-   pure subroutine see_energies(self, energy)
+   pure subroutine update_energies(self, energy)
       class(summary_type), intent(inout) :: self
       type(energy_type), intent(in) :: energy
 
       self%energy = energy
       self%residual = max(self%residual, abs(energy%residual))
       self%largest = max(self%largest, abs(energy%input), energy%kinetic + energy%spring)
-   end subroutine see_energies
+   end subroutine update_energies
 
    !> The figures that apply to the run. How far a joint falls that does not rest is not a number.
    pure subroutine get_figures(self, list)

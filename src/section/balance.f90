@@ -99,12 +99,12 @@ contains
       subroutine find_strain(last)
          type(state_type), intent(in) :: last
          type(resultants_type) :: sums
-         real(wp) :: residual, near, guess, limit, turn
+         real(wp) :: residual, near, guess, limit, rise
          integer :: i
 
-         turn = next%curvature - last%curvature
-         guess = last%eps0 + last%trend*turn
-         near = 2.0e-5_wp + 0.3_wp*abs(turn)*section%shape%depth
+         rise = next%curvature - last%curvature
+         guess = last%eps0 + last%trend*rise
+         near = 2.0e-5_wp + 0.3_wp*abs(rise)*section%shape%depth
          limit = tolerance*force_scale(section)
          next%eps0 = guess
          found = .false.
@@ -124,7 +124,7 @@ contains
             next%eps0 = last%eps0
             call settle(section, laws, axial_load, next%curvature, next, found)
          end if
-         if (found .and. abs(turn) > 0.0_wp) next%trend = (next%eps0 - last%eps0)/turn
+         if (found .and. abs(rise) > 0.0_wp) next%trend = (next%eps0 - last%eps0)/rise
       end subroutine find_strain
 
    end subroutine advance
@@ -167,16 +167,16 @@ contains
       real(wp), intent(in) :: axial_load, curvature
       type(state_type), intent(inout) :: state
       logical, intent(out) :: found
-      type(resultants_type) :: here, there
+      type(resultants_type) :: current, trial
       real(wp) :: step, direction, at, next, furthest
 
       found = .true.
       state%curvature = curvature
       at = state%eps0
-      here = resultants(section, laws, at, curvature)
-      state%moment = here%m
-      if (abs(here%n - axial_load) <= tolerance*force_scale(section)) return
-      direction = sign(1.0_wp, axial_load - here%n)
+      current = resultants(section, laws, at, curvature)
+      state%moment = current%m
+      if (abs(current%n - axial_load) <= tolerance*force_scale(section)) return
+      direction = sign(1.0_wp, axial_load - current%n)
       furthest = crushed
       if (direction < 0.0_wp) furthest = largest_opening(section)
       furthest = furthest + abs(curvature)*section%shape%depth
@@ -184,13 +184,13 @@ contains
       do
          next = at + direction*step
          if (abs(next) > furthest) exit
-         there = resultants(section, laws, next, curvature)
-         if ((there%n - axial_load)*direction >= 0.0_wp) then
-            call close_in(at, here, next, there)
+         trial = resultants(section, laws, next, curvature)
+         if ((trial%n - axial_load)*direction >= 0.0_wp) then
+            call close_in(at, current, next, trial)
             return
          end if
          at = next
-         here = there
+         current = trial
          step = min(longest_search + search_share*abs(curvature)*section%shape%depth, search_growth*step)
       end do
       found = .false.

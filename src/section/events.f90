@@ -127,32 +127,32 @@ contains
       type(error_type), allocatable, intent(out) :: error
       !> Stop at cracking, without the other points
       logical, intent(in), optional :: only_cracking
-      type(state_type) :: last, here, before_peak
-      type(point_type) :: drop
-      logical :: found, in_peak, short
+      type(state_type) :: last, current, before_peak
+      type(point_type) :: failed
+      logical :: found, in_peak, short, fails
 
       short = .false.
       if (present(only_cracking)) short = only_cracking
-      call begin(section, laws, axial_load, here, error)
+      call begin(section, laws, axial_load, current, error)
       if (allocated(error)) return
-      before_peak = here
-      events%peak = as_point(here)
+      before_peak = current
+      events%peak = as_point(current)
       in_peak = .false.
       do
-         last = here
+         last = current
          call advance(section, laws, axial_load, last%curvature + step_of(section, last%curvature), &
-                      here, found)
+                      current, found)
          if (.not. found) then
             events%lost = .true.
             exit
          end if
-         if (in_peak .and. here%moment < events%peak%moment) then
-            call refine_peak(before_peak, here%curvature, events%peak)
+         if (in_peak .and. current%moment < events%peak%moment) then
+            call refine_peak(before_peak, current%curvature, events%peak)
          end if
          in_peak = .false.
-         if (here%moment > events%peak%moment) then
+         if (current%moment > events%peak%moment) then
             before_peak = last
-            events%peak = as_point(here)
+            events%peak = as_point(current)
             in_peak = .true.
          end if
          call catch(seek_cracking, 0.0_wp, events%cracking)
@@ -160,15 +160,16 @@ contains
          call catch(seek_yield, 0.0_wp, events%yield)
          if (rule%ultimate /= ultimate_drop) call catch(seek_ultimate, 0.0_wp, events%ultimate)
          ! The moment drops at cracking too, and recovers: a section fails by crushing or rupture.
-         if (events%peak%moment > 0.0_wp .and. (compressed(section, here) > section%plain%eps0 .or. &
-                                                bar_ratio(section, here, at_rupture=.true.) >= 1.0_wp)) then
-            call catch(seek_drop, failed_share*events%peak%moment, drop)
+         fails = compressed(section, current) > section%plain%eps0 .or. &
+                 bar_ratio(section, current, at_rupture=.true.) >= 1.0_wp
+         if (fails .and. events%peak%moment > 0.0_wp) then
+            call catch(seek_drop, failed_share*events%peak%moment, failed)
          end if
-         if (drop%found .or. here%curvature*section%shape%depth > furthest) exit
+         if (failed%found .or. current%curvature*section%shape%depth > furthest) exit
       end do
-      events%last = as_point(here)
-      if (rule%ultimate == ultimate_drop) events%ultimate = drop
-      if (drop%found) events%last = drop
+      events%last = as_point(current)
+      if (rule%ultimate == ultimate_drop) events%ultimate = failed
+      if (failed%found) events%last = failed
 
    contains
 
@@ -178,8 +179,8 @@ contains
          type(point_type), intent(inout) :: point
 
          if (point%found) return
-         if (beyond(section, laws, rule, what, level, here) < 0.0_wp) return
-         call locate(section, laws, axial_load, rule, what, level, last, here, point)
+         if (beyond(section, laws, rule, what, level, current) < 0.0_wp) return
+         call locate(section, laws, axial_load, rule, what, level, last, current, point)
       end subroutine catch
 
       !> Golden-section search, as the diagram may have a corner at its peak.
@@ -234,22 +235,22 @@ contains
       real(wp), intent(in) :: moment
       type(point_type), intent(out) :: point
       type(error_type), allocatable, intent(out) :: error
-      type(state_type) :: last, here
+      type(state_type) :: last, current
       logical :: found
 
-      call begin(section, laws, axial_load, here, error)
+      call begin(section, laws, axial_load, current, error)
       if (allocated(error)) return
-      if (here%moment >= moment) then
-         point = as_point(here)
+      if (current%moment >= moment) then
+         point = as_point(current)
          return
       end if
-      do while (here%moment < moment)
-         last = here
+      do while (current%moment < moment)
+         last = current
          call advance(section, laws, axial_load, last%curvature + step_of(section, last%curvature), &
-                      here, found)
-         if (.not. found .or. here%curvature*section%shape%depth > furthest) return
+                      current, found)
+         if (.not. found .or. current%curvature*section%shape%depth > furthest) return
       end do
-      call locate(section, laws, axial_load, rule_type(), seek_moment, moment, last, here, point)
+      call locate(section, laws, axial_load, rule_type(), seek_moment, moment, last, current, point)
    end subroutine reach_moment
 
    elemental real(wp) function step_of(section, curvature)
@@ -331,7 +332,7 @@ contains
       real(wp), intent(in) :: level
       type(state_type), intent(in) :: first, second
       type(point_type), intent(out) :: point
-      type(state_type) :: low, high, here
+      type(state_type) :: low, high, current
       real(wp) :: at, below, above, past
       logical :: found
       integer :: i, kept
@@ -347,22 +348,22 @@ contains
          at = 0.5_wp*(low%curvature + high%curvature)
          if (mod(i, 3) /= 0) at = low%curvature - below*(high%curvature - low%curvature)/(above - below)
          if (at <= low%curvature .or. at >= high%curvature) at = 0.5_wp*(low%curvature + high%curvature)
-         here = low
-         call advance(section, laws, axial_load, at, here, found)
-         past = beyond(section, laws, rule, what, level, here)
+         current = low
+         call advance(section, laws, axial_load, at, current, found)
+         past = beyond(section, laws, rule, what, level, current)
          if (past >= 0.0_wp .or. .not. found) then
-            high = here
+            high = current
             above = past
             if (kept > 0) below = 0.5_wp*below
             kept = 1
          else
-            low = here
+            low = current
             below = past
             if (kept < 0) above = 0.5_wp*above
             kept = -1
          end if
          if (abs(past) > 1.0e-11_wp) cycle
-         low = here
+         low = current
          exit
       end do
       point = as_point(low)

@@ -11,7 +11,7 @@ module rbs_solve_end_state
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_hysteresis_interaction_joints, only: go_under
+   use rbs_hysteresis_interaction_joints, only: change_axial_loads
    use rbs_hysteresis_layered_layered_joint, only: layered_rule
    use rbs_hysteresis_rule, only: rule_type
    use rbs_hysteresis_springs, only: spring_array
@@ -35,13 +35,13 @@ module rbs_solve_end_state
    type :: checkpoint_type
       integer :: kind = 0
       !> Whether the axial loads of layered joints varied
-      logical :: pressed = .false.
+      logical :: axial_load_varies = .false.
       !> Displacement of the top [m], lateral force [N], axial load at the top without what follows the
       !> force [N]
       real(wp) :: displacement = 0.0_wp, force = 0.0_wp, axial_load = 0.0_wp
       !> Axial forces at the springs, compression positive (springs) [N]; velocities of the position
       !> (coordinates), zero after a static path
-      real(wp), allocatable :: press(:), v(:)
+      real(wp), allocatable :: axial_force(:), v(:)
       !> Works of loads and damping, energy at the start, what was missing from the balance [J]
       real(wp) :: input = 0.0_wp, damping = 0.0_wp, at_begin = 0.0_wp, residual = 0.0_wp
       !> Kinetic energy that the velocities of the joints do not show [J]
@@ -83,9 +83,9 @@ contains
       type(stream_type), intent(inout) :: stream
 
       call stream%item(self%kind)
-      call stream%item(self%pressed)
+      call stream%item(self%axial_load_varies)
       call stream%items(self%displacement, self%force, self%axial_load)
-      call stream%item(self%press)
+      call stream%item(self%axial_force)
       call stream%item(self%v)
       call stream%items(self%input, self%damping, self%at_begin, self%residual, self%along_joints, &
                         self%begin, self%clock, self%time)
@@ -182,7 +182,8 @@ contains
 
       call self%check(structure, error)
       if (allocated(error)) return
-      allocate (checkpoint%press(size(structure%place)), checkpoint%v(structure%coordinates), source=0.0_wp)
+      allocate (checkpoint%axial_force(size(structure%place)), checkpoint%v(structure%coordinates), &
+                source=0.0_wp)
       call self%stream%restore()
       call self%stream%item(first)
       call checkpoint%serialize(self%stream)
@@ -292,7 +293,7 @@ contains
       type(error_type), allocatable, intent(inout) :: error
       integer :: lost
 
-      call go_under(springs, axial_force, self%pressed)
+      call change_axial_loads(springs, axial_force, self%axial_load_varies)
       lost = springs%lost_joint()
       if (lost == 0) return
       call fatal_error(error, analysis_failed, 'initial: the layers of '// &

@@ -122,11 +122,11 @@ module rbs_structure_structure
       !> Forces on the unknowns
       procedure(collect), deferred :: forces
       !> Axial forces that do second-order work, under loads
-      procedure(press), deferred :: axial_forces
+      procedure(find_axial_forces), deferred :: axial_forces
       procedure(assemble_springs), deferred :: add_stiffness
       procedure(assemble), deferred :: add_geometric
       !> Absolute rotations of the bodies
-      procedure(turn), deferred :: rotations
+      procedure(find_rotations), deferred :: rotations
       !> Potential of constant loads, zero where no spring is deformed [J]
       procedure(of_position), deferred :: potential_energy
       !> Refuse loads that do nothing
@@ -242,14 +242,14 @@ module rbs_structure_structure
          real(wp), intent(in), optional :: dead
       end subroutine collect
 
-      subroutine press(self, load, axial)
+      subroutine find_axial_forces(self, load, axial)
          import :: structure_type, wp
          implicit none
          class(structure_type), intent(in) :: self
          real(wp), intent(in), contiguous :: load(:)
          !> Compression positive, in the order of the structure [N]
          real(wp), intent(out), contiguous :: axial(:)
-      end subroutine press
+      end subroutine find_axial_forces
 
       !> Add B' diag(k) B of the springs to a lower band, band(1 + i - j, j) = a(i, j).
       subroutine assemble_springs(self, k, tangent, band)
@@ -280,7 +280,7 @@ module rbs_structure_structure
          real(wp), intent(in), contiguous :: d(:)
       end function of_position
 
-      pure subroutine turn(self, d, rotation)
+      pure subroutine find_rotations(self, d, rotation)
          import :: structure_type, wp
          implicit none
          class(structure_type), intent(in) :: self
@@ -288,7 +288,7 @@ module rbs_structure_structure
          real(wp), intent(in), contiguous :: d(:)
          !> (n) [rad]
          real(wp), intent(out), contiguous :: rotation(:)
-      end subroutine turn
+      end subroutine find_rotations
 
       subroutine refuse_loads(self, acts, error)
          import :: structure_type, error_type, signals

@@ -72,7 +72,7 @@ contains
       type(segment), intent(inout), target :: branch
       integer, intent(in) :: direction
       type(capped_spring) :: spring
-      type(point) :: here
+      type(point) :: end_point
       logical :: outward
 
       spring%part => self
@@ -80,58 +80,58 @@ contains
       spring%turns_of(-1:) => memory%open
       spring%branch => branch
       associate (now => memory%now)
-         here%d = branch%end_toward(direction)
-         here%f = branch%force(here%d)
-         now%work = now%work + 0.5_wp*(here%f + now%begun%f)*(here%d - now%begun%d)
-         now%begun = here
+         end_point%d = branch%end_toward(direction)
+         end_point%f = branch%force(end_point%d)
+         now%work = now%work + 0.5_wp*(end_point%f + now%begun%f)*(end_point%d - now%begun%d)
+         now%begun = end_point
          outward = direction == now%side
 
          select case (now%branch)
          case (virgin)
-            if (direction*here%d > 0.0_wp) then
+            if (direction*end_point%d > 0.0_wp) then
                ! Earlier work of the flexural spring does not count: an uncracked spring has not decayed.
                now%work_at_cracking = now%flexural_work
-               call follow_backbone(spring, direction, here)
+               call follow_backbone(spring, direction, end_point)
             else
                now%side = direction
                branch = virgin_branch(self, now, direction)
             end if
          case (on_backbone)
             if (outward) then
-               call follow_backbone(spring, direction, here)
+               call follow_backbone(spring, direction, end_point)
             else
-               call unload(spring, here)
+               call unload(spring, end_point)
             end if
          case (unloading)
             if (outward) then
                now%branch = now%left_branch
                branch = now%left
-               call branch%lead_outward(now%side, near=here%d, far=now%left%end_toward(direction))
+               call branch%lead_outward(now%side, near=end_point%d, far=now%left%end_toward(direction))
             else
-               call end_excursion(spring, here%d)
+               call end_excursion(spring, end_point%d)
             end if
          case (reloading)
             if (outward) then
-               call go_on(spring, here)
+               call go_on(spring, end_point)
             else
-               call unload(spring, here)
+               call unload(spring, end_point)
             end if
          case default                                   ! in a gap
             if (outward) then
                call reload(spring)
             else
-               now%way_back = 0.0_wp
-               call enter(spring, direction, here%d)
+               now%distance_back = 0.0_wp
+               call enter(spring, direction, end_point%d)
             end if
          end select
       end associate
    end subroutine next_branch
 
    !> On the backbone of side s from a point on.
-   subroutine follow_backbone(spring, s, here)
+   subroutine follow_backbone(spring, s, end_point)
       type(capped_spring), intent(inout) :: spring
       integer, intent(in) :: s
-      type(point), intent(in) :: here
+      type(point), intent(in) :: end_point
       real(wp) :: k
 
       associate (now => spring%now, branch => spring%branch, turns_of => spring%turns_of)
@@ -139,27 +139,27 @@ contains
          now%branch = on_backbone
          ! No turn of this side lies ahead any more.
          turns_of(s)%count = 0
-         if (.not. now%yielded .and. s*here%d >= now%backbone(s)%d_y) then
+         if (.not. now%yielded .and. s*end_point%d >= now%backbone(s)%d_y) then
             ! Energy dissipated before yield does not deteriorate the spring.
-            k = unloading_stiffness(spring, s, point(s*here%d, s*here%f))
-            now%work_at_zero = now%work - 0.5_wp*here%f**2/k
+            k = unloading_stiffness(spring, s, point(s*end_point%d, s*end_point%f))
+            now%work_at_zero = now%work - 0.5_wp*end_point%f**2/k
             now%yielded = .true.
          end if
-         branch = now%backbone(s)%line_from(s, here%d)
+         branch = now%backbone(s)%line_from(s, end_point%d)
       end associate
    end subroutine follow_backbone
 
    !> The motion has turned back: unload toward zero force.
-   subroutine unload(spring, here)
+   subroutine unload(spring, end_point)
       type(capped_spring), intent(inout) :: spring
-      type(point), intent(in) :: here
+      type(point), intent(in) :: end_point
       type(point) :: at
       real(wp) :: k
       integer :: s
 
       associate (part => spring%part, now => spring%now, branch => spring%branch)
          s = now%side
-         at = point(s*here%d, s*here%f)
+         at = point(s*end_point%d, s*end_point%f)
          now%peak(s) = max(now%peak(s), at%d)
          now%worn = max(now%worn, spent_at(spring, at%f))
          now%turned = turn(at, start=now%start_at, goal=now%goal)
@@ -168,12 +168,13 @@ contains
          now%branch = unloading
          if (at%f <= no_force*part%given(s)%f_y) then
             ! There is no force to unload.
-            call end_excursion(spring, here%d)
+            call end_excursion(spring, end_point%d)
             return
          end if
          k = unloading_stiffness(spring, s, at)
-         branch = segment(d0=here%d, f0=here%f, k=k)
-         call branch%lead_outward(s, near=here%d - here%f/k, far=here%d, unload_on_reversal=.false.)
+         branch = segment(d0=end_point%d, f0=end_point%f, k=k)
+         call branch%lead_outward(s, near=end_point%d - end_point%f/k, far=end_point%d, &
+                                  unload_on_reversal=.false.)
       end associate
    end subroutine unload
 
@@ -190,7 +191,7 @@ contains
          now%turns = now%turns + 1_int64
          now%turned%number = min(now%closed, now%turns)
          call turns_of(now%side)%push(now%turned)
-         now%way_back = now%turned%at%d - now%entered
+         now%distance_back = now%turned%at%d - now%entered
          call enter(spring, -now%side, zero)
       end associate
    end subroutine end_excursion
@@ -257,26 +258,26 @@ contains
    end subroutine reload
 
    !> The goal of reloading is reached.
-   subroutine go_on(spring, here)
+   subroutine go_on(spring, end_point)
       type(capped_spring), intent(inout) :: spring
-      type(point), intent(in) :: here
+      type(point), intent(in) :: end_point
 
       associate (now => spring%now, turns_of => spring%turns_of)
          associate (s => now%side, turns => turns_of(now%side))
-            now%closed_start = outermost_rest(spring, s*here%d)
-            now%closed_at = s*here%d
+            now%closed_start = outermost_rest(spring, s*end_point%d)
+            now%closed_at = s*end_point%d
             if (now%to_turn) then
                ! The inner loop is closed.
                now%closed = turns%list(turns%count)%number
-               call turns_of(-s)%let_fade(now%closed, s*here%d)
+               call turns_of(-s)%let_fade(now%closed, s*end_point%d)
                now%start_at = turns%list(turns%count)%start
                now%goal = turns%list(turns%count)%goal
                turns%count = turns%count - 1
                now%to_turn = turns%count > 0
-               call aim(spring, point(s*here%d, s*here%f))
+               call aim(spring, point(s*end_point%d, s*end_point%f))
             else
-               call turns_of(-s)%let_fade(0_int64, s*here%d)
-               call follow_backbone(spring, s, here)
+               call turns_of(-s)%let_fade(0_int64, s*end_point%d)
+               call follow_backbone(spring, s, end_point)
             end if
          end associate
       end associate
@@ -287,15 +288,15 @@ contains
       type(capped_spring), intent(inout) :: spring
       !> As seen from the side
       type(point), intent(in) :: from
-      real(wp) :: way, k
+      real(wp) :: distance, k
 
       associate (part => spring%part, now => spring%now, branch => spring%branch)
          associate (s => now%side, at => now%goal)
-            way = at%d - from%d
+            distance = at%d - from%d
             ! If round-off leaves no distance, the point is met at once.
             k = part%k_0
-            if (way > 0.0_wp) then
-               k = (at%f - from%f)/way
+            if (distance > 0.0_wp) then
+               k = (at%f - from%f)/distance
                branch = segment(d0=s*at%d, f0=0.0_wp + s*at%f, k=k)
             else
                branch = segment(d0=s*from%d, f0=0.0_wp + s*from%f, k=k)

@@ -71,7 +71,7 @@ module rbs_hysteresis_rules_capped_lines
       real(wp) :: flexural_work = 0.0_wp, work_at_cracking = 0.0_wp, left_by_hinge(-1:1) = 1.0_wp
       !> Where the force was zero when the present side was entered, as seen from it, and way of the last
       !> excursion to the other side from there [m or rad]
-      real(wp) :: entered = 0.0_wp, way_back = 0.0_wp
+      real(wp) :: entered = 0.0_wp, distance_back = 0.0_wp
       !> Share that is left of 1/peak
       real(wp) :: target_left(-1:1) = 1.0_wp
       !> Start and goal of the present line of reloading, as seen from its side; whether that is an open turn
@@ -198,7 +198,7 @@ contains
                worked = max(now%flexural_work - now%work_at_cracking, 0.0_wp)/part%hinge_work
                left = part%s_min + (1.0_wp - part%s_min)/(1.0_wp + worked)
                ! After a small excursion to the other side little has changed.
-               left = max(left, now%left_by_hinge(s) - decay_rate*max(now%way_back, 0.0_wp)/given%d_y)
+               left = max(left, now%left_by_hinge(s) - decay_rate*max(now%distance_back, 0.0_wp)/given%d_y)
                now%left_by_hinge(s) = min(left, now%left_by_hinge(s))
                backbone%strength = backbone%strength*now%left_by_hinge(s)
             end if
@@ -302,7 +302,7 @@ contains
          call stream%item(now%target_left)
          call stream%items(now%flexural_work, now%work_at_cracking)
          call stream%item(now%left_by_hinge)
-         call stream%items(now%entered, now%way_back, now%start_at)
+         call stream%items(now%entered, now%distance_back, now%start_at)
          call now%goal%serialize(stream)
          call stream%item(now%to_turn)
          call stream%items(now%closed_start, now%closed_at, now%work, now%work_at_zero)

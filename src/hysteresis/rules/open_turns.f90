@@ -74,16 +74,16 @@ contains
       real(wp), intent(in) :: start, steepest
       !> Whether that line is met before its goal
       logical, intent(out) :: found
-      real(wp) :: k, missing
+      real(wp) :: k, shortfall
 
-      missing = last%at%f - steepest*(1.0_wp + parallel)*(last%at%d - start)
-      found = .not. missing > 0.0_wp
+      shortfall = last%at%f - steepest*(1.0_wp + parallel)*(last%at%d - start)
+      found = .not. shortfall > 0.0_wp
       if (found .or. last%goal%d <= last%at%d) return
       k = (last%goal%f - last%at%f)/(last%goal%d - last%at%d)
-      missing = last%at%f - steepest*(last%at%d - start)
-      if (missing >= (steepest - k)*(last%goal%d - last%at%d)) return
+      shortfall = last%at%f - steepest*(last%at%d - start)
+      if (shortfall >= (steepest - k)*(last%goal%d - last%at%d)) return
       found = .true.
-      last%at%d = last%at%d + missing/(steepest - k)
+      last%at%d = last%at%d + shortfall/(steepest - k)
       last%at%f = steepest*(last%at%d - start)
    end subroutine shift
 

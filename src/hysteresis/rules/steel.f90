@@ -253,7 +253,7 @@ contains
          logical, intent(in) :: growing
          !> (elements) [N], (elements) [N/m]; [m], `unbounded` if no row follows
          real(wp), intent(out) :: limit(elements), growth(elements), ahead
-         real(wp) :: q, way, strength
+         real(wp) :: q, distance, strength
          integer :: row
 
          strength = 1.0_wp
@@ -269,8 +269,8 @@ contains
             end do
             limit = strength*self%d_y*self%k_element*table%y(:, row)
             if (row == table%rows) return
-            way = table%q(row + 1) - table%q(row)
-            growth = strength*self%k_element*(table%y(:, row + 1) - table%y(:, row))/way
+            distance = table%q(row + 1) - table%q(row)
+            growth = strength*self%k_element*(table%y(:, row + 1) - table%y(:, row))/distance
             limit = limit + growth*(q - table%q(row))*self%d_y
             ahead = (table%q(row + 1) - q)*self%d_y
             if (growing) return
@@ -326,7 +326,7 @@ contains
    pure subroutine make_table(self, table)
       type(steel_rule), intent(in) :: self
       type(table_type), intent(out) :: table
-      real(wp) :: b, r, q, strength, way, y_u
+      real(wp) :: b, r, q, strength, distance, y_u
       integer :: j
 
       table%rows = size(reaches)
@@ -347,14 +347,14 @@ contains
       do j = 2, table%rows
          associate (before => table%y(:yielding, j - 1), y => table%y(:yielding, j))
             q = min(table%q(j), reaches(size(reaches)))
-            way = table%q(j) - table%q(j - 1)
+            distance = table%q(j) - table%q(j - 1)
             r = max(least_r, self%r0*(1.0_wp - self%cr1*q/(self%cr2 + q)))
             strength = 1.0_wp + self%isotropic_hardening*(0.5_wp*q/self%hardening_reach)**0.8_wp
-            strength = min(strength, sum(share*before) + 0.9_wp*way)
+            strength = min(strength, sum(share*before) + 0.9_wp*distance)
             y = strength*round_limits(r)
-            call limit_row(y, strength, max(before - way, 0.0_wp), before + way)
+            call limit_row(y, strength, max(before - distance, 0.0_wp), before + distance)
             ! Apart from round-off the limit moves as fast as its element.
-            where (y - before > as_fast*way) y = before + way
+            where (y - before > as_fast*distance) y = before + distance
          end associate
       end do
    end subroutine make_table
@@ -395,7 +395,7 @@ contains
       !> Strength of the bank over that of the virgin one
       real(wp), intent(in) :: strength
       real(wp), intent(in) :: least(:), most(:)
-      real(wp) :: from(size(y)), low, high, c, missing, free
+      real(wp) :: from(size(y)), low, high, c, shortfall, free
       integer :: i
 
       from = y
@@ -405,13 +405,13 @@ contains
       ! The sum is made of straight pieces in c: Newton's method ends on the right one.
       do i = 1, 200
          y = min(max(from + c, least), most)
-         missing = strength - sum(share*y)
-         if (abs(missing) <= 1.0e-15_wp*strength) exit
-         if (missing > 0.0_wp) low = c
-         if (missing < 0.0_wp) high = c
+         shortfall = strength - sum(share*y)
+         if (abs(shortfall) <= 1.0e-15_wp*strength) exit
+         if (shortfall > 0.0_wp) low = c
+         if (shortfall < 0.0_wp) high = c
          free = sum(share, mask=from + c > least .and. from + c < most)
          if (free > 0.0_wp) then
-            c = max(min(c + missing/free, high), low)
+            c = max(min(c + shortfall/free, high), low)
          else
             c = 0.5_wp*(low + high)
          end if

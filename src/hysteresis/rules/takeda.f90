@@ -159,15 +159,15 @@ contains
       type(segment), intent(inout), target :: branch
       integer, intent(in) :: direction
       type(takeda_spring) :: spring
-      type(point) :: here
+      type(point) :: end_point
       logical :: outward
 
       spring%rule => self
       spring%now => now
       spring%open => open
       spring%branch => branch
-      here%d = branch%end_toward(direction)
-      here%f = branch%force(here%d)
+      end_point%d = branch%end_toward(direction)
+      end_point%f = branch%force(end_point%d)
       outward = direction == now%side
 
       select case (now%branch)
@@ -176,33 +176,33 @@ contains
          call follow_backbone(spring, direction, direction*self%d_c)
       case (cracked_backbone, yielded_backbone)
          if (outward) then
-            call follow_backbone(spring, (now%side), here%d)
+            call follow_backbone(spring, (now%side), end_point%d)
          else
-            call unload_from_peak(spring, here)
+            call unload_from_peak(spring, end_point)
          end if
       case (outer_unloading)
          if (outward) then
-            call follow_backbone(spring, (now%side), here%d)
+            call follow_backbone(spring, (now%side), end_point%d)
          else if (now%cracked(direction)) then
-            call reload_from_outer(spring, here%d)
+            call reload_from_outer(spring, end_point%d)
          else
-            call crack_on_reversal(spring, here%d)
+            call crack_on_reversal(spring, end_point%d)
          end if
       case (reloading)
          if (outward) then
             call reach_target(spring)
          else if (now%aim%goal_number == 0_int64 .and. &
-                  abs(here%d - now%aim%goal%d) <= same_place*abs(here%d)) then
+                  abs(end_point%d - now%aim%goal%d) <= same_place*abs(end_point%d)) then
             open%count = 0
-            call unload_from_peak(spring, here)
+            call unload_from_peak(spring, end_point)
          else
-            call unload_from_inner_peak(spring, here)
+            call unload_from_inner_peak(spring, end_point)
          end if
       case (inner_unloading)
          if (outward) then
             call resume_reloading(spring, (open%count))
          else
-            call reload_from_inner(spring, direction, here)
+            call reload_from_inner(spring, direction, end_point)
          end if
       case default                                  ! no other branch
       end select
@@ -318,11 +318,11 @@ contains
    !> Reloading has reached its target.
    subroutine reach_target(spring)
       type(takeda_spring), intent(inout) :: spring
-      type(point) :: here
+      type(point) :: end_point
       integer :: place
 
       associate (now => spring%now, open => spring%open)
-         here = now%aim%goal
+         end_point = now%aim%goal
          place = open%place_of(now%aim%goal_number)
          if (place > 0) then
             call resume_reloading(spring, place)
@@ -330,36 +330,37 @@ contains
          end if
          open%count = 0
          if (now%aim%goal_number == 0_int64) then
-            call follow_backbone(spring, (now%side), here%d)
+            call follow_backbone(spring, (now%side), end_point%d)
          else
             ! The inner peak was so old that it has been forgotten: continue to the backbone.
-            call reload_toward_peak(spring, (now%side), here, (now%aim%start))
+            call reload_toward_peak(spring, (now%side), end_point, (now%aim%start))
          end if
       end associate
    end subroutine reach_target
 
    !> Reversal on reloading before its target: a new inner peak, from which unloading has slope K_in.
-   subroutine unload_from_inner_peak(spring, here)
+   subroutine unload_from_inner_peak(spring, end_point)
       type(takeda_spring), intent(inout) :: spring
-      type(point), intent(in) :: here
+      type(point), intent(in) :: end_point
       real(wp) :: k_in
       integer :: s
 
       associate (rule => spring%rule, now => spring%now, branch => spring%branch, open => spring%open)
          s = now%side
-         if (abs(here%f) <= no_force*rule%f_y) then
-            call reload_from_inner(spring, -s, here)
+         if (abs(end_point%f) <= no_force*rule%f_y) then
+            call reload_from_inner(spring, -s, end_point)
             return
          end if
          now%peaks = now%peaks + 1_int64
-         now%aim%at = here
+         now%aim%at = end_point
          now%aim%side = s
          now%aim%number = now%peaks
          call open%push(now%aim)
          now%branch = inner_unloading
-         k_in = inner_stiffness(spring, here)
-         branch = segment(d0=here%d, f0=here%f, k=k_in)
-         call branch%lead_outward(s, near=here%d - here%f/k_in, far=here%d, unload_on_reversal=.false.)
+         k_in = inner_stiffness(spring, end_point)
+         branch = segment(d0=end_point%d, f0=end_point%f, k=k_in)
+         call branch%lead_outward(s, near=end_point%d - end_point%f/k_in, far=end_point%d, &
+                                  unload_on_reversal=.false.)
       end associate
    end subroutine unload_from_inner_peak
 
@@ -367,7 +368,7 @@ contains
    real(wp) function inner_stiffness(spring, peak) result(k_in)
       type(takeda_spring), intent(inout) :: spring
       type(point), intent(in) :: peak
-      real(wp) :: k_r, way
+      real(wp) :: k_r, distance
 
       associate (rule => spring%rule, now => spring%now)
          k_r = now%k_r(now%side)
@@ -382,8 +383,8 @@ contains
          end select
          k_in = min(k_in, k_r)
          ! At ductilities of 1e16 round-off leaves no distance from the zero crossing.
-         way = now%side*(peak%d - now%aim%start)
-         if (way > 0.0_wp) k_in = max(k_in, now%side*peak%f/way)
+         distance = now%side*(peak%d - now%aim%start)
+         if (distance > 0.0_wp) k_in = max(k_in, now%side*peak%f/distance)
       end associate
    end function inner_stiffness
 
@@ -437,15 +438,15 @@ contains
       type(takeda_spring), intent(inout) :: spring
       integer, intent(in) :: s
       type(point), intent(in) :: from
-      real(wp) :: way, k
+      real(wp) :: distance, k
 
       associate (rule => spring%rule, now => spring%now, branch => spring%branch)
          now%branch = reloading
          now%side = s
-         way = now%aim%goal%d - from%d
+         distance = now%aim%goal%d - from%d
          ! If round-off leaves no distance, the target is met at once.
          k = rule%k_c
-         if (s*way > 0.0_wp) k = (now%aim%goal%f - from%f)/way
+         if (s*distance > 0.0_wp) k = (now%aim%goal%f - from%f)/distance
          now%aim%k = k
          branch = segment(d0=now%aim%goal%d, f0=now%aim%goal%f, k=k)
          call branch%lead_outward(s, near=from%d, far=s*max(s*now%aim%goal%d, s*from%d))

@@ -6,7 +6,7 @@ module rbs_solve_static_corner
    use rbs_base_error, only: error_type, fatal_error, analysis_failed
    use rbs_base_kinds, only: wp
    use rbs_base_text, only: to_text
-   use rbs_hysteresis_interaction_joints, only: choose_lines
+   use rbs_hysteresis_interaction_joints, only: update_branches
    use rbs_hysteresis_springs, only: spring_array
    use rbs_hysteresis_straight_motion, only: find_blocked
    use rbs_solve_static_path, only: static_path, state_of, weakest_spring
@@ -166,12 +166,12 @@ contains
       subroutine find_stopped()
          call find_blocked(path%springs, path%rate(:path%moving), blocked, springs_blocked)
          stopped = springs_blocked
-         if (path%springs%pressed) call choose_planes(stopped)
+         if (path%springs%axial_load_varies) call update_layer_branches(stopped)
       end subroutine find_stopped
 
       !> The layers of joints whose axial loads vary choose their lines for the present rates; a joint whose
       !> plane changes by that had no room on it.
-      subroutine choose_planes(count)
+      subroutine update_layer_branches(count)
          integer, intent(inout) :: count
          real(wp) :: before(2)
          integer :: i, j
@@ -179,10 +179,10 @@ contains
          do j = 1, size(path%springs%layered)
             i = path%springs%layered(j)
             before = [path%springs%k(i), path%springs%centre(i)]
-            call choose_lines(path%springs, i, path%rate(i), path%axial_rate)
+            call update_branches(path%springs, i, path%rate(i), path%axial_rate)
             if (any(abs(before - [path%springs%k(i), path%springs%centre(i)]) > 0.0_wp)) count = count + 1
          end do
-      end subroutine choose_planes
+      end subroutine update_layer_branches
 
       !> Put the springs without room on the lines that follow, all or the first of them.
       subroutine change_lines(all_of_them)

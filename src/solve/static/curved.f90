@@ -186,7 +186,7 @@ contains
          return
       end do
       if (.not. near) self%next_length = 2.0_wp*length
-      if (self%stalled_strides > 20 + 4*self%moving + merge(2000, 0, self%springs%pressed)) then
+      if (self%stalled_strides > 20 + 4*self%moving + merge(2000, 0, self%springs%axial_load_varies)) then
          call report_no_way(self, target, error)
       end if
 
@@ -288,7 +288,7 @@ contains
                call springs%arrive(i, merge(1, -1, direction*there%rate(i) > 0.0_wp))
                self%direction = 0
             end do
-            if (.not. springs%pressed) return
+            if (.not. springs%axial_load_varies) return
             do j = 1, size(springs%layered)
                i = springs%layered(j)
                work = work_of_joint(self, i)
@@ -346,7 +346,9 @@ contains
          equilibrium%driven = [0.0_wp, 1.0_wp]
          correction = equilibrium%correction
          force = equilibrium%force_correction
-         if (self%springs%pressed) self%springs%press_to(:) = self%here%axial_load + equilibrium%above
+         if (self%springs%axial_load_varies) then
+            self%springs%target_axial_load(:) = self%here%axial_load + equilibrium%above
+         end if
       end associate
    end subroutine find_balance
 

@@ -148,8 +148,8 @@ contains
          self%axial = self%constant + point%axial_load*self%per_load
          call find_loads(self, self%per_load, point%q, 0.0_wp, self%lift, point%displacement)
          self%pushed = self%lift
-         if (springs%pressed) then
-            self%f(:) = self%f - springs%centre*(point%axial_load + self%above - springs%press_at)
+         if (springs%axial_load_varies) then
+            self%f(:) = self%f - springs%centre*(point%axial_load + self%above - springs%reference_axial_load)
             do j = 1, size(springs%layered)
                i = self%column%place(springs%layered(j))%index*self%per
                self%pushed(i) = self%pushed(i) + springs%centre(springs%layered(j))

@@ -219,8 +219,10 @@ contains
                                         [here%lift_rate, there%lift_rate]))
          f(:) = f - 0.5_wp*self%springs%k*change
          do j = 1, size(self%springs%layered)
-            if (self%springs%pressed) f(self%springs%layered(j)) = 0.0_wp
-            if (self%springs%pressed) works(3) = works(3) + work_of_joint(self, self%springs%layered(j))
+            if (self%springs%axial_load_varies) f(self%springs%layered(j)) = 0.0_wp
+            if (self%springs%axial_load_varies) then
+               works(3) = works(3) + work_of_joint(self, self%springs%layered(j))
+            end if
          end do
          turnover = sum(abs(change*f)) + sum(abs(works))
          missing = works(1) - works(2) - works(3) - sum(change*f) - (weight(2) - weight(1))

@@ -71,7 +71,7 @@ contains
       share = high
       do trial = 1, most_halvings
          do i = 1, frame%members
-            call loaded%press(i, share*frame%element(i)%compression)
+            call loaded%compress(i, share*frame%element(i)%compression)
          end do
          tangent = 0.0_wp
          call loaded%linearise(loaded%initial_stiffness, tangent, unstable)

@@ -297,8 +297,8 @@ contains
          ends = i == size(target) .or. lost > 0 .or. task%summary%collapsed .or. allocated(failure)
          if (lost > 0 .or. allocated(failure)) then
             if (.not. self%violates_balance) then
-               call see_turn(self)
-               call task%summary%see_energies(self%energies())
+               call update_rotation(self)
+               call task%summary%update_energies(self%energies())
             end if
          else if (ends .or. .not. self%is_straight) then
             call self%look(target(i), self%unbalance(), self%by_force .and. self%direction == 0, failure)
@@ -306,7 +306,7 @@ contains
          if (allocated(failure)) failure%message = 'row '//to_text(i)//': '//failure%message
          ! A point that is no state of the structure is no row.
          if (.not. self%violates_balance) then
-            call see_peak(self)
+            call update_peak(self)
             if (ends .or. mod(i - 1, every) == 0) then
                task%summary%rows = task%summary%rows + 1
                task%summary%last_time = i - 1
@@ -365,8 +365,8 @@ contains
       real(wp) :: there, gap, missing, place, ways, works
 
       energy = self%energies()
-      call see_turn(self)
-      call self%task%summary%see_energies(energy)
+      call update_rotation(self)
+      call self%task%summary%update_energies(energy)
       there = self%structure%top_displacement(self%springs%d)
       gap = abs(there - self%displacement)
       missing = energy%residual - self%check%at_begin
@@ -446,7 +446,7 @@ contains
       real(wp), intent(in) :: share
       type(error_type), allocatable :: error
 
-      call see_peak(self)
+      call update_peak(self)
       if (self%task%recorder%corners) call keep_row(self, self%number - 1 + share, error)
    end subroutine see_corner
 
@@ -458,26 +458,26 @@ contains
       real(wp), intent(in) :: displacement, force
 
       if (.not. displacement*self%displacement < 0.0_wp) return
-      call self%task%summary%see_peak(0.0_wp, (self%force*displacement - force*self%displacement)/ &
+      call self%task%summary%update_peak(0.0_wp, (self%force*displacement - force*self%displacement)/ &
                                               (displacement - self%displacement))
    end subroutine see_crossing
 
    !> Tell the summary of the present rotations.
-   subroutine see_turn(self)
+   subroutine update_rotation(self)
       class(static_path), intent(inout) :: self
 
       call self%structure%rotations(self%springs%d, self%rotation)
-      call self%task%summary%see_turn(maxval(abs(self%rotation)))
-   end subroutine see_turn
+      call self%task%summary%update_rotation(maxval(abs(self%rotation)))
+   end subroutine update_rotation
 
    !> Tell the summary of the present force and displacement.
-   subroutine see_peak(self)
+   subroutine update_peak(self)
       class(static_path), intent(inout) :: self
 
       ! A force that pulls the structure back, as where second-order moments drive it on, is no strength.
-      call self%task%summary%see_peak(self%displacement, merge(self%force, 0.0_wp, &
+      call self%task%summary%update_peak(self%displacement, merge(self%force, 0.0_wp, &
                                                           self%force*self%displacement >= 0.0_wp))
-   end subroutine see_peak
+   end subroutine update_peak
 
    !> Keep the row of the present point.
    subroutine keep_row(self, number, error)

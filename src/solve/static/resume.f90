@@ -53,17 +53,18 @@ contains
       !> vanish, and the joints come to equilibrium.
       subroutine begin_from()
          type(checkpoint_type) :: checkpoint
-         real(wp) :: press(size(path%structure%place)), missing
+         real(wp) :: axial_force(size(path%structure%place)), missing
          type(energy_type) :: energy
          logical :: goes_on
 
          call before%restore(path%structure, checkpoint, path%springs, error)
          if (allocated(error)) return
          if (varies) call vary_axial_loads(path%springs)
-         press = path%structure%constant_axial
-         if (varies) press = checkpoint%press
-         goes_on = checkpoint%kind == static_state .and. all(abs(press - checkpoint%press) <= 0.0_wp)
-         call checkpoint%put_under(path%structure, press, path%springs, error)
+         axial_force = path%structure%constant_axial
+         if (varies) axial_force = checkpoint%axial_force
+         goes_on = checkpoint%kind == static_state .and. &
+                   all(abs(axial_force - checkpoint%axial_force) <= 0.0_wp)
+         call checkpoint%put_under(path%structure, axial_force, path%springs, error)
          if (allocated(error)) return
          path%load_now = merge(checkpoint%axial_load, path%structure%axial_load, varies)
          path%work = checkpoint%input
@@ -203,16 +204,18 @@ contains
       type(energy_type) :: energy
 
       checkpoint%kind = static_state
-      checkpoint%pressed = path%springs%pressed
+      checkpoint%axial_load_varies = path%springs%axial_load_varies
       checkpoint%displacement = path%displacement
       checkpoint%force = path%force
       checkpoint%axial_load = path%load_now
-      checkpoint%press = path%structure%constant_axial
+      checkpoint%axial_force = path%structure%constant_axial
       if (varies) then
-         checkpoint%press = path%load_now + path%structure%axial_force_ratio*path%force &
+         checkpoint%axial_force = path%load_now + path%structure%axial_force_ratio*path%force &
                           + (path%structure%constant_axial - path%structure%axial_load)
          associate (layered => path%springs%layered)
-            if (path%springs%pressed) checkpoint%press(layered) = path%springs%press_at(layered)
+            if (path%springs%axial_load_varies) then
+               checkpoint%axial_force(layered) = path%springs%reference_axial_load(layered)
+            end if
          end associate
       end if
       allocate (checkpoint%v(path%structure%coordinates), source=0.0_wp)

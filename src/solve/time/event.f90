@@ -9,7 +9,7 @@ module rbs_solve_time_event
    implicit none
    private
 
-   public :: event_type, find_event, same_event, distance_to, round_off_of, felt, direction_of
+   public :: event_type, find_event, same_event, event_distance, round_off_of, felt, direction_of
 
    !> Deformations beyond this [m, rad] have no meaning: an end there is none.
    real(wp), parameter :: no_end = 1.0e100_wp
@@ -97,7 +97,7 @@ contains
 
    !> Distance of the end of an attempt beyond an event: of a deformation beyond the end of its line, or the
    !> velocity of a spring that is to turn back.
-   subroutine distance_to(state, scheme, event, now, distance, rate, round_off)
+   subroutine event_distance(state, scheme, event, now, distance, rate, round_off)
       type(state_type), intent(in) :: state
       class(scheme_type), intent(in) :: scheme
       type(event_type), intent(in) :: event
@@ -120,7 +120,7 @@ contains
             rate = event%way*scheme%v(i)
          end if
       end associate
-   end subroutine distance_to
+   end subroutine event_distance
 
    !> The exit from a line within a step.
    pure subroutine find_exit(ends, unload_on_reversal, d, v, h, exit)

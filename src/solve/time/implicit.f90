@@ -172,7 +172,7 @@ contains
 
          self%marked = .false.
          self%weighed = .false.
-         call state%motion%press(state%springs, self%load)
+         call state%motion%set_axial_loads(state%springs, self%load)
          call self%try_start(state)
          call self%iterate(state)
          if (self%converged) call self%check_runaway(state)
@@ -181,7 +181,7 @@ contains
             if (.not. self%converged .and. self%runaway == 0) then
                call state%springs%restore()
                ! Joints under an axial load that varies have no lines that deformations alone could follow.
-               if (.not. state%springs%pressed) call go_by_events()
+               if (.not. state%springs%axial_load_varies) call go_by_events()
                if (self%converged) call self%check_runaway(state)
             end if
             if (condensed) call snap_unless_smooth(self, state)

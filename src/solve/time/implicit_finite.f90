@@ -146,7 +146,7 @@ contains
       self%reaction0(:) = self%reaction
       state%springs%work_before(:) = self%work
       state%springs%work = 0.0_wp
-      call state%motion%press(state%springs, self%load)
+      call state%motion%set_axial_loads(state%springs, self%load)
       call see_bodies(self, state%q)
       self%from(:) = self%rotation
       self%joint%start(1) = self%joint%finish(1)

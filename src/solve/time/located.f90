@@ -7,7 +7,7 @@ module rbs_solve_time_located
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_base_text, only: to_text
-   use rbs_solve_time_event, only: event_type, find_event, same_event, distance_to, round_off_of, felt, &
+   use rbs_solve_time_event, only: event_type, find_event, same_event, event_distance, round_off_of, felt, &
                                    direction_of
    use rbs_solve_time_motion, only: motion_result
    use rbs_solve_time_scheme, only: scheme_type
@@ -207,7 +207,7 @@ contains
          if (.not. t > 0.0_wp) t = 0.5_wp*high
          do iteration = 1, 60
             call self%scheme%attempt(state, t)
-            call distance_to(state, self%scheme, event, self%now, distance, rate, round_off)
+            call event_distance(state, self%scheme, event, self%now, distance, rate, round_off)
             h = t
             if (abs(distance) <= round_off .or. high - low <= 4.0_wp*epsilon(1.0_wp)*high) exit
             if (distance > 0.0_wp) then

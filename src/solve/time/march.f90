@@ -292,7 +292,7 @@ contains
       energy%snaps = state%in_snaps
       energy%residual = state%of_loads + state%at_begin - energy%kinetic - energy%spring - energy%damping &
                         - energy%axial - energy%snaps
-      if (present(summary)) call summary%see_energies(energy)
+      if (present(summary)) call summary%update_energies(energy)
    end subroutine balance
 
 end module rbs_solve_time_march

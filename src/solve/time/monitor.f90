@@ -159,14 +159,14 @@ contains
          end if
       end if
       if (abs(displacement) > abs(self%peak_displacement) .or. abs(load(lateral)) > abs(self%peak_force)) then
-         call self%see_peak(displacement, load(lateral))
+         call self%update_peak(displacement, load(lateral))
          self%collapsed = self%collapsed .or. abs(self%peak_displacement) >= self%furthest
       end if
-      if (turn > self%peak_rotation) call self%see_turn(turn)
-      if (abs(shear) > abs(self%peak_base_shear)) call self%see_base(shear)
+      if (turn > self%peak_rotation) call self%update_rotation(turn)
+      if (abs(shear) > abs(self%peak_base_shear)) call self%update_base_shear(shear)
       if (self%feels) then
          call motion%acceleration(springs, q, v, load, self%now)
-         call self%see_floor(motion%structure%top_acceleration(q, v, self%now%a) + load(horizontal))
+         call self%update_acceleration(motion%structure%top_acceleration(q, v, self%now%a) + load(horizontal))
       end if
       if (.not. self%watching) return
       if (size(q) == 2 .and. .not. self%opens) then
@@ -245,7 +245,7 @@ contains
          top = [structure%top_displacement(q0), structure%top_displacement(q1), &
                 h*structure%speed(lateral, q0, v0), h*structure%speed(lateral, q1, v1)]
          if (bound_of(top) > abs(self%peak_displacement)) then
-            call self%see_peak(largest_of(top), 0.0_wp)
+            call self%update_peak(largest_of(top), 0.0_wp)
             self%collapsed = self%collapsed .or. abs(self%peak_displacement) >= self%furthest
          end if
          ! The force of the lowest springs is a cubic; what damping adds is taken as straight.
@@ -253,14 +253,14 @@ contains
          spring = springs%k(i)*[q1(i) - q0(i), h*v0(i), h*v1(i)]
          base(:2) = [motion%base_shear(springs, q0, v0), motion%base_shear(springs, q1, v1)]
          base(3:) = spring(2:) + (base(2) - base(1) - spring(1))
-         if (bound_of(base) > abs(self%peak_base_shear)) call self%see_base(largest_of(base))
+         if (bound_of(base) > abs(self%peak_base_shear)) call self%update_base_shear(largest_of(base))
          call structure%rotations(q0, self%rotation(:, 1))
          call structure%rotations(q1, self%rotation(:, 2))
          call structure%rotations(v0, self%rotation(:, 3))
          call structure%rotations(v1, self%rotation(:, 4))
          do i = 1, structure%n
             turn = [self%rotation(i, :2), h*self%rotation(i, 3:)]
-            if (bound_of(turn) > self%peak_rotation) call self%see_turn(abs(largest_of(turn)))
+            if (bound_of(turn) > self%peak_rotation) call self%update_rotation(abs(largest_of(turn)))
          end do
       end associate
       if (self%watching) call check_within(self, springs, q0, v0, q1, v1, top, h, clock)

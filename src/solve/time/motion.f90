@@ -42,7 +42,7 @@ module rbs_solve_time_motion
       procedure :: acceleration
       procedure :: forces_on_bodies
       procedure :: joint_forces
-      procedure :: press
+      procedure :: set_axial_loads
       procedure :: damping_power
       procedure :: base_shear
    end type equation_of_motion
@@ -86,7 +86,7 @@ contains
 
       call on_lines(springs%count, springs%d0, springs%f0, springs%k, q, result%f)
       m = 0
-      if (self%damped .or. self%second_order .or. springs%pressed) then
+      if (self%damped .or. self%second_order .or. springs%axial_load_varies) then
          call find_others(self, springs, v, load, result, m)
       end if
       call self%structure%accelerations(q, v, load, m, result)
@@ -106,7 +106,7 @@ contains
 
       call on_lines(springs%count, springs%d0, springs%f0, springs%k, q, result%f)
       m = 0
-      if (self%damped .or. self%second_order .or. springs%pressed) then
+      if (self%damped .or. self%second_order .or. springs%axial_load_varies) then
          call find_others(self, springs, v, load, result, m)
       end if
       if (result%resistance > 0.0_wp) then
@@ -127,7 +127,7 @@ contains
       !> Number of axial forces that do second-order work
       integer, intent(inout) :: m
 
-      if (self%damped .or. springs%pressed) call add_to_springs(self, springs, v, load, result%f)
+      if (self%damped .or. springs%axial_load_varies) call add_to_springs(self, springs, v, load, result%f)
       if (.not. self%second_order) return
       m = size(result%axial)
       if (self%varies) call self%structure%axial_forces(load, result%axial)
@@ -144,7 +144,7 @@ contains
       real(wp), intent(out), contiguous :: f(:)
 
       call on_lines(size(f), springs%d0, springs%f0, springs%k, q, f)
-      if (self%damped .or. springs%pressed) call add_to_springs(self, springs, v, load, f)
+      if (self%damped .or. springs%axial_load_varies) call add_to_springs(self, springs, v, load, f)
    end subroutine joint_forces
 
    !> Add what layered joints bear by axial loads that have changed, and the forces of the damping.
@@ -155,10 +155,11 @@ contains
       real(wp), intent(inout), contiguous :: f(:)
       integer :: i, j
 
-      if (springs%pressed) then
+      if (springs%axial_load_varies) then
          do j = 1, size(springs%layered)
             i = springs%layered(j)
-            f(i) = f(i) - springs%centre(i)*(self%structure%axial_force(i, load) - springs%press_at(i))
+            f(i) = f(i) - springs%centre(i)*(self%structure%axial_force(i, load) - &
+              springs%reference_axial_load(i))
          end do
       end if
       if (.not. self%damped .or. self%structure%tangent_numbers > 0) return
@@ -192,19 +193,19 @@ contains
    end function modal_forces
 
    !> Tell layered joints the axial forces that their next move leads to.
-   subroutine press(self, springs, load)
+   subroutine set_axial_loads(self, springs, load)
       class(equation_of_motion), intent(in) :: self
       type(spring_array), intent(inout) :: springs
       !> Loads at the end of the move
       real(wp), intent(in) :: load(4)
       integer :: i, j
 
-      if (.not. springs%pressed) return
+      if (.not. springs%axial_load_varies) return
       do j = 1, size(springs%layered)
          i = springs%layered(j)
-         springs%press_to(i) = self%structure%axial_force(i, load)
+         springs%target_axial_load(i) = self%structure%axial_force(i, load)
       end do
-   end subroutine press
+   end subroutine set_axial_loads
 
    !> Power of the damping [W].
    real(wp) function damping_power(self, springs, q, v) result(watt)

@@ -61,7 +61,7 @@ contains
       call swap(state%v, self%v)
       state%time = state%time + h
       state%load = self%load
-      call state%motion%press(state%springs, self%load)
+      call state%motion%set_axial_loads(state%springs, self%load)
       state%of_loads = state%of_loads + self%of_loads
       state%of_damping = state%of_damping + self%of_damping
       self%begun = .false.

@@ -36,7 +36,7 @@ contains
       type(time_plan), intent(inout) :: plan
       type(checkpoint_type), intent(out) :: checkpoint
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: press(size(structure%place)), missing, largest(4)
+      real(wp) :: axial_force(size(structure%place)), missing, largest(4)
       integer :: i
 
       call create_state(state, structure, loads, plan%begin, error)
@@ -56,8 +56,8 @@ contains
       call state%loads%find_largest(largest)
       largest = same_step*max(largest, abs(checkpoint%load))
       if (all(abs(state%load - checkpoint%load) <= largest)) state%load = checkpoint%load
-      press = [(structure%axial_force(i, state%load), i=1, size(press))]
-      call checkpoint%put_under(structure, press, state%springs, error)
+      axial_force = [(structure%axial_force(i, state%load), i=1, size(axial_force))]
+      call checkpoint%put_under(structure, axial_force, state%springs, error)
       if (allocated(error)) return
       state%q = state%springs%d
       state%v = checkpoint%v
@@ -100,11 +100,11 @@ contains
 
       associate (structure => state%motion%structure)
          checkpoint%kind = moving_state
-         checkpoint%pressed = state%springs%pressed
+         checkpoint%axial_load_varies = state%springs%axial_load_varies
          checkpoint%displacement = structure%top_displacement(state%q)
          checkpoint%force = state%load(lateral)
          checkpoint%axial_load = structure%axial_load + state%load(top_axial)
-         checkpoint%press = [(structure%axial_force(i, state%load), i=1, size(structure%place))]
+         checkpoint%axial_force = [(structure%axial_force(i, state%load), i=1, size(structure%place))]
          checkpoint%v = state%v
          checkpoint%input = state%of_loads
          checkpoint%damping = state%of_damping
@@ -170,7 +170,7 @@ contains
       type(loads_type), intent(in) :: loads
       real(wp), intent(in) :: begin
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: press(size(structure%place))
+      real(wp) :: axial_force(size(structure%place))
       integer :: i
 
       state%loads = loads
@@ -181,12 +181,12 @@ contains
       if (allocated(error)) return
       call prepare_loads(state, structure)
       ! Layered joints begin under the axial forces of the first moment.
-      press = structure%constant_axial
-      if (state%motion%varies) press = [(structure%axial_force(i, state%load), i=1, size(press))]
-      call structure%create_springs(state%springs, press)
+      axial_force = structure%constant_axial
+      if (state%motion%varies) axial_force = [(structure%axial_force(i, state%load), i=1, size(axial_force))]
+      call structure%create_springs(state%springs, axial_force)
       if (state%motion%varies) then
          call vary_axial_loads(state%springs)
-         call state%motion%press(state%springs, state%load)
+         call state%motion%set_axial_loads(state%springs, state%load)
       end if
       allocate (state%q(structure%coordinates), state%v(structure%coordinates), source=0.0_wp)
    end subroutine create_state

@@ -31,7 +31,7 @@ module rbs_structure_column_finite
    !> Columns of the work array of `accelerations`, one number a joint (n): its axial force, tension positive
    !> [N], which is a reaction where it does not open; sine and cosine of its rotation; diagonal of the
    !> equations of the reactions, and the numbers beside it [1/kg]
-   integer, parameter :: reaction = 1, sine = 2, cosine = 3, diagonal = 4, beside = 5
+   integer, parameter :: reaction = 1, sine = 2, cosine = 3, diagonal = 4, off_diagonal = 5
 
    type, extends(column_type) :: finite_chain_type
    contains
@@ -218,10 +218,11 @@ contains
                work(i, cosine) = c
                work(i, reaction) = separation
                work(i, diagonal) = flexibility + per_mass + (lower*s)**2*per_inertia
-               work(i, beside) = lower*s*slip_above*per_inertia - c*per_mass
+               work(i, off_diagonal) = lower*s*slip_above*per_inertia - c*per_mass
                flexibility = per_mass + slip_above**2*per_inertia
                if (i == n - 1 .and. column%held) then
-                  work(i, beside) = -(c*held(2) - s*held(1))*per_mass - lower*s*upper*held(1)*per_inertia
+                  work(i, off_diagonal) = -(c*held(2) - s*held(1))*per_mass - &
+                       lower*s*upper*held(1)*per_inertia
                   flexibility = per_mass + (upper*held(1))**2*per_inertia
                end if
             end if
@@ -272,7 +273,7 @@ contains
       integer :: i, n
 
       n = column%n
-      call solve_tridiagonal(work(:, diagonal), work(:, beside), work(:, reaction), positive)
+      call solve_tridiagonal(work(:, diagonal), work(:, off_diagonal), work(:, reaction), positive)
       ! Only numbers beyond all meaning get here; the caller sees that the state is not finite.
       if (.not. positive) work(:, reaction) = ieee_value(a(1, shear), ieee_quiet_nan)
       turn_below = 0.0_wp

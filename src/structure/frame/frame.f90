@@ -78,7 +78,7 @@ module rbs_structure_frame_frame
       procedure :: is_loaded
       procedure :: take_load_off
       procedure :: set_compression
-      procedure :: press
+      procedure :: compress
       procedure :: drop_round_off
       procedure :: size_of_parts
       procedure :: member_forces
@@ -120,12 +120,12 @@ module rbs_structure_frame_frame
       end subroutine set_compression
 
       !> Put an axial force that does second-order work on an element.
-      pure module subroutine press(self, element, compression)
+      pure module subroutine compress(self, element, compression)
          class(frame_type), intent(inout) :: self
          integer, intent(in) :: element
          !> [N]
          real(wp), intent(in) :: compression
-      end subroutine press
+      end subroutine compress
 
       !> Work of the dead load.
       pure real(wp) module function work_of_dead_load(self, d) result(work)

@@ -28,7 +28,7 @@ contains
 
       do i = 1, self%members
          call self%member_forces(i, d, f, s)
-         call self%press(i, -s(1))
+         call self%compress(i, -s(1))
          ! Springs that open carry it by the path, not from its begin on.
          associate (e => self%element(i))
             self%constant_axial(e%before + 1:e%before + e%bending) = -s(1)
@@ -38,11 +38,11 @@ contains
       call self%linearise(self%initial_stiffness, self%initial_tangent, i)
    end procedure set_compression
 
-   module procedure press
+   module procedure compress
 
       self%element(element)%compression = compression
       call self%element(element)%set_rest(merge(compression, 0.0_wp, self%axially_loaded))
-   end procedure press
+   end procedure compress
 
    module procedure work_of_dead_load
       real(wp) :: gap(3), turned(2)

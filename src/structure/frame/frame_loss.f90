@@ -20,7 +20,7 @@ contains
 
       associate (e => self%element(member))
          is_removed = e%bending + e%opening > 0
-         if (is_removed) is_removed = springs%is_released(e%before + 1)
+         if (is_removed) is_removed = springs%is_removed(e%before + 1)
       end associate
    end procedure is_removed
 

@@ -523,10 +523,10 @@ contains
       type(frame_record), intent(in) :: record
       type(message_list), intent(inout) :: messages
       real(wp) :: clear, whole, stiffest(2)
-      logical :: told(size(record%kind))
+      logical :: reported(size(record%kind))
       integer :: i
 
-      told = .false.
+      reported = .false.
       stiffest = 0.0_wp
       do i = 1, size(self%member)
          associate (m => self%member(i), kind => record%kind(self%member(i)%kind_of))
@@ -562,8 +562,8 @@ contains
                                     'along x does nothing on it; give load_y to its nodes')
                end if
             end associate
-            if (.not. told(m%kind_of)) call check_length(m, record%kind(m%kind_of), clear, messages, &
-                                                         told(m%kind_of))
+            if (.not. reported(m%kind_of)) call check_length(m, record%kind(m%kind_of), clear, messages, &
+                                                         reported(m%kind_of))
             call put_kind(m, record%kind(m%kind_of), record%spring, clear, stiffest)
             if (.not. (is_given(m%failure_drift) .or. is_given(m%lost_at))) cycle
             if (.not. can_be_lost(m)) then
@@ -575,16 +575,16 @@ contains
    end subroutine put_kinds
 
    !> Refuse a kind whose springs were made for members of another length, once each.
-   subroutine check_length(m, kind, clear, messages, told)
+   subroutine check_length(m, kind, clear, messages, reported)
       type(frame_member), intent(in) :: m
       type(kind_record), intent(in) :: kind
       real(wp), intent(in) :: clear
       type(message_list), intent(inout) :: messages
-      logical, intent(out) :: told
+      logical, intent(out) :: reported
 
-      told = .false.
-      if (is_given(kind%length)) told = abs(clear - kind%length) > one_length*kind%length
-      if (.not. told) return
+      reported = .false.
+      if (is_given(kind%length)) reported = abs(clear - kind%length) > one_length*kind%length
+      if (.not. reported) return
       call messages%add('member '//trim(m%name)//': its clear length is '//to_text(clear)//' m, and the '// &
                         "springs of member_kind '"//trim(kind%name)//"' were made for "// &
                         to_text(kind%length)//' m; make a kind for this length, or correct rigid_end')

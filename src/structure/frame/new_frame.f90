@@ -313,7 +313,7 @@ contains
                end do
                if (any(m%kind == layer)) call set_joints(e, m, clear)
                call put_load(frame, m, i, axis, clear)
-               call frame%press(i, 0.0_wp)
+               call frame%compress(i, 0.0_wp)
                call e%lay_out(frame%tangent_numbers)
                before = before + size(m%kind)
             end associate
