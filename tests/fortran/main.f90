@@ -3,30 +3,16 @@ program unit_tests
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use check, only: unit_test, run_suite
    use test_capped, only: collect_capped
-   use test_chain, only: collect_chain
    use test_concrete, only: collect_concrete
-   use test_finite, only: collect_finite
-   use test_frame, only: collect_frame
-   use test_implicit, only: collect_implicit
-   use test_implicit_finite, only: collect_implicit_finite
    use test_layered, only: collect_layered
    use test_linalg, only: collect_linalg
-   use test_modal, only: collect_modal
    use test_peak_oriented, only: collect_peak_oriented
-   use test_protocol, only: collect_protocol
    use test_rules, only: collect_rules
-   use test_run, only: collect_run
    use test_section, only: collect_section
    use test_shear, only: collect_shear
-   use test_signal, only: collect_signal
    use test_springs, only: collect_springs
-   use test_static, only: collect_static
-   use test_static_finite, only: collect_static_finite
    use test_steel, only: collect_steel
-   use test_steppers, only: collect_steppers
    use test_takeda, only: collect_takeda
-   use test_text, only: collect_text
-   use test_time_plan, only: collect_time_plan
    implicit none
 
    abstract interface
@@ -43,30 +29,16 @@ program unit_tests
       procedure(collect_interface), pointer, nopass :: collect => null()
    end type suite_type
 
-   type(suite_type) :: suites(25)
+   type(suite_type) :: suites(11)
    character(len=80) :: wanted, pattern
    integer :: i, run, failed, found
 
-   suites = [suite_type('text', collect_text), suite_type('section', collect_section), &
-              suite_type('linalg', collect_linalg), &
-             suite_type('takeda', collect_takeda), &
-             suite_type('capped', collect_capped), &
+   suites = [suite_type('section', collect_section), suite_type('linalg', collect_linalg), &
+             suite_type('takeda', collect_takeda), suite_type('capped', collect_capped), &
              suite_type('peak_oriented', collect_peak_oriented), &
-             suite_type('concrete', collect_concrete), &
-             suite_type('steel', collect_steel), &
+             suite_type('concrete', collect_concrete), suite_type('steel', collect_steel), &
              suite_type('layered', collect_layered), suite_type('rules', collect_rules), &
-             suite_type('springs', collect_springs), &
-             suite_type('chain', collect_chain), &
-             suite_type('finite', collect_finite), suite_type('frame', collect_frame), &
-             suite_type('protocol', collect_protocol), suite_type('signal', collect_signal), &
-             suite_type('time_plan', collect_time_plan), &
-             suite_type('modal', collect_modal), suite_type('static', collect_static), &
-             suite_type('static_finite', collect_static_finite), &
-             suite_type('run', collect_run), &
-             suite_type('steppers', collect_steppers), &
-             suite_type('shear', collect_shear), &
-             suite_type('implicit', collect_implicit), &
-             suite_type('implicit_finite', collect_implicit_finite)]
+             suite_type('springs', collect_springs), suite_type('shear', collect_shear)]
 
    call get_command_argument(1, wanted)
    call get_command_argument(2, pattern)

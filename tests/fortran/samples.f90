@@ -1,14 +1,10 @@
-!> Springs, columns and paths that several suites use.
+!> Springs and random numbers that several suites use.
 module samples
    use, intrinsic :: iso_fortran_env, only: int64
    use rbs_base_check, only: is_given
    use rbs_base_constants, only: unset
-   use rbs_base_error, only: error_type
    use rbs_base_keys, only: key_type, find_key
    use rbs_base_kinds, only: wp
-   use rbs_structure_column_column, only: column_type
-   use rbs_solve_begin_make_column, only: make_column
-   use rbs_structure_column_column_record, only: column_record
    use rbs_hysteresis_registry, only: keys_of
    use rbs_hysteresis_rule, only: spring_rules
    use rbs_hysteresis_spring_record, only: spring_record, add_rules
@@ -17,7 +13,7 @@ module samples
    private
 
    public :: make_springs
-   public :: elastic, bilinear, compression, takeda, bilinear_1, takeda_1, column_1, chain, rich_column, made
+   public :: elastic, bilinear, compression, takeda, bilinear_1, takeda_1
    public :: concrete_1, steel_1, capped, random_type, set_value, value_of
 
    !> Soesianawati & Park No 1, table 3 of the paper: flexure [N m, rad] ...
@@ -28,8 +24,6 @@ module samples
    real(wp), parameter, public :: k_0 = (f_c + f_y)/(d_c + d_y)
    !> ... and shear [N, m]
    real(wp), parameter, public :: s_k = 7.0387e8_wp, s_d = 1.2960e-4_wp, s_post = 8.3185e6_wp
-   !> Mass [kg] and height [m] of the column
-   real(wp), parameter, public :: mass_1 = 614.4_wp, height_1 = 1.6_wp
 
    !> Random numbers that are the same on every machine (Lehmer, 2**31 - 1).
    type :: random_type
@@ -198,76 +192,5 @@ contains
       call set_value(spec, 'd_pc', 12.0_wp)
       call set_value(spec, 'f_res', 20.0_wp)
    end function capped
-
-   !> Column 1 as one body.
-   type(column_record) function column_1(kinematics) result(spec)
-      character(len=*), intent(in) :: kinematics
-
-      spec%height = height_1
-      spec%mass = mass_1
-      spec%kinematics = kinematics
-      allocate (spec%shear(1), spec%flexure(1))
-      spec%shear(1) = bilinear_1()
-      spec%flexure(1) = takeda_1('kc')
-   end function column_1
-
-   !> A column 2 m high of n different bodies with different elastic springs.
-   type(column_record) function chain(n, kinematics) result(spec)
-      integer, intent(in) :: n
-      character(len=*), intent(in) :: kinematics
-      integer :: i
-
-      spec%n = n
-      spec%height = 2.0_wp
-      spec%kinematics = kinematics
-      allocate (spec%lengths(n), spec%masses(n), spec%shear(n), spec%flexure(n))
-      do i = 1, n
-         spec%lengths(i) = 1.0_wp + 0.3_wp*sin(1.0_wp*i)
-         spec%masses(i) = 80.0_wp + 30.0_wp*cos(2.0_wp*i)
-         spec%shear(i) = elastic(4.0e8_wp + 1.0e8_wp*sin(3.0_wp*i))
-         spec%flexure(i) = elastic(2.0e8_wp + 5.0e7_wp*cos(1.0_wp*i))
-      end do
-      spec%lengths = spec%lengths*(spec%height/sum(spec%lengths))
-   end function chain
-
-   !> A random column of n bodies with bilinear springs, axial load and weight; it does not buckle.
-   type(column_record) function rich_column(n, kinematics, opens, random) result(spec)
-      integer, intent(in) :: n
-      character(len=*), intent(in) :: kinematics
-      !> Whether the joints have axial springs
-      logical, intent(in) :: opens
-      type(random_type), intent(inout) :: random
-      real(wp) :: number(6)
-      integer :: i
-
-      spec%n = n
-      spec%kinematics = kinematics
-      spec%axial_load = random%uniform(-1.0e6_wp, 2.0e6_wp)
-      spec%self_weight = .true.
-      allocate (spec%lengths(n), spec%masses(n), spec%shear(n), spec%flexure(n), spec%rotary_inertia(n))
-      if (opens) allocate (spec%axial_spring(n))
-      do i = 1, n
-         spec%lengths(i) = random%uniform(0.2_wp, 1.0_wp)
-         spec%masses(i) = random%uniform(50.0_wp, 500.0_wp)
-         spec%rotary_inertia(i) = spec%masses(i)*random%uniform(0.01_wp, 0.2_wp)
-         number = random%uniform_array(1.0_wp, 9.0_wp, 6)
-         spec%shear(i) = bilinear(1.0e8_wp*number(1), 2.0e-3_wp, 1.0e7_wp*number(2))
-         spec%flexure(i) = bilinear(1.0e8_wp*number(3), 2.0e-3_wp, 1.0e7_wp*number(4))
-         if (opens) spec%axial_spring(i) = bilinear(1.0e9_wp*number(5), 2.0e-3_wp, 1.0e7_wp*number(6))
-      end do
-      spec%height = sum(spec%lengths)
-   end function rich_column
-
-   !> The column of a specification that must be valid.
-   function made(spec) result(column)
-      type(column_record), intent(in) :: spec
-      class(column_type), allocatable :: column
-      type(error_type), allocatable :: error
-      type(column_record) :: asked
-
-      asked = spec
-      call make_column(asked, column, error)
-      if (allocated(error)) error stop 'samples: a column that should be valid is refused'
-   end function made
 
 end module samples

@@ -321,7 +321,7 @@ def methods(rng: Rng, made: rbsdem.Column, stable: float, interval: float) -> di
     elif name != "rk45":
         settings["dt"] = interval / float(rng.choice([1, 2, 8]))
     if "rho_infinity" in rbsdem.run.solver.METHODS[settings["method"]].settings:
-        settings["rho_infinity"] = float(rng.uniform(0.6, 1))
+        settings["rho_infinity"] = float(rng.uniform(0.5 if name == "hht" else 0.0, 1))
     return settings
 
 

@@ -16,7 +16,7 @@ from reference_chain import Linear, as_initial
 
 import rbsdem
 from rbsdem import _core
-from rbsdem.springs import Bilinear, Elastic, Takeda
+from rbsdem.springs import Bilinear, Compression, Elastic, Takeda
 
 # The same column is made at every level of kinematics, and masses without weight are tried.
 pytestmark = pytest.mark.filterwarnings(
@@ -26,6 +26,12 @@ pytestmark = pytest.mark.filterwarnings(
 SHEAR = Bilinear(7.0387e8, 1.2960e-4, 8.3185e6)
 FLEXURE = Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
 HEIGHT, MASS = 1.6, 614.4
+METHODS = {
+    "rk4": {"method": "rk4"},
+    "located rk4": {"method": "rk4", "events": "located"},
+    "rk45": {"method": "rk45", "tolerance": 1e-6},
+    **{name: {"method": name} for name in ("newmark", "hht", "generalised_alpha")},
+}
 
 # Three bodies, nothing equal to anything; their highest frequency is 12 times the lowest.
 LENGTHS, MASSES = [0.9, 0.6, 0.7], [500.0, 200.0, 300.0]
@@ -121,6 +127,37 @@ def test_no_step_given(factor):
     assert 0 < run.summary["time_step"] <= limit / 5 * (1 + 1e-9)
 
 
+def test_a_step_that_divides_the_intervals_within_round_off():
+    """Steps of 0.005 s in intervals of 0.02 s, whose ends are not exact; then one step for each."""
+    column = rbsdem.Column(2.0, 1e4, Elastic(1e6), Elastic(1e6))
+    time = 0.02 * np.arange(1001)
+    for dt, steps in ((0.005, 4000), (1.0, 20), (0.02, 1000)):
+        run = rbsdem.time_history(column, time, force=0 * time, method="newmark", dt=dt)
+        assert run.summary["steps"] == steps
+
+
+@pytest.mark.parametrize("given", [False, True])
+def test_steps_and_rows_of_random_loadings(given):
+    """No step exceeds the longest, and none is shorter than need be; the last row is kept."""
+    column = rbsdem.Column(2.0, 1e4, Elastic(1e6), Elastic(1e6))
+    limit = rbsdem.modes(column).stable_step
+    rng = np.random.default_rng(2)
+    for _ in range(40):
+        time = rng.uniform(-100, 100) + np.append(0.0, np.cumsum(10 ** rng.uniform(-4, 0, 29)))
+        dt = {"dt": limit * rng.uniform(0.01, 1)} if given else {}
+        run = rbsdem.time_history(column, time, force=0 * time, method="rk4", **dt)
+        steps = run.summary["steps"]
+        if given:
+            assert steps == np.ceil((time[-1] - time[0]) / dt["dt"] * (1 - 1e-9))
+            assert run.time.size == steps + 1
+        else:
+            assert np.array_equal(run.time, time)
+            assert steps == np.ceil(np.diff(time) / (limit / 5) * (1 - 1e-6)).sum()
+        every = int(rng.integers(1, 40))
+        thin = rbsdem.time_history(column, time, force=0 * time, method="rk4", every=every, **dt)
+        assert thin.time.size == 1 + np.ceil(steps / every)
+
+
 def test_no_load_no_motion():
     run = rbsdem.time_history(linear_column(3), [0, 1], force=[0.0, 0.0], method="rk4")
     assert not np.any(run.displacement)
@@ -180,6 +217,52 @@ def test_motion_that_loses_all_bounds_keeps_its_rows():
     growth = np.sqrt(-np.min(squares))
     rates = np.diff(np.log(np.abs(kept.rotation[-20:, 0]))) / np.diff(kept.time[-20:])
     np.testing.assert_allclose(rates, growth, rtol=1e-4)
+
+
+@pytest.mark.parametrize("n", [1, 3])
+@pytest.mark.parametrize("method", METHODS)
+def test_a_fall_without_a_criterion_of_collapse_is_an_error_that_keeps_its_rows(method, n):
+    """P l above the yielded stiffness; the springs are on their rules up to there."""
+    column = rbsdem.Column(
+        HEIGHT, MASS, SHEAR, FLEXURE, n=n, kinematics="pdelta", axial_load=10 * FLEXURE.k_u / HEIGHT
+    )
+    told = "grows without bounds at" if "rk4" in method else "does not converge although it was cut"
+    with pytest.raises(rbsdem.SolveError, match=told) as caught:
+        rbsdem.time_history(column, 0.01 * np.arange(1001), force=np.full(1001, 2e5),
+                            **METHODS[method])  # fmt: skip
+    assert "rk4" in method or "spring of joint" in str(caught.value)
+    kept = caught.value.result
+    assert 1 < kept.time.size < 1000
+    assert (np.diff(kept.time) > 0).all()
+    assert all(np.isfinite(values).all() for values in kept.channels.values())
+
+
+@pytest.mark.parametrize("n", [1, 4])
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("spring", [Elastic(2e9), Compression(2e9), Bilinear(2e9, 1e-4, 1e8)])
+def test_joints_closed_by_load_and_weight_stay_at_rest(spring, method, n):
+    column = rbsdem.Column(
+        2.0, 300.0, Elastic(4e8), Elastic(2e8), n=n, axial_spring=spring, axial_load=1e6,
+        kinematics="pdelta", self_weight=True,
+    )  # fmt: skip
+    run = rbsdem.time_history(column, 1e-3 * np.arange(11), force=np.zeros(11), **METHODS[method])
+    assert run.energy["kinetic"].max() < 1e-15
+    assert run.axial_force[-1, 0] == pytest.approx(-1e6 - 300 * 9.80665, rel=1e-9)
+    assert run.summary["energy_residual"] < 1e-9
+
+
+def test_joints_that_cannot_carry_their_load_at_the_start():
+    """A pull on contacts, also as the first value of a history; openings that are given may be."""
+    told = r"axial spring of joint 1 cannot carry the axial force of -100000 N"
+    for load, given in ((-1e5, {}), (1e5, {"axial_load": [-1e5, 1e5]})):
+        column = rbsdem.Column(
+            2.0, 300.0, Elastic(4e8), Elastic(2e8), n=3, axial_spring=Compression(1e9),
+            axial_load=load,
+        )  # fmt: skip
+        loads = {"time": [0.0, 0.01], "method": "rk4", "force": [0.0, 0.0]} | given
+        with pytest.raises(rbsdem.SolveError, match=told):
+            rbsdem.time_history(column, **loads)
+    rbsdem.time_history(column, **loads, initial={"opening": np.zeros(3)})
 
 
 def has_a_turn_meanwhile(run) -> bool:

@@ -247,18 +247,20 @@ def test_both_doors_write_and_begin_in_the_same_state(run_cli, tmp_path):
     assert "is no state of rbsdem" in said
 
 
-@pytest.mark.parametrize("kinematics", ["pdelta", "finite"])
-def test_velocity_and_acceleration_are_derivatives_of_the_displacement(kinematics):
-    made = column(Elastic(k=1e8), kinematics, 2, shear=Elastic(k=7e8))
-    moved = rbsdem.time_history(
-        made,
-        np.arange(0, 0.2, 1e-4),
-        initial={"slip": [0.001, 0.0], "rotation": [0.05, 0.03]},
-        method="rk45",
-        tolerance=1e-10,
-        motion=True,
-    )
-    h = 1e-4
+HELD = {"top": "fixed", "top_mass": 100.0, "axial_spring": Elastic(k=3e9)}
+
+
+@pytest.mark.parametrize(
+    ("kinematics", "ends"), [("pdelta", {}), ("finite", {}), ("finite", HELD), ("pdelta", HELD)]
+)
+def test_velocity_and_acceleration_are_derivatives_of_the_displacement(kinematics, ends):
+    made = column(Elastic(k=1e8), kinematics, 2, shear=Elastic(k=7e8), **ends)
+    rest = [0.0] if ends else []
+    start = {"slip": [0.001, 0.0, *rest], "rotation": [0.05, 0.03] + [-0.08] * len(rest)}
+    h = 1e-4 / (10 if ends else 1)
+    time = h * np.arange(2000)
+    run = {"method": "rk45", "tolerance": 1e-10, "motion": True}
+    moved = rbsdem.time_history(made, time, initial=start, **run)
     x, v, a = moved.displacement, moved.velocity, moved.acceleration
     # Derivatives by differences of order 4.
     first = (x[:-4] - 8 * x[1:-3] + 8 * x[3:-1] - x[4:]) / (12 * h)

@@ -200,8 +200,13 @@ def test_a_path_is_in_balance(rng: Rng) -> None:
     opening = run.opening if column.opens else np.zeros_like(run.slip)
     q, force = np.hstack([run.slip, run.rotation, opening])[:rows], run.force[:rows]
     size = np.abs(run.slip).max() + np.abs(run.rotation).max() * column.height
-    apart = np.abs(run.displacement[:rows] - places(column, q)[0]).max()
+    across, height, _ = places(column, q)
+    apart = np.abs(run.displacement[:rows] - across).max()
     assert apart <= 1e-10 * size, f"displacement by {apart:.1e} m"
+    if not column.axial_height:
+        base = column.height + (column.footing.height if column.footing is not None else 0.0)
+        apart = np.abs(run.top[:rows, 1] - base - height).max()
+        assert apart <= 1e-10 * (size + base), f"height by {apart:.1e} m"
     load = loading.get("axial_load", np.full(rows, column.axial_load))[:rows]
     load = load + column.axial_force_ratio * force
     masses = [column.footing.mass] if column.footing is not None else []

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +12,7 @@ import pytest
 import rbsdem
 from rbsdem import _core
 from rbsdem.run.solver import IMPLICIT, IN_TIME, METHODS
-from rbsdem.springs import Elastic
+from rbsdem.springs import Bilinear, Elastic, Takeda
 
 ROOT = Path(__file__).resolve().parents[2]
 VALUES = {
@@ -80,3 +82,45 @@ def test_a_method_takes_the_step_of_its_row(method: str) -> None:
         column("small"), time=[0.0, duration], force=np.array([0.0, 1.0]), method=method
     )
     assert result.summary["steps"] == 1001
+
+
+SHEAR = Bilinear(7.0387e8, 1.296e-4, 8.3185e6)
+HINGE = Takeda(2.5428e8, 3.1891e-4, 6.2937e7, 2.7183e-3, 7.5772e6, b1=0.22)
+TIME = 0.02 * np.arange(51)
+SHAKE = {"time": TIME, "ground_acceleration": 5 * np.sin(20 * TIME)}
+STILL = {"time": [0.0, 0.01], "force": [0.0, 0.0]}
+
+
+def yielding(**more: Any) -> rbsdem.Column:
+    return rbsdem.Column(1.6, 614.4, SHEAR, HINGE, **more)
+
+
+def stiff() -> rbsdem.Column:
+    """Many short bodies, whose hinges share the flexibility of one."""
+    n = 200
+    shear, hinge = Elastic(SHEAR.k * n), HINGE.split(n)
+    return rbsdem.Column(1.6, 614.4, shear, hinge, n=n, kinematics="pdelta", top_mass=2e4)
+
+
+@pytest.mark.filterwarnings("ignore::rbsdem.errors.AccuracyWarning")
+def test_the_choice_of_auto_and_its_reason() -> None:
+    """Numbers of steps in the reason are bounds of those that are taken, to six digits."""
+    for one, loads, settings, method, words in (
+        (column("small"), STILL, {}, "rk4", ""),
+        (yielding(), STILL, {}, "rk4", "located"),
+        (yielding(kinematics="finite"), STILL, {}, "rk45", "finite rotations"),
+        (yielding(), STILL, {"tolerance": 1e-8}, "rk45", "1e-08"),
+        (stiff(), SHAKE, {}, "generalised_alpha", "stiff"),
+    ):
+        summary = rbsdem.time_history(one, **loads, method="auto", **settings).summary
+        assert summary["method"] == method
+        assert words in summary["reason"]
+    told = {
+        word: float(re.search(rf"{word} ([\d.e+]+)", summary["reason"])[1])
+        for word in ("takes about", "would take")
+    }
+    assert 0.5 * told["takes about"] <= summary["steps"] <= 1.00001 * told["takes about"]
+    named = rbsdem.time_history(one, **SHAKE, method="generalised_alpha").summary
+    assert named["steps"] == summary["steps"]
+    steps = np.ceil(np.diff(TIME) / (rbsdem.modes(one).stable_step / 5)).sum()
+    assert 0.5 * told["would take"] <= steps <= 1.00001 * told["would take"]
