@@ -3,13 +3,9 @@
     python tests/benchmarks/benchmark.py [--quick] [--only PART] [--build DIR] [--against OTHER]
 
 Medians over repeats of the processor time, which another load of the machine disturbs less than the
-wall time, with the fastest and the slowest. What runs inside Fortran is timed by
-`time_solver`, built like the unit tests: meson setup build/fortran, then meson compile -C
-build/fortran. There `yardstick` is built too, if there is a C compiler: the same work written by
-hand for one case, by which the solver is measured. --against takes the build folder of another
-version (of an older commit, say) or its Python interpreter, and runs both in
-turns. Rows that need a program that is not
-there say so.
+wall time, with the fastest and the slowest. The yardstick is the same work written by hand in C for
+one case, built by meson setup build/fortran, then meson compile -C build/fortran, if there is a C
+compiler. --against takes the Python interpreter of another version and runs both in turns.
 """
 
 from __future__ import annotations
@@ -18,6 +14,7 @@ import argparse
 import dataclasses
 import os
 import subprocess
+import sys
 import tempfile
 import time
 import warnings
@@ -26,8 +23,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from compare import INSIDE, against_rows, package_rows, yardstick_rows
-from rows import ROOT, Row, newest, show
+from rows import ROOT, Row, newest, number, show
 
 import rbsdem
 from rbsdem import _core, peer
@@ -227,27 +223,87 @@ def each_prediction(quick: bool) -> list[Row]:
     return rows
 
 
-def inside_fortran(driver: Path | None, repeats: int, divisor: int) -> list[Row]:
-    """Time the solver without Python and without files."""
-    if driver is None:
-        note = "time_solver is not built, see --help"
-        return [Row(what, unit, goal, [], note) for what, unit, goal in INSIDE.values()]
-    command = [driver, str(repeats), str(divisor)]
-    lines = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split("\n")
-    values: dict[str, list[float]] = {}
-    for line in filter(None, lines):
-        name, value = line.split()
-        values.setdefault(name, []).append(float(value))
+#: Bodies, steps and goal of a run of the yardstick; 0 bodies: the static path of one.
+CHAINS = {
+    0: (20_000, None),
+    1: (400_000, 2.0),
+    10: (100_000, 2.5),
+    50: (40_000, 2.5),
+    200: (10_000, 2.5),
+}
+#: Both programs do the same sums in another order.
+AGREEMENT = 1e-9
+
+
+def explicit_step(n: int) -> float:
+    """Return 0.2 of the stability limit for a bound of the highest frequency [s].
+
+    With (a + b)^2 <= 2 (a^2 + b^2) a joint gives each of its two bodies at the most
+    4 k_V (x^2 + h^2 r^2)/2 + 2 k_M r^2/2, and a body has two joints.
+    """
+    if n == 1:
+        return 2e-4
+    half, mass, depth, shear, flexure = 0.8 / n, 614.4 / n, 0.4, n * 7.0387e8, n * 6.2937e7
+    inertia = mass * ((2 * half) ** 2 + depth**2) / 12
+    square = max(8 * shear / mass, (8 * shear * half**2 + 4 * flexure) / inertia)
+    return float(0.2 * 2 * np.sqrt(2 / square))
+
+
+def work_of_yardstick(n: int, steps: int, dt: float) -> Callable[[], rbsdem.Result]:
+    """Return the work of the yardstick: bodies under a sine of 800 steps, or one static path."""
+    bodies = max(n, 1)
+    shear = Bilinear(7.0387e8, 1.296e-4, 8.3185e6).split(bodies)
+    flexure = Bilinear(6.2937e7, 2.7183e-3, 7.5772e6).split(bodies)
+    column = rbsdem.Column(1.6, 614.4, shear, flexure, n=bodies, depth=0.4)
+    if n == 0:
+        path = growing_cycles(steps)
+        return lambda: rbsdem.cyclic(column, displacement=path, every=1000)
+    at = np.arange(0, steps + 1, 20)
+    loads = {"time": dt * at, "force": 1.5e5 * np.sin(2 * np.pi * at / 800)}
+    return lambda: rbsdem.time_history(column, **loads, method="rk4", dt=dt, every=1000)
+
+
+def yardstick_rows(build: Path | None, repeats: int, divisor: int) -> list[Row]:
+    """Measure rbsdem by the same work written in C for one case, in turns."""
+    program = newest("yardstick", build)
+    if program is None:
+        return [Row("yardstick", "", note="it is not built, see --help")]
     rows = []
-    for name, (what, unit, goal) in INSIDE.items():
-        note = ""
-        if f"{name}_lines" in values:
-            note = f"{values[f'{name}_lines'][0]:.0f} line changes in 1000 steps"
-        rows.append(Row(what, unit, goal, values[name], note))
+    for n, (count, goal) in CHAINS.items():
+        steps, dt = count if n == 0 else count // divisor, explicit_step(max(n, 1))
+        work = work_of_yardstick(n, steps, dt)
+        own = ["rk4", str(n), repr(dt), str(steps), "800", "1"] if n else ["static", str(steps)]
+        row = Row(f"RK4, N = {n}" if n else "static, N = 1", "x yardstick", goal)
+        for _ in range(repeats):
+            told = subprocess.run([program, *own], check=True, capture_output=True, text=True)
+            theirs, peak = map(float, told.stdout.split())
+            begin = time.process_time()
+            found = work().summary
+            ours = 1e9 * (time.process_time() - begin) / steps
+            row.values.append(ours / theirs)
+            gap = abs(found["peak_displacement" if n else "peak_force"] / peak - 1)
+            row.note = f"{number(ours)} / {number(theirs)} ns, "
+            row.note += f"same to {gap:.0e}" if gap <= AGREEMENT else "ANSWERS DIFFER"
+        rows.append(row)
     return rows
 
 
-PARTS = ("python", "fortran", "yardstick")
+def package_rows(other: Path, repeats: int) -> list[Row]:
+    """Measure this package against that of another interpreter, through Python."""
+    ratios: dict[str, list[float]] = {}
+    for _ in range(repeats):
+        tables = []
+        for python in (sys.executable, other):
+            command = [python, __file__, "--only", "python", "--plain", "--repeats", "2"]
+            text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+            tables.append(dict(line.split("\t") for line in text.splitlines()))
+        now, before = tables
+        for name in now:
+            ratios.setdefault(name, []).append(float(now[name]) / float(before[name]))
+    return [Row(name, "x before", 1.05, values) for name, values in ratios.items()]
+
+
+PARTS = ("python", "yardstick")
 
 
 def arguments() -> argparse.Namespace:
@@ -258,13 +314,8 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--quick", action="store_true", help="fewer repeats, shorter runs")
     parser.add_argument("--only", choices=PARTS, help="one part of the table")
     parser.add_argument("--repeats", type=int, metavar="N", help="default 9, with --quick 3")
-    parser.add_argument("--build", type=Path, metavar="DIR", help="build folder of time_solver")
-    parser.add_argument(
-        "--against",
-        type=Path,
-        metavar="OTHER",
-        help="build folder or Python of another version",
-    )
+    parser.add_argument("--build", type=Path, metavar="DIR", help="build folder of yardstick")
+    parser.add_argument("--against", type=Path, metavar="PYTHON", help="Python of another version")
     parser.add_argument("--plain", action="store_true", help="names and least times alone")
     given = parser.parse_args()
     if given.repeats is None:
@@ -287,14 +338,9 @@ def main() -> None:
             *crossing(repeats),
             *([] if given.plain else each_prediction(given.quick)),
         ]
-    if "fortran" in parts:
-        driver = newest("time_solver", given.build)
-        rows["Inside Fortran"] = inside_fortran(driver, repeats, divisor)
     if "yardstick" in parts:
         rows["By the yardstick"] = yardstick_rows(given.build, repeats, divisor)
-    if given.against and given.against.is_dir():
-        rows["Now against before"] = against_rows(given.build, given.against, repeats, divisor)
-    elif given.against:
+    if given.against:
         rows["Now against before"] = package_rows(given.against, repeats)
     if given.plain:
         print(*(f"{row.what}\t{min(row.values)}" for row in rows["Through Python"]), sep="\n")

@@ -2,7 +2,7 @@
  *
  * A uniform chain of n bodies for small rotations, two bilinear springs with kinematic hardening in each
  * joint, a lateral force at the top tabulated at every twentieth step. No other kinematics, no other
- * spring, no damping, no energy balance, no output, no checks. `time_solver` runs the same.
+ * spring, no damping, no energy balance, no output, no checks. `benchmark.py` runs the same.
  *
  * Body i has the displacement x of its centroid and the rotation r; joint i is at its bottom, half a
  * body h below. Slip u_i = (x_i - h r_i) - (x_{i-1} + h r_{i-1}), rotation phi_i = r_i - r_{i-1}. SI.
