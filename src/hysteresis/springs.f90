@@ -85,7 +85,7 @@ module rbs_hysteresis_springs
       procedure :: move_all
       procedure :: carry_to
       procedure :: stay_on_lines
-      procedure :: lost_joint
+      procedure :: crushed_joint
       procedure :: fit_planes
    end type spring_array
 
@@ -658,7 +658,7 @@ contains
    end subroutine move_joints
 
    !> The first layered joint that can no longer carry its axial load, 0 if all can.
-   pure integer function lost_joint(self) result(lost)
+   pure integer function crushed_joint(self) result(lost)
       class(spring_array), intent(in) :: self
       integer :: j
 
@@ -670,7 +670,7 @@ contains
          end select
       end do
       lost = 0
-   end function lost_joint
+   end function crushed_joint
 
    !> Forces of one virgin spring along a path.
    subroutine follow_path(spec, d, f)
@@ -689,7 +689,7 @@ contains
       do j = 1, size(d)
          call spring%advance_to(1, d(j))
          f(j) = spring%force(1)
-         if (spring%stuck .or. spring%lost_joint() > 0) f(j) = ieee_value(f(j), ieee_quiet_nan)
+         if (spring%stuck .or. spring%crushed_joint() > 0) f(j) = ieee_value(f(j), ieee_quiet_nan)
       end do
    end subroutine follow_path
 

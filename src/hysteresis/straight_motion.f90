@@ -42,18 +42,18 @@ contains
    end subroutine find_blocked
 
    !> The first end of a line that springs reach from given deformations.
-   pure subroutine nearest_end(springs, q, rate, way, ends)
+   pure subroutine nearest_end(springs, q, rate, stride, ends)
       type(spring_array), intent(in) :: springs
       !> Deformations and rates
       real(wp), intent(in), contiguous :: q(:), rate(:)
       !> In units of the rates; `huge` if there is none
-      real(wp), intent(out) :: way
+      real(wp), intent(out) :: stride
       !> The spring, 0 for none
       integer, intent(out) :: ends
-      real(wp) :: room, most
+      real(wp) :: clearance, most
       integer :: i
 
-      way = huge(1.0_wp)
+      stride = huge(1.0_wp)
       most = farthest
       ends = 0
       associate (first => springs%first, last => springs%last)
@@ -62,55 +62,55 @@ contains
             ! the rate is next to nothing.
             if (rate(i) > 0.0_wp) then
                if (last(i) - q(i) > most*rate(i)) cycle
-               room = distance(springs%end_toward(i, 1) - q(i), rate(i))
+               clearance = distance(springs%end_toward(i, 1) - q(i), rate(i))
             else if (rate(i) < 0.0_wp) then
                if (q(i) - first(i) > -most*rate(i)) cycle
-               room = distance(q(i) - springs%end_toward(i, -1), -rate(i))
+               clearance = distance(q(i) - springs%end_toward(i, -1), -rate(i))
             else
                cycle
             end if
-            if (.not. room < way) cycle
-            way = room
-            most = min(way, farthest)
+            if (.not. clearance < stride) cycle
+            stride = clearance
+            most = min(stride, farthest)
             ends = i
          end do
       end associate
    end subroutine nearest_end
 
    !> How long a spring needs for a distance; `huge` on a line without end.
-   elemental real(wp) function distance(way, rate)
-      real(wp), intent(in) :: way, rate
+   elemental real(wp) function distance(stride, rate)
+      real(wp), intent(in) :: stride, rate
 
       distance = huge(1.0_wp)
-      if (way < 0.5_wp*huge(1.0_wp)*min(rate, 1.0_wp)) distance = max(way, 0.0_wp)/rate
+      if (stride < 0.5_wp*huge(1.0_wp)*min(rate, 1.0_wp)) distance = max(stride, 0.0_wp)/rate
    end function distance
 
    !> Springs go at constant rates from given deformations, each on its own line and not beyond its end, and
    !> what is behind them goes too.
-   pure subroutine go_along(springs, moving, q, rate, way, slack, near, count)
+   pure subroutine go_along(springs, moving, q, rate, stride, slack, near, count)
       type(spring_array), intent(inout) :: springs
       !> Number of springs that go, the first ones
       integer, intent(in) :: moving
       !> From where (size of `d`), and the rates; in units of the rates
       real(wp), intent(in), contiguous :: q(:), rate(:)
-      real(wp), intent(in) :: way
+      real(wp), intent(in) :: stride
       !> Springs that come closer than this to the end of their line, in shares of the end, are near it
       real(wp), intent(in) :: slack
       !> The springs near the ends that they go to, and how many they are
       integer, intent(out) :: near(moving), count
 
       associate (behind => springs%count + 1)
-         springs%d(behind:) = q(behind:) + rate(behind:)*way
+         springs%d(behind:) = q(behind:) + rate(behind:)*stride
       end associate
-      call advance_along(moving, q, rate, way, slack, springs%d0, springs%f0, springs%k, &
+      call advance_along(moving, q, rate, stride, slack, springs%d0, springs%f0, springs%k, &
                          springs%unload_on_reversal, springs%d, springs%work, springs%first, springs%last, &
                          near, count)
    end subroutine go_along
 
-   pure subroutine advance_along(n, q, rate, way, slack, d0, f0, k, unload_on_reversal, d, work, first, &
+   pure subroutine advance_along(n, q, rate, stride, slack, d0, f0, k, unload_on_reversal, d, work, first, &
                                  last, near, count)
       integer, intent(in) :: n, unload_on_reversal(n)
-      real(wp), intent(in) :: q(n), rate(n), way, slack, d0(n), f0(n), k(n)
+      real(wp), intent(in) :: q(n), rate(n), stride, slack, d0(n), f0(n), k(n)
       real(wp), intent(inout) :: d(n), work(n), first(n), last(n)
       integer, intent(out) :: near(n), count
       real(wp) :: to
@@ -118,7 +118,7 @@ contains
 
       !$omp simd
       do i = 1, n
-         to = min(max(q(i) + rate(i)*way, first(i)), last(i))
+         to = min(max(q(i) + rate(i)*stride, first(i)), last(i))
          work(i) = work(i) + (f0(i) + k(i)*(0.5_wp*(to + d(i)) - d0(i)))*(to - d(i))
          d(i) = to
       end do

@@ -291,15 +291,15 @@ contains
       real(wp), intent(in) :: axial_force(:)
       type(spring_array), intent(inout) :: springs
       type(error_type), allocatable, intent(inout) :: error
-      integer :: lost
+      integer :: crushed_joint
 
       call change_axial_loads(springs, axial_force, self%axial_load_varies)
-      lost = springs%lost_joint()
-      if (lost == 0) return
+      crushed_joint = springs%crushed_joint()
+      if (crushed_joint == 0) return
       call fatal_error(error, analysis_failed, 'initial: the layers of '// &
-                       trim(spring_name(structure%place(lost)))//' cannot carry the axial load of '// &
-                       to_text(axial_force(lost))//' N in the state that the first analysis ended in; '// &
-                       'give a smaller axial_load')
+                       trim(spring_name(structure%place(crushed_joint)))//' cannot carry the axial '// &
+                       'load of '//to_text(axial_force(crushed_joint))//' N in the state that the first '// &
+                       'analysis ended in; give a smaller axial_load')
    end subroutine put_under
 
 end module rbs_solve_end_state

@@ -64,8 +64,8 @@ module rbs_solve_ensemble_lane_arrays
       !> Damping on the present lines (11, 12, 22), see `body_damping`; for RK4 see `decay_of`
       real(wp) :: c(lanes, 3) = 0.0_wp, d(lanes, 4) = 0.0_wp
       !> Inverse of the mass in slip and rotation; moment of the axial force per rotation
-      real(wp) :: flexible(lanes) = 0.0_wp, coupling(lanes) = 0.0_wp, turning(lanes) = 0.0_wp, &
-                  softening(lanes) = 0.0_wp
+      real(wp) :: inv_mass(lanes) = 0.0_wp, inv_coupling(lanes) = 0.0_wp, inv_inertia(lanes) = 0.0_wp, &
+                  pdelta_moment(lanes) = 0.0_wp
       !> Mass and rotary inertia, distances of the centroid from bottom and top, length
       real(wp) :: mass(lanes, 2) = 1.0_wp, lower(lanes) = 0.0_wp, upper(lanes) = 0.0_wp, &
                   length(lanes) = 0.0_wp
@@ -81,7 +81,7 @@ module rbs_solve_ensemble_lane_arrays
                                        highest = huge(1.0_wp)
       !> Lines of the springs, as in `spring_array`; the way is +1 or -1 for those that unload on reversal
       real(wp), dimension(lanes, 2) :: d0 = 0.0_wp, f0 = 0.0_wp, k = 0.0_wp, first = 0.0_wp, last = 0.0_wp, &
-                                       way = 0.0_wp, work = 0.0_wp
+                                       direction = 0.0_wp, work = 0.0_wp
       !> Of implicit methods: velocities, accelerations and forces of the bodies at the start, the largest
       !> forces so far
       real(wp), dimension(lanes, 2) :: v0 = 0.0_wp, a0 = 0.0_wp, g0 = 0.0_wp, largest = 0.0_wp

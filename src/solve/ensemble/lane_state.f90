@@ -28,7 +28,7 @@ contains
             y%k(l, j) = springs%k(j)
             y%first(l, j) = springs%first(j)
             y%last(l, j) = springs%last(j)
-            y%way(l, j) = real(springs%unload_on_reversal(j), wp)
+            y%direction(l, j) = real(springs%unload_on_reversal(j), wp)
          end do
       end associate
    end subroutine springs_to_lane

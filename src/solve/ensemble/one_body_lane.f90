@@ -26,10 +26,10 @@ contains
       type(rk4_body) :: body
 
       call body%create(state%motion%one_body)
-      x%flexible(l) = body%flexible
-      x%coupling(l) = body%coupling
-      x%turning(l) = body%turning
-      x%softening(l) = body%softening
+      x%inv_mass(l) = body%inv_mass
+      x%inv_coupling(l) = body%inv_coupling
+      x%inv_inertia(l) = body%inv_inertia
+      x%pdelta_moment(l) = body%pdelta_moment
       associate (column => state%motion%one_body)
          x%mass(l, :) = column%inertias
          x%lower(l) = column%lower(1)
@@ -63,7 +63,7 @@ contains
       body%mass(2) = x%mass(l, 2)
       body%lower = x%lower(l)
       body%upper = x%upper(l)
-      body%softening = x%softening(l)
+      body%pdelta_moment = x%pdelta_moment(l)
       if (x%damped) body%damping = damping
       body%fits = .false.
    end subroutine lane_to_body
@@ -144,7 +144,7 @@ contains
          y%g0(l, i) = body%g(i)
          y%largest(l, i) = body%scale(i)
          call spring_to_lane(y, l, i, body%spring(i))
-         if (body%spring(i)%way /= 0) line(i) = body%spring(i)%line
+         if (body%spring(i)%direction /= 0) line(i) = body%spring(i)%line
       end do
       do i = 1, 4
          x%inverse(l, i) = body%inverse(i)
@@ -163,7 +163,7 @@ contains
       spring%last = y%last(l, i)
       spring%d = y%q(l, i)
       spring%work = y%work(l, i)
-      spring%way = 0
+      spring%direction = 0
    end subroutine spring_from_lane
 
    pure subroutine spring_to_lane(y, l, i, spring)
@@ -177,7 +177,7 @@ contains
       y%d0(l, i) = spring%line%d0
       y%f0(l, i) = spring%line%f0
       y%k(l, i) = spring%line%k
-      y%way(l, i) = real(spring%line%unload_on_reversal, wp)
+      y%direction(l, i) = real(spring%line%unload_on_reversal, wp)
    end subroutine spring_to_lane
 
    !> The lines of the springs of a run alone, on which the next steps start, and what these need of them.
@@ -229,14 +229,14 @@ contains
       real(wp) :: g(4)
       integer :: i
 
-      g = resistance_per_velocity(x%flexible(l), x%coupling(l), x%turning(l), x%softening(l), y%k(l, 1), &
-                                  y%k(l, 2), 0.5_wp*x%h(l))
+      g = resistance_per_velocity(x%inv_mass(l), x%inv_coupling(l), x%inv_inertia(l), x%pdelta_moment(l), &
+                                  y%k(l, 1), y%k(l, 2), 0.5_wp*x%h(l))
       do i = 1, 4
          x%g(l, i) = g(i)
       end do
       if (.not. x%damped) return
       x%c(l, :) = damping%on_lines(y%k(l, 1), y%k(l, 2))
-      x%d(l, :) = decay_of(x%flexible(l), x%coupling(l), x%turning(l), x%c(l, :))
+      x%d(l, :) = decay_of(x%inv_mass(l), x%inv_coupling(l), x%inv_inertia(l), x%c(l, :))
    end subroutine fit_resistance
 
 end module rbs_solve_ensemble_one_body_lane

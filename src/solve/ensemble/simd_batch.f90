@@ -313,7 +313,7 @@ contains
          end if
          if (.not. taken) call step_alone(batch, x, y, lane, l, error)
          if (allocated(error)) return
-         if (state%lost .or. state%springs%stuck) call report_state(state, error)
+         if (state%diverged .or. state%springs%stuck) call report_state(state, error)
       end associate
    end subroutine finish_step_scalar
 
@@ -334,7 +334,7 @@ contains
          if (x%steps(l) + stepper%steps > 0.5_wp) call step_from_lane(y, l, stepper)
       end select
       call lane%stepper%advance(lane%state, x%h(l), error)
-      if (allocated(error) .or. lane%state%lost .or. lane%state%springs%stuck) return
+      if (allocated(error) .or. lane%state%diverged .or. lane%state%springs%stuck) return
       x%ready(l) = 1.0_wp
       call motion_to_lane(x, y, l, lane%state)
       call springs_to_lane(y, l, lane%state)

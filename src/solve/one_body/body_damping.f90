@@ -65,13 +65,13 @@ contains
    end function on_lines
 
    !> Accelerations that it takes away for each velocity, M^-1 C (11, 12, 21, 22) [1/s].
-   pure function decay_of(flexible, coupling, turning, c) result(d)
+   pure function decay_of(inv_mass, inv_coupling, inv_inertia, c) result(d)
       !> Inverse of the mass in slip and rotation, see `rk4_body`; C
-      real(wp), intent(in) :: flexible, coupling, turning, c(3)
+      real(wp), intent(in) :: inv_mass, inv_coupling, inv_inertia, c(3)
       real(wp) :: d(4)
 
-      d = [flexible*c(1) + coupling*c(2), flexible*c(2) + coupling*c(3), &
-           coupling*c(1) + turning*c(2), coupling*c(2) + turning*c(3)]
+      d = [inv_mass*c(1) + inv_coupling*c(2), inv_mass*c(2) + inv_coupling*c(3), &
+           inv_coupling*c(1) + inv_inertia*c(2), inv_coupling*c(2) + inv_inertia*c(3)]
    end function decay_of
 
 end module rbs_solve_one_body_body_damping

@@ -36,7 +36,7 @@ module rbs_solve_one_body_implicit_one_body
    type :: body_spring
       type(segment) :: line
       real(wp) :: first = 0.0_wp, last = 0.0_wp, d = 0.0_wp, work = 0.0_wp
-      integer :: way = 0
+      integer :: direction = 0
    end type body_spring
 
    !> Second index, or place of two: slip and rotation, or the body's displacement and rotation.
@@ -47,7 +47,7 @@ module rbs_solve_one_body_implicit_one_body
       real(wp) :: h = -1.0_wp, per_h = 0.0_wp, push = 0.0_wp, ground = 0.0_wp
       !> The column: mass and rotary inertia, distances of the centroid from bottom and top, and the moment of
       !> the axial force per rotation
-      real(wp) :: mass(2) = 1.0_wp, lower = 0.0_wp, upper = 0.0_wp, softening = 0.0_wp
+      real(wp) :: mass(2) = 1.0_wp, lower = 0.0_wp, upper = 0.0_wp, pdelta_moment = 0.0_wp
       !> Its damping, and C on the lines that the tangent is for
       type(body_damping) :: damping
       real(wp) :: c(3) = 0.0_wp
@@ -113,7 +113,7 @@ contains
       call self%fit_to(springs)
       associate (h => self%h, per_h => self%per_h, alpha_m => self%alpha_m, alpha_f => self%alpha_f, &
                  beta => self%beta, gamma => self%gamma, mass_1 => self%mass(1), mass_2 => self%mass(2), &
-                 lower => self%lower, upper => self%upper, softening => self%softening, &
+                 lower => self%lower, upper => self%upper, pdelta_moment => self%pdelta_moment, &
                  inverse_11 => self%inverse(1), inverse_12 => self%inverse(2), &
                  inverse_21 => self%inverse(3), inverse_22 => self%inverse(4), &
                  damped => self%damping%acts, c11 => self%c(1), c12 => self%c(2), c22 => self%c(3), &
@@ -229,7 +229,7 @@ contains
    !> Find the inverse of the tangent on the present lines.
    pure subroutine fit(self)
       type(one_body_step), intent(inout) :: self
-      real(wp) :: of_mass, per_velocity, shear, both, along, across, about, share
+      real(wp) :: of_mass, per_velocity, shear, both, slip, mixed, moment, share
 
       if (self%fits .and. .not. (abs(self%spring(1)%line%k - self%stiffness(1)) > 0.0_wp .or. &
                                  abs(self%spring(2)%line%k - self%stiffness(2)) > 0.0_wp)) return
@@ -243,19 +243,19 @@ contains
       end if
       shear = (1.0_wp - self%alpha_f)*(self%stiffness(1) + per_velocity*self%c(1))
       both = (1.0_wp - self%alpha_f)*(per_velocity*self%c(2))
-      along = shear + of_mass*self%mass(1)
-      across = both - shear*self%lower
-      about = shear*self%lower**2 - 2.0_wp*self%lower*both &
+      slip = shear + of_mass*self%mass(1)
+      mixed = both - shear*self%lower
+      moment = shear*self%lower**2 - 2.0_wp*self%lower*both &
               + (1.0_wp - self%alpha_f)*(self%stiffness(2) + per_velocity*self%c(3)) + of_mass*self%mass(2) &
-              - (1.0_wp - self%alpha_f)*self%softening
+              - (1.0_wp - self%alpha_f)*self%pdelta_moment
       ! Where the column softens more than its inertia holds, the pivot is negative. One that is nearly zero
       ! gives a step that does not converge.
-      share = across/along
-      about = 1.0_wp/(about - share*across)
-      self%inverse(1) = 1.0_wp/along + share*about*share
-      self%inverse(2) = -share*about
-      self%inverse(3) = -share*about
-      self%inverse(4) = about
+      share = mixed/slip
+      moment = 1.0_wp/(moment - share*mixed)
+      self%inverse(1) = 1.0_wp/slip + share*moment*share
+      self%inverse(2) = -share*moment
+      self%inverse(3) = -share*moment
+      self%inverse(4) = moment
       self%fits = .true.
    end subroutine fit
 
@@ -310,7 +310,7 @@ contains
       type(body_spring), intent(in) :: spring
       real(wp), intent(in) :: q
 
-      is_on_line = side_of(spring, q) == 0 .and. spring%way*(q - spring%d) >= 0.0_wp
+      is_on_line = side_of(spring, q) == 0 .and. spring%direction*(q - spring%d) >= 0.0_wp
    end function is_on_line
 
    !> Put a spring, which is at the start of the step, on the line that it is on at the end. It stays where
@@ -319,15 +319,15 @@ contains
       type(one_body_step), intent(inout) :: self
       integer, intent(in) :: i
       type(spring_slot), intent(inout) :: slot(2)
-      integer :: lines, way
+      integer :: lines, direction
 
       associate (spring => self%spring(i))
          do lines = 1, most_changes
-            way = side_of(spring, self%q(i))
-            if (way == 0) return
-            if (spring%way == 0) call save_memory(slot(i))
-            spring%way = way
-            call change_line(spring, slot(i), way, self%spring(2)%work)
+            direction = side_of(spring, self%q(i))
+            if (direction == 0) return
+            if (spring%direction == 0) call save_memory(slot(i))
+            spring%direction = direction
+            call change_line(spring, slot(i), direction, self%spring(2)%work)
             self%events = self%events + 1
             ! A new one-way line starts at the present deformation, to the last bit.
             if (spring%line%unload_on_reversal > 0) spring%first = spring%d
@@ -345,7 +345,7 @@ contains
 
       self%events = 0
       do i = 1, 2
-         if (self%spring(i)%way == 0) cycle
+         if (self%spring(i)%direction == 0) cycle
          self%spring(i) = self%start(i)
          call return_memory(slot(i))
       end do
@@ -365,7 +365,7 @@ contains
          moment = line_2%f0 + line_2%k*(self%q(2) - line_2%d0)
       end associate
       self%g(1) = (self%push - shear) - self%mass(1)*self%ground
-      self%g(2) = ((self%lower*shear + self%upper*self%push) - moment) + self%softening*self%q(2)
+      self%g(2) = ((self%lower*shear + self%upper*self%push) - moment) + self%pdelta_moment*self%q(2)
       if (self%damping%acts) then
          v = self%v0 + (self%h*(1.0_wp - self%gamma))*self%a0 + (self%h*self%gamma)*self%a1
          v(1) = v(1) - self%lower*v(2)
@@ -416,16 +416,16 @@ contains
       !> Number of lines left; whether the rule goes round in lines without length
       integer, intent(out) :: events
       logical, intent(out) :: stuck
-      integer :: way
+      integer :: direction
 
       stuck = .false.
       do events = 0, most_lines - 1
-         way = side_of(spring, d)
-         if (way == 0) then
+         direction = side_of(spring, d)
+         if (direction == 0) then
             call advance_on_branch(spring, d)
             return
          end if
-         call change_line(spring, slot, way, flexural_work)
+         call change_line(spring, slot, direction, flexural_work)
       end do
       stuck = .true.
    end subroutine move_spring
@@ -446,18 +446,20 @@ contains
 
    !> Move to the end of the line and get the line that follows from the rule. When the motion turns back, a
    !> one-way line ends at the present deformation.
-   subroutine change_line(spring, slot, way, flexural_work)
+   subroutine change_line(spring, slot, direction, flexural_work)
       type(body_spring), intent(inout) :: spring
       type(spring_slot), intent(inout) :: slot
       !> +1: by the upper end, -1: by the lower end
-      integer, intent(in) :: way
+      integer, intent(in) :: direction
       real(wp), intent(in) :: flexural_work
 
       associate (line => spring%line)
          if (line%unload_on_reversal > 0) line%lo = spring%d
          if (line%unload_on_reversal < 0) line%hi = spring%d
-         if (line%unload_on_reversal /= -way) call advance_on_branch(spring, merge(line%hi, line%lo, way > 0))
-         call slot%next_branch(line, way, flexural_work)
+         if (line%unload_on_reversal /= -direction) then
+            call advance_on_branch(spring, merge(line%hi, line%lo, direction > 0))
+         end if
+         call slot%next_branch(line, direction, flexural_work)
          spring%first = first_on(line)
          spring%last = last_on(line)
       end associate

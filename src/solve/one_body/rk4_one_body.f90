@@ -9,12 +9,12 @@ module rbs_solve_one_body_rk4_one_body
    implicit none
    private
 
-   public :: rk4_body, resistance_per_velocity, softening_of
+   public :: rk4_body, resistance_per_velocity, pdelta_moment_of
 
    type :: rk4_body
       !> Inverse of the mass matrix in slip and rotation [1/kg, 1/(kg m), 1/(kg m2)], and the moment of the
       !> axial force per rotation [N m]
-      real(wp) :: flexible = 0.0_wp, coupling = 0.0_wp, turning = 0.0_wp, softening = 0.0_wp
+      real(wp) :: inv_mass = 0.0_wp, inv_coupling = 0.0_wp, inv_inertia = 0.0_wp, pdelta_moment = 0.0_wp
       !> Distance of the centroid from the joint, length [m], and mass; accelerations by a lateral force
       real(wp), private :: lower = 0.0_wp, height = 0.0_wp, mass = 0.0_wp, push(2) = 0.0_wp
       !> See `resistance_per_velocity`, `decay_of` and `body_damping`; the step and the lines that they belong
@@ -36,24 +36,25 @@ contains
       self%lower = column%lower(1)
       self%height = column%arm(2)
       self%mass = column%mass(1)
-      self%turning = 1.0_wp/column%inertia(1)
-      if (column%held) self%turning = 0.0_wp
-      self%flexible = 1.0_wp/column%mass(1) + self%lower**2*self%turning
-      self%coupling = -self%lower*self%turning
-      self%softening = softening_of(column)
+      self%inv_inertia = 1.0_wp/column%inertia(1)
+      if (column%held) self%inv_inertia = 0.0_wp
+      self%inv_mass = 1.0_wp/column%mass(1) + self%lower**2*self%inv_inertia
+      self%inv_coupling = -self%lower*self%inv_inertia
+      self%pdelta_moment = pdelta_moment_of(column)
       ! The ground takes the body with it, so that it accelerates the slip alone.
-      self%push = [self%flexible + self%coupling*self%height, self%coupling + self%turning*self%height]
+      self%push = [self%inv_mass + self%inv_coupling*self%height, &
+                   self%inv_coupling + self%inv_inertia*self%height]
    end subroutine create
 
    !> The moment of the axial force per rotation [N m].
-   pure real(wp) function softening_of(column)
+   pure real(wp) function pdelta_moment_of(column)
       type(column_type), intent(in) :: column
 
-      softening_of = 0.0_wp
+      pdelta_moment_of = 0.0_wp
       if (column%kinematics /= small .and. column%axially_loaded) then
-         softening_of = column%axial_body(1)*column%length(1)
+         pdelta_moment_of = column%axial_body(1)*column%length(1)
       end if
-   end function softening_of
+   end function pdelta_moment_of
 
    !> The step on the present lines of both springs, and the works of loads and damping in it [J]. Without
    !> damping acceleration needs no velocity, so stages 1 and 2, and 3 and 4, do not wait for each other.
@@ -72,8 +73,8 @@ contains
 
       half = 0.5_wp*h
       sixth = h*(1.0_wp/6.0_wp)
-      associate (flexible => self%flexible, coupling => self%coupling, turning => self%turning, &
-                 softening => self%softening, lower => self%lower, &
+      associate (inv_mass => self%inv_mass, inv_coupling => self%inv_coupling, &
+                 inv_inertia => self%inv_inertia, pdelta_moment => self%pdelta_moment, lower => self%lower, &
                  d0_1 => springs%d0(1), f0_1 => springs%f0(1), k_1 => springs%k(1), &
                  d0_2 => springs%d0(2), f0_2 => springs%f0(2), k_2 => springs%k(2), &
                  g11 => self%g(1), g12 => self%g(2), g21 => self%g(3), g22 => self%g(4), &
@@ -81,10 +82,11 @@ contains
                  d11 => self%d(1), d12 => self%d(2), d21 => self%d(3), d22 => self%d(4), &
                  ground_1 => load_ground(1), ground_2 => load_ground(2), ground_3 => load_ground(3))
          if (self%version /= springs%version .or. abs(h - self%h) > 0.0_wp) then
-            self%g = resistance_per_velocity(flexible, coupling, turning, softening, k_1, k_2, half)
+            self%g = resistance_per_velocity(inv_mass, inv_coupling, inv_inertia, pdelta_moment, &
+                                             k_1, k_2, half)
             if (damping%acts) then
                self%c = damping%on_lines(k_1, k_2)
-               self%d = decay_of(flexible, coupling, turning, self%c)
+               self%d = decay_of(inv_mass, inv_coupling, inv_inertia, self%c)
             end if
             self%version = springs%version
             self%h = h
@@ -113,14 +115,15 @@ contains
 
    !> Acceleration that half a step takes away for each velocity, by the springs on their lines and the axial
    !> force [1/s]: of the slip by slip and by rotation, of the rotation by slip and by rotation.
-   pure function resistance_per_velocity(flexible, coupling, turning, softening, k_1, k_2, half) result(g)
+   pure function resistance_per_velocity(inv_mass, inv_coupling, inv_inertia, pdelta_moment, &
+                                         k_1, k_2, half) result(g)
       !> See `rk4_body`; slopes of the lines, half a step [s]
-      real(wp), intent(in) :: flexible, coupling, turning, softening, k_1, k_2, half
+      real(wp), intent(in) :: inv_mass, inv_coupling, inv_inertia, pdelta_moment, k_1, k_2, half
       real(wp) :: g(4), shear, flexure
 
       shear = half*k_1
-      flexure = half*(k_2 - softening)
-      g = [flexible*shear, coupling*flexure, coupling*shear, turning*flexure]
+      flexure = half*(k_2 - pdelta_moment)
+      g = [inv_mass*shear, inv_coupling*flexure, inv_coupling*shear, inv_inertia*flexure]
    end function resistance_per_velocity
 
 end module rbs_solve_one_body_rk4_one_body

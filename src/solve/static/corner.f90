@@ -83,7 +83,7 @@ contains
             return
          end if
          call find_stopped()
-         if (path%springs%lost_joint() > 0) return
+         if (path%springs%crushed_joint() > 0) return
          if (stopped == 0) then
             path%direction = direction
             if (marked) call path%springs%forget_mark()
@@ -243,7 +243,7 @@ contains
       real(wp), dimension(path%moving) :: v, gap, edge, k
       !> Whether a spring is virtually back on the line on which it came to the corner
       logical :: is_back(path%moving)
-      integer :: crossed(path%moving), i, m, first, spring, next, way, goes, sense, pivots, trial, ends
+      integer :: crossed(path%moving), i, m, first, spring, next, heading, goes, sense, pivots, trial, ends
 
       m = path%moving
       first = findloc(path%arrived(:m) /= 0, .true., dim=1)
@@ -291,7 +291,7 @@ contains
 
       !> The spring that is blocked first, and its change of lines; 0: none is.
       subroutine find_next()
-         real(wp) :: at, room, least, next_at
+         real(wp) :: at, clearance, least, next_at
          logical :: is_blocked(m)
          integer :: blocked(m), count, next_way
 
@@ -304,21 +304,21 @@ contains
          is_blocked(blocked(:count)) = .true.
          do i = 1, m
             if (is_back(i)) then
-               way = merge(1, -1, path%rate(i) > 0.0_wp)
+               heading = merge(1, -1, path%rate(i) > 0.0_wp)
                if (.not. abs(path%rate(i)) > 0.0_wp) cycle
                at = edge(i)
-               if (way /= path%arrived(i)) at = edge(i) + way*gap(i)
+               if (heading /= path%arrived(i)) at = edge(i) + heading*gap(i)
             else
                if (.not. is_blocked(i)) cycle
-               way = merge(1, -1, path%rate(i) > 0.0_wp)
-               at = merge(edge(i), way*gap(i), crossed(i) == -way)
-               if (way == path%arrived(i) .and. path%one_way(i)) at = edge(i) - way*gap(i)
+               heading = merge(1, -1, path%rate(i) > 0.0_wp)
+               at = merge(edge(i), heading*gap(i), crossed(i) == -heading)
+               if (heading == path%arrived(i) .and. path%one_way(i)) at = edge(i) - heading*gap(i)
             end if
-            room = max((at - v(i))*way, 0.0_wp)/abs(path%rate(i))
-            if (.not. room < least) cycle
-            least = room
+            clearance = max((at - v(i))*heading, 0.0_wp)/abs(path%rate(i))
+            if (.not. clearance < least) cycle
+            least = clearance
             next = i
-            next_way = way
+            next_way = heading
             next_at = at
          end do
          if (next == 0) return
@@ -330,25 +330,25 @@ contains
 
       !> Change the line of a spring that is blocked in a direction. Over the corner a one-way line goes back
       !> as it came, and turns a gap later.
-      subroutine change(i, way, at)
-         integer, intent(in) :: i, way
+      subroutine change(i, heading, at)
+         integer, intent(in) :: i, heading
          real(wp), intent(in) :: at
 
          v(i) = at
          associate (springs => path%springs, came => path%arrived(i))
-            if (.not. is_back(i) .and. way == -came .and. path%one_way(i)) then
+            if (.not. is_back(i) .and. heading == -came .and. path%one_way(i)) then
                is_back(i) = .true.
                springs%k(i) = path%k_in(i)
             else if (is_back(i)) then
                is_back(i) = .false.
                springs%k(i) = k(i)
-               if (way == came) return
-               call springs%leave(i, way)
-               crossed(i) = way
+               if (heading == came) return
+               call springs%leave(i, heading)
+               crossed(i) = heading
             else
-               call springs%leave(i, way)
-               crossed(i) = way
-               if (way == came .and. path%one_way(i)) then
+               call springs%leave(i, heading)
+               crossed(i) = heading
+               if (heading == came .and. path%one_way(i)) then
                   is_back(i) = .true.
                   k(i) = springs%k(i)
                   springs%k(i) = path%k_in(i)
@@ -362,11 +362,11 @@ contains
    end subroutine follow_through
 
    !> Whether a spring is on an end that belongs to its line.
-   pure logical function is_on_closed_end(springs, i, way)
+   pure logical function is_on_closed_end(springs, i, heading)
       type(spring_array), intent(in) :: springs
-      integer, intent(in) :: i, way
+      integer, intent(in) :: i, heading
 
-      if (way > 0) then
+      if (heading > 0) then
          is_on_closed_end = springs%includes_upper_end(i) .and. springs%d(i) >= springs%last(i)
       else
          is_on_closed_end = springs%includes_lower_end(i) .and. springs%d(i) <= springs%first(i)

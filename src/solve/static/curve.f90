@@ -181,18 +181,18 @@ contains
       type(curve_type), intent(in) :: self
       integer, intent(in) :: i, side
       real(wp), intent(in) :: finish
-      real(wp) :: c(4), turn(2), room
+      real(wp) :: c(4), turn(2), allowance
 
       passes = .false.
       c = cubic_of(self, i)
       ! An end at infinity is never reached.
       if (side*finish > max(side*c(1), side*c(2)) + beyond_ends*(abs(c(3)) + abs(c(4))) .or. &
           .not. abs(finish) < unbounded) return
-      room = no_overshoot*(abs(c(2)) + abs(c(2) - c(1)))
-      if (i > size(self%near%q)) room = room + self%digits
+      allowance = no_overshoot*(abs(c(2)) + abs(c(2) - c(1)))
+      if (i > size(self%near%q)) allowance = allowance + self%digits
       turn = cubic_at(turns_of(c), c(1), c(2), c(3), c(4))
-      passes = side*(c(2) - finish) > room .or. &
-               any(side*(turn - finish) > max(room, on_the_end*abs(finish)))
+      passes = side*(c(2) - finish) > allowance .or. &
+               any(side*(turn - finish) > max(allowance, on_the_end*abs(finish)))
    end function passes
 
    !> Whether a spring on a one-way line turns back and turns again between the ends.

@@ -76,8 +76,8 @@ contains
       m = column%unknowns
       path%load = load
       call path%equilibrium%create(column, by_force, varies)
-      allocate (path%here%q(m), path%here%rate(m), path%there%q(m), &
-                path%there%rate(m), source=0.0_wp)
+      allocate (path%current%q(m), path%current%rate(m), path%trial%q(m), &
+                path%trial%rate(m), source=0.0_wp)
       path%structure => column
       path%without_top_load => column
       if (varies) path%without_top_load => path%equilibrium%without_top_load
@@ -107,7 +107,7 @@ contains
          self%equilibrium%load = [self%load_now, self%load(self%row) - self%load_now]
          if (.not. any(abs([self%equilibrium%driven(2), &
                            self%equilibrium%load(2)]) > 0.0_wp)) return
-         self%here%t = 0.0_wp
+         self%current%t = 0.0_wp
          self%goal = 1.0_wp
          self%extent = 1.0_wp
          self%next_length = huge(1.0_wp)
@@ -118,22 +118,22 @@ contains
       end if
       do strides = 1, 10000 + 1000*self%moving
          if (self%task%stops()) return
-         if (.not. abs(self%goal - self%here%t) > 0.0_wp) exit
-         direction = merge(1, -1, self%goal > self%here%t)
+         if (.not. abs(self%goal - self%current%t) > 0.0_wp) exit
+         direction = merge(1, -1, self%goal > self%current%t)
          if (self%direction /= direction) then
             call turn_corner(self, direction, target, error)
-            if (allocated(error) .or. self%springs%lost_joint() > 0) return
+            if (allocated(error) .or. self%springs%crushed_joint() > 0) return
             ! A spring that was put on the end of its line left the column a little out of equilibrium.
             if (self%equilibrium%size_of(self%equilibrium%correction, &
-                                                self%here%q) <= no_progress) then
-               self%here%q = self%here%q + self%equilibrium%correction
-               self%here%force = self%here%force + self%equilibrium%force_correction
+                                                self%current%q) <= no_progress) then
+               self%current%q = self%current%q + self%equilibrium%correction
+               self%current%force = self%current%force + self%equilibrium%force_correction
             end if
          end if
          call take_stride(self, target, error)
          if (allocated(error)) return
       end do
-      if (abs(self%goal - self%here%t) > 0.0_wp) then
+      if (abs(self%goal - self%current%t) > 0.0_wp) then
          call report_no_way(self, target, error)
          return
       end if
@@ -146,11 +146,11 @@ contains
       integer, intent(in) :: direction
       logical, intent(out) :: found
 
-      call self%equilibrium%solve(self%springs, self%here, found)
+      call self%equilibrium%solve(self%springs, self%current, found)
       if (.not. found) return
-      self%rate = direction*clean(self%structure, self%here)
-      if (self%equilibrium%varies) self%here%rate = self%rate
-      self%axial_rate = self%here%axial_rate
+      self%rate = direction*clean(self%structure, self%current)
+      if (self%equilibrium%varies) self%current%rate = self%rate
+      self%axial_rate = self%current%axial_rate
    end subroutine solve_line
 
    !> Go on toward the target, at the most to the next event. A stride that fails is cut in halves.
@@ -163,18 +163,18 @@ contains
       logical :: done, near
 
       call list_lines(self%springs, self%curve%lines)
-      if (.not. allocated(self%here%d)) then
-         allocate (self%here%d(size(self%curve%lines%joint)), self%here%v(size(self%curve%lines%joint)))
+      if (.not. allocated(self%current%d)) then
+         allocate (self%current%d(size(self%curve%lines%joint)), self%current%v(size(self%curve%lines%joint)))
       end if
-      call place(self, self%here)
-      way = abs(self%goal - self%here%t)
-      turn = self%structure%largest_turn(self%here%rate)
+      call place(self, self%current)
+      way = abs(self%goal - self%current%t)
+      turn = self%structure%largest_turn(self%current%rate)
       length = min(way, self%next_length)
       if (turn*length > most_turn) length = most_turn/turn
-      shortest = no_stride*max(abs(self%here%t), length)
+      shortest = no_stride*max(abs(self%current%t), length)
       cuts = 0
       do
-         limit = self%here%t + self%direction*length
+         limit = self%current%t + self%direction*length
          if (length >= way) limit = self%goal
          call try_stride()
          if (done) exit
@@ -198,20 +198,20 @@ contains
          logical :: turns
 
          turns = .false.
-         self%there = self%here
+         self%trial = self%current
          call find_event(self, limit)
          near = (self%line > 0 .or. .not. abs(self%goal - limit) > 0.0_wp) .and. &
-                abs(self%there%t - self%here%t) <= close_by*self%extent .and. &
-                abs(self%there%t - self%here%t)*self%structure%largest_turn(self%here%rate) <= close_by
+                abs(self%trial%t - self%current%t) <= close_by*self%extent .and. &
+                abs(self%trial%t - self%current%t)*self%structure%largest_turn(self%current%rate) <= close_by
          done = near
          if (.not. near) call find_point(self, limit, .true., done)
-         if (done) call self%curve%set(self%structure, self%here, self%there)
+         if (done) call self%curve%set(self%structure, self%current, self%trial)
          if (done .and. .not. near) then
             done = self%curve%is_gentle(self%structure)
-            if (done) turns = self%curve%least_rate(self%there) < 0.0_wp
+            if (done) turns = self%curve%least_rate(self%trial) < 0.0_wp
             if (turns) then
                call find_turn(self, done)
-               if (done) call self%curve%set(self%structure, self%here, self%there)
+               if (done) call self%curve%set(self%structure, self%current, self%trial)
             end if
             if (done) done = .not. self%curve%hides_event()
          end if
@@ -229,25 +229,25 @@ contains
          logical :: closed, stands
          integer :: side
 
-         associate (there => self%there, here => self%here, spring => self%line)
+         associate (trial => self%trial, current => self%current, spring => self%line)
             ! An end that is met where the path goes to, but for round-off, is met there: beyond it, the path
             ! would turn back.
-            if (abs(self%goal - there%t) <= on_the_end*abs(self%goal) + round_off*self%extent) then
-               there%t = self%goal
+            if (abs(self%goal - trial%t) <= on_the_end*abs(self%goal) + round_off*self%extent) then
+               trial%t = self%goal
             end if
-            self%control = self%equilibrium%driven(1) + self%equilibrium%driven(2)*there%t
+            self%control = self%equilibrium%driven(1) + self%equilibrium%driven(2)*trial%t
             if (self%by_force) then
-               there%force = self%control
+               trial%force = self%control
             else
-               there%displacement = self%control
+               trial%displacement = self%control
             end if
             self%work = self%work + works(1)
             self%load_work = self%load_work + works(2)
             self%most_work = max(self%most_work, abs(self%work))
-            stands = .not. abs(there%t - here%t) > 0.0_wp
+            stands = .not. abs(trial%t - current%t) > 0.0_wp
             self%stalled_strides = merge(self%stalled_strides + 1, 0, stands)
             if (spring > 0 .and. spring <= self%springs%count) then
-               side = merge(1, -1, self%direction*there%rate(spring) > 0.0_wp)
+               side = merge(1, -1, self%direction*trial%rate(spring) > 0.0_wp)
                closed = merge(self%springs%includes_upper_end(spring), &
                         self%springs%includes_lower_end(spring), side > 0)
                call self%springs%arrive(spring, side)
@@ -259,16 +259,16 @@ contains
             ! A motion may have turned by less than the search resolves.
             if (turns .or. spring > 0 .or. &
                 any(self%springs%unload_on_reversal*self%direction*clean(self%structure, &
-                                                                         there) < 0.0_wp)) self%direction = 0
+                                                                         trial) < 0.0_wp)) self%direction = 0
          end associate
-         self%force = self%there%force
-         self%displacement = self%there%displacement
-         self%here = self%there
-         self%here%q = self%springs%d
-         call self%equilibrium%remember(self%here%q)
-         if (.not. abs(self%goal - self%here%t) > 0.0_wp) return
+         self%force = self%trial%force
+         self%displacement = self%trial%displacement
+         self%current = self%trial
+         self%current%q = self%springs%d
+         call self%equilibrium%remember(self%current%q)
+         if (.not. abs(self%goal - self%current%t) > 0.0_wp) return
          if (self%equilibrium%varies) then
-            call self%see_corner(self%here%t)
+            call self%see_corner(self%current%t)
          else
             call self%see_corner((self%control - self%way_begin)/(self%goal - self%way_begin))
          end if
@@ -280,20 +280,20 @@ contains
          integer :: i, j, direction
 
          direction = self%direction
-         associate (springs => self%springs, there => self%there)
+         associate (springs => self%springs, trial => self%trial)
             do i = 1, self%moving
                if (springs%on_plane(i)) cycle
-               call springs%advance_on_branch(i, min(max(there%q(i), springs%first(i)), springs%last(i)))
-               if (.not. is_on_end(springs, i, there%q(i), direction*there%rate(i))) cycle
-               call springs%arrive(i, merge(1, -1, direction*there%rate(i) > 0.0_wp))
+               call springs%advance_on_branch(i, min(max(trial%q(i), springs%first(i)), springs%last(i)))
+               if (.not. is_on_end(springs, i, trial%q(i), direction*trial%rate(i))) cycle
+               call springs%arrive(i, merge(1, -1, direction*trial%rate(i) > 0.0_wp))
                self%direction = 0
             end do
             if (.not. springs%axial_load_varies) return
             do j = 1, size(springs%layered)
                i = springs%layered(j)
                work = work_of_joint(self, i)
-               call put_on_plane(springs, i, there%q(i), there%axial_load + self%equilibrium%above(i), &
-                                 there%rate(i), there%axial_rate, layer_of(self, i))
+               call put_on_plane(springs, i, trial%q(i), trial%axial_load + self%equilibrium%above(i), &
+                                 trial%rate(i), trial%axial_rate, layer_of(self, i))
                springs%work(i) = springs%work(i) + work
             end do
          end associate
@@ -313,7 +313,7 @@ contains
                 'is kept'
       if (self%equilibrium%varies) then
          call fatal_error(error, analysis_failed, 'no equilibrium was found beyond '//place//' and the '// &
-                          'axial load '//to_text(self%here%axial_load)//' N on the way to '// &
+                          'axial load '//to_text(self%current%axial_load)//' N on the way to '// &
                           to_text(target)//merge(' N', ' m', self%by_force)//': the column snaps through '// &
                           'or has lost its capacity there'//weakest//'; use a dynamic analysis to go on')
       else if (self%by_force) then
@@ -334,20 +334,20 @@ contains
       real(wp), intent(out) :: correction(:), force
       logical, intent(out) :: found
 
-      self%here%q = self%springs%d
-      self%here%force = self%force
-      self%here%t = 0.0_wp
+      self%current%q = self%springs%d
+      self%current%force = self%force
+      self%current%t = 0.0_wp
       associate (equilibrium => self%equilibrium)
          equilibrium%by_force = .false.
          equilibrium%driven = [self%displacement, 0.0_wp]
          equilibrium%load = [self%load_now, 0.0_wp]
-         call equilibrium%solve(self%springs, self%here, found)
+         call equilibrium%solve(self%springs, self%current, found)
          equilibrium%by_force = self%by_force
          equilibrium%driven = [0.0_wp, 1.0_wp]
          correction = equilibrium%correction
          force = equilibrium%force_correction
          if (self%springs%axial_load_varies) then
-            self%springs%target_axial_load(:) = self%here%axial_load + equilibrium%above
+            self%springs%target_axial_load(:) = self%current%axial_load + equilibrium%above
          end if
       end associate
    end subroutine find_balance
@@ -356,8 +356,8 @@ contains
    real(wp) function unbalance(self)
       class(curved_path), intent(inout) :: self
 
-      self%here%q = self%springs%d
-      unbalance = self%equilibrium%unbalance(self%springs, self%here)
+      self%current%q = self%springs%d
+      unbalance = self%equilibrium%unbalance(self%springs, self%current)
    end function unbalance
 
    !> The springs are where the path begins.
@@ -365,16 +365,16 @@ contains
       class(curved_path), intent(inout) :: self
 
       self%direction = 0
-      self%here%q = self%springs%d
-      self%here%force = self%force
-      self%here%displacement = self%displacement
-      self%here%t = merge(self%force, self%displacement, self%by_force)
-      self%extent = abs(self%here%t)
-      call self%equilibrium%remember(self%here%q)
+      self%current%q = self%springs%d
+      self%current%force = self%force
+      self%current%displacement = self%displacement
+      self%current%t = merge(self%force, self%displacement, self%by_force)
+      self%extent = abs(self%current%t)
+      call self%equilibrium%remember(self%current%q)
       if (.not. self%equilibrium%varies) return
       self%equilibrium%load = [self%load_now, 0.0_wp]
       ! The load has done its work before the path begins.
-      self%load_work = self%load_now*self%equilibrium%unit_top_load%potential_energy(self%here%q)
+      self%load_work = self%load_now*self%equilibrium%unit_top_load%potential_energy(self%current%q)
    end subroutine reset_reference
 
    !> Present to a tape where the path is and how far it may stride.
@@ -383,12 +383,12 @@ contains
       type(stream_type), intent(inout) :: stream
 
       call serialize_path(self, stream)
-      associate (here => self%here)
-         call stream%items(self%load_work, self%next_length, self%extent, self%most_work, here%t)
-         call stream%item(here%q)
-         call stream%item(here%rate)
-         call stream%items(here%force, here%displacement, here%axial_load, here%force_rate, &
-                           here%displacement_rate, here%axial_rate, here%lift_rate)
+      associate (current => self%current)
+         call stream%items(self%load_work, self%next_length, self%extent, self%most_work, current%t)
+         call stream%item(current%q)
+         call stream%item(current%rate)
+         call stream%items(current%force, current%displacement, current%axial_load, current%force_rate, &
+                           current%displacement_rate, current%axial_rate, current%lift_rate)
       end associate
       call stream%item(self%equilibrium%scale)
       call stream%item(self%equilibrium%load)

@@ -280,15 +280,15 @@ contains
       type(spring_array), intent(in) :: springs
       type(path_point), intent(inout) :: point
       logical, intent(out) :: found
-      real(wp) :: missing, y(2)
+      real(wp) :: residual, y(2)
       integer :: n, per
 
       n = self%column%n
       per = self%per
-      missing = self%driven(1) + self%driven(2)*point%t
-      if (self%by_force) point%force = missing
+      residual = self%driven(1) + self%driven(2)*point%t
+      if (self%by_force) point%force = residual
       call assemble(self, springs, point)
-      missing = missing - point%displacement
+      residual = residual - point%displacement
       call self%tangent%factor()
       self%right(:, 1) = self%pushed*self%load(2)
       ! The last digits of forces near zero would look as if the system had no solution.
@@ -309,7 +309,7 @@ contains
          end if
          if (found) call self%tangent%solve_bordered(self%right(:, 1), self%driven(2), self%change(:, 1), &
                                                      y(1), found)
-         if (found) call self%tangent%solve_bordered(self%right(:, 2), missing, self%change(:, 2), &
+         if (found) call self%tangent%solve_bordered(self%right(:, 2), residual, self%change(:, 2), &
                                                      y(2), found)
          point%displacement_rate = self%driven(2)
       end if

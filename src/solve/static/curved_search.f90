@@ -32,7 +32,7 @@ module rbs_solve_static_curved_search
       type(curved_equilibrium) :: equilibrium
       !> The present point and the one that is tried, the curve between the first and the farthest tried, and
       !> the spring or layer that is on the end of its line there; 0 for none
-      type(path_point) :: here, there
+      type(path_point) :: current, trial
       type(curve_type) :: curve
       integer :: line = 0
       !> Largest work of the lateral force so far, in size [J]
@@ -48,32 +48,32 @@ contains
       real(wp), intent(in) :: limit
       !> Of the deformations, to be added to
       real(wp), intent(inout), optional :: change(:)
-      real(wp) :: room, way, finish
+      real(wp) :: clearance, way, finish
       integer :: i, side
 
       self%line = 0
-      associate (there => self%there, lines => self%curve%lines)
-         room = self%direction*(limit - there%t)
-         do i = 1, size(there%v)
-            associate (rise => self%direction*there%v(i))
+      associate (trial => self%trial, lines => self%curve%lines)
+         clearance = self%direction*(limit - trial%t)
+         do i = 1, size(trial%v)
+            associate (rise => self%direction*trial%v(i))
                if (.not. abs(rise) > 0.0_wp) cycle
                side = merge(1, -1, rise > 0.0_wp)
                if (lines%one_way(i) == -side) cycle
-               way = side*(merge(lines%upper(i), lines%lower(i), side > 0) - there%d(i))
-               if (way < room*abs(rise)) then
-                  room = way/abs(rise)
+               way = side*(merge(lines%upper(i), lines%lower(i), side > 0) - trial%d(i))
+               if (way < clearance*abs(rise)) then
+                  clearance = way/abs(rise)
                   self%line = i
                   finish = merge(lines%upper(i), lines%lower(i), side > 0)
                end if
             end associate
          end do
-         room = max(room, self%direction*(self%here%t - there%t))
-         if (present(change)) change = change + there%rate*(self%direction*room)
-         call move(self, self%direction*room)
+         clearance = max(clearance, self%direction*(self%current%t - trial%t))
+         if (present(change)) change = change + trial%rate*(self%direction*clearance)
+         call move(self, self%direction*clearance)
          if (self%line == 0) then
-            there%t = limit
+            trial%t = limit
          else if (self%line <= self%springs%count) then
-            there%q(self%line) = finish
+            trial%q(self%line) = finish
          end if
       end associate
    end subroutine find_event
@@ -106,13 +106,13 @@ contains
       !> Of the parameter
       real(wp), intent(in) :: step
 
-      associate (there => self%there)
-         there%t = there%t + step
-         there%q = there%q + there%rate*step
-         there%d = there%d + there%v*step
-         there%force = there%force + there%force_rate*step
-         there%displacement = there%displacement + there%displacement_rate*step
-         there%axial_load = there%axial_load + there%axial_rate*step
+      associate (trial => self%trial)
+         trial%t = trial%t + step
+         trial%q = trial%q + trial%rate*step
+         trial%d = trial%d + trial%v*step
+         trial%force = trial%force + trial%force_rate*step
+         trial%displacement = trial%displacement + trial%displacement_rate*step
+         trial%axial_load = trial%axial_load + trial%axial_rate*step
       end associate
    end subroutine move
 
@@ -122,24 +122,24 @@ contains
       real(wp), intent(in) :: limit
       logical, intent(in) :: with_events
       logical, intent(out) :: found
-      real(wp) :: change(size(self%here%q)), share, last_share
+      real(wp) :: change(size(self%current%q)), share, last_share
       logical :: regular
       integer :: i
 
       found = .false.
       last_share = huge(1.0_wp)
-      associate (there => self%there, equilibrium => self%equilibrium)
+      associate (trial => self%trial, equilibrium => self%equilibrium)
          do i = 1, most_iterations
-            call equilibrium%solve(self%springs, there, regular)
+            call equilibrium%solve(self%springs, trial, regular)
             if (.not. regular) return
-            if (equilibrium%varies) there%rate = clean(equilibrium%column, there)
+            if (equilibrium%varies) trial%rate = clean(equilibrium%column, trial)
             change = equilibrium%correction
-            there%q = there%q + change
-            there%force = there%force + equilibrium%force_correction
-            there%axial_load = there%axial_load + equilibrium%ratio*equilibrium%force_correction
-            call place(self, there)
+            trial%q = trial%q + change
+            trial%force = trial%force + equilibrium%force_correction
+            trial%axial_load = trial%axial_load + equilibrium%ratio*equilibrium%force_correction
+            call place(self, trial)
             if (with_events) call find_event(self, limit, change)
-            share = equilibrium%size_of(change, there%q - change)
+            share = equilibrium%size_of(change, trial%q - change)
             found = share <= arrived .or. (share <= no_progress .and. share > 0.25_wp*last_share)
             if (found) exit
             if (i > 3 .and. share > 2.0_wp*last_share) return
@@ -147,10 +147,10 @@ contains
          end do
          if (.not. found) return
          if (self%equilibrium%by_force) then
-            there%force = equilibrium%driven(1) + equilibrium%driven(2)*there%t
-            there%displacement = self%equilibrium%column%top_displacement(there%q)
+            trial%force = equilibrium%driven(1) + equilibrium%driven(2)*trial%t
+            trial%displacement = self%equilibrium%column%top_displacement(trial%q)
          else
-            there%displacement = equilibrium%driven(1) + equilibrium%driven(2)*there%t
+            trial%displacement = equilibrium%driven(1) + equilibrium%driven(2)*trial%t
          end if
       end associate
    end subroutine find_point
@@ -165,17 +165,17 @@ contains
       integer :: i
 
       self%line = 0
-      line = false_position(self%here%t, self%there%t, self%curve%least_rate(self%here), &
-                            self%curve%least_rate(self%there))
+      line = false_position(self%current%t, self%trial%t, self%curve%least_rate(self%current), &
+                            self%curve%least_rate(self%trial))
       done = line%at_low > 0.0_wp .and. line%at_high < 0.0_wp
       if (.not. done) return
       do i = 1, 60
          reached = line%next()
          if (i > 40) reached = 0.5_wp*(line%low + line%high)
-         call self%curve%guess(reached, self%there)
+         call self%curve%guess(reached, self%trial)
          call find_point(self, reached, .false., done)
          if (.not. done) return
-         value = self%curve%least_rate(self%there)
+         value = self%curve%least_rate(self%trial)
          if (abs(value) < 0.9_wp*same_rate) return
          call line%narrow(reached, value)
       end do
@@ -192,17 +192,17 @@ contains
       real(wp), intent(out) :: works(3)
       !> Whether they are exact enough
       logical, intent(out) :: done
-      real(wp) :: work(2), change(size(self%here%q)), f(size(self%here%q)), lift(2), weight(2), missing, &
-           turnover
+      real(wp) :: work(2), change(size(self%current%q)), f(size(self%current%q)), lift(2), weight(2)
+      real(wp) :: missing, turnover
       integer :: j
 
-      associate (here => self%here, there => self%there)
-         work = self%curve%work([here%force, there%force], [here%displacement, there%displacement], &
-                                [here%force_rate, there%force_rate], &
-                                [here%displacement_rate, there%displacement_rate])
+      associate (current => self%current, trial => self%trial)
+         work = self%curve%work([current%force, trial%force], [current%displacement, trial%displacement], &
+                                [current%force_rate, trial%force_rate], &
+                                [current%displacement_rate, trial%displacement_rate])
          works = [sum(work), 0.0_wp, 0.0_wp]
-         change = there%q - here%q
-         f = self%springs%f0 + self%springs%k*(there%q - self%springs%d0)
+         change = trial%q - current%q
+         f = self%springs%f0 + self%springs%k*(trial%q - self%springs%d0)
          if (.not. self%equilibrium%varies) then
             turnover = sum(abs(change*f))
             done = .not. strict .or. abs(work(2)) <= most_correction*max(self%most_work, turnover)
@@ -210,13 +210,13 @@ contains
          end if
          associate (unit_top_load => self%equilibrium%unit_top_load, &
                     without_top_load => self%equilibrium%without_top_load)
-            lift = [unit_top_load%potential_energy(here%q), unit_top_load%potential_energy(there%q)]
-            weight = [without_top_load%potential_energy(here%q), &
-                      without_top_load%potential_energy(there%q)]
+            lift = [unit_top_load%potential_energy(current%q), unit_top_load%potential_energy(trial%q)]
+            weight = [without_top_load%potential_energy(current%q), &
+                      without_top_load%potential_energy(trial%q)]
          end associate
-         works(2) = sum(self%curve%work([here%axial_load, there%axial_load], lift, &
-                                        [here%axial_rate, there%axial_rate], &
-                                        [here%lift_rate, there%lift_rate]))
+         works(2) = sum(self%curve%work([current%axial_load, trial%axial_load], lift, &
+                                        [current%axial_rate, trial%axial_rate], &
+                                        [current%lift_rate, trial%lift_rate]))
          f(:) = f - 0.5_wp*self%springs%k*change
          do j = 1, size(self%springs%layered)
             if (self%springs%axial_load_varies) f(self%springs%layered(j)) = 0.0_wp
@@ -228,7 +228,7 @@ contains
          missing = works(1) - works(2) - works(3) - sum(change*f) - (weight(2) - weight(1))
          done = .not. strict .or. abs(missing) <= max(self%most_work, turnover) &
                 *most_missing(merge(1, 2, self%structure%kinematics == finite)) &
-                + round_off*(abs(there%axial_load)*maxval(abs(lift)) + maxval(abs(weight)))
+                + round_off*(abs(trial%axial_load)*maxval(abs(lift)) + maxval(abs(weight)))
       end associate
    end subroutine find_works
 
@@ -237,13 +237,13 @@ contains
       class(curve_search), intent(in) :: self
       integer, intent(in) :: i
 
-      associate (here => self%here, there => self%there)
+      associate (current => self%current, trial => self%trial)
          work = sum(self%curve%work( &
-                    moment_on_plane(self%springs, i, [here%q(i), there%q(i)], &
-                                    [here%axial_load, there%axial_load] + self%equilibrium%above(i)), &
-                    [here%q(i), there%q(i)], self%springs%k(i)*[here%rate(i), there%rate(i)] &
-                    - self%springs%centre(i)*[here%axial_rate, there%axial_rate], &
-                    [here%rate(i), there%rate(i)]))
+                    moment_on_plane(self%springs, i, [current%q(i), trial%q(i)], &
+                                    [current%axial_load, trial%axial_load] + self%equilibrium%above(i)), &
+                    [current%q(i), trial%q(i)], self%springs%k(i)*[current%rate(i), trial%rate(i)] &
+                    - self%springs%centre(i)*[current%axial_rate, trial%axial_rate], &
+                    [current%rate(i), trial%rate(i)]))
       end associate
    end function work_of_joint
 

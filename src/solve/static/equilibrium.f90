@@ -112,7 +112,7 @@ contains
       logical, intent(in) :: of_dead_load
       type(band_matrix) :: initial
       real(wp) :: no_load(signals)
-      integer :: inside, springs, m, i
+      integer :: inner, springs, m, i
 
       self%structure => structure
       self%of_dead_load = of_dead_load
@@ -138,10 +138,10 @@ contains
       end do
       if (allocated(structure%reach)) self%reach(:) = structure%reach
       self%coupled = structure%axially_loaded .or. structure%has_held .or. .not. self%refines
-      inside = merge(0, structure%coordinates, self%refines)
+      inner = merge(0, structure%coordinates, self%refines)
       allocate (self%tangent(structure%tangent_numbers), self%pattern(m), self%residual(m), self%load(m), &
                 self%change(m, 2), self%moved(structure%coordinates, 2), self%f(springs), &
-                self%flexible(springs), self%inner(inside), self%inner_load(inside), &
+                self%flexible(springs), self%inner(inner), self%inner_load(inner), &
                 self%more(structure%coordinates), self%correction(structure%coordinates), source=0.0_wp)
       allocate (self%axial(merge(structure%axial_count, 0, structure%axially_loaded)))
       no_load = 0.0_wp
@@ -213,24 +213,24 @@ contains
       !> Rates of the position (coordinates)
       real(wp), intent(inout), contiguous :: rate(:)
       logical, intent(out) :: found
-      real(wp) :: gap
+      real(wp) :: residual
 
       self%lost_digits = .false.
-      gap = displacement - self%structure%top_displacement(springs%d)
+      residual = displacement - self%structure%top_displacement(springs%d)
       if (self%are_few .and. .not. by_force) then
          call self%find_unbalance(springs, force)
-         call follow_few(self, springs%k, gap, rate, found)
+         call follow_few(self, springs%k, residual, rate, found)
          if (found) return
       end if
       if (self%coupled) then
-         call follow_band(self, springs, by_force, gap, force, rate, found)
+         call follow_band(self, springs, by_force, residual, force, rate, found)
          return
       end if
       call self%find_unbalance(springs, force)
       associate (arm => self%structure%arm(:self%moving), k => springs%k(:self%moving), &
                  initial => self%structure%initial_stiffness(:self%moving), r => self%f(:self%moving))
          if (.not. by_force) then
-            call follow_diagonal(self%moving, arm, initial, k, r, gap, rate, self%force_rate, &
+            call follow_diagonal(self%moving, arm, initial, k, r, residual, rate, self%force_rate, &
                                  self%correction, self%force_correction, self%flexible, found)
             self%displacement_rate = 1.0_wp
             return
@@ -246,11 +246,11 @@ contains
    end subroutine follow
 
    !> A few springs, driven by the displacement. Not found where the equations have next to no pivot.
-   subroutine follow_few(self, k, gap, rate, found)
+   subroutine follow_few(self, k, residual, rate, found)
       class(equilibrium_type), intent(inout) :: self
       real(wp), intent(in), contiguous :: k(:)
       !> Of the displacement [m]
-      real(wp), intent(in) :: gap
+      real(wp), intent(in) :: residual
       real(wp), intent(inout), contiguous :: rate(:)
       logical, intent(out) :: found
       real(wp) :: row(row_length, few + 1), largest, correction
@@ -262,7 +262,7 @@ contains
             row(i, i) = row(i, i) + k(i)*scale(i)**2
             row(m + 3, i) = self%f(i)*scale(i)
          end do
-         row(m + 3, m + 1) = gap/self%most
+         row(m + 3, m + 1) = residual/self%most
          call solve_rows(m + 1, row, found)
          if (.not. found) return
          largest = 0.0_wp
@@ -321,12 +321,12 @@ contains
    end subroutine solve_rows
 
    !> The same with the band.
-   subroutine follow_band(self, springs, by_force, gap, force, rate, found)
+   subroutine follow_band(self, springs, by_force, residual, force, rate, found)
       class(equilibrium_type), intent(inout) :: self
       type(spring_array), intent(in) :: springs
       logical, intent(in) :: by_force
       !> Of the displacement [m]
-      real(wp), intent(in) :: gap, force
+      real(wp), intent(in) :: residual, force
       real(wp), intent(inout), contiguous :: rate(:)
       logical, intent(out) :: found
       real(wp) :: y(2)
@@ -353,7 +353,7 @@ contains
          self%displacement_rate = 1.0_wp
          if (by_force) self%displacement_rate = structure%top_displacement(self%moved(:, 1))
          self%dead_load_work_rate = work_rate(self, rate) - self%displacement_rate
-         call solve(2, gap, settled)
+         call solve(2, residual, settled)
          ! Of a mechanism what corrects round-off is round-off itself; more than that is found by the row.
          if (.not. settled .or. maxval(abs(self%change(:, 1))) > no_more*structure%total_height) then
             self%moved(:, 2) = 0.0_wp
@@ -535,12 +535,12 @@ contains
    !> displacement. They share the force, and their motions add up. The force is that of the most flexible
    !> joint p and what takes the others to it, F' = -r_p/a_p + F'': with F' itself, its motion
    !> (r_p + a_p F')/k_p would be a difference of round-off over next to nothing.
-   pure subroutine follow_diagonal(m, arm, initial, k, r, gap, rate, force_rate, correction, &
+   pure subroutine follow_diagonal(m, arm, initial, k, r, residual, rate, force_rate, correction, &
                                    force_correction, flexible, regular)
       integer, intent(in) :: m
       !> Arms of the force and initial stiffness of the joints (m); stiffness of the springs, residual (m),
       !> and what is missing from the displacement [m]
-      real(wp), intent(in) :: arm(m), initial(m), k(m), r(m), gap
+      real(wp), intent(in) :: arm(m), initial(m), k(m), r(m), residual
       !> Change of the deformations per metre, and what takes the residuals away (m); change of the force
       !> [N/m], and of the force with the correction [N]
       real(wp), intent(out) :: rate(m), correction(m), force_rate, force_correction
@@ -581,7 +581,7 @@ contains
       end if
       force_correction = -r(p)/arm(p)
       correction = flexible/arm*(r/arm + force_correction)
-      associate (missing => gap - sum(arm*correction))
+      associate (missing => residual - sum(arm*correction))
          correction = correction + rate*missing
          force_correction = force_correction + force_rate*missing
       end associate

@@ -258,7 +258,7 @@ contains
       type(error_type), allocatable :: failure
       type(energy_type) :: energy
       logical :: may_collapse, ends
-      integer :: i, every, lost
+      integer :: i, every, crushed_joint
 
       every = task%every
       if (.not. is_given(every)) every = 1
@@ -281,10 +281,10 @@ contains
                                   ' (max_seconds, or from outside)'
             return
          end if
-         lost = self%springs%lost_joint()
-         if (lost > 0) then
-            task%summary%lost_joint = self%structure%place(lost)%index
-            call fall_of(self%springs, lost, task%summary%fall)
+         crushed_joint = self%springs%crushed_joint()
+         if (crushed_joint > 0) then
+            task%summary%lost_joint = self%structure%place(crushed_joint)%index
+            call fall_of(self%springs, crushed_joint, task%summary%fall)
             ! That is what ends the path.
             if (allocated(failure)) deallocate (failure)
          else if (.not. allocated(failure)) then
@@ -294,8 +294,8 @@ contains
          if (may_collapse) then
             task%summary%collapsed = self%structure%largest_drift(self%springs%d) >= task%collapse_drift
          end if
-         ends = i == size(target) .or. lost > 0 .or. task%summary%collapsed .or. allocated(failure)
-         if (lost > 0 .or. allocated(failure)) then
+         ends = i == size(target) .or. crushed_joint > 0 .or. task%summary%collapsed .or. allocated(failure)
+         if (crushed_joint > 0 .or. allocated(failure)) then
             if (.not. self%violates_balance) then
                call update_rotation(self)
                call task%summary%update_energies(self%energies())

@@ -53,7 +53,7 @@ contains
       !> vanish, and the joints come to equilibrium.
       subroutine begin_from()
          type(checkpoint_type) :: checkpoint
-         real(wp) :: axial_force(size(path%structure%place)), missing
+         real(wp) :: axial_force(size(path%structure%place)), residual
          type(energy_type) :: energy
          logical :: goes_on
 
@@ -93,8 +93,8 @@ contains
          end if
          if (path%direction == 0) path%control = merge(path%force, path%displacement, path%by_force)
          energy = path%energies()
-         missing = checkpoint%residual - energy%residual
-         if (abs(missing) > 0.0_wp) path%at_begin = path%at_begin + missing
+         residual = checkpoint%residual - energy%residual
+         if (abs(residual) > 0.0_wp) path%at_begin = path%at_begin + residual
       end subroutine begin_from
 
    end subroutine begin_path

@@ -111,7 +111,7 @@ contains
             ! Where the top turns back at a target, springs turn as they must.
             if (direction /= self%last_way .and. .not. went_back) self%arrived = 0
             call turn_corner(self, direction, target, error)
-            if (allocated(error) .or. self%springs%lost_joint() > 0) return
+            if (allocated(error) .or. self%springs%crushed_joint() > 0) return
             call self%look(target, self%equilibrium%unbalance, .true., error)
             if (allocated(error)) return
             call begin_line(self, self%direction)
@@ -200,7 +200,7 @@ contains
    subroutine begin_line(self, direction)
       class(straight_path), intent(inout) :: self
       integer, intent(in) :: direction
-      real(wp) :: way, missing
+      real(wp) :: way, residual
 
       self%arrived = 0
       self%start = self%control
@@ -209,12 +209,12 @@ contains
       self%q(:) = self%springs%d + self%equilibrium%correction
       call keep_within(self%moving, self%springs%d, self%equilibrium%correction, self%rate, &
                        self%springs%first, self%springs%last, self%q)
-      missing = self%displacement - self%structure%top_displacement(self%q)
+      residual = self%displacement - self%structure%top_displacement(self%q)
       if (self%by_force) then
-         self%displacement_start = self%displacement - missing
-      else if (abs(missing) > 0.0_wp) then
-         self%q(:) = self%q + direction*missing*self%rate
-         self%force_start = self%force_start + self%equilibrium%force_rate*missing
+         self%displacement_start = self%displacement - residual
+      else if (abs(residual) > 0.0_wp) then
+         self%q(:) = self%q + direction*residual*self%rate
+         self%force_start = self%force_start + self%equilibrium%force_rate*residual
       end if
       call nearest_end(self%springs, self%q(:self%moving), self%rate(:self%moving), way, self%ends)
       self%finish = direction*huge(1.0_wp)

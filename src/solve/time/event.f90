@@ -16,7 +16,7 @@ module rbs_solve_time_event
 
    type :: line_exit
       !> Direction in which the line is left: +1, -1; 0: it is not
-      integer :: way = 0
+      integer :: direction = 0
       !> Whether it is left because the motion turns back, else because the line ends
       logical :: turns = .false.
       !> Time from the start of the step: an estimate, and after which it has certainly happened [s]
@@ -52,10 +52,10 @@ contains
             call find_exit([springs%end_toward(i, -1), springs%end_toward(i, 1)], &
                            springs%unload_on_reversal(i), &
                            [state%q(i), scheme%q(i)], [state%v(i), scheme%v(i)], h, one)
-            if (one%way == 0) cycle
+            if (one%direction == 0) cycle
             if (one%turns .and. keeps_still(state, scheme, i, h)) cycle
             if (one%estimate < event%estimate) then
-               event = event_type(one%way, one%turns, one%estimate, one%latest, i)
+               event = event_type(one%direction, one%turns, one%estimate, one%latest, i)
             end if
          end do
       end associate
@@ -110,14 +110,14 @@ contains
       associate (i => event%spring)
          if (event%turns) then
             call state%motion%acceleration(state%springs, scheme%q, scheme%v, scheme%load, now)
-            distance = event%way*scheme%v(i)
+            distance = event%direction*scheme%v(i)
             round_off = 4.0_wp*epsilon(1.0_wp)*abs(state%v(i))
-            rate = event%way*now%a(i)
+            rate = event%direction*now%a(i)
          else
-            finish = state%springs%end_toward(i, event%way)
-            distance = event%way*(scheme%q(i) - finish)
+            finish = state%springs%end_toward(i, event%direction)
+            distance = event%direction*(scheme%q(i) - finish)
             round_off = 2.0_wp*spacing(max(abs(finish), abs(state%q(i))))
-            rate = event%way*scheme%v(i)
+            rate = event%direction*scheme%v(i)
          end if
       end associate
    end subroutine event_distance
@@ -130,33 +130,33 @@ contains
       !> Deformation and velocity at the start of the step and at its end; length of the step [s]
       real(wp), intent(in) :: d(2), v(2), h
       type(line_exit), intent(out) :: exit
-      real(wp) :: turning, furthest, far
-      integer :: way
+      real(wp) :: reversal, furthest, far, share
+      integer :: direction
 
-      way = direction_of(v(1))
-      turning = huge(1.0_wp)
-      if (v(1)*v(2) < 0.0_wp) turning = h*v(1)/(v(1) - v(2))
-      if (way /= 0 .and. turning < h) then
-         furthest = d(1) + 0.5_wp*v(1)*turning
-         if (is_beyond(furthest, way)) then
+      direction = direction_of(v(1))
+      reversal = huge(1.0_wp)
+      if (v(1)*v(2) < 0.0_wp) reversal = h*v(1)/(v(1) - v(2))
+      if (direction /= 0 .and. reversal < h) then
+         furthest = d(1) + 0.5_wp*v(1)*reversal
+         if (is_beyond(furthest, direction)) then
             ! It passes the end and comes back within the step.
-            far = end_of(way) - d(1)
-            exit = line_exit(way, .false., turning*(1.0_wp - sqrt(max(1.0_wp - 2.0_wp*far/(v(1)*turning), &
-                                                                      0.0_wp))), turning)
+            far = end_of(direction) - d(1)
+            share = 1.0_wp - sqrt(max(1.0_wp - 2.0_wp*far/(v(1)*reversal), 0.0_wp))
+            exit = line_exit(direction, .false., reversal*share, reversal)
             return
-         else if (unload_on_reversal == way) then
-            exit = line_exit(-way, .true., turning, h)
+         else if (unload_on_reversal == direction) then
+            exit = line_exit(-direction, .true., reversal, h)
             return
          end if
       end if
-      way = direction_of(d(2) - d(1))
-      if (turning < h) way = -direction_of(v(1))
-      if (way == 0) return
-      if (is_beyond(d(2), way)) then
-         far = end_of(way) - d(1)
-         exit = line_exit(way, .false., h*min(max(far/(d(2) - d(1)), 0.0_wp), 1.0_wp), h)
-      else if (unload_on_reversal == -way) then
-         exit = line_exit(way, .true., 0.5_wp*h, h)
+      direction = direction_of(d(2) - d(1))
+      if (reversal < h) direction = -direction_of(v(1))
+      if (direction == 0) return
+      if (is_beyond(d(2), direction)) then
+         far = end_of(direction) - d(1)
+         exit = line_exit(direction, .false., h*min(max(far/(d(2) - d(1)), 0.0_wp), 1.0_wp), h)
+      else if (unload_on_reversal == -direction) then
+         exit = line_exit(direction, .true., 0.5_wp*h, h)
       end if
 
    contains

@@ -103,15 +103,15 @@ contains
       !> On return with D
       type(joint_type), intent(inout) :: joint
       real(wp), intent(out) :: change(3)
-      real(wp) :: way(2)
+      real(wp) :: moved(2)
 
-      way = (moved_above(:2) - moved_below(:2)) - joint%above*above%tb*moved_above(3) &
+      moved = (moved_above(:2) - moved_below(:2)) - joint%above*above%tb*moved_above(3) &
             - joint%below*below%tb*moved_below(3)
-      joint%finish = joint%start + way
-      joint%mean = joint%start + 0.5_wp*way
-      change = joint%sign*[sum(below%tm*way) - sum(below%eb*joint%mean)*moved_below(3), &
+      joint%finish = joint%start + moved
+      joint%mean = joint%start + 0.5_wp*moved
+      change = joint%sign*[sum(below%tm*moved) - sum(below%eb*joint%mean)*moved_below(3), &
                            moved_above(3) - moved_below(3), &
-                           sum(below%em*way) + sum(below%tb*joint%mean)*moved_below(3)]
+                           sum(below%em*moved) + sum(below%tb*joint%mean)*moved_below(3)]
    end subroutine joint_change
 
    !> D at one state, from slip, rotation and opening.
@@ -169,21 +169,22 @@ contains
       !> Whether the joint does not open: its axial force is an unknown
       logical, intent(in) :: closed
       real(wp), intent(out) :: tangent(local, local)
-      real(wp) :: way(2, local), force(2, local), shear(local), tension(local), moment(local), opening(local)
+      real(wp) :: moved(2, local), force(2, local), shear(local), tension(local), moment(local), &
+           opening(local)
       real(wp) :: p(2), arms(2), f(3)
       integer :: i
 
       f = joint%sign*forces
-      way = 0.0_wp
-      way(1, 1) = -1.0_wp
-      way(2, 2) = -1.0_wp
-      way(1, 5) = 1.0_wp
-      way(2, 6) = 1.0_wp
-      way(:, 3) = -joint%below*below%t1
-      way(:, 7) = -joint%above*above%t1
+      moved = 0.0_wp
+      moved(1, 1) = -1.0_wp
+      moved(2, 2) = -1.0_wp
+      moved(1, 5) = 1.0_wp
+      moved(2, 6) = 1.0_wp
+      moved(:, 3) = -joint%below*below%t1
+      moved(:, 7) = -joint%above*above%t1
       do i = 1, local
-         shear(i) = k(1)*(below%t1(1)*way(1, i) + below%t1(2)*way(2, i))
-         opening(i) = below%e1(1)*way(1, i) + below%e1(2)*way(2, i)
+         shear(i) = k(1)*(below%t1(1)*moved(1, i) + below%t1(2)*moved(2, i))
+         opening(i) = below%e1(1)*moved(1, i) + below%e1(2)*moved(2, i)
       end do
       shear(3) = shear(3) - k(1)*sum(below%e1*joint%finish)
       opening(3) = opening(3) + sum(below%t1*joint%finish)
@@ -206,7 +207,7 @@ contains
          tangent(1:2, i) = -force(:, i)
          tangent(3, i) = -joint%below*sum(below%tb*force(:, i)) - shear(i)*arms(1) &
                          + tension(i)*arms(2) - moment(i) &
-                         + half*sum((f(3)*below%tb - f(1)*below%eb)*way(:, i))
+                         + half*sum((f(3)*below%tb - f(1)*below%eb)*moved(:, i))
          tangent(4, i) = opening(i)
          tangent(5:6, i) = force(:, i)
          tangent(7, i) = moment(i) - joint%above*sum(above%tb*force(:, i))

@@ -10,7 +10,7 @@ module rbs_solve_time_implicit
    use rbs_base_kinds, only: wp
    use rbs_base_stream, only: stream_type
    use rbs_solve_one_body_implicit_one_body, only: one_body_step
-   use rbs_solve_one_body_rk4_one_body, only: softening_of
+   use rbs_solve_one_body_rk4_one_body, only: pdelta_moment_of
    use rbs_solve_time_implicit_finite, only: finite_stepper
    use rbs_solve_time_implicit_balance, only: step_balance, step_tangent
    use rbs_loading_loads, only: lateral, horizontal
@@ -196,7 +196,7 @@ contains
       !> lines again and again while the residual does not decrease shows that no line leads on from there.
       subroutine go_by_events()
          real(wp) :: share, before, least
-         integer :: i, way
+         integer :: i, direction
 
          before = huge(1.0_wp)
          least = huge(1.0_wp)
@@ -207,7 +207,7 @@ contains
                self%returns = 0
             end if
             call self%correct(state)
-            call first_end(self%step%q1, self%dq, share, i, way)
+            call first_end(self%step%q1, self%dq, share, i, direction)
             self%step%q1 = self%step%q1 + share*self%dq
             self%step%moved = self%step%moved + share*self%dx
             if (i > 0) then
@@ -215,7 +215,7 @@ contains
                self%busiest = i
                if (self%returns(i) > most_returns) return
                call state%springs%carry_to(self%step%q1)
-               call state%springs%leave(i, way)
+               call state%springs%leave(i, direction)
                self%step%q1(i) = state%springs%d(i)
                if (state%springs%stuck) return
                before = huge(1.0_wp)
@@ -229,31 +229,31 @@ contains
       end subroutine go_by_events
 
       !> The share of a correction up to the first end of a line that a spring reaches.
-      subroutine first_end(q, dq, share, first, way)
+      subroutine first_end(q, dq, share, first, direction)
          !> Deformations reached and their correction (unknowns)
          real(wp), intent(in), contiguous :: q(:), dq(:)
          !> Share from 0 to 1; the spring, 0 if there is none; its direction
          real(wp), intent(out) :: share
-         integer, intent(out) :: first, way
-         real(wp) :: room
+         integer, intent(out) :: first, direction
+         real(wp) :: clearance
          integer :: i
 
          share = 1.0_wp
          first = 0
-         way = 0
+         direction = 0
          do i = 1, state%springs%count
             ! Most springs stay on their lines.
             if (q(i) + dq(i) >= state%springs%first(i) .and. q(i) + dq(i) <= state%springs%last(i)) cycle
             if (dq(i) > 0.0_wp) then
                ! The rear end of a one-way line is where the spring was put last.
-               room = state%springs%end_toward(i, 1) - q(i)
+               clearance = state%springs%end_toward(i, 1) - q(i)
             else
-               room = q(i) - state%springs%end_toward(i, -1)
+               clearance = q(i) - state%springs%end_toward(i, -1)
             end if
-            if (room >= share*abs(dq(i))) cycle
-            share = max(room, 0.0_wp)/abs(dq(i))
+            if (clearance >= share*abs(dq(i))) cycle
+            share = max(clearance, 0.0_wp)/abs(dq(i))
             first = i
-            way = merge(1, -1, dq(i) > 0.0_wp)
+            direction = merge(1, -1, dq(i) > 0.0_wp)
             if (.not. share > 0.0_wp) return
          end do
       end subroutine first_end
@@ -349,7 +349,7 @@ contains
          body%mass = column%inertias(:2)
          body%lower = column%lower(1)
          body%upper = column%upper(1)
-         body%softening = softening_of(column)
+         body%pdelta_moment = pdelta_moment_of(column)
       end associate
       call body%set_step(h)
    end subroutine fit_one_body
@@ -367,13 +367,13 @@ contains
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
       real(wp), intent(in) :: share
-      logical :: inside
+      logical :: in_range
 
       self%residual = huge(1.0_wp)
       self%step%q1 = self%step%q1 + share*self%dq
       self%step%moved = self%step%moved + share*self%dx
-      call self%move_springs(state, self%step%q1, inside)
-      if (inside) call self%step%find_residual(state, self%h, self%load, self%residual)
+      call self%move_springs(state, self%step%q1, in_range)
+      if (in_range) call self%step%find_residual(state, self%h, self%load, self%residual)
    end subroutine try
 
    real(wp) function work_of_residual(self) result(work)

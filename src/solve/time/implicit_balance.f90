@@ -63,7 +63,7 @@ module rbs_solve_time_implicit_balance
       real(wp), allocatable :: largest(:)
       !> Factors that bring forces and moments of one group to one unit, those of unknowns and of springs; not
       !> allocated where no group has both (unknowns), (springs)
-      real(wp), allocatable, private :: unit(:), spring_unit(:)
+      real(wp), allocatable, private :: unit_factor(:), spring_factor(:)
    contains
       procedure :: start
       procedure :: find_residual
@@ -118,8 +118,8 @@ contains
             allocate (self%damping_tangent(merge(structure%tangent_numbers, 0, structure%tangent_damping)), &
                       source=0.0_wp)
             if (allocated(structure%reach)) then
-               self%unit = 1.0_wp/structure%reach
-               self%spring_unit = merge(1.0_wp/structure%total_height, 1.0_wp, &
+               self%unit_factor = 1.0_wp/structure%reach
+               self%spring_factor = merge(1.0_wp/structure%total_height, 1.0_wp, &
                                         structure%place%kind == flexure)
             end if
          end if
@@ -258,8 +258,8 @@ contains
                       self%g0, self%g1, self%r)
          call self%measure(structure, self%a1, self%load, relative)
          if (size(self%now%correction) > 0) then
-            relative = max(relative, largest_product(size(self%spring_unit), structure%initial_stiffness, &
-                                                     self%spring_unit, self%now%correction) &
+            relative = max(relative, largest_product(size(self%spring_factor), structure%initial_stiffness, &
+                                                     self%spring_factor, self%now%correction) &
                            /max(maxval(self%scale), maxval(self%largest), tiny(1.0_wp)))
          end if
       end associate
@@ -320,9 +320,9 @@ contains
 
       relative = 0.0_wp
       do j = 1, size(self%scale)
-         if (allocated(self%unit)) then
-            call measure_all(structure%group(j)%last_spring, size(a), self%spring_unit, self%now%f, &
-                             self%unit, structure%inertias, a, self%r, self%scale(j), rest)
+         if (allocated(self%unit_factor)) then
+            call measure_all(structure%group(j)%last_spring, size(a), self%spring_factor, self%now%f, &
+                             self%unit_factor, structure%inertias, a, self%r, self%scale(j), rest)
          else
             call measure_group(structure%group(j), size(a), size(self%now%f), structure%inertias, a, &
                                self%now%f, self%r, self%scale(j), rest)
@@ -353,10 +353,10 @@ contains
    end subroutine measure_group
 
    !> As `measure_group`, for one group of forces and moments.
-   pure subroutine measure_all(springs, unknowns, spring_unit, f, unit, inertias, a, r, scale, rest)
+   pure subroutine measure_all(springs, unknowns, spring_factor, f, unit_factor, inertias, a, r, scale, rest)
       integer, intent(in) :: springs, unknowns
-      real(wp), intent(in) :: spring_unit(springs), f(springs)
-      real(wp), intent(in) :: unit(unknowns), inertias(unknowns), a(unknowns), r(unknowns)
+      real(wp), intent(in) :: spring_factor(springs), f(springs)
+      real(wp), intent(in) :: unit_factor(unknowns), inertias(unknowns), a(unknowns), r(unknowns)
       real(wp), intent(out) :: scale, rest
       integer :: i
 
@@ -364,11 +364,11 @@ contains
       rest = 0.0_wp
       !$omp simd reduction(max:scale)
       do i = 1, springs
-         scale = max(scale, spring_unit(i)*abs(f(i)))
+         scale = max(scale, spring_factor(i)*abs(f(i)))
       end do
       do i = 1, unknowns
-         scale = max(scale, unit(i)*abs(inertias(i)*a(i)))
-         rest = max(rest, unit(i)*abs(r(i)))
+         scale = max(scale, unit_factor(i)*abs(inertias(i)*a(i)))
+         rest = max(rest, unit_factor(i)*abs(r(i)))
       end do
    end subroutine measure_all
 
@@ -393,38 +393,38 @@ contains
       real(wp), intent(in) :: h
       !> Diagonal of the tangent (unknowns)
       real(wp), intent(in), contiguous :: stiffness(:)
-      real(wp) :: reach(maxval(state%motion%structure%part)), way, force, terms, work
-      real(wp), dimension(size(stiffness)) :: unit, moved
+      real(wp) :: reach(maxval(state%motion%structure%part)), distance, force, terms, work
+      real(wp), dimension(size(stiffness)) :: unit_factor, moved
       integer :: i, j, k
 
       ! An unknown is coupled with the others of its part: |k_ij| is at most the root of k_ii k_jj.
       reach = 0.0_wp
-      unit = 1.0_wp
-      if (allocated(self%unit)) unit = self%unit
-      moved = (abs(self%moved) + h*abs(self%v0) + h**2*abs(self%a0))/unit
+      unit_factor = 1.0_wp
+      if (allocated(self%unit_factor)) unit_factor = self%unit_factor
+      moved = (abs(self%moved) + h*abs(self%v0) + h**2*abs(self%a0))/unit_factor
       associate (structure => state%motion%structure)
          do j = 1, size(structure%group)
-            way = 0.0_wp
+            distance = 0.0_wp
             do k = 0, structure%group(j)%count - 1
                i = structure%group(j)%first + k*structure%group(j)%step
-               way = max(way, moved(i))
+               distance = max(distance, moved(i))
             end do
             do k = 0, structure%group(j)%count - 1
                i = structure%group(j)%first + k*structure%group(j)%step
                reach(structure%part(i)) = reach(structure%part(i)) &
-                                          + sqrt(max(stiffness(i), 0.0_wp))*unit(i)*way
+                                          + sqrt(max(stiffness(i), 0.0_wp))*unit_factor(i)*distance
             end do
          end do
          ! Forces of members are sums over whole displacements, not over those of the step.
          call structure%size_of_parts(state%springs, 0.0_wp, force, terms, work)
          is_round_off = all(abs(self%r) <= round_off*(sqrt(max(stiffness, 0.0_wp))*reach(structure%part) &
-                                                      + max(force, terms)/unit))
+                                                      + max(force, terms)/unit_factor))
          ! Springs between the unknowns are in equilibrium too.
          if (size(self%now%correction) > 0) then
-            associate (k => structure%initial_stiffness, m => size(self%spring_unit))
+            associate (k => structure%initial_stiffness, m => size(self%spring_factor))
                is_round_off = is_round_off .and. &
                               all(k*abs(self%now%correction(:m)) <= round_off*(k*abs(self%q1(:m)) &
-                                                                 + max(force, terms)/self%spring_unit))
+                                                                 + max(force, terms)/self%spring_factor))
             end associate
          end if
       end associate

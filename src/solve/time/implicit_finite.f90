@@ -43,7 +43,7 @@ module rbs_solve_time_implicit_finite
       type(family_type) :: by
       class(finite_chain_type), pointer, private :: column => null()
       !> Unknowns of a body in the band, and diagonals of the band beside the main one
-      integer, private :: per = 3, beside = 6
+      integer, private :: per = 3, half_width = 6
       !> Mass of the bodies, and the residual (3, n)
       real(wp), allocatable, private :: mass(:, :), r(:, :)
       !> Displacements of the bodies, the ground (0) among them, in the step; velocities, forces and
@@ -99,7 +99,7 @@ contains
       n = self%column%n
       m = self%column%unknowns
       self%per = merge(3, 4, self%column%opens)
-      self%beside = merge(5, 6, self%column%opens)
+      self%half_width = merge(5, 6, self%column%opens)
       allocate (self%mass(3, n), self%r(3, n), self%dx(3, n), source=0.0_wp)
       allocate (self%moved(3, 0:n), self%v0(3, 0:n), self%g0(3, 0:n), self%a0(3, 0:n), source=0.0_wp)
       allocate (self%v1(3, 0:n), self%g1(3, 0:n), self%a1(3, 0:n), source=0.0_wp)
@@ -108,7 +108,7 @@ contains
       allocate (self%q1(m), self%change(m), self%w1(m), self%f(m), self%k(m), self%viscous(m), &
                 self%work(m), source=0.0_wp)
       allocate (self%turned(0:n), self%seen(0:n), self%joint(n))
-      allocate (self%band(3*self%beside + 1, self%per*n), self%right(self%per*n, 1), source=0.0_wp)
+      allocate (self%band(3*self%half_width + 1, self%per*n), self%right(self%per*n, 1), source=0.0_wp)
       allocate (self%pivot(self%per*n), source=0)
       associate (column => self%column, joint => self%joint)
          self%mass(1, :) = column%mass
@@ -180,14 +180,14 @@ contains
       end do
       do i = 1, size(self%joint)
          associate (joint => self%joint(i))
-            joint%finish = joint_at(self%seen(joint%lower), joint, of_joint(self, q, i, 0.0_wp))
+            joint%finish = joint_at(self%seen(joint%lower), joint, joint_values(self, q, i, 0.0_wp))
             joint%mean = joint%finish
          end associate
       end do
    end subroutine see_bodies
 
    !> Values of a joint, of slip, rotation and opening, from those of all springs.
-   pure function of_joint(self, x, i, opening) result(y)
+   pure function joint_values(self, x, i, opening) result(y)
       type(finite_stepper), intent(in) :: self
       !> (springs)
       real(wp), intent(in), contiguous :: x(:)
@@ -198,7 +198,7 @@ contains
 
       y = [x(self%column%at(shear, i)), x(self%column%at(flexure, i)), opening]
       if (self%column%opens) y(tension) = x(self%column%at(tension, i))
-   end function of_joint
+   end function joint_values
 
    !> Put values of a joint among those of all springs.
    pure subroutine put_joint(self, y, i, x)
@@ -216,15 +216,15 @@ contains
       class(finite_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
       real(wp), intent(in) :: share
-      logical :: inside
+      logical :: in_range
 
       self%residual = huge(1.0_wp)
       self%moved(:, 1:) = self%moved(:, 1:) + share*self%dx
       self%reaction = self%reaction + share*self%dn
       call find_changes()
       self%q1(:) = state%q + self%change
-      call self%move_springs(state, self%q1, inside)
-      if (inside) call find_residual()
+      call self%move_springs(state, self%q1, in_range)
+      if (in_range) call find_residual()
 
    contains
 
@@ -379,7 +379,7 @@ contains
       g = 0.0_wp
       reach = 0.0_wp
       do i = 1, n
-         f = of_joint(self, self%f, i, self%reaction(i))
+         f = joint_values(self, self%f, i, self%reaction(i))
          reach = max(reach, [max(abs(f(shear)), abs(f(tension))), abs(f(flexure))])
          associate (a => self%joint(i)%lower, b => self%joint(i)%upper)
             call add_joint_forces(self%seen(a), self%seen(b), self%joint(i), f, g(:, a), g(:, b))
@@ -442,7 +442,7 @@ contains
       do i = 1, n
          call add_joint_tangent(self, i, share, per_force)
       end do
-      associate (main => 2*self%beside + 1, last => self%per*n)
+      associate (main => 2*self%half_width + 1, last => self%per*n)
          do i = 1, n
             do j = 1, 3
                l = self%per*i - 3 + j
@@ -453,7 +453,8 @@ contains
          end do
          self%band(main, last) = self%band(main, last) - share*self%load_rate
       end associate
-      call solve_general_band(self%band, self%beside, self%beside, self%right, self%regular, self%pivot)
+      call solve_general_band(self%band, self%half_width, self%half_width, self%right, self%regular, &
+                              self%pivot)
       do i = 1, n
          self%dx(:, i) = self%right(self%per*i - 2:self%per*i, 1)
          if (.not. self%column%opens) self%dn(i) = per_force*self%right(self%per*i - 3, 1)
@@ -470,11 +471,11 @@ contains
       real(wp) :: tangent(local, local)
       integer :: at(local), j, l
 
-      associate (joint => self%joint(i), main => 2*self%beside + 1, per => self%per)
+      associate (joint => self%joint(i), main => 2*self%half_width + 1, per => self%per)
          call joint_tangent(self%seen(joint%lower), self%seen(joint%upper), joint, &
                             merge(0.5_wp, 1.0_wp, self%average), &
-                            of_joint(self, self%f, i, self%reaction(i)), &
-                            of_joint(self, self%k, i, 0.0_wp), .not. self%column%opens, tangent)
+                            joint_values(self, self%f, i, self%reaction(i)), &
+                            joint_values(self, self%k, i, 0.0_wp), .not. self%column%opens, tangent)
          tangent = share*tangent
          tangent(4, :) = tangent(4, :)*(per_force/share)
          tangent(:, 4) = tangent(:, 4)*per_force
@@ -506,7 +507,7 @@ contains
       class(finite_stepper), intent(in) :: self
       type(state_type), intent(in) :: state
 
-      is_round_off = self%acceptable < 0.0_wp .and. state%lost
+      is_round_off = self%acceptable < 0.0_wp .and. state%diverged
    end function is_round_off
 
    !> The end of the step becomes the state, the springs excepted.

@@ -109,9 +109,9 @@ contains
          end if
          self%steps = self%steps + 1
          if (state%springs%stuck) return
-         if (state%lost) return
+         if (state%diverged) return
          if (event%spring > 0) then
-            if (state%springs%lost_joint() > 0) return
+            if (state%springs%crushed_joint() > 0) return
          end if
          if (state%monitor%feels) call state%update_monitor(state%begin + state%time)
          if (state%monitor%collapsed) return
@@ -126,22 +126,22 @@ contains
          integer :: i
 
          call self%scheme%accept(state, h)
-         state%lost = .not. in_bounds(size(state%q), state%q)
-         if (state%lost) return
+         state%diverged = .not. in_bounds(size(state%q), state%q)
+         if (state%diverged) return
          i = event%spring
          if (i > 0) then
             self%cut_steps = self%cut_steps + 1
             if (event%turns) then
                state%v(i) = 0.0_wp
             else
-               state%q(i) = state%springs%end_toward(i, event%way)
+               state%q(i) = state%springs%end_toward(i, event%direction)
             end if
          end if
          call state%monitor%update_within_step(state%motion, state%springs, self%scheme%q, self%scheme%v, &
                                                state%q, state%v, h, state%begin + state%time)
          ! No other spring has passed an end by more than the last digits.
          call state%springs%carry_to(state%q)
-         if (i > 0) call state%springs%leave(i, event%way)
+         if (i > 0) call state%springs%leave(i, event%direction)
          if (self%tolerance > 0.0_wp) then
             self%longest_step = max(self%longest_step, h)
             self%largest = max(self%largest, energy_of(state%q, state%v))
@@ -230,7 +230,7 @@ contains
       type(state_type), intent(inout) :: state
       type(stream_type), intent(inout) :: stream
 
-      stream%broken = stream%broken .or. state%lost
+      stream%broken = stream%broken .or. state%diverged
       call stream%item(self%next_step)
       call stream%item(self%largest)
    end subroutine resume
@@ -250,7 +250,7 @@ contains
       !> Length of the step [s]
       real(wp), intent(in) :: part
       type(error_type), allocatable, intent(inout) :: error
-      integer :: changes, i, way
+      integer :: changes, i, direction
       logical :: known
 
       known = .false.
@@ -259,24 +259,24 @@ contains
             do i = 1, springs%count
                if (springs%unload_on_reversal(i) == 0 .and. springs%d(i) > springs%first(i) .and. &
                    springs%d(i) < springs%last(i)) cycle
-               way = direction_of(state%v(i))
-               if (way /= 0) then
-                  if (.not. goes_on(i, way)) cycle
+               direction = direction_of(state%v(i))
+               if (direction /= 0) then
+                  if (.not. goes_on(i, direction)) cycle
                   ! A velocity that round-off could have brought about in one step has no direction.
-                  way = direction_of(felt(state%v(i), round_off_of(state, i)*part))
+                  direction = direction_of(felt(state%v(i), round_off_of(state, i)*part))
                end if
-               if (way == 0) then
+               if (direction == 0) then
                   if (.not. known) then
                      call state%motion%acceleration(springs, state%q, state%v, state%load, self%now)
                      known = .true.
                   end if
-                  way = direction_of(felt(self%now%a(i), round_off_of(state, i)))
+                  direction = direction_of(felt(self%now%a(i), round_off_of(state, i)))
                end if
-               if (way == 0) cycle
-               if (goes_on(i, way)) exit
+               if (direction == 0) cycle
+               if (goes_on(i, direction)) exit
             end do
             if (i > springs%count) return
-            call springs%leave(i, way)
+            call springs%leave(i, direction)
             self%scheme%begun = .false.
             known = .false.
          end do
@@ -286,11 +286,13 @@ contains
    contains
 
       !> Whether a spring leaves its line if it moves in a direction.
-      pure logical function goes_on(i, way)
-         integer, intent(in) :: i, way
+      pure logical function goes_on(i, direction)
+         integer, intent(in) :: i, direction
 
-         goes_on = state%springs%unload_on_reversal(i) == -way
-         if (.not. goes_on) goes_on = way*(state%springs%d(i) - state%springs%end_toward(i, way)) >= 0.0_wp
+         goes_on = state%springs%unload_on_reversal(i) == -direction
+         if (.not. goes_on) then
+            goes_on = direction*(state%springs%d(i) - state%springs%end_toward(i, direction)) >= 0.0_wp
+         end if
       end function goes_on
 
    end subroutine leave_at_once

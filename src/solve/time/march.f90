@@ -77,7 +77,7 @@ contains
       subroutine take_steps()
          type(motion_result) :: now
          real(wp) :: begin, finish, h
-         integer :: interval, part, parts, next_row, lost
+         integer :: interval, part, parts, next_row, crushed_joint
          logical :: ends
 
          call now%create(state%motion%structure)
@@ -100,7 +100,7 @@ contains
                   return
                end if
                step = step + 1
-               if (state%lost .or. state%springs%stuck) then
+               if (state%diverged .or. state%springs%stuck) then
                   call report_state(state, error)
                   return
                end if
@@ -110,8 +110,10 @@ contains
                end if
                state%clock = begin + part*h
                if (part == parts) state%clock = finish
-               lost = state%springs%lost_joint()
-               if (lost > 0) task%summary%lost_joint = state%motion%structure%place(lost)%index
+               crushed_joint = state%springs%crushed_joint()
+               if (crushed_joint > 0) then
+                  task%summary%lost_joint = state%motion%structure%place(crushed_joint)%index
+               end if
                ends = task%summary%lost_joint > 0 .or. state%monitor%collapsed
                ! A joint may have lost its axial load, or the column may have collapsed, within the step.
                associate (at => state%begin + state%time)
@@ -124,7 +126,7 @@ contains
                   monitor%collapsed = monitor%collapsed .or. state%motion%structure%has_collapsed(state%q)
                end associate
                ends = ends .or. state%monitor%collapsed
-               if (task%summary%lost_joint > 0) call fall_of(state%springs, lost, task%summary%fall)
+               if (task%summary%lost_joint > 0) call fall_of(state%springs, crushed_joint, task%summary%fall)
                if (ends .or. part == parts) call balance(state, response%energy, task%summary)
                if (ends .or. step == next_row .or. (task%every == unset_integer .and. part == parts)) then
                   if (.not. (ends .or. part == parts)) call balance(state, response%energy)
@@ -178,7 +180,7 @@ contains
          type(error_type), allocatable :: ignored
 
          state%clock = state%begin + state%time
-         if (state%lost .or. .not. state%clock > response%time) return
+         if (state%diverged .or. .not. state%clock > response%time) return
          call state%update_monitor(state%clock)
          call balance(state, response%energy, task%summary)
          call keep(ignored, now)
@@ -264,7 +266,7 @@ contains
       type(state_type), intent(in) :: state
       type(error_type), allocatable, intent(inout) :: error
 
-      if (state%lost) then
+      if (state%diverged) then
          call fatal_error(error, analysis_failed, 'the motion grows without bounds at time '// &
                           to_text(state%begin + state%time)//' s (a deformation is beyond '// &
                           to_text(out_of_bounds)//'): the step is beyond the stability limit, the column '// &

@@ -136,16 +136,16 @@ contains
       real(wp), intent(in) :: load(4)
       !> [s]
       real(wp), intent(in) :: clock
-      real(wp) :: displacement, turn, shear
+      real(wp) :: displacement, rotation, shear
       integer :: i
 
       if (associated(motion%one_body)) then
          ! Its steps are short: nothing is called that need not be.
          displacement = q(1) + motion%one_body%length(1)*q(2)
-         turn = abs(q(2))
+         rotation = abs(q(2))
       else
          displacement = motion%structure%top_displacement(q)
-         turn = motion%structure%largest_turn(q)
+         rotation = motion%structure%largest_turn(q)
       end if
       i = motion%base_spring
       if (i > 0) then
@@ -162,7 +162,7 @@ contains
          call self%update_peak(displacement, load(lateral))
          self%collapsed = self%collapsed .or. abs(self%peak_displacement) >= self%furthest
       end if
-      if (turn > self%peak_rotation) call self%update_rotation(turn)
+      if (rotation > self%peak_rotation) call self%update_rotation(rotation)
       if (abs(shear) > abs(self%peak_base_shear)) call self%update_base_shear(shear)
       if (self%feels) then
          call motion%acceleration(springs, q, v, load, self%now)
@@ -236,7 +236,7 @@ contains
       real(wp), intent(in), contiguous :: q0(:), v0(:), q1(:), v1(:)
       !> Its length, and the clock at its end [s]
       real(wp), intent(in) :: h, clock
-      real(wp) :: top(4), base(4), turn(4), spring(3)
+      real(wp) :: top(4), base(4), rotation(4), spring(3)
       integer :: i
 
       ! Steps up to an event may have no length.
@@ -259,8 +259,8 @@ contains
          call structure%rotations(v0, self%rotation(:, 3))
          call structure%rotations(v1, self%rotation(:, 4))
          do i = 1, structure%n
-            turn = [self%rotation(i, :2), h*self%rotation(i, 3:)]
-            if (bound_of(turn) > self%peak_rotation) call self%update_rotation(abs(largest_of(turn)))
+            rotation = [self%rotation(i, :2), h*self%rotation(i, 3:)]
+            if (bound_of(rotation) > self%peak_rotation) call self%update_rotation(abs(largest_of(rotation)))
          end do
       end associate
       if (self%watching) call check_within(self, springs, q0, v0, q1, v1, top, h, clock)
@@ -302,9 +302,9 @@ contains
          real(wp), intent(in) :: q(:), v(:), later
 
          associate (watch => self%watch(i))
-            associate (turn => q(watch%turns) + later*v(watch%turns))
-               value_at = value_of(watch, q(watch%slips) + later*v(watch%slips), turn, &
-                                   opening_share(watch, springs, turn))
+            associate (rotation => q(watch%turns) + later*v(watch%turns))
+               value_at = value_of(watch, q(watch%slips) + later*v(watch%slips), rotation, &
+                                   opening_share(watch, springs, rotation))
             end associate
          end associate
       end function value_at
@@ -325,14 +325,14 @@ contains
    end subroutine see_openings
 
    !> Share of the opening, and of the rotation at rest, in what is watched.
-   pure real(wp) function opening_share(watch, springs, turn) result(share)
+   pure real(wp) function opening_share(watch, springs, rotation) result(share)
       type(watch_type), intent(in) :: watch
       type(spring_array), intent(in) :: springs
       !> Rotation of the joint [rad]
-      real(wp), intent(in) :: turn
+      real(wp), intent(in) :: rotation
 
       share = 0.0_wp
-      if (abs(watch%opening) > 0.0_wp) share = watch%opening*opening_of(springs, watch%turns, turn) &
+      if (abs(watch%opening) > 0.0_wp) share = watch%opening*opening_of(springs, watch%turns, rotation) &
                                                + watch%rotation*rest_of(springs, watch%turns)
    end function opening_share
 
@@ -355,12 +355,12 @@ contains
    end function are_beyond
 
    !> Value of a watch, which is compared with its threshold.
-   pure real(wp) function value_of(watch, slip, turn, opening) result(value)
+   pure real(wp) function value_of(watch, slip, rotation, opening) result(value)
       type(watch_type), intent(in) :: watch
       !> Deformations of its joint, and the share of the opening
-      real(wp), intent(in) :: slip, turn, opening
+      real(wp), intent(in) :: slip, rotation, opening
 
-      value = watch%slip*slip + watch%rotation*turn + opening
+      value = watch%slip*slip + watch%rotation*rotation + opening
    end function value_of
 
    !> A limit state may be reached.

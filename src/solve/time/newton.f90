@@ -172,7 +172,7 @@ contains
          call self%take_step(state)
          if (self%converged) then
             self%steps = self%steps + 1
-            if (.not. (state%lost .or. state%springs%stuck)) then
+            if (.not. (state%diverged .or. state%springs%stuck)) then
                call state%update_monitor(state%begin + state%time)
             end if
          else
@@ -268,20 +268,20 @@ contains
    end subroutine search_line
 
    !> Move the springs from the start of the step to a trial, if their lines do not reach so far.
-   subroutine move_springs(self, state, q, inside)
+   subroutine move_springs(self, state, q, in_range)
       class(newton_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
       !> Deformations (springs)
       real(wp), intent(in), contiguous :: q(:)
       !> Whether the deformations are within bounds
-      logical, intent(out) :: inside
+      logical, intent(out) :: in_range
 
-      inside = .true.
+      in_range = .true.
       if (.not. self%marked) then
          if (state%springs%stay_on_lines(q)) return
       end if
-      inside = in_bounds(size(q), q)
-      if (.not. inside) return
+      in_range = in_bounds(size(q), q)
+      if (.not. in_range) return
       if (self%marked) then
          call state%springs%retry(q)
       else

@@ -188,8 +188,8 @@ contains
       state%load(horizontal) = ground(3)
       state%of_loads = state%of_loads + of_loads
       state%of_damping = state%of_damping + of_damping
-      state%lost = .not. (abs(state%q(1)) < out_of_bounds .and. abs(state%q(2)) < out_of_bounds)
-      if (.not. state%lost) call state%springs%move_all(state%q)
+      state%diverged = .not. (abs(state%q(1)) < out_of_bounds .and. abs(state%q(2)) < out_of_bounds)
+      if (.not. state%diverged) call state%springs%move_all(state%q)
    end subroutine advance_one_body
 
    !> One step; the springs follow at its end, along as many lines as they have passed.
@@ -210,8 +210,8 @@ contains
       if (state%springs%stay_on_lines(state%q)) then
          call state%springs%carry_to(state%q)
       else
-         state%lost = .not. in_bounds(size(state%q), state%q)
-         if (.not. state%lost) call state%springs%move_all(state%q)
+         state%diverged = .not. in_bounds(size(state%q), state%q)
+         if (.not. state%diverged) call state%springs%move_all(state%q)
       end if
    end subroutine advance
 

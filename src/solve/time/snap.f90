@@ -51,7 +51,7 @@ contains
    subroutine snap(self, state)
       class(implicit_stepper), intent(inout) :: self
       type(state_type), intent(inout) :: state
-      real(wp) :: resistance, wanted, tried, way, way_before, at_last
+      real(wp) :: resistance, wanted, tried, distance, distance_before, at_last
       integer :: round, trials, waits
 
       wanted = self%wanted
@@ -61,7 +61,7 @@ contains
       at_last = resistance
       waits = 0
       tried = huge(1.0_wp)
-      way_before = huge(1.0_wp)
+      distance_before = huge(1.0_wp)
       call self%try_start(state)
       do round = 1, most_rounds
          self%step%now%anchor(:) = self%step%q1
@@ -81,9 +81,9 @@ contains
          call self%step%find_residual(state, self%h, self%load, self%residual)
          call self%iterate(state)
          self%wanted = wanted
-         way = 0.0_wp
-         if (self%converged) way = sqrt(sum(energy_of(state, self%step%q1 - self%step%now%anchor)))
-         if (.not. self%converged .or. way > 5.0_wp*max(1.0_wp, at_last/resistance)*way_before) then
+         distance = 0.0_wp
+         if (self%converged) distance = sqrt(sum(energy_of(state, self%step%q1 - self%step%now%anchor)))
+         if (.not. self%converged .or. distance > 5.0_wp*max(1.0_wp, at_last/resistance)*distance_before) then
             call go_back(self, state)
             self%converged = .false.
             resistance = 3.0_wp*resistance
@@ -92,7 +92,7 @@ contains
             cycle
          end if
          self%converged = .false.
-         way_before = way
+         distance_before = distance
          at_last = resistance
          ! A smaller one that has just failed is tried again later.
          waits = waits - 1

@@ -36,7 +36,7 @@ contains
       type(time_plan), intent(inout) :: plan
       type(checkpoint_type), intent(out) :: checkpoint
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: axial_force(size(structure%place)), missing, largest(4)
+      real(wp) :: axial_force(size(structure%place)), residual, largest(4)
       integer :: i
 
       call create_state(state, structure, loads, plan%begin, error)
@@ -66,11 +66,11 @@ contains
       state%at_begin = checkpoint%at_begin
       state%along_joints = checkpoint%along_joints
       ! Missing part of the balance of energy
-      missing = checkpoint%residual - (state%of_loads + state%at_begin &
+      residual = checkpoint%residual - (state%of_loads + state%at_begin &
                                      - (structure%kinetic_energy(state%q, state%v) + state%along_joints) &
                                      - sum(state%springs%work) - state%of_damping &
                                      - structure%potential_energy(state%q))
-      if (abs(missing) > 0.0_wp) state%at_begin = state%at_begin + missing
+      if (abs(residual) > 0.0_wp) state%at_begin = state%at_begin + residual
    end subroutine resume_state
 
    !> The same method goes on with what it remembers, unless a load jumps at the start.
@@ -158,7 +158,7 @@ contains
       state%v = 0.0_wp
       state%of_loads = 0.0_wp
       state%of_damping = 0.0_wp
-      state%lost = .false.
+      state%diverged = .false.
       call state%springs%restart(state%motion%structure%constant_axial)
       call state%loads%at_time(state%time, state%load)
    end subroutine restart_state

@@ -28,7 +28,7 @@ module rbs_solve_time_state
       !> opening at their ends, not at every moment [J]
       real(wp) :: along_joints = 0.0_wp
       !> Whether a deformation is out of bounds; the run cannot be continued from there
-      logical :: lost = .false.
+      logical :: diverged = .false.
       !> A spring in a member without equilibrium between its ends, 0 for none; the state is the one before
       integer :: runaway = 0
       !> Number of steps in which members snapped, the energy lost in them, and the largest loss [J]; its
@@ -114,20 +114,20 @@ contains
       type(state_type), intent(inout) :: state
       type(stream_type), intent(inout) :: stream
 
-      stream%broken = stream%broken .or. self%steps < 0 .or. state%lost
+      stream%broken = stream%broken .or. self%steps < 0 .or. state%diverged
    end subroutine resume
 
    !> Whether all deformations are within bounds.
    pure logical function in_bounds(m, q)
       integer, intent(in) :: m
       real(wp), intent(in) :: q(m)
-      integer :: i, inside
+      integer :: i, within
 
-      inside = 0
+      within = 0
       do i = 1, m
-         inside = inside + merge(1, 0, abs(q(i)) < out_of_bounds)
+         within = within + merge(1, 0, abs(q(i)) < out_of_bounds)
       end do
-      in_bounds = inside == m
+      in_bounds = within == m
    end function in_bounds
 
 end module rbs_solve_time_state

@@ -34,7 +34,7 @@ module rbs_structure_frame_element
    private
 
    public :: frame_element, find_tangent, find_forces, find_rates, motion_of_rest, unbalance
-   public :: shared, of_joint
+   public :: shared, joint_numbers
 
    !> Springs without stiffness share a motion as if each had this part of its initial one.
    real(wp), parameter :: shared = 1.0e-9_wp
@@ -110,7 +110,7 @@ module rbs_structure_frame_element
    end type frame_element
 
    !> Numbers of a joint of layers in a tangent.
-   integer, parameter :: of_joint = 6
+   integer, parameter :: joint_numbers = 6
 
 contains
 
@@ -219,7 +219,7 @@ contains
          layout%stiffness = numbers + 1
          layout%rate = layout%stiffness + 10
          if (self%layered) then
-            layout%branch = layout%rate + of_joint*(size(self%first) - 1)
+            layout%branch = layout%rate + joint_numbers*(size(self%first) - 1)
          else
             layout%bent = layout%rate + 3*(m + n)
             layout%opened = layout%bent + m**2

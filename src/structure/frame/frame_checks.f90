@@ -27,7 +27,7 @@ contains
       type(message_list), intent(inout) :: messages
       character(len=:), allocatable :: name, from
       integer :: i, j, known, kind
-      logical :: inside
+      logical :: within
 
       call record%check('frame', messages)
       do i = 1, size(record%floor)
@@ -105,9 +105,9 @@ contains
             if (s%kind == '' .and. allocated(s%place)) then
                call messages%add(name//': place is for springs of members; remove it')
             else if (allocated(s%place)) then
-               inside = all(ieee_is_finite(s%place))
-               if (inside) inside = all(s%place >= 0.0_wp .and. s%place <= 1.0_wp)
-               if (.not. inside) then
+               within = all(ieee_is_finite(s%place))
+               if (within) within = all(s%place >= 0.0_wp .and. s%place <= 1.0_wp)
+               if (.not. within) then
                   call messages%add(name//': place is a share of the clear length, from 0 to 1')
                end if
             end if

@@ -4,7 +4,7 @@
 module rbs_structure_frame_layered
    use rbs_base_constants, only: no_stiffness
    use rbs_base_kinds, only: wp
-   use rbs_structure_frame_element, only: frame_element, motion_of_rest, of_joint, unbalance
+   use rbs_structure_frame_element, only: frame_element, motion_of_rest, joint_numbers, unbalance
    implicit none
    private
 
@@ -35,7 +35,7 @@ contains
       integer, intent(in) :: m
       !> Present and initial stiffness of its springs
       real(wp), intent(in) :: k(m), k0(m)
-      real(wp), intent(out) :: stiffness(3, 3), soft(of_joint, size(e%first) - 1)
+      real(wp), intent(out) :: stiffness(3, 3), soft(joint_numbers, size(e%first) - 1)
       !> Whether it does not snap back: each joint that softens is held by the rest of the element; whether
       !> joints without stiffness share a motion
       logical, intent(out) :: stable, shares
@@ -57,7 +57,7 @@ contains
             if (last == i) then
                now(1) = k(i)
                call share_motion(k0(i), now(1), shares)
-               soft(:, j) = [1.0_wp/now(1), (0.0_wp, i=2, of_joint)]
+               soft(:, j) = [1.0_wp/now(1), (0.0_wp, i=2, joint_numbers)]
                call add_spring(sum_of, a(:, 1), soft(1, j))
                cycle
             end if
@@ -139,7 +139,7 @@ contains
       type(frame_element), intent(in) :: e
       integer, intent(in) :: m
       !> Of `layered_tangent`
-      real(wp), intent(in) :: stiffness(3, 3), soft(of_joint, size(e%first) - 1)
+      real(wp), intent(in) :: stiffness(3, 3), soft(joint_numbers, size(e%first) - 1)
       !> Compatibility error: motion of the ends less that of the joints; deformations and forces of the
       !> springs; the share of the dead load that acts, and what it does in them
       real(wp), intent(in) :: gap(3), d(m), f(m), dead, dead_force(m)
@@ -260,7 +260,7 @@ contains
    pure subroutine layered_rates(e, m, stiffness, soft, q, dd)
       type(frame_element), intent(in) :: e
       integer, intent(in) :: m
-      real(wp), intent(in) :: stiffness(3, 3), soft(of_joint, size(e%first) - 1), q(3)
+      real(wp), intent(in) :: stiffness(3, 3), soft(joint_numbers, size(e%first) - 1), q(3)
       real(wp), intent(out) :: dd(m)
       real(wp) :: s(3), z(2)
       integer :: j
@@ -293,7 +293,7 @@ contains
       type(frame_element), intent(in) :: e
       integer, intent(in) :: m
       !> See `layered_tangent`; sizes of what elongation and rotations of the ends are sums of
-      real(wp), intent(in) :: stiffness(3, 3), soft(of_joint, size(e%first) - 1), terms(3)
+      real(wp), intent(in) :: stiffness(3, 3), soft(joint_numbers, size(e%first) - 1), terms(3)
       real(wp), intent(in) :: share
       real(wp), intent(inout) :: dd(m)
       real(wp) :: s(3), opening, turn

@@ -449,12 +449,12 @@ contains
    contains
 
       !> The moment in a joint of layers, as two forces on its outermost ones.
-      subroutine bend_layers(moment, y, of_joint, before)
+      subroutine bend_layers(moment, y, joint_numbers, before)
          real(wp), intent(in) :: moment, y(:)
-         logical, intent(in) :: of_joint(:)
+         logical, intent(in) :: joint_numbers(:)
          integer, intent(in) :: before
 
-         associate (low => minloc(y, dim=1, mask=of_joint), high => maxloc(y, dim=1, mask=of_joint))
+         associate (low => minloc(y, dim=1, mask=joint_numbers), high => maxloc(y, dim=1, mask=joint_numbers))
             frame%dead_force(before + high) = moment/(y(high) - y(low))
             frame%dead_force(before + low) = -moment/(y(high) - y(low))
          end associate
