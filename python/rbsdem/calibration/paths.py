@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
 from difflib import get_close_matches
 from functools import cache
+from itertools import pairwise
 from typing import Any
 
 from rbsdem import _arguments, _core
@@ -55,7 +56,7 @@ def paths(column: Structure) -> dict[str, ParameterPath]:
             f"{name}{rest}": (name, *path)
             for name, kind in column.named_kinds.items()
             for rest, path in _below(kind)
-            if path[0] not in _OF_LAYOUT
+            if path[0] not in _OF_LAYOUT and not (kind.sections and _is_one_layer(path))
         }
     found: dict[str, ParameterPath] = {name: (name,) for name in _PLAIN}
     for kind in _UNITS:
@@ -68,6 +69,11 @@ def paths(column: Structure) -> dict[str, ParameterPath]:
             several = (springs,) * joints
             found |= {f"{kind}{name}": (kind, *path) for name, path in _below(several)}
     return found
+
+
+def _is_one_layer(path: ParameterPath) -> bool:
+    """Return whether a path leads to a single layer: a strip or a bar of a drawn member."""
+    return any(step == "layers" and below is not None for step, below in pairwise(path))
 
 
 def parameter(column: Structure, name: str, path: ParameterPath) -> Parameter | None:
