@@ -206,7 +206,7 @@ def test_rotations_are_those_of_faces_against_chords(frame, push):
     found = {(d.member, d.end): d for d in acceptance.demands(push, rows)}
     at = frame.parts.nodes.index("N-1-1")
     rigid = frame.columns[1, 1].rigid_end[1]
-    moved = push.x[-1, at] - push.turn[-1, at] * rigid
+    moved = push.x[-1, at] - push.node_rotation[-1, at] * rigid
     assert found["C-1-1", "start"].rotation == pytest.approx(moved / (3.2 - rigid), rel=1e-9)
     moment = push.moment_from[-1, frame.parts.members.index("C-1-1")]
     assert found["C-1-1", "start"].moment == pytest.approx(abs(moment), rel=1e-9)
@@ -262,7 +262,7 @@ def test_a_record_is_judged_by_its_envelope(frame):
     row = found[(found.member == "C-2-1") & (found.end == "start")]["rotation_rad"].max()
     at = frame.parts.nodes.index("N-2-1")
     rigid = frame.columns[2, 1].rigid_end[1]
-    chord = (quake.x[:, at] - quake.turn[:, at] * rigid) / (3.2 - rigid)
+    chord = (quake.x[:, at] - quake.node_rotation[:, at] * rigid) / (3.2 - rigid)
     assert row == pytest.approx(np.abs(chord).max(), rel=1e-9)
     with pytest.raises(rbsdem.InputError, match="envelope"):
         assess(quake, at=0.1)

@@ -54,7 +54,7 @@ def apart(one: FrameResult, other: FrameResult) -> float:
     worst = 0.0
     for size, names in (
         (np.abs(one.x).max(), ("displacement", "x", "y")),
-        (np.abs(one.x).max() / 3.0, ("turn",)),
+        (np.abs(one.x).max() / 3.0, ("node_rotation",)),
         (moment_size(one) / 3.0, ("force", "base_shear", "member_axial")),
         (moment_size(one), ("moment_from", "moment_to")),
     ):
@@ -114,7 +114,7 @@ def off_balance(run: FrameResult) -> np.ndarray:
             force = (
                 -side * (np.outer(run.member_axial[:, at], m.e) + np.outer(across, m.t)) + weight
             )
-            turn = run.turn[:, node]
+            turn = run.node_rotation[:, node]
             if made.kinematics == "pdelta":
                 # The axial force of the dead load goes along the chord, from ends that rotate.
                 load = parts.compression[at]
@@ -133,7 +133,7 @@ def chord(run: FrameResult, m: Geometry) -> np.ndarray:
     apart = np.column_stack(
         (run.x[:, m.end] - run.x[:, m.start], run.y[:, m.end] - run.y[:, m.start])
     )
-    arms = m.rigid[0] * run.turn[:, m.start] + m.rigid[1] * run.turn[:, m.end]
+    arms = m.rigid[0] * run.node_rotation[:, m.start] + m.rigid[1] * run.node_rotation[:, m.end]
     return np.asarray((apart @ m.t - arms) / m.clear)
 
 
@@ -281,7 +281,7 @@ def gaps(run: FrameResult) -> float:
     """Return how far members are from what their springs and elastic parts leave between nodes."""
     made, parts = run.frame, run.frame.parts
     hinges: dict[str, list[tuple[str, float, np.ndarray]]] = {name: [] for name in parts.members}
-    turned = run.turn[:, None, :].repeat(2, axis=1)  # as columns and as beams turn
+    turned = run.node_rotation[:, None, :].repeat(2, axis=1)  # as columns and as beams turn
     for group, channel in (("flexure", "rotation"), ("shear", "slip"), ("axial_spring", "opening")):
         for i, own in enumerate(parts.springs_of(group)):
             values = run.springs[channel][:, i]
@@ -388,7 +388,11 @@ def seen_in_a_mirror(run: FrameResult) -> FrameResult:
     start = np.where(beams, run.moment_to[:, members], run.moment_from[:, members])
     end = np.where(beams, run.moment_from[:, members], run.moment_to[:, members])
     other = {name: -run.channels[name] for name in ("displacement", "force", "base_shear")}
-    other |= {"x": -run.x[:, nodes], "y": run.y[:, nodes], "turn": -run.turn[:, nodes]}
+    other |= {
+        "x": -run.x[:, nodes],
+        "y": run.y[:, nodes],
+        "node_rotation": -run.node_rotation[:, nodes],
+    }
     other |= {"member_axial": run.member_axial[:, members]}
     return replace(run, channels=run.channels | other | {"moment_from": -start, "moment_to": -end})
 
@@ -448,7 +452,7 @@ def as_grid(run: FrameResult, made: Frame) -> FrameResult:
     parts, other = made.parts, run.frame.parts
     places = np.column_stack((other.x - other.x.min(), other.y - other.y.min()))
     order = [np.abs(places - at).sum(axis=1).argmin() for at in np.column_stack((parts.x, parts.y))]
-    moved = {name: run.channels[name][:, order] for name in ("x", "y", "turn")}
+    moved = {name: run.channels[name][:, order] for name in ("x", "y", "node_rotation")}
     return replace(run, channels=run.channels | moved)
 
 

@@ -107,7 +107,7 @@ class FrameResult(Rows):
     energy : dict of ndarray
         Energies [J] as those of `Result`; "axial" is the potential of dead load, of second-order
         work and of what is elastic.
-    x, y, turn : ndarray, shape (rows, nodes)
+    x, y, node_rotation : ndarray, shape (rows, nodes)
         Displacements of the nodes along x and upward [m], clockwise rotations [rad].
     member_axial, moment_from, moment_to : ndarray, shape (rows, members)
         Axial forces, compression positive [N], and moments of the ends [N m].
@@ -207,14 +207,14 @@ class FrameResult(Rows):
         for i, one in enumerate(self.frame.geometry.values()):
             for j, node in enumerate((one.start, one.end)):
                 beside = 0.0 if one.upright else panels.get(parts.nodes[node], 0.0)
-                found[:, i, j] = self.turn[:, node] - beside
+                found[:, i, j] = self.node_rotation[:, node] - beside
             found[:, i] -= self._chord(one, found[:, i])[:, None]
         return found
 
     def _chord(self, one: MemberGeometry, turned: Array | None = None) -> Array:
         """Return the clockwise rotation of the chord of a member [rad]."""
         nodes = [one.start, one.end]
-        turned = self.turn[:, nodes] if turned is None else turned
+        turned = self.node_rotation[:, nodes] if turned is None else turned
         across = self.x[:, nodes] * one.normal[0] + self.y[:, nodes] * one.normal[1]
         return np.asarray((np.diff(across)[:, 0] - turned @ np.array(one.rigid)) / one.clear)
 
@@ -346,7 +346,7 @@ class FrameResult(Rows):
     def node(self, name: str) -> Array:
         """Return displacement along x and upward [m] and rotation [rad] of a node, (rows, 3)."""
         at = place_of(name, self.frame.parts.nodes, "node")
-        return np.column_stack((self.x[:, at], self.y[:, at], self.turn[:, at]))
+        return np.column_stack((self.x[:, at], self.y[:, at], self.node_rotation[:, at]))
 
     def member(self, name: str) -> MemberHistory:
         """Return how a member goes.
@@ -537,7 +537,7 @@ class FrameResult(Rows):
 
     def _owners(self, channel: str) -> Sequence[object]:
         parts = self.frame.parts
-        if channel in ("x", "y", "turn", "node_acceleration"):
+        if channel in ("x", "y", "node_rotation", "node_acceleration"):
             return parts.nodes
         groups = [group for group, pair in _CHANNELS.items() if channel in pair]
         springs = parts.springs_of(groups[0]) if groups else []

@@ -239,7 +239,7 @@ class _Channels:
     rest: Array | None
     x: Array
     y: Array
-    turn: Array
+    node_rotation: Array
     member_axial: Array
     moment_from: Array
     moment_to: Array

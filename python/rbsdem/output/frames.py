@@ -143,7 +143,7 @@ def frame(
         if result is not None:
             assert scale is not None
             moved = moved + scale * np.column_stack((result.x[row], result.y[row]))
-            turns = spring_turns(result, row)
+            turns = spring_rotations(result, row)
             for i, member in enumerate(structure.geometry.values()):
                 bent = deformed(result, member, row, scale, turns)
                 lost = result.lost is not None and result.lost[row, i] > 0
@@ -184,8 +184,10 @@ def mode(found: FrameModes, number: int = 1, *, ax: Axes | None = None) -> Axes:
         raise InputError(f"plot.mode: number = {number}: there are {count} modes, from 1")
     structure, row = found.frame, at
     scale = 0.1 * _size(structure) / float(np.hypot(found.x[:, at], found.y[:, at]).max())
-    still = SpringTurns({name: np.zeros(2) for name in structure.geometry}, {})
-    shapes: Any = SimpleNamespace(frame=structure, x=found.x.T, y=found.y.T, turn=found.turn.T)
+    still = SpringRotations({name: np.zeros(2) for name in structure.geometry}, {})
+    shapes: Any = SimpleNamespace(
+        frame=structure, x=found.x.T, y=found.y.T, node_rotation=found.node_rotation.T
+    )
     with axes_or_new(ax, _figure_size(structure)) as drawn:
         _draw_supports(drawn, structure, _size(structure))
         moved = _undeformed(drawn, structure, False)
@@ -422,7 +424,7 @@ def _rounded(value: float) -> float:
     return float(min((1, 2, 5, 10), key=lambda one: abs(np.log(one * power / value))) * power)
 
 
-class SpringTurns(NamedTuple):
+class SpringRotations(NamedTuple):
     """Rotations of springs in a row of a result, or in several.
 
     Attributes
@@ -438,10 +440,10 @@ class SpringTurns(NamedTuple):
     panels: dict[str, Array]
 
 
-def spring_turns(result: FrameResult, row: int | NDArray[np.intp]) -> SpringTurns:
+def spring_rotations(result: FrameResult, row: int | NDArray[np.intp]) -> SpringRotations:
     """Return the rotations of the springs by their members and nodes."""
     structure = result.frame
-    found = SpringTurns(
+    found = SpringRotations(
         {name: np.zeros((*np.shape(row), 2)) for name in structure.parts.members}, {}
     )
     turned, moments = result.springs["rotation"][row], result.springs["moment"][row]
@@ -474,7 +476,7 @@ def deformed(
     member: MemberGeometry,
     row: int | NDArray[np.intp],
     scale: float,
-    turns: SpringTurns,
+    turns: SpringRotations,
     shares: Array = _SHARES,
 ) -> Array:
     """Return points along a member with its displacements times a factor, (..., points, 2) [m].
@@ -482,7 +484,7 @@ def deformed(
     The first axis is that of the rows, if there are several.
     """
     nodes = [member.start, member.end]
-    turn = result.turn[row][..., nodes]
+    turn = result.node_rotation[row][..., nodes]
     if abs(member.axis[0]) > abs(member.axis[1]):
         # Rotations of nodes are those of their columns.
         names, still = result.frame.parts.nodes, np.zeros(np.shape(row))
@@ -509,7 +511,7 @@ def _draw_hinges(
         if event.group != "member" and event.time <= result.time[row]:  # type: ignore[union-attr]
             key = event.member, event.group, event.end
             reached[key] = max(reached.get(key, ""), event.name, key=order.index)
-    turns = None if result is None else spring_turns(result, row)
+    turns = None if result is None else spring_rotations(result, row)
     beside = _BESIDE * _size(structure)
     points: dict[str, list[Array]] = {state: [] for state in _STATES}
     for spring in structure.parts.springs:

@@ -68,7 +68,7 @@ class FrameModes(Tabular):
     ----------
     omega, frequency, period : ndarray, shape (count,)
         Circular frequencies [rad/s], frequencies [Hz] and periods [s], the lowest first.
-    x, y, turn : ndarray, shape (nodes, count)
+    x, y, node_rotation : ndarray, shape (nodes, count)
         Shapes: displacements of the nodes along x and upward, clockwise rotations, with unit modal
         mass.
     mass : ndarray, shape (count,)
@@ -84,7 +84,7 @@ class FrameModes(Tabular):
     period: Array
     x: Array
     y: Array
-    turn: Array
+    node_rotation: Array
     mass: Array
     participation: Array
     frame: Frame
@@ -97,10 +97,10 @@ class FrameModes(Tabular):
 def _frame_modes(frame: Frame, count: int | None) -> FrameModes:
     answer = _core.evaluate("modes", frame._statement, count=count)
     omega = answer.values[1:]
-    x, y, turn, mass = np.split(answer.rows.T, np.arange(1, 4) * frame.n)
+    x, y, rotation, mass = np.split(answer.rows.T, np.arange(1, 4) * frame.n)
     share = mass[0] / (frame.parts.mass or 1.0)  # none moves along x
     return FrameModes(
-        omega, omega / (2 * np.pi), 2 * np.pi / omega, x, y, turn, mass[0].copy(), share, frame
+        omega, omega / (2 * np.pi), 2 * np.pi / omega, x, y, rotation, mass[0].copy(), share, frame
     )
 
 

@@ -25,7 +25,7 @@ from rbsdem.model.frame_result import FrameResult
 from rbsdem.model.shape import Section
 from rbsdem.motions.design import DesignSpectrum
 from rbsdem.motions.motion import GroundMotion
-from rbsdem.output.frames import deformed, spring_turns
+from rbsdem.output.frames import deformed, spring_rotations
 from rbsdem.run.analysis import modes
 from rbsdem.run.result import cyclic, pushover, time_history
 from rbsdem.run.solver import COLLAPSE_DRIFT
@@ -258,7 +258,7 @@ def to_json(result: FrameResult) -> dict[str, Any]:
     moved: list[Array] = []
     for found, at, scale in ((still, nodes[None], 0.0), (moved, moved_nodes, 1.0)):
         shown = pictures[: len(at)]
-        turns = spring_turns(result, shown)
+        turns = spring_rotations(result, shown)
         for one in frame.geometry.values():
             line = deformed(result, one, shown, scale, turns, _SHARES)
             found.append(np.concatenate((at[:, [one.start]], line, at[:, [one.end]]), axis=1))
