@@ -1075,6 +1075,26 @@ def test_nodes_between_plastic_hinges_do_not_turn_away_in_time():
     assert run.summary["relative_energy_residual"] < 0.02
 
 
+def test_plastic_hinges_below_and_above_a_node_share_its_rotation():
+    """As their flexibilities, of which one is twice the other; round-off does not choose."""
+    moment, springs = 1e5, ({1.0: 2e7}, {0.0: 4e7})
+    kinds = [
+        FrameMember(E, A, INERTIA, flexure={at: Bilinear(k, moment / k, 0.0)})
+        for own in springs
+        for at, k in own.items()
+    ]
+    nodes = [FrameNode("0", 0, 0, "fixed"), FrameNode("1", 0, 3)]
+    nodes += [FrameNode("2", 0, 6, mass=1e4, push_x=1.0)]
+    members = [Member(f"{i}", f"{i}", f"{i + 1}", kinds[i]) for i in range(2)]
+    frame = Frame(nodes=nodes, members=members, pattern="nodes")
+    t = np.arange(0, 8, 0.02)
+    ground = 6 * np.sin(2 * np.pi * t / 1.3) * np.minimum(1, t)
+    run = rbsdem.time_history(frame, t, ground_acceleration=ground, method="newmark")
+    turned = run.springs["rotation"]
+    assert np.abs(turned[:, 0]).max() > 0.1
+    assert turned[:, 0] == pytest.approx(2 * turned[:, 1], abs=0.005 * np.abs(turned).max())
+
+
 def test_a_node_between_plastic_hinges_does_not_turn_away():
     """Hinges without hardening on all sides of a node leave its rotation free: it stays."""
     kind = FrameMember(E, A, INERTIA, yield_moment=250e3)

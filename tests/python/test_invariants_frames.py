@@ -608,6 +608,18 @@ def test_cut_and_restart_in_time(rng: Rng) -> float:
     return apart(rest, rows_of(whole, slice(at, None)))
 
 
+@relation(30, judged=0.8, bar=1e-7)
+def test_round_off_of_a_motion(rng: Rng) -> float:
+    """A motion that is larger by 1e-15 has the same answer, if no force falls.
+
+    Springs without stiffness in a row, too, of whose motion the nodes determine the sum alone.
+    """
+    made, time, load = shaken(rng, str(rng.choice(["hardening", "layered"])), panels=False)
+    motion = load.pop("ground_acceleration")
+    pair = [move(made, time, ground_acceleration=motion * by, **load) for by in (1.0, 1 + 1e-15)]
+    return apart(*pair)
+
+
 @relation(30, judged=0.5, bar=1e-7)
 def test_zeros_before_a_record(rng: Rng) -> float:
     """A frame at rest stays there, and answers later as it would have at once."""

@@ -23,6 +23,9 @@ module rbs_solve_time_implicit
    !> How often a spring may leave its lines while the residual does not decrease.
    integer, parameter :: most_returns = 5
 
+   !> Resistance, as a share of the initial stiffness, by which springs without stiffness share a motion.
+   real(wp), parameter :: little = 1.0e-3_wp
+
    public :: implicit_stepper, new_newmark, new_generalised_alpha, new_hht, with_finite_rotations
 
    type, extends(newton_stepper) :: implicit_stepper
@@ -36,6 +39,8 @@ module rbs_solve_time_implicit
       !> Works of loads and damping in the step, and whether they are known [J]
       real(wp), private :: of_loads = 0.0_wp, of_damping = 0.0_wp
       logical, private :: weighed = .false.
+      !> Whether springs without stiffness shared a motion, in an element or about a node, in a trial
+      logical, private :: ambiguous = .false.
       !> How far the unknowns had moved where the last round of `snap` began (unknowns); how often each spring
       !> has left its lines since the residual decreased (springs)
       real(wp), allocatable, private :: anchor(:)
@@ -51,6 +56,7 @@ module rbs_solve_time_implicit
       procedure, private :: try_start
       procedure, private :: check_runaway
       procedure, private :: find_works
+      procedure, private :: resist
    end type implicit_stepper
 
    interface
@@ -172,24 +178,50 @@ contains
 
          self%marked = .false.
          self%weighed = .false.
+         self%ambiguous = .false.
          call state%motion%set_axial_loads(state%springs, self%load)
-         call self%try_start(state)
-         call self%iterate(state)
+         call find_end()
+         if (self%converged .and. self%ambiguous) call settle()
          if (self%converged) call self%check_runaway(state)
          if (.not. self%marked) return
          associate (condensed => state%motion%structure%tangent_numbers > 0)
-            if (.not. self%converged .and. self%runaway == 0) then
-               call state%springs%restore()
-               ! Joints under an axial load that varies have no lines that deformations alone could follow.
-               if (.not. state%springs%axial_load_varies) call go_by_events()
-               if (self%converged) call self%check_runaway(state)
-            end if
             if (condensed) call snap_unless_smooth(self, state)
             self%weighed = condensed
          end associate
          if (.not. self%converged) call state%springs%restore()
          call state%springs%forget_mark()
       end subroutine solve_step
+
+      !> Find a state in equilibrium.
+      subroutine find_end()
+
+         call self%try_start(state)
+         call self%iterate(state)
+         if (self%converged .or. .not. self%marked) return
+         call state%springs%restore()
+         ! Joints under an axial load that varies have no lines that deformations alone could follow.
+         if (.not. state%springs%axial_load_varies) call go_by_events()
+      end subroutine find_end
+
+      !> Many states are in equilibrium, as springs without stiffness share a motion. The step goes to the one
+      !> that is nearest to its begin, where a very viscous liquid would lead: else round-off would choose.
+      subroutine settle()
+
+         if (self%marked) call state%springs%restore()
+         call self%try_start(state)
+         self%step%now%anchor(:) = state%q
+         call self%resist(little)
+         call self%step%find_residual(state, self%h, self%load, self%residual)
+         call self%iterate(state)
+         call self%resist(0.0_wp)
+         if (self%converged) then
+            call self%step%find_residual(state, self%h, self%load, self%residual)
+            call self%iterate(state)
+            if (self%converged) return
+         end if
+         if (self%marked) call state%springs%restore()
+         call find_end()
+      end subroutine settle
 
       !> The step from end to end of the springs' lines, where `iterate` has failed. On the present lines the
       !> tangent step is exact, so the residual decreases in proportion to the way. A spring that leaves its
@@ -213,7 +245,6 @@ contains
             if (i > 0) then
                self%returns(i) = self%returns(i) + 1
                self%busiest = i
-               if (self%returns(i) > most_returns) return
                call state%springs%carry_to(self%step%q1)
                call state%springs%leave(i, direction)
                self%step%q1(i) = state%springs%d(i)
@@ -221,7 +252,12 @@ contains
                before = huge(1.0_wp)
             end if
             call self%step%find_residual(state, self%h, self%load, self%residual)
-            if (i > 0) cycle
+            if (i > 0) then
+               if (self%returns(i) <= most_returns) cycle
+               ! About an equilibrium round-off sends springs at their corners to and fro.
+               self%converged = self%residual <= self%acceptable
+               return
+            end if
             self%converged = self%has_converged(state, before)
             if (self%converged .or. .not. self%residual < before) return
             before = self%residual
@@ -286,6 +322,15 @@ contains
       self%step%q1 = state%q
       call self%step%find_first(state, self%h, self%load, self%residual)
    end subroutine try_start
+
+   !> Springs resist a deformation from an anchor, by a share of their initial stiffness.
+   subroutine resist(self, share)
+      class(implicit_stepper), intent(inout) :: self
+      real(wp), intent(in) :: share
+
+      self%step%resistance = share
+      self%step%now%resistance = share
+   end subroutine resist
 
    !> A step in which a member slides or turns away is none.
    subroutine check_runaway(self, state)
@@ -359,6 +404,7 @@ contains
       type(state_type), intent(inout) :: state
 
       call self%tangent%find_correction(self%step, state, self%h, self%dx)
+      self%ambiguous = self%ambiguous .or. self%step%shares .or. self%tangent%holds
       call state%motion%structure%spring_rates(self%step%now%tangent, self%dx, self%dq)
       if (size(self%step%now%correction) > 0) self%dq = self%dq + self%step%now%correction
    end subroutine correct

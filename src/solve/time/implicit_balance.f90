@@ -54,6 +54,8 @@ module rbs_solve_time_implicit_balance
       real(wp), allocatable :: damping_tangent(:)
       integer, private :: damping_version = -1
       real(wp), private :: resistance_in = 0.0_wp
+      !> Whether springs without stiffness share a motion in them, of which the ends determine the sum alone
+      logical :: shares = .false.
       !> Resistance that belongs into the tangents
       real(wp) :: resistance = 0.0_wp
       !> Largest force of each group of unknowns in the present trial and in all steps so far. Residuals are
@@ -77,7 +79,7 @@ module rbs_solve_time_implicit_balance
    end type step_balance
 
    !> A rotation without mass that hinges leave free is held by this share of the initial stiffness.
-   real(wp), parameter :: held_by = 1.0e-9_wp
+   real(wp), parameter :: held_by = 1.0e-3_wp
 
    type :: step_tangent
       !> Diagonal of the tangent (unknowns)
@@ -90,6 +92,8 @@ module rbs_solve_time_implicit_balance
       !> Step and lines that the factor belongs to
       real(wp), private :: factor_step = -1.0_wp, factor_resistance = 0.0_wp
       integer, private :: factor_version = -1, factor_damping = -1
+      !> Whether an unknown without mass is held, as its pivot is round-off
+      logical :: holds = .false.
    contains
       procedure :: create
       procedure :: find_correction
@@ -195,7 +199,7 @@ contains
       associate (structure => state%motion%structure)
          self%k = state%springs%k
          if (self%resistance > 0.0_wp) self%k = self%k + self%resistance*structure%initial_stiffness
-         call structure%linearise(self%k, self%now%tangent, unstable)
+         call structure%linearise(self%k, self%now%tangent, unstable, self%shares)
       end associate
       self%version = state%springs%version
       self%resistance_in = self%resistance
@@ -504,6 +508,7 @@ contains
                end do
             end if
             self%stiffness = self%matrix%band(1, :)
+            self%holds = .false.
             call self%matrix%factor()
             if (allocated(self%initial)) call hold_free()
          end associate
@@ -517,7 +522,8 @@ contains
       subroutine hold_free()
 
          associate (inverse => abs(self%matrix%triangle(1, :)), initial => self%initial)
-            if (all(no_stiffness*initial*inverse <= 1.0_wp)) return
+            self%holds = any(no_stiffness*initial*inverse > 1.0_wp)
+            if (.not. self%holds) return
             where (no_stiffness*initial*inverse > 1.0_wp) self%matrix%band(1, :) = self%matrix%band(1, :) &
                                                                                     + held_by*initial
             call self%matrix%factor()

@@ -35,15 +35,6 @@ contains
       if (abs(loss) > no_loss*energy) call count_snap(self, state, loss)
    end subroutine snap_unless_smooth
 
-   !> Springs resist a deformation from where the round began, by a share of their initial stiffness.
-   subroutine resist(self, share)
-      class(implicit_stepper), intent(inout) :: self
-      real(wp), intent(in) :: share
-
-      self%step%resistance = share
-      self%step%now%resistance = share
-   end subroutine resist
-
    !> The step where the inside of a member, or nodes without mass, snap from one equilibrium to another.
    !> Springs that resist their deformation, as if in a very viscous liquid, follow the way from the start
    !> of the step down to the next state at which they rest, in equilibrium without resistance. It is as
@@ -66,7 +57,7 @@ contains
       do round = 1, most_rounds
          self%step%now%anchor(:) = self%step%q1
          self%anchor(:) = self%step%moved
-         call resist(self, 0.0_wp)
+         call self%resist(0.0_wp)
          call self%step%find_residual(state, self%h, self%load, self%residual)
          if (resistance <= 0.1_wp .and. self%residual < 0.3_wp*tried) then
             tried = self%residual
@@ -76,7 +67,7 @@ contains
             if (tried <= at_rest) call rest(self, state, at_last)
             if (self%converged) exit
          end if
-         call resist(self, resistance)
+         call self%resist(resistance)
          self%wanted = loose
          call self%step%find_residual(state, self%h, self%load, self%residual)
          call self%iterate(state)
@@ -100,7 +91,7 @@ contains
          self%runaway = state%motion%structure%unbounded_spring(self%step%q1)
          if (self%runaway > 0) exit
       end do
-      call resist(self, 0.0_wp)
+      call self%resist(0.0_wp)
       self%most_trials = trials
    end subroutine snap
 
@@ -111,7 +102,7 @@ contains
       type(state_type), intent(inout) :: state
       real(wp), intent(in) :: resistance
 
-      call resist(self, resistance)
+      call self%resist(resistance)
       self%step%now%resistance = 0.0_wp
       call self%tangent%fit(self%step, state, self%h)
       call self%step%find_residual(state, self%h, self%load, self%residual)
