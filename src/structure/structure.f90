@@ -196,7 +196,7 @@ module rbs_structure_structure
       !> what lies between the unknowns to equilibrium (coordinates, or none)
       real(wp), allocatable :: tangent(:), correction(:)
       !> Resistance of the springs against deformation from `anchor`, as a share of their initial stiffness,
-      !> in the search for the state that an element snaps to; 0 in equilibrium. Position where it begins
+      !> in the search for one of several states; 0 in equilibrium. Position where it begins
       !> (coordinates, or none)
       real(wp) :: resistance = 0.0_wp
       real(wp), allocatable :: anchor(:)
