@@ -9,7 +9,6 @@ program unit_tests
    use test_peak_oriented, only: collect_peak_oriented
    use test_rules, only: collect_rules
    use test_section, only: collect_section
-   use test_shear, only: collect_shear
    use test_springs, only: collect_springs
    use test_steel, only: collect_steel
    use test_takeda, only: collect_takeda
@@ -29,7 +28,7 @@ program unit_tests
       procedure(collect_interface), pointer, nopass :: collect => null()
    end type suite_type
 
-   type(suite_type) :: suites(11)
+   type(suite_type) :: suites(10)
    character(len=80) :: wanted, pattern
    integer :: i, run, failed, found
 
@@ -38,7 +37,7 @@ program unit_tests
              suite_type('peak_oriented', collect_peak_oriented), &
              suite_type('concrete', collect_concrete), suite_type('steel', collect_steel), &
              suite_type('layered', collect_layered), suite_type('rules', collect_rules), &
-             suite_type('springs', collect_springs), suite_type('shear', collect_shear)]
+             suite_type('springs', collect_springs)]
 
    call get_command_argument(1, wanted)
    call get_command_argument(2, pattern)

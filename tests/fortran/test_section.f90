@@ -1,6 +1,6 @@
-!> Material laws, equilibrium and events of a section, against closed forms.
+!> Material laws, equilibrium and layers in shear of a section, against closed forms.
 module test_section
-   use check, only: unit_test, check_close, check_passed
+   use check, only: unit_test, check_close, check_passed, check_true
    use rbs_base_constants, only: pi, unset
    use rbs_base_error, only: error_type
    use rbs_base_kinds, only: wp
@@ -9,8 +9,10 @@ module test_section
                                        plain_concrete, spalling_concrete, tension_zero
    use rbs_section_section_build, only: build_section, volumetric_ratio
    use rbs_section_resultants, only: section_laws
-   use rbs_section_cross_section, only: section_type, ties
+   use rbs_section_cross_section, only: section_type, spiral, ties
+   use rbs_section_mcft_layer, only: layer_state, layer_type, solve_layer
    use rbs_section_shape, only: new_shape
+   use rbs_section_shear_flow, only: transverse_ratio
    use rbs_section_steel_law, only: steel_type
    implicit none
    private
@@ -25,7 +27,10 @@ contains
       tests = [unit_test('concrete: slope is that of the stress', concrete_slope), &
                unit_test('concrete: Mander core, spalling cover', confined_law), &
                unit_test('confinement: square ties by hand', confinement), &
-               unit_test('no tension, no bars: the moment of a rocking block', rocking)]
+               unit_test('no tension, no bars: the moment of a rocking block', rocking), &
+               unit_test('a layer reports that it does not carry the shear stress', exhausted), &
+               unit_test('a far state of a layer in shear is reached in parts', in_parts), &
+               unit_test('stirrups of a circle add up to pi/2 of a leg', circle_stirrups)]
    end subroutine collect_section
 
    !> 400 by 500 mm, f'c 30 MPa, two rows of bars of 1000 mm2 at +-200 mm.
@@ -144,5 +149,75 @@ contains
 
       call concrete_both(law, strain, stress, tangent)
    end function concrete_tangent
+
+   !> A layer of 32 MPa concrete with stirrups of 325 MPa.
+   pure type(layer_type) function sample_layer(rho_z) result(layer)
+      real(wp), intent(in) :: rho_z
+
+      layer%concrete = plain_concrete(32.0e6_wp, unset, unset, unset)
+      layer%rho_z = rho_z
+      layer%stirrup = steel_type(fy=325.0e6_wp, fu=487.5e6_wp)
+   end function sample_layer
+
+   subroutine exhausted(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(layer_type) :: layer
+      type(layer_state) :: state
+      logical :: carried
+      real(wp) :: most
+
+      layer = sample_layer(0.001_wp)
+      call solve_layer(layer, 1.0e-3_wp, 8.0e6_wp, state, carried)
+      call check_true(error, .not. carried, '8 MPa is not carried')
+      most = state%tau
+      state = layer_state()
+      call solve_layer(layer, 1.0e-3_wp, 0.99_wp*most, state, carried)
+      call check_true(error, carried, 'almost the reported stress is carried')
+      state = layer_state()
+      call solve_layer(layer, 1.0e-3_wp, 1.05_wp*most, state, carried)
+      call check_true(error, .not. carried, 'not much more is')
+   end subroutine exhausted
+
+   !> Yielded stirrups: neither the search over eps_1 nor Newton's method in one step finds this state.
+   subroutine in_parts(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(layer_type) :: layer
+      type(layer_state) :: step_by_step, at_once
+      logical :: carried
+      integer :: i
+
+      layer = sample_layer(0.004_wp)
+      do i = 1, 30
+         call solve_layer(layer, 4.9e-3_wp, 0.1e6_wp*i, step_by_step, carried)
+         call check_true(error, carried, 'step by step')
+      end do
+      call solve_layer(layer, 4.9e-3_wp, 3.0e6_wp, at_once, carried)
+      call check_true(error, carried, 'at once')
+      call check_close(error, at_once%gamma, step_by_step%gamma, 1.0e-6_wp, 0.0_wp, 'gamma')
+   end subroutine in_parts
+
+   subroutine circle_stirrups(error)
+      type(error_type), allocatable, intent(inout) :: error
+      type(section_type) :: section
+      real(wp) :: width, total
+      integer :: i
+
+      section = beam(.false., 400)
+      call new_shape('circle', 0.55_wp, 0.55_wp, section%shape)
+      section%transverse%kind = spiral
+      section%transverse%diameter = 0.012_wp
+      section%transverse%spacing = 0.11_wp
+      section%transverse%legs = 2.0_wp
+      section%transverse%steel = steel_type(fy=325.0e6_wp, fu=429.0e6_wp)
+      call build_section(section, 0.006_wp, 400)
+      total = 0.0_wp
+      do i = 1, size(section%strips%y)
+         width = section%strips%area(i)/section%strips%dy
+         total = total + transverse_ratio(section, section%strips%y(i), width)*width*section%strips%dy
+      end do
+      ! A hoop that a crack at 45 degrees cuts pulls with pi/2 A f over the core: A_v f/s D pi/2 for two legs.
+      call check_close(error, total, 0.5_wp*pi*0.25_wp*pi*0.012_wp**2*section%core_shape%depth/0.11_wp, &
+                       1.0e-3_wp, 0.0_wp, 'steel over the depth')
+   end subroutine circle_stirrups
 
 end module test_section

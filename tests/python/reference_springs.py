@@ -1,4 +1,4 @@
-"""The spring rules once more: an independent method for the tests of ``rbsdem``.
+"""The Takeda rule once more: an independent method for the tests of ``rbsdem``.
 
 Written from the statement of the rules (the trilinear Takeda spring with B0 and B1, sections 2a to
 2c), not from the Fortran. Everything is done event by event in plain floats: a spring stands on a
@@ -65,45 +65,6 @@ class InnerPeak:
     d: float
     f: float
     left: Branch
-
-
-class Bilinear:
-    """Kinematic hardening, as an elastic spring beside an elastic-plastic one.
-
-    The elastic-plastic part carries ``(k - k_post) (D - slip)`` with ``|D - slip| <= d_y``; its
-    yield force ``(k - k_post) d_y`` is the q of the bounding lines F = k_post D +- q. Only the
-    slip is remembered, so nothing accumulates.
-    """
-
-    def __init__(self, k: float, d_y: float, k_post: float) -> None:
-        self.k, self.d_y, self.k_post = float(k), float(d_y), float(k_post)
-        self.start()
-
-    def start(self) -> None:
-        """Go back to the virgin state."""
-        self.d = self.f = self.slip = 0.0
-
-    @property
-    def tangent(self) -> float:
-        """Stiffness of the present line (the elastic one just after a reversal)."""
-        return self.k if abs(self.d - self.slip) < self.d_y else self.k_post
-
-    @property
-    def zero(self) -> float:
-        """Deformation at which the elastic line through the present point has no force."""
-        return self.d - self.f / self.k
-
-    def move(self, d: float) -> float:
-        """Move to ``d`` and return the force there."""
-        self.slip = min(max(self.slip, d - self.d_y), d + self.d_y)
-        self.d = d
-        self.f = self.k_post * d + (self.k - self.k_post) * (d - self.slip)
-        return self.f
-
-    def response(self, deformations: Iterable[float]) -> list[float]:
-        """Forces along a path that starts at zero in the virgin state."""
-        self.start()
-        return [self.move(float(d)) for d in deformations]
 
 
 class Takeda:

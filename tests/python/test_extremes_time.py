@@ -7,7 +7,6 @@ spacing (`reference_chain.Linear`).
 from __future__ import annotations
 
 import os
-import re
 from functools import cache
 from pathlib import Path
 
@@ -131,26 +130,3 @@ def test_jump_of_a_load_within_the_last_digits_of_the_time(method, width):
     np.testing.assert_allclose(
         deformations(run), expected, atol=close * np.max(np.abs(expected))
     )  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    ("rows", "text"),
-    [
-        ("0.0,0.0", "1 "),
-        ("0.0,0.0\n0.01,\n0.02,0.1", "line 3"),
-        ("0.0,0.0\n0.01,nan\n0.02,0.1", "line 3"),
-        ("0.0,0.0\n0.01,1e999\n0.02,0.1", "line 3"),
-        ("0.0,0.0\n0.02,0.1\n0.02,0.1", "0.02"),
-        ("0.0,0.0\n0.02,0.1\n0.01,0.1", "0.01"),
-    ],
-)
-def test_records_with_gaps_and_repeats_are_refused_by_line(
-    run_cli, dynamic_text, tmp_path, rows, text
-):
-    (tmp_path / "motion.csv").write_text(f"time_s,acceleration_g\n{rows}\n", "utf-8")
-    case = dynamic_text(loading="drive = 'ground_acceleration', file = 'motion.csv'")
-    (tmp_path / "case.nml").write_text(case, "utf-8")
-    run = run_cli(["check", "case.nml"], tmp_path)
-    assert run.returncode == 2
-    assert "motion.csv" in run.stderr or "time" in run.stderr
-    assert re.search(re.escape(text), run.stderr), run.stderr

@@ -100,96 +100,37 @@ NUMBERS = [
     b"2001", b"1e5", b"1d-5", b"0.1", b"17", b"5*1.0", b"100000*1.0", b"100001*2", b"999999999",
 ]  # fmt: skip
 
-Mutation = Callable[[random.Random, bytes], bytes]
-
-
-def piece(rng: random.Random, text: bytes) -> tuple[int, int]:
-    begin = rng.randrange(len(text) + 1)
-    return begin, min(len(text), begin + rng.choice([1, 2, 5, 20, 80]))
-
-
-def flip(rng: random.Random, text: bytes) -> bytes:
-    at = rng.randrange(len(text))
-    return text[:at] + bytes([text[at] ^ (1 << rng.randrange(8))]) + text[at + 1 :]
-
-
-def delete(rng: random.Random, text: bytes) -> bytes:
-    begin, end = piece(rng, text)
-    return text[:begin] + text[end:]
-
-
-def double(rng: random.Random, text: bytes) -> bytes:
-    begin, end = piece(rng, text)
-    return text[:end] + text[begin:end] * rng.choice([1, 1, 2, 50]) + text[end:]
-
-
-def swap(rng: random.Random, text: bytes) -> bytes:
-    (a, b), (c, d) = sorted([piece(rng, text), piece(rng, text)])
-    if b > c:
-        return text[c:] + text[:c]
-    return text[:a] + text[c:d] + text[b:c] + text[a:b] + text[d:]
-
-
-def digit(rng: random.Random, text: bytes) -> bytes:
-    places = [i for i, byte in enumerate(text) if byte in b"0123456789"]
-    if not places:
-        return text + b"7"
-    at = rng.choice(places)
-    return text[:at] + rng.choice([b"0", b"1", b"9", b"5", b"-", b"."]) + text[at + 1 :]
-
-
-def number(rng: random.Random, text: bytes) -> bytes:
-    found = list(re.finditer(rb"[-+]?\d[\d.]*(?:[eEdD][-+]?\d+)?", text))
-    if not found:
-        return text + rng.choice(NUMBERS)
-    one = rng.choice(found)
-    return text[: one.start()] + rng.choice(NUMBERS) + text[one.end() :]
-
-
-def truncate(rng: random.Random, text: bytes) -> bytes:
-    return text[: rng.randrange(len(text))]
-
-
-def junk(rng: random.Random, text: bytes) -> bytes:
-    at = rng.randrange(len(text) + 1)
-    return text[:at] + rng.choice(JUNK) + text[at:]
-
-
-def noise(rng: random.Random, text: bytes) -> bytes:
-    at = rng.randrange(len(text) + 1)
-    return text[:at] + rng.randbytes(rng.choice([1, 4, 40])) + text[at:]
-
-
-def shuffle(rng: random.Random, text: bytes) -> bytes:
-    lines = text.splitlines(keepends=True)
-    rng.shuffle(lines)
-    return b"".join(lines)
-
-
-def repeat_line(rng: random.Random, text: bytes) -> bytes:
-    lines = text.splitlines(keepends=True) or [b"x"]
-    at = rng.randrange(len(lines))
-    return b"".join(lines[:at] + [lines[at]] * rng.choice([2, 3, 100]) + lines[at + 1 :])
-
-
-def drop_line(rng: random.Random, text: bytes) -> bytes:
-    lines = text.splitlines(keepends=True) or [b"x"]
-    del lines[rng.randrange(len(lines))]
-    return b"".join(lines)
-
-
-def exchange_words(rng: random.Random, text: bytes) -> bytes:
-    words = list(re.finditer(rb"[A-Za-z_]\w*", text))
-    if len(words) < 2:
-        return text + b" word"
-    one, other = rng.sample(words, 2)
-    return text[: one.start()] + other.group() + text[one.end() :]
-
-
-MUTATIONS: list[Mutation] = [
-    flip, delete, double, swap, digit, digit, number, number, number, truncate, junk, junk, noise,
-    shuffle, repeat_line, drop_line, exchange_words, exchange_words,
+#: Parts into which a text is taken apart: some bytes, words, numbers and what is between, lines.
+GRAINS = [
+    rb"[\s\S]{1,20}", rb"[A-Za-z_]\w*|[\s\S]", rb"[-+]?\d[\d.]*(?:[eEdD][-+]?\d+)?|[^-+\d]+|[-+]",
+    rb"[^\n]*\n|[^\n]+",
 ]  # fmt: skip
+
+
+def mutated(rng: random.Random, text: bytes) -> bytes:
+    """Return a text some of whose parts are gone, repeated, exchanged, replaced or changed."""
+    parts = re.findall(rng.choice(GRAINS), text) or [b"x"]
+    i, j = rng.randrange(len(parts)), rng.randrange(len(parts))
+    kind = rng.randrange(9)
+    if kind == 0:
+        del parts[i : i + rng.choice([1, 2, 5])]
+    elif kind == 1:
+        parts[i] *= rng.choice([2, 3, 50, 100])
+    elif kind == 2:
+        parts[i], parts[j] = parts[j], parts[i]
+    elif kind == 3:
+        del parts[i:]
+    elif kind in (4, 5):
+        numbers = [k for k, part in enumerate(parts) if re.search(rb"\d", part)]
+        parts[rng.choice(numbers or [i])] = rng.choice(NUMBERS)
+    elif kind == 6:
+        parts.insert(i, rng.choice([*JUNK, rng.randbytes(rng.choice([1, 4, 40]))]))
+    elif kind == 7:
+        parts[i] = bytes([parts[i][0] ^ (1 << rng.randrange(8))]) + parts[i][1:]
+    else:
+        some = parts[min(i, j) : max(i, j)]
+        parts[min(i, j) : max(i, j)] = rng.sample(some, len(some))
+    return b"".join(parts) or b"\n"
 
 
 def mutants(bases: dict[str, str], seed: int) -> Iterable[tuple[int, str, bytes]]:
@@ -200,7 +141,7 @@ def mutants(bases: dict[str, str], seed: int) -> Iterable[tuple[int, str, bytes]
         name = names[i % len(names)]
         text = bases[name].encode()
         for _ in range(rng.choice([1, 1, 1, 2, 2, 3, 4])):
-            text = rng.choice(MUTATIONS)(rng, text) or b"\n"
+            text = mutated(rng, text)
         yield i, name, text
 
 

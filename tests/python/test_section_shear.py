@@ -84,6 +84,33 @@ def test_layers_are_in_equilibrium_by_an_independent_solution(curvature: float) 
         np.testing.assert_allclose(stress[:, 0, 1], layers.tau[inside] / MPA, atol=1e-6)
 
 
+def test_coupled_layers_and_bars_carry_all_three_forces() -> None:
+    """Axial load, moment and shear force from the strains, with the laws written down again.
+
+    Far out the span is so long that there is no shear: flexure alone.
+    """
+    section, length, load = column("tanaka_park_5")
+    curvature = 0.4e-3 * np.arange(1, 21)
+    diagram = shear_diagram(section, length, load, curvature, coupled=True)
+    layers, strip = diagram.layers, section.width * section.depth / diagram.layers.y.size
+    rho = 4 * 0.25 * math.pi * 0.012**2 / (section.width * 0.11)
+    inside = np.abs(layers.y) < 0.5 * section.depth - section.cover
+    states = zip(layers.eps_x, layers.eps_z, layers.gamma, rho * inside, strict=True)
+    stress = MPA * np.array([layer_stresses(*state) for state in states])
+    along = stress[:, 0, 0]
+    axial, moment = -(along * strip).sum(), (along * strip * layers.y).sum()
+    for y, area, steel in section.bars:
+        eps, around = (np.interp(y, layers.y, values) for values in (layers.eps_x, along))
+        force = (np.clip(steel.es * eps, -steel.fy, steel.fy) - around) * area
+        axial, moment = axial - force, moment + force * y
+    assert axial == pytest.approx(load, rel=1e-3)
+    assert moment == pytest.approx(diagram.moment[-1], rel=1e-3)
+    assert (stress[:, 0, 1] * strip).sum() == pytest.approx(diagram.force[-1], rel=1e-4)
+    slender = shear_diagram(section, 100.0, load, curvature, coupled=True).moment
+    flexure = rbsdem.section.moment_curvature(section, load, curvature)
+    np.testing.assert_allclose(slender, flexure, rtol=1e-3)
+
+
 @pytest.mark.parametrize("key", KEYS)
 def test_shear_spring_agrees_with_the_reference(key: str) -> None:
     """So do its closed form, the strength, and the moment of the coupled analysis.
@@ -151,11 +178,22 @@ def test_moment_is_that_of_the_section_and_force_is_moment_over_length() -> None
     assert np.mean(layers.gamma) == pytest.approx(diagram.strain[-1], rel=1e-12)
 
 
-@pytest.mark.parametrize("section", [circle(), column("zahn_7")[0]], ids=["circle", "square"])
-def test_uncracked_stiffness(section) -> None:
-    diagram = shear_diagram(section, 1.6, 500e3, [1e-5])
-    assert diagram.force[0] / diagram.strain[0] == pytest.approx(diagram.stiffness, rel=0.02)
+@pytest.mark.parametrize("kind", [RectangularSection, CircularSection])
+@pytest.mark.parametrize("wall", [None, 0.15])
+def test_before_cracking(kind, wall) -> None:
+    """V/gamma is E_c A/2, and the shear stress of a solid rectangle the parabola V S/(I b)."""
+    sizes = (0.55, 0.55) if kind is RectangularSection else (0.55,)
+    bars = [(y, 1e-9, Steel(511e6)) for y in (-0.2, 0.2)]
+    section = kind(*sizes, Concrete(32e6), bars=bars, bar_diameter=0.02, cover=0.04, wall=wall)
+    diagram = shear_diagram(section, 1.65, 0.0, [1e-7])
+    stiffness = 0.5 * section.concrete_law["ec"] * section.gross_area
+    assert diagram.force[0] / diagram.strain[0] == pytest.approx(stiffness, rel=1e-12)
+    assert diagram.stiffness == pytest.approx(stiffness, rel=1e-12)
     assert diagram.knee is None
+    if len(sizes) == 2 and not wall:
+        y, tau = diagram.layers.y, diagram.layers.tau
+        parabola = 1.5 * diagram.force[0] / section.gross_area * (1 - (2 * y / 0.55) ** 2)
+        np.testing.assert_allclose(tau, parabola, atol=1e-3 * tau.max())
 
 
 def test_circle_has_a_knee_and_an_end() -> None:
@@ -184,6 +222,10 @@ def test_short_column_without_ties_is_governed_by_shear() -> None:
     flexure = rbsdem.section.moment_curvature(section, 100e3, 0.03) / 0.8
     assert found.end.force < 0.7 * flexure
     assert found.end.force == pytest.approx(found.strength, rel=1e-6)
+    ends = [shear_diagram(section, 0.8, 100e3, np.linspace(0, 0.03, n)[1:]).end for n in (14, 302)]
+    for name in ("curvature", "force", "strain"):
+        few, many = (getattr(end, name) for end in ends)
+        assert few == pytest.approx(many, rel=2e-2 if name == "strain" else 2e-3)
     coupled = shear_diagram(section, 0.8, 100e3, furthest=0.03, coupled=True)
     assert coupled.sheared
     simplified = strength.shear_strength_mcft(section, 0.8, 100e3)

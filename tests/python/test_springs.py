@@ -1,4 +1,4 @@
-"""The Takeda and bilinear rules by hand and against an independent method; input of all springs.
+"""The Takeda rule by hand and against an independent method; input of all springs.
 
 Further sequences by hand are in the Fortran suite `takeda`. What holds for every
 rule to the last bit is in `test_invariants.py`. ``reference_springs`` is a second implementation
@@ -33,7 +33,6 @@ from rbsdem.springs import (
 Array = NDArray[np.float64]
 
 INNER = ("kc", "kr", "one")
-KINDS = (*INNER, "bilinear")
 
 
 EPSILON = float(np.finfo(float).eps)
@@ -178,9 +177,6 @@ def random_parameters(rng: np.random.Generator, kind: str, extreme: bool) -> dic
     """Valid parameters over the ranges of section 3 and their ends, or beyond them."""
     k, d = 10 ** rng.uniform(0, 10), 10 ** rng.uniform(-5, 0)
     post = rng.choice([0.0, 0.9, rng.uniform(0.01, 0.9)], p=[0.15, 0.05, 0.8])
-    if kind == "bilinear":
-        share = rng.choice([0.0, 1e-6, 0.999]) if extreme else post
-        return {"k": k, "d_y": d, "k_post": k * share}
     share, beyond = rng.uniform(0.05, 0.9), rng.choice([1.05, rng.uniform(1.05, 15)], p=[0.1, 0.9])
     b0 = rng.choice([0.0, 0.4, 1.0, rng.uniform(0, 1)], p=[0.1, 0.3, 0.1, 0.5])
     b1 = rng.uniform(0.05, 1.5)
@@ -203,8 +199,7 @@ def random_path(rng: np.random.Generator, spring: Any, points: int, exact: bool)
     whether the next reversal is an inner peak, so that two computations may rightly differ from
     there on. Otherwise: clearly short of it or beyond, by 1e-13 or 1e-9 of the deformation.
     """
-    stiffest = spring.k_c if hasattr(spring, "k_c") else spring.k
-    special = [s * x for x in (getattr(spring, "d_c", 0.0), spring.d_y) for s in (1, -1)]
+    special = [s * x for x in (spring.d_c, spring.d_y) for s in (1, -1)]
     size = spring.d_y * rng.choice([0.4, 1.2, 3.0, 8.0])
     along = np.linspace(0, 1, points)
     sizes = size * [0.2 + along, 1.02 - along, rng.exponential(1, points)][rng.integers(3)]
@@ -223,7 +218,7 @@ def random_path(rng: np.random.Generator, spring: Any, points: int, exact: bool)
         elif choice < 0.9:
             d = rng.choice([*special, 0.0])
         else:
-            path.append(float(spring.d - 0.1 * spring.f / stiffest))
+            path.append(float(spring.d - 0.1 * spring.f / spring.k_c))
             spring.move(path[-1])
             d = spring.zero if abs(spring.zero) <= 10 * size else 0.0
             if exact:
@@ -237,16 +232,15 @@ def random_path(rng: np.random.Generator, spring: Any, points: int, exact: bool)
 
 def random_cases(seed: int, kind: str, count: int, points: int, **how: bool) -> Iterator[tuple]:
     """Yield a spring, its second implementation and a path."""
-    rng = np.random.default_rng([seed, KINDS.index(kind)])
-    name = "Bilinear" if kind == "bilinear" else "Takeda"
+    rng = np.random.default_rng([seed, INNER.index(kind)])
     for _ in range(count):
         numbers = random_parameters(rng, kind, how.get("extreme", False))
-        second = getattr(reference_springs, name)(**numbers)
+        second = reference_springs.Takeda(**numbers)
         path = random_path(rng, second, points, how.get("exact", False))
-        yield getattr(rbsdem.springs, name)(**numbers), second, path
+        yield Takeda(**numbers), second, path
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", INNER)
 @pytest.mark.parametrize(
     ("seed", "count", "points", "extreme"),
     [(101, 1500, 40, False), (102, 500, 60, True), (103, 40, 600, False)],
@@ -259,7 +253,7 @@ def test_reference_agrees(kind: str, seed: int, count: int, points: int, extreme
         np.testing.assert_allclose(spring.response(path), expected, rtol=0, atol=near)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", INNER)
 def test_waiting_and_cutting_short_at_exact_crossings(kind: str) -> None:
     """Time does not enter, and a spring keeps nothing of a call: not a bit changes."""
     for spring, _, path in random_cases(20, kind, 300, 40, exact=True):
