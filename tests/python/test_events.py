@@ -303,6 +303,13 @@ def test_orders_through_yielding_and_unloading(number):
     assert (4 if number < 6 else 3.4) < mean_order(energies) < 6, energies
     assert energies[-1] < 1e-8
     assert located[-1].summary["events"] == exact.summary["events"]
+    # Steps that do not divide the times of the loads end at their corners too.
+    ends = [
+        np.abs(deformations(run("located", steps + 5 * 2**i))[-1] - deformations(exact)[-1]).max()
+        for i, steps in enumerate(parts)
+    ]
+    assert 3.6 < mean_order(ends) < 4.5, ends
+    assert ends[-1] < 2e-7 * largest
     pair = [off(run("rk45", tolerance=10.0**-digits)) for digits in range(4, 13)]
     assert all(error < 10.0 ** (4 - digits) for digits, error in enumerate(pair, 4)), pair
     assert 0.85 < np.log10(pair[3] / pair[8]) / 5 < 1.2, pair
